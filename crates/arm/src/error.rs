@@ -1,0 +1,38 @@
+//! What can be wrong with a robot description.
+
+use std::path::PathBuf;
+
+/// Why a URDF is not an [`crate::Arm`]. `place` names the line and the element.
+#[derive(Debug, thiserror::Error)]
+pub enum ArmError {
+    /// The file cannot be read.
+    #[error("{path}: cannot be read: {source}")]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: std::io::Error,
+    },
+    /// The text is not URDF.
+    #[error("{path}: not a URDF: {reason}")]
+    Syntax {
+        /// The file.
+        path: PathBuf,
+        /// What the parser met.
+        reason: String,
+    },
+    /// The URDF is well formed but does not describe a serial arm with physical inertias.
+    #[error("{path}:{line}: {element}: {reason}; {remedy}")]
+    Model {
+        /// The file.
+        path: PathBuf,
+        /// The line of the element, from 1.
+        line: usize,
+        /// The element, as `joint "elbow"`.
+        element: String,
+        /// What was found.
+        reason: String,
+        /// How to mend it.
+        remedy: String,
+    },
+}

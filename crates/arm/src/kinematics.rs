@@ -1,0 +1,69 @@
+//! Poses of the links and the geometric Jacobian.
+
+use nalgebra::Matrix6xX;
+
+use crate::model::{Arm, Frame, JointKind};
+use crate::pose::Pose;
+use crate::workspace::Workspace;
+
+impl Arm {
+    /// The pose of every link in the base frame at `q`, to be read with [`Workspace::base_from_link`].
+    ///
+    /// # Panics
+    /// If a slice or the workspace is of another size than the arm.
+    pub fn forward_kinematics(&self, workspace: &mut Workspace, q: &[f64]) {
+        workspace.check(self, &[q]);
+        let mut base_from_parent = Pose::identity();
+        for (i, joint) in self.joints.iter().enumerate() {
+            let link = &mut workspace.links[i];
+            link.parent_from_link = joint.parent_from_link(q[i]);
+            link.base_from_link = base_from_parent.compose(&link.parent_from_link);
+            base_from_parent = link.base_from_link;
+        }
+    }
+
+    /// The geometric Jacobian of `frame` at `q`: 6 × dof, angular rows first (rad/s, then m/s per
+    /// unit of q̇), of the frame's origin, along the base's axes. The workspace keeps the poses.
+    ///
+    /// Pinocchio's `LOCAL_WORLD_ALIGNED` is the same with the two halves swapped.
+    ///
+    /// # Panics
+    /// If a slice, the workspace or `jacobian` is of another size than the arm.
+    pub fn jacobian(&self, workspace: &mut Workspace, q: &[f64], frame: &Frame, jacobian: &mut Matrix6xX<f64>) {
+        self.forward_kinematics(workspace, q);
+        assert_eq!(jacobian.ncols(), self.dof(), "one column a joint");
+        jacobian.fill(0.0);
+        let Some(link) = frame.link else { return };
+        let point = workspace.links[link]
+            .base_from_link
+            .transform_point(&frame.link_from_frame.translation);
+        for (i, joint) in self.joints.iter().enumerate().take(link + 1) {
+            let base_from_link = &workspace.links[i].base_from_link;
+            let axis = base_from_link.rotation * joint.axis;
+            let mut column = jacobian.column_mut(i);
+            match joint.kind {
+                JointKind::Revolute => {
+                    let arm = point - base_from_link.translation;
+                    column.fixed_rows_mut::<3>(0).copy_from(&axis);
+                    column.fixed_rows_mut::<3>(3).copy_from(&axis.cross(&arm));
+                }
+                JointKind::Prismatic => column.fixed_rows_mut::<3>(3).copy_from(&axis),
+            }
+        }
+    }
+}
+
+impl Workspace {
+    /// The pose of moving link `link` in the base frame, as [`Arm::forward_kinematics`] or
+    /// [`Arm::jacobian`] left it.
+    pub fn base_from_link(&self, link: usize) -> &Pose {
+        &self.links[link].base_from_link
+    }
+
+    /// The pose of `frame` in the base frame, likewise.
+    pub fn base_from_frame(&self, frame: &Frame) -> Pose {
+        frame.link.map_or(frame.link_from_frame, |link| {
+            self.links[link].base_from_link.compose(&frame.link_from_frame)
+        })
+    }
+}

@@ -1,0 +1,269 @@
+//! The immutable description of a serial arm.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::pose::{Pose, cross_matrix};
+use crate::visual::Visual;
+
+/// The gravitational acceleration of the paper and of most engines, 9.81 m/s².
+pub const STANDARD_GRAVITY: f64 = 9.81;
+
+/// How a joint moves its link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// Turns about its axis; q in rad, tau in N m.
+    Revolute,
+    /// Slides along its axis; q in m, tau in N.
+    Prismatic,
+}
+
+/// What a joint may do; an absent limit is infinite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Smallest position (rad or m).
+    pub lower: f64,
+    /// Largest position (rad or m).
+    pub upper: f64,
+    /// Largest speed (rad/s or m/s).
+    pub velocity: f64,
+    /// Largest torque (N m) or force (N).
+    pub effort: f64,
+}
+
+/// Mass, centre of mass and rotational inertia of one link, in the link's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inertia {
+    /// Mass (kg).
+    pub mass: f64,
+    /// Centre of mass (m).
+    pub com: Vector3<f64>,
+    /// Inertia tensor about the centre of mass, along the link's axes (kg m²).
+    pub tensor: Matrix3<f64>,
+}
+
+impl Inertia {
+    /// No mass at all.
+    pub fn zero() -> Self {
+        Self {
+            mass: 0.0,
+            com: Vector3::zeros(),
+            tensor: Matrix3::zeros(),
+        }
+    }
+
+    /// The inertia tensor about the link frame's origin (kg m²).
+    pub fn tensor_about_origin(&self) -> Matrix3<f64> {
+        let c = cross_matrix(&self.com);
+        self.tensor - self.mass * c * c
+    }
+
+    /// The same body seen from another frame, given as `other_from_self`.
+    pub fn transformed(&self, other_from_self: &Pose) -> Self {
+        let r = other_from_self.rotation;
+        Self {
+            mass: self.mass,
+            com: other_from_self.transform_point(&self.com),
+            tensor: r * self.tensor * r.transpose(),
+        }
+    }
+
+    /// Two bodies of one frame, welded.
+    pub fn merged(&self, other: &Self) -> Self {
+        let mass = self.mass + other.mass;
+        let com = if mass > 0.0 {
+            (self.mass * self.com + other.mass * other.com) / mass
+        } else {
+            Vector3::zeros()
+        };
+        let about = |body: &Self| {
+            let c = cross_matrix(&(body.com - com));
+            body.tensor - body.mass * c * c
+        };
+        Self {
+            mass,
+            com,
+            tensor: about(self) + about(other),
+        }
+    }
+
+    /// The ten parameters the torque is linear in: m, m c (3), and Ixx, Ixy, Iyy, Ixz, Iyz, Izz
+    /// about the link frame's origin (the order of Pinocchio's `Inertia::toDynamicParameters`).
+    pub fn parameters(&self) -> [f64; 10] {
+        let h = self.mass * self.com;
+        let i = self.tensor_about_origin();
+        [
+            self.mass,
+            h.x,
+            h.y,
+            h.z,
+            i[(0, 0)],
+            i[(0, 1)],
+            i[(1, 1)],
+            i[(0, 2)],
+            i[(1, 2)],
+            i[(2, 2)],
+        ]
+    }
+}
+
+/// One moving joint and the link it carries (fixed joints beyond it merged in).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// The URDF joint's name.
+    pub name: String,
+    /// The URDF name of the link it carries.
+    pub link_name: String,
+    /// Revolute or prismatic.
+    pub kind: JointKind,
+    /// Pose of the link frame in the parent link's frame at q = 0.
+    pub parent_from_joint: Pose,
+    /// Unit axis in the link's frame.
+    pub axis: Vector3<f64>,
+    /// Position, velocity and effort limits.
+    pub limits: Limits,
+    /// Inertia of the drive's rotor reflected to the joint (kg m² or kg); 0 from a URDF.
+    pub rotor_inertia: f64,
+    /// Viscous friction from URDF `<dynamics damping>` (N m s/rad or N s/m). Not part of the rigid dynamics.
+    pub damping: f64,
+    /// Dry friction from URDF `<dynamics friction>` (N m or N). Not part of the rigid dynamics.
+    pub friction: f64,
+    /// The link's inertia.
+    pub inertia: Inertia,
+    /// R₀, R₀[a]×, R₀[a]×²: the rotation is R₀ + sin q R₀[a]× + (1 − cos q) R₀[a]×² (Rodrigues).
+    pub(crate) rotation_terms: [Matrix3<f64>; 3],
+    /// R₀ a, the sliding direction in the parent's frame.
+    pub(crate) axis_in_parent: Vector3<f64>,
+}
+
+impl Joint {
+    /// Pose of the link in its parent at joint position `q` (rad or m).
+    pub fn parent_from_link(&self, q: f64) -> Pose {
+        match self.kind {
+            JointKind::Revolute => {
+                let (sin, cos) = q.sin_cos();
+                let [r0, r1, r2] = &self.rotation_terms;
+                Pose {
+                    rotation: r0 + r1 * sin + r2 * (1.0 - cos),
+                    translation: self.parent_from_joint.translation,
+                }
+            }
+            JointKind::Prismatic => Pose {
+                rotation: self.rotation_terms[0],
+                translation: self.parent_from_joint.translation + self.axis_in_parent * q,
+            },
+        }
+    }
+}
+
+/// A named frame fixed to a link: what a merged fixed joint carried (a flange, a tool).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// The URDF link's name.
+    pub name: String,
+    /// The moving link it rides on, as an index into [`Arm::joints`]; `None` is the base.
+    pub link: Option<usize>,
+    /// Its pose in that link's frame.
+    pub link_from_frame: Pose,
+}
+
+/// A serial arm of revolute and prismatic joints on a fixed base.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arm {
+    pub(crate) name: String,
+    pub(crate) base_link: String,
+    pub(crate) joints: Vec<Joint>,
+    pub(crate) frames: Vec<Frame>,
+    pub(crate) visuals: Vec<Visual>,
+    pub(crate) gravity: Vector3<f64>,
+    pub(crate) warnings: Vec<String>,
+}
+
+impl Arm {
+    /// The robot's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The URDF's root link.
+    pub fn base_link(&self) -> &str {
+        &self.base_link
+    }
+
+    /// The moving joints, base to tip.
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// The number of moving joints.
+    pub fn dof(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// The frames of links that fixed joints carry.
+    pub fn frames(&self) -> &[Frame] {
+        &self.frames
+    }
+
+    /// The frame at the end of the arm: the last one fixed to the last link, or else that link itself.
+    pub fn tool_frame(&self) -> Frame {
+        let last = self.dof() - 1;
+        let fixed_to_last = self.frames.iter().rfind(|f| f.link == Some(last));
+        fixed_to_last.cloned().unwrap_or_else(|| Frame {
+            name: self.joints[last].link_name.clone(),
+            link: Some(last),
+            link_from_frame: Pose::identity(),
+        })
+    }
+
+    /// What the URDF shows of the arm.
+    pub fn visuals(&self) -> &[Visual] {
+        &self.visuals
+    }
+
+    /// Gravitational acceleration in the base frame (m/s²), by default 9.81 down its z axis.
+    pub fn gravity(&self) -> &Vector3<f64> {
+        &self.gravity
+    }
+
+    /// What in the URDF is doubtful, though it was taken as it is.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// The same arm under another gravity (m/s², base frame).
+    pub fn with_gravity(mut self, gravity: Vector3<f64>) -> Self {
+        self.gravity = gravity;
+        self
+    }
+
+    /// The same arm with drives: reflected rotor inertias (kg m² or kg), one a joint.
+    ///
+    /// # Panics
+    /// If there is not one value a joint.
+    pub fn with_rotor_inertias(mut self, rotor_inertias: &[f64]) -> Self {
+        assert_eq!(rotor_inertias.len(), self.dof(), "one rotor inertia a joint");
+        for (joint, &inertia) in self.joints.iter_mut().zip(rotor_inertias) {
+            joint.rotor_inertia = inertia;
+        }
+        self
+    }
+
+    /// The arm with every link's mass and inertia tensor times `factor`, centres of mass kept: the
+    /// model error of the paper (section IV.A) at 1.2.
+    pub fn with_scaled_inertias(mut self, factor: f64) -> Self {
+        for joint in &mut self.joints {
+            joint.inertia.mass *= factor;
+            joint.inertia.tensor *= factor;
+        }
+        self
+    }
+
+    /// The ten inertial parameters of every link, base to tip: what the columns of the torque
+    /// regressor multiply.
+    pub fn inertial_parameters(&self) -> Vec<f64> {
+        self.joints
+            .iter()
+            .flat_map(|joint| joint.inertia.parameters())
+            .collect()
+    }
+}

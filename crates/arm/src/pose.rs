@@ -1,0 +1,48 @@
+//! Rigid transformations between frames.
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+/// The pose of frame b in frame a, written `a_from_b`: p_a = R p_b + t.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// R, the axes of b in a (columns).
+    pub rotation: Matrix3<f64>,
+    /// t, the origin of b in a (m).
+    pub translation: Vector3<f64>,
+}
+
+impl Pose {
+    /// The pose of a frame in itself.
+    pub fn identity() -> Self {
+        Self {
+            rotation: Matrix3::identity(),
+            translation: Vector3::zeros(),
+        }
+    }
+
+    /// The pose that URDF writes as `<origin xyz rpy>`: fixed-axis roll, pitch, yaw (rad), then xyz (m).
+    pub fn from_xyz_rpy(xyz: [f64; 3], rpy: [f64; 3]) -> Self {
+        Self {
+            rotation: *Rotation3::from_euler_angles(rpy[0], rpy[1], rpy[2]).matrix(),
+            translation: Vector3::from(xyz),
+        }
+    }
+
+    /// `a_from_c` from `a_from_b` (self) and `b_from_c`.
+    pub fn compose(&self, b_from_c: &Pose) -> Pose {
+        Pose {
+            rotation: self.rotation * b_from_c.rotation,
+            translation: self.rotation * b_from_c.translation + self.translation,
+        }
+    }
+
+    /// A point given in b, in a.
+    pub fn transform_point(&self, point: &Vector3<f64>) -> Vector3<f64> {
+        self.rotation * point + self.translation
+    }
+}
+
+/// The matrix of v × (·).
+pub(crate) fn cross_matrix(v: &Vector3<f64>) -> Matrix3<f64> {
+    Matrix3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
+}

@@ -1,0 +1,336 @@
+//! Reading an [`Arm`] from a URDF.
+
+mod checks;
+
+use std::path::Path;
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::error::ArmError;
+use crate::model::{Arm, Frame, Inertia, Joint, JointKind, Limits, STANDARD_GRAVITY};
+use crate::pose::{Pose, cross_matrix};
+use crate::visual::{Geometry, Visual};
+
+impl Arm {
+    /// Reads a serial arm of revolute and prismatic joints from the URDF file at `path`.
+    ///
+    /// Links behind fixed joints are merged into the link that carries them. Gravity is 9.81 m/s²
+    /// down the root link's z axis.
+    ///
+    /// # Errors
+    /// [`ArmError`] with the line and the element, if the file cannot be read, is not a URDF, has
+    /// floating, planar, mimicking or branching joints or loops, or has inertias no body can have.
+    pub fn from_urdf(path: impl AsRef<Path>) -> Result<Self, ArmError> {
+        let path = path.as_ref();
+        let text = std::fs::read_to_string(path).map_err(|source| ArmError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::from_urdf_text(&text, path)
+    }
+
+    /// As [`Self::from_urdf`], from text; `path` is what errors call it.
+    ///
+    /// # Errors
+    /// As [`Self::from_urdf`].
+    pub fn from_urdf_text(text: &str, path: impl AsRef<Path>) -> Result<Self, ArmError> {
+        let path = path.as_ref();
+        let robot = urdf_rs::read_from_string(text).map_err(|error| ArmError::Syntax {
+            path: path.to_owned(),
+            reason: error.to_string(),
+        })?;
+        Reader {
+            path,
+            text,
+            robot: &robot,
+        }
+        .read()
+    }
+}
+
+struct Reader<'a> {
+    path: &'a Path,
+    text: &'a str,
+    robot: &'a urdf_rs::Robot,
+}
+
+/// Links welded together, as one body in the frame of the link that was met first.
+struct Body<'a> {
+    inertia: Inertia,
+    frames: Vec<(String, Pose)>,
+    visuals: Vec<(Pose, &'a urdf_rs::Visual)>,
+    /// The moving joints that start here, with the pose of their parent link.
+    moving: Vec<(Pose, &'a urdf_rs::Joint)>,
+}
+
+impl<'a> Reader<'a> {
+    fn read(&self) -> Result<Arm, ArmError> {
+        let root = self.check_tree()?;
+        let mut arm = Arm {
+            name: self.robot.name.clone(),
+            base_link: root.to_owned(),
+            joints: Vec::new(),
+            frames: Vec::new(),
+            visuals: Vec::new(),
+            gravity: Vector3::new(0.0, 0.0, -STANDARD_GRAVITY),
+            warnings: Vec::new(),
+        };
+        let mut body = self.weld(root)?;
+        loop {
+            let link = arm.joints.len().checked_sub(1);
+            for (name, link_from_frame) in body.frames.drain(..) {
+                arm.frames.push(Frame {
+                    name,
+                    link,
+                    link_from_frame,
+                });
+            }
+            for (pose, visual) in body.visuals.drain(..) {
+                arm.visuals.push(visual_of(link, &pose, visual));
+            }
+            if let [_, (_, second), ..] = body.moving[..] {
+                return Err(self.joint_error(
+                    second,
+                    format!(
+                        "a second moving joint starts from the same body as \"{}\"",
+                        body.moving[0].1.name
+                    ),
+                    "testbed models serial arms: remove one branch, or make its joints fixed",
+                ));
+            }
+            let Some((link_from_parent, urdf_joint)) = body.moving.pop() else {
+                break;
+            };
+            body = self.weld(&urdf_joint.child.link)?;
+            arm.joints
+                .push(self.joint(&link_from_parent, urdf_joint, body.inertia)?);
+            self.check_tensor(&mut arm)?;
+        }
+        if arm.joints.is_empty() {
+            return Err(self.robot_error(
+                "no joint moves".into(),
+                "an arm needs at least one revolute, continuous or prismatic joint",
+            ));
+        }
+        self.check_mass_matrix(&arm)?;
+        Ok(arm)
+    }
+
+    /// The body that `first` and everything behind its fixed joints form, in `first`'s frame.
+    fn weld(&self, first: &'a str) -> Result<Body<'a>, ArmError> {
+        let mut body = Body {
+            inertia: Inertia::zero(),
+            frames: Vec::new(),
+            visuals: Vec::new(),
+            moving: Vec::new(),
+        };
+        let mut waiting = vec![(Pose::identity(), first)];
+        while let Some((body_from_link, name)) = waiting.pop() {
+            let link = self.robot.links.iter().find(|link| link.name == name);
+            let Some(link) = link else { continue };
+            body.inertia = body.inertia.merged(&self.inertia(link)?.transformed(&body_from_link));
+            if name != first {
+                body.frames.push((name.to_owned(), body_from_link));
+            }
+            body.visuals
+                .extend(link.visual.iter().map(|visual| (body_from_link, visual)));
+            for joint in self.robot.joints.iter().filter(|joint| joint.parent.link == name) {
+                if joint.mimic.is_some() {
+                    return Err(self.joint_error(
+                        joint,
+                        "mimics another joint".into(),
+                        "make it fixed, or give it a position of its own",
+                    ));
+                }
+                match joint.joint_type {
+                    urdf_rs::JointType::Fixed => {
+                        let origin = self.finite_pose(joint)?;
+                        waiting.push((body_from_link.compose(&origin), &joint.child.link));
+                    }
+                    urdf_rs::JointType::Revolute | urdf_rs::JointType::Continuous | urdf_rs::JointType::Prismatic => {
+                        body.moving.push((body_from_link, joint))
+                    }
+                    urdf_rs::JointType::Floating | urdf_rs::JointType::Planar | urdf_rs::JointType::Spherical => {
+                        return Err(self.joint_error(
+                            joint,
+                            format!("is {:?}", joint.joint_type).to_lowercase(),
+                            "testbed models fixed, revolute, continuous and prismatic joints only",
+                        ));
+                    }
+                }
+            }
+        }
+        Ok(body)
+    }
+
+    fn joint(&self, link_from_parent: &Pose, urdf: &urdf_rs::Joint, inertia: Inertia) -> Result<Joint, ArmError> {
+        let parent_from_joint = link_from_parent.compose(&self.finite_pose(urdf)?);
+        let axis = Vector3::from(*urdf.axis.xyz);
+        if !(axis.norm().is_finite() && axis.norm() > 1e-9) {
+            return Err(self.joint_error(
+                urdf,
+                format!("has the axis {:?}", *urdf.axis.xyz),
+                "give it a direction",
+            ));
+        }
+        let axis = axis.normalize();
+        let limit = &urdf.limit;
+        for (what, value) in [
+            ("lower", limit.lower),
+            ("upper", limit.upper),
+            ("effort", limit.effort),
+            ("velocity", limit.velocity),
+        ] {
+            if value.is_nan() || (value < 0.0 && matches!(what, "effort" | "velocity")) {
+                return Err(self.joint_error(
+                    urdf,
+                    format!("has the {what} limit {value}"),
+                    "give a number that is not negative",
+                ));
+            }
+        }
+        // A limit that is left out reads as 0.
+        let or_none = |limit: f64| if limit > 0.0 { limit } else { f64::INFINITY };
+        let kind = match urdf.joint_type {
+            urdf_rs::JointType::Prismatic => JointKind::Prismatic,
+            _ => JointKind::Revolute,
+        };
+        let unbounded = urdf.joint_type == urdf_rs::JointType::Continuous || (limit.lower == 0.0 && limit.upper == 0.0);
+        if limit.lower > limit.upper && !unbounded {
+            return Err(self.joint_error(
+                urdf,
+                format!(
+                    "has its lower limit {} above its upper one {}",
+                    limit.lower, limit.upper
+                ),
+                "swap them",
+            ));
+        }
+        let (damping, friction) = urdf.dynamics.as_ref().map_or((0.0, 0.0), |d| (d.damping, d.friction));
+        let r0 = parent_from_joint.rotation;
+        let a = cross_matrix(&axis);
+        Ok(Joint {
+            name: urdf.name.clone(),
+            link_name: urdf.child.link.clone(),
+            kind,
+            parent_from_joint,
+            axis,
+            limits: Limits {
+                lower: if unbounded { f64::NEG_INFINITY } else { limit.lower },
+                upper: if unbounded { f64::INFINITY } else { limit.upper },
+                velocity: or_none(limit.velocity),
+                effort: or_none(limit.effort),
+            },
+            rotor_inertia: 0.0,
+            damping,
+            friction,
+            inertia,
+            rotation_terms: [r0, r0 * a, r0 * a * a],
+            axis_in_parent: r0 * axis,
+        })
+    }
+
+    fn inertia(&self, link: &urdf_rs::Link) -> Result<Inertia, ArmError> {
+        let urdf = &link.inertial;
+        let i = &urdf.inertia;
+        let pose = Pose::from_xyz_rpy(*urdf.origin.xyz, *urdf.origin.rpy);
+        let mass = urdf.mass.value;
+        let tensor = Matrix3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz);
+        let finite = mass.is_finite()
+            && tensor.iter().all(|x| x.is_finite())
+            && pose
+                .translation
+                .iter()
+                .chain(pose.rotation.iter())
+                .all(|x| x.is_finite());
+        if !finite {
+            return Err(self.link_error(
+                &link.name,
+                "has an inertial that is not finite".into(),
+                "give finite numbers",
+            ));
+        }
+        if mass < 0.0 {
+            return Err(self.link_error(
+                &link.name,
+                format!("has the mass {mass} kg"),
+                "a mass is positive: correct its sign or value",
+            ));
+        }
+        let centred = Inertia {
+            mass,
+            com: Vector3::zeros(),
+            tensor,
+        };
+        Ok(centred.transformed(&pose))
+    }
+
+    fn finite_pose(&self, joint: &urdf_rs::Joint) -> Result<Pose, ArmError> {
+        let origin = &joint.origin;
+        if origin.xyz.iter().chain(origin.rpy.iter()).all(|x| x.is_finite()) {
+            Ok(Pose::from_xyz_rpy(*origin.xyz, *origin.rpy))
+        } else {
+            Err(self.joint_error(joint, "has an origin that is not finite".into(), "give finite numbers"))
+        }
+    }
+
+    fn joint_error(&self, joint: &urdf_rs::Joint, reason: String, remedy: &str) -> ArmError {
+        self.error("joint", &joint.name, reason, remedy)
+    }
+
+    fn link_error(&self, link: &str, reason: String, remedy: &str) -> ArmError {
+        self.error("link", link, reason, remedy)
+    }
+
+    fn robot_error(&self, reason: String, remedy: &str) -> ArmError {
+        self.error("robot", &self.robot.name, reason, remedy)
+    }
+
+    fn error(&self, tag: &str, name: &str, reason: String, remedy: &str) -> ArmError {
+        ArmError::Model {
+            path: self.path.to_owned(),
+            line: line_of(self.text, tag, name),
+            element: format!("{tag} \"{name}\""),
+            reason,
+            remedy: remedy.to_owned(),
+        }
+    }
+}
+
+fn visual_of(link: Option<usize>, link_from_parent: &Pose, visual: &urdf_rs::Visual) -> Visual {
+    let origin = Pose::from_xyz_rpy(*visual.origin.xyz, *visual.origin.rpy);
+    let geometry = match &visual.geometry {
+        urdf_rs::Geometry::Box { size } => Geometry::Box(**size),
+        &urdf_rs::Geometry::Cylinder { radius, length } | &urdf_rs::Geometry::Capsule { radius, length } => {
+            Geometry::Cylinder { radius, length }
+        }
+        &urdf_rs::Geometry::Sphere { radius } => Geometry::Sphere { radius },
+        urdf_rs::Geometry::Mesh { filename, scale } => Geometry::Mesh {
+            file: filename.clone(),
+            scale: scale.map_or([1.0; 3], |scale| *scale),
+        },
+    };
+    let colour = visual.material.as_ref().and_then(|material| material.color.as_ref());
+    Visual {
+        link,
+        link_from_visual: link_from_parent.compose(&origin),
+        geometry,
+        colour: colour.map(|colour| *colour.rgba),
+    }
+}
+
+/// The line (from 1) of the element `<tag … name="name"`, or that of the last such tag, or 1.
+fn line_of(text: &str, tag: &str, name: &str) -> usize {
+    let open = format!("<{tag}");
+    let mut line = 1;
+    for (start, _) in text.match_indices(&open) {
+        let element = text[start..].split('>').next().unwrap_or_default();
+        if [format!("name=\"{name}\""), format!("name='{name}'")]
+            .iter()
+            .any(|n| element.contains(n.as_str()))
+        {
+            line = text[..start].matches('\n').count() + 1;
+        }
+    }
+    line
+}

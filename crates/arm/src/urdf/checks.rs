@@ -1,0 +1,145 @@
+//! What a URDF must be for its robot to be a serial arm with a body.
+
+use std::collections::HashSet;
+
+use nalgebra::DMatrix;
+
+use super::Reader;
+use crate::error::ArmError;
+use crate::model::{Arm, Inertia};
+use crate::workspace::Workspace;
+
+impl<'a> Reader<'a> {
+    /// Checks that the links form one tree, and returns its root.
+    pub(super) fn check_tree(&self) -> Result<&'a str, ArmError> {
+        let mut links = HashSet::new();
+        for link in &self.robot.links {
+            if !links.insert(link.name.as_str()) {
+                return Err(self.link_error(&link.name, "is there twice".into(), "give each link a name of its own"));
+            }
+        }
+        let mut joints = HashSet::new();
+        let mut children = HashSet::new();
+        for joint in &self.robot.joints {
+            if !joints.insert(joint.name.as_str()) {
+                return Err(self.joint_error(joint, "is there twice".into(), "give each joint a name of its own"));
+            }
+            for end in [&joint.parent.link, &joint.child.link] {
+                if !links.contains(end.as_str()) {
+                    return Err(self.joint_error(
+                        joint,
+                        format!("joins link \"{end}\", which the file does not have"),
+                        "correct the name or add the link",
+                    ));
+                }
+            }
+            if !children.insert(joint.child.link.as_str()) {
+                return Err(self.joint_error(
+                    joint,
+                    format!(
+                        "closes a loop: link \"{}\" already hangs on another joint",
+                        joint.child.link
+                    ),
+                    "testbed models serial arms: cut the loop",
+                ));
+            }
+        }
+        let mut roots = self
+            .robot
+            .links
+            .iter()
+            .filter(|link| !children.contains(link.name.as_str()));
+        let Some(root) = roots.next() else {
+            return Err(self.robot_error(
+                "has no base: every link hangs on a joint, so the joints form a loop".into(),
+                "cut the loop",
+            ));
+        };
+        if let Some(other) = roots.next() {
+            return Err(self.link_error(
+                &other.name,
+                format!("hangs on no joint, as link \"{}\" does", root.name),
+                "join the two parts, or remove one",
+            ));
+        }
+        let mut reached = HashSet::new();
+        let mut waiting = vec![root.name.as_str()];
+        while let Some(name) = waiting.pop() {
+            reached.insert(name);
+            let from_here = self.robot.joints.iter().filter(|joint| joint.parent.link == name);
+            waiting.extend(from_here.map(|joint| joint.child.link.as_str()));
+        }
+        match self
+            .robot
+            .joints
+            .iter()
+            .find(|joint| !reached.contains(joint.child.link.as_str()))
+        {
+            Some(joint) => Err(self.joint_error(
+                joint,
+                "is part of a loop that does not reach the base".into(),
+                "testbed models serial arms: cut the loop",
+            )),
+            None => Ok(&root.name),
+        }
+    }
+
+    /// Refuses the newest link if its tensor has a negative principal moment; warns if no
+    /// distribution of mass has it (the triangle inequality).
+    pub(super) fn check_tensor(&self, arm: &mut Arm) -> Result<(), ArmError> {
+        let Some(joint) = arm.joints.last() else { return Ok(()) };
+        let mut moments = joint.inertia.tensor.symmetric_eigenvalues();
+        moments.as_mut_slice().sort_by(f64::total_cmp);
+        let scale = moments.abs().max();
+        if moments[0] < -1e-6 * scale {
+            return Err(self.link_error(
+                &joint.link_name,
+                format!(
+                    "has the principal moment of inertia {:.6} kg m², which is negative",
+                    moments[0]
+                ),
+                "check ixx … izz, and their frame",
+            ));
+        }
+        if moments[0] + moments[1] < moments[2] * (1.0 - 1e-6) {
+            let warning = format!(
+                "link \"{}\": no body has the principal moments {:.6}, {:.6} and {:.6} kg m² (the two smaller must \
+                 add up to the largest at least); taken as they are",
+                joint.link_name, moments[0], moments[1], moments[2]
+            );
+            arm.warnings.push(warning);
+        }
+        Ok(())
+    }
+
+    /// Refuses an arm some joint of which can move without moving mass.
+    pub(super) fn check_mass_matrix(&self, arm: &Arm) -> Result<(), ArmError> {
+        if arm.joints.iter().all(|joint| joint.inertia == Inertia::zero()) {
+            return Err(self.robot_error(
+                "no moving link has an <inertial>".into(),
+                "dynamics need masses and inertias: export them from the CAD model",
+            ));
+        }
+        let mut workspace = Workspace::new(arm);
+        let mut mass_matrix = DMatrix::zeros(arm.dof(), arm.dof());
+        // Any posture will do that is not a special one.
+        let q: Vec<f64> = (0..arm.dof()).map(|i| 0.3 + 0.1 * i as f64).collect();
+        arm.mass_matrix(&mut workspace, &q, &mut mass_matrix);
+        for (i, joint) in arm.joints.iter().enumerate() {
+            if mass_matrix[(i, i)] <= 0.0 {
+                return Err(self.link_error(
+                    &joint.link_name,
+                    format!("and the links beyond it have no inertia about joint \"{}\"", joint.name),
+                    "give the link an <inertial> with mass and inertia",
+                ));
+            }
+        }
+        if mass_matrix.clone().cholesky().is_none() {
+            return Err(self.robot_error(
+                "its mass matrix is not positive definite".into(),
+                "some link lacks an <inertial>, or has one that no body can have",
+            ));
+        }
+        Ok(())
+    }
+}

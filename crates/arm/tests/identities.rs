@@ -1,0 +1,222 @@
+//! Laws of mechanics that hold whatever the arm, on random states of three arms.
+
+use std::path::Path;
+
+use arm::{Arm, DMatrix, Matrix6xX, Vector3, Workspace};
+use nalgebra::DVector;
+
+/// A small deterministic generator of numbers in ±1 (splitmix64).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn vector(&mut self, n: usize, scale: f64) -> Vec<f64> {
+        (0..n).map(|_| scale * self.next()).collect()
+    }
+}
+
+fn for_each_state(mut law: impl FnMut(&Arm, &mut Workspace, &mut Random)) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for urdf in [
+        "../../assets/puma560.urdf",
+        "tests/robots/seven_axis.urdf",
+        "tests/robots/prismatic.urdf",
+    ] {
+        let arm = Arm::from_urdf(folder.join(urdf)).expect("the robot loads");
+        let rotors: Vec<f64> = (0..arm.dof()).map(|i| 0.1 + 0.05 * i as f64).collect();
+        // Gravity in a general direction, and drives, so that no term can hide.
+        let arm = arm
+            .with_gravity(Vector3::new(1.2, -0.7, -9.6))
+            .with_rotor_inertias(&rotors);
+        let mut workspace = Workspace::new(&arm);
+        let mut random = Random(7);
+        for _ in 0..100 {
+            law(&arm, &mut workspace, &mut random);
+        }
+    }
+}
+
+fn assert_close(what: &str, a: &[f64], b: &[f64], tolerance: f64) {
+    let scale = b.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
+    for (x, y) in a.iter().zip(b) {
+        assert!((x - y).abs() <= tolerance * scale, "{what}: {a:?} is not {b:?}");
+    }
+}
+
+fn mass_matrix_at(arm: &Arm, workspace: &mut Workspace, q: &[f64]) -> DMatrix<f64> {
+    let mut m = DMatrix::zeros(arm.dof(), arm.dof());
+    arm.mass_matrix(workspace, q, &mut m);
+    m
+}
+
+/// Forward dynamics undoes inverse dynamics. Fails if either drops a term the other has.
+#[test]
+fn forward_dynamics_inverts_inverse_dynamics() {
+    for_each_state(|arm, workspace, random| {
+        let n = arm.dof();
+        let (q, qd, qdd) = (random.vector(n, 3.0), random.vector(n, 3.0), random.vector(n, 3.0));
+        let (mut tau, mut back) = (vec![0.0; n], vec![0.0; n]);
+        arm.inverse_dynamics(workspace, &q, &qd, &qdd, &mut tau);
+        arm.forward_dynamics(workspace, &q, &qd, &tau, &mut back);
+        assert_close("forward of inverse", &back, &qdd, 1e-9);
+    });
+}
+
+/// τ = M q̈ + bias, and the kinetic energy is ½ q̇ᵀ M q̇. Fails if the composite bodies are wrong.
+#[test]
+fn mass_matrix_gives_torque_and_energy() {
+    for_each_state(|arm, workspace, random| {
+        let n = arm.dof();
+        let (q, qd, qdd) = (random.vector(n, 3.0), random.vector(n, 3.0), random.vector(n, 3.0));
+        let m = mass_matrix_at(arm, workspace, &q);
+        let (mut tau, mut bias) = (vec![0.0; n], vec![0.0; n]);
+        arm.inverse_dynamics(workspace, &q, &qd, &qdd, &mut tau);
+        arm.bias_torque(workspace, &q, &qd, &mut bias);
+        let sum = &m * DVector::from_column_slice(&qdd) + DVector::from_column_slice(&bias);
+        assert_close("M qdd + bias", sum.as_slice(), &tau, 1e-12);
+        let v = DVector::from_column_slice(&qd);
+        let energy = 0.5 * v.dot(&(&m * &v));
+        assert_close("energy", &[arm.kinetic_energy(workspace, &q, &qd)], &[energy], 1e-12);
+    });
+}
+
+/// Gravity torque is the gradient of potential energy. Fails if a centre of mass or a frame is off.
+#[test]
+fn gravity_torque_is_the_gradient_of_potential_energy() {
+    for_each_state(|arm, workspace, random| {
+        let n = arm.dof();
+        let q = random.vector(n, 3.0);
+        let mut tau = vec![0.0; n];
+        arm.gravity_torque(workspace, &q, &mut tau);
+        let h = 1e-5;
+        let gradient: Vec<f64> = (0..n)
+            .map(|i| {
+                let mut at = |d: f64| {
+                    let mut q = q.clone();
+                    q[i] += d;
+                    arm.potential_energy(workspace, &q)
+                };
+                (at(h) - at(-h)) / (2.0 * h)
+            })
+            .collect();
+        assert_close("gradient", &gradient, &tau, 1e-7);
+    });
+}
+
+/// q̇ᵀ (Ṁ − 2 C) q̇ = 0 for every q̇: with C q̇ = bias − gravity, ½ q̇ᵀ Ṁ q̇ = q̇ᵀ C q̇. Fails if a
+/// Coriolis or centrifugal term is missing or does work.
+#[test]
+fn coriolis_forces_do_no_work_beyond_the_change_of_inertia() {
+    for_each_state(|arm, workspace, random| {
+        let n = arm.dof();
+        let (q, qd) = (random.vector(n, 3.0), random.vector(n, 2.0));
+        let h = 1e-5;
+        let along = |d: f64| -> Vec<f64> { q.iter().zip(&qd).map(|(q, v)| q + d * v).collect() };
+        let m_dot =
+            (mass_matrix_at(arm, workspace, &along(h)) - mass_matrix_at(arm, workspace, &along(-h))) / (2.0 * h);
+        let (mut bias, mut gravity) = (vec![0.0; n], vec![0.0; n]);
+        arm.bias_torque(workspace, &q, &qd, &mut bias);
+        arm.gravity_torque(workspace, &q, &mut gravity);
+        let v = DVector::from_column_slice(&qd);
+        let power: f64 = (0..n).map(|i| qd[i] * (bias[i] - gravity[i])).sum();
+        let change = 0.5 * v.dot(&(m_dot * &v));
+        assert!(
+            (power - change).abs() <= 1e-6 * (1.0 + power.abs()),
+            "{power} is not {change}"
+        );
+    });
+}
+
+/// Power in equals the rate of change of energy: d/dt (T + V) = q̇ᵀ τ, along forward dynamics.
+#[test]
+fn power_is_the_rate_of_change_of_energy() {
+    for_each_state(|arm, workspace, random| {
+        let n = arm.dof();
+        let (q, qd, tau) = (random.vector(n, 3.0), random.vector(n, 2.0), random.vector(n, 20.0));
+        let mut qdd = vec![0.0; n];
+        arm.forward_dynamics(workspace, &q, &qd, &tau, &mut qdd);
+        let h = 1e-6;
+        let mut energy = |d: f64| {
+            let q: Vec<f64> = (0..n).map(|i| q[i] + d * qd[i] + 0.5 * d * d * qdd[i]).collect();
+            let qd: Vec<f64> = (0..n).map(|i| qd[i] + d * qdd[i]).collect();
+            arm.kinetic_energy(workspace, &q, &qd) + arm.potential_energy(workspace, &q)
+        };
+        let rate = (energy(h) - energy(-h)) / (2.0 * h);
+        let power: f64 = qd.iter().zip(&tau).map(|(v, t)| v * t).sum();
+        assert!(
+            (rate - power).abs() <= 1e-5 * (1.0 + power.abs()),
+            "{rate} is not {power}"
+        );
+    });
+}
+
+/// Y π = τ (less the rotors). Fails if a column belongs to another parameter.
+#[test]
+fn regressor_times_parameters_is_the_torque() {
+    for_each_state(|arm, workspace, random| {
+        let n = arm.dof();
+        let (q, qd, qdd) = (random.vector(n, 3.0), random.vector(n, 3.0), random.vector(n, 3.0));
+        let mut regressor = DMatrix::zeros(n, 10 * n);
+        arm.torque_regressor(workspace, &q, &qd, &qdd, &mut regressor);
+        let mut tau = vec![0.0; n];
+        arm.inverse_dynamics(workspace, &q, &qd, &qdd, &mut tau);
+        let mut ours = regressor * DVector::from_vec(arm.inertial_parameters());
+        for i in 0..n {
+            ours[i] += arm.joints()[i].rotor_inertia * qdd[i];
+        }
+        assert_close("Y pi", ours.as_slice(), &tau, 1e-12);
+    });
+}
+
+/// The Jacobian is the derivative of the pose. Fails if a column uses the wrong point or frame.
+#[test]
+fn jacobian_is_the_derivative_of_the_pose() {
+    for_each_state(|arm, workspace, random| {
+        let n = arm.dof();
+        let (q, qd) = (random.vector(n, 3.0), random.vector(n, 1.0));
+        let tool = arm.tool_frame();
+        let mut jacobian = Matrix6xX::zeros(n);
+        arm.jacobian(workspace, &q, &tool, &mut jacobian);
+        let twist = jacobian * DVector::from_column_slice(&qd);
+        let h = 1e-6;
+        let mut pose = |d: f64| {
+            let q: Vec<f64> = q.iter().zip(&qd).map(|(q, v)| q + d * v).collect();
+            arm.forward_kinematics(workspace, &q);
+            workspace.base_from_frame(&tool)
+        };
+        let (ahead, behind) = (pose(h), pose(-h));
+        let linear = (ahead.translation - behind.translation) / (2.0 * h);
+        let spin = (ahead.rotation - behind.rotation) / (2.0 * h) * pose(0.0).rotation.transpose();
+        let derivative = [spin[(2, 1)], spin[(0, 2)], spin[(1, 0)], linear.x, linear.y, linear.z];
+        assert_close("J qd", twist.as_slice(), &derivative, 1e-7);
+    });
+}
+
+/// The features of algorithm 1: ω and ω̇ are the link's own motion, τ_{i+1} and f_{i+1} what carries
+/// the rest of the arm: at rest the force is the distal weight, and nothing hangs on the last link.
+#[test]
+fn newton_euler_features_are_the_loads_between_links() {
+    for_each_state(|arm, workspace, random| {
+        let n = arm.dof();
+        let q = random.vector(n, 3.0);
+        let zeros = vec![0.0; n];
+        let mut tau = vec![0.0; n];
+        let mut features = vec![[0.0; arm::FEATURES]; n];
+        arm.newton_euler_features(workspace, &q, &zeros, &zeros, &mut tau, &mut features);
+        for i in 0..n {
+            let distal: f64 = arm.joints()[i + 1..].iter().map(|joint| joint.inertia.mass).sum();
+            let force = Vector3::from_column_slice(&features[i][9..12]).norm();
+            assert_close("weight", &[force], &[distal * arm.gravity().norm()], 1e-12);
+            assert_eq!(features[i][12], tau[i]);
+            assert!(features[i][..6].iter().all(|x| *x == 0.0));
+        }
+        assert!(features[n - 1][6..12].iter().all(|x| *x == 0.0));
+    });
+}

@@ -1,0 +1,158 @@
+//! What loads, what is merged, and what is refused with which words.
+
+use arm::{Arm, Geometry, JointKind};
+
+const LINK: &str = r#"<inertial><origin xyz="0 0 .1"/><mass value="2"/><inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".1"/></inertial>"#;
+
+fn joint(name: &str, kind: &str, parent: &str, child: &str) -> String {
+    format!(
+        r#"<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/><axis xyz="0 0 1"/></joint>"#
+    ) + "\n"
+}
+
+fn link(name: &str, inside: &str) -> String {
+    format!("<link name=\"{name}\">{inside}</link>\n")
+}
+
+fn robot(parts: &[String]) -> String {
+    format!("<robot name=\"r\">\n{}</robot>", parts.concat())
+}
+
+fn refusal(text: &str) -> String {
+    Arm::from_urdf_text(text, "robot.urdf")
+        .expect_err("this robot is refused")
+        .to_string()
+}
+
+#[test]
+fn fixed_joints_are_merged() {
+    let text = robot(&[
+        link("base", ""),
+        link("a", LINK),
+        link("tool", &format!("{LINK}<visual><geometry><sphere radius=\"0.1\"/></geometry></visual>")),
+        joint("j", "continuous", "base", "a"),
+        r#"<joint name="f" type="fixed"><origin xyz="0 0 1" rpy="0 3.141592653589793 0"/><parent link="a"/><child link="tool"/></joint>"#.into(),
+    ]);
+    let arm = Arm::from_urdf_text(&text, "robot.urdf").expect("it loads");
+    assert_eq!(arm.dof(), 1);
+    let joint = &arm.joints()[0];
+    assert_eq!(joint.kind, JointKind::Revolute);
+    assert_eq!(joint.limits.upper, f64::INFINITY);
+    assert_eq!(joint.limits.effort, f64::INFINITY);
+    // 2 kg at .1 m and 2 kg at 1 − .1 m.
+    assert!((joint.inertia.mass - 4.0).abs() < 1e-12);
+    assert!((joint.inertia.com.z - 0.5).abs() < 1e-12);
+    assert!((joint.inertia.tensor[(0, 0)] - (0.2 + 4.0 * 0.16)).abs() < 1e-12);
+    assert_eq!(arm.tool_frame().name, "tool");
+    assert_eq!(arm.visuals()[0].geometry, Geometry::Sphere { radius: 0.1 });
+}
+
+#[test]
+fn what_is_no_serial_arm_is_refused_by_name() {
+    let two = |kind: &str| robot(&[link("b", ""), link("a", LINK), joint("hinge", kind, "b", "a")]);
+    for kind in ["floating", "planar", "spherical"] {
+        let message = refusal(&two(kind));
+        assert!(
+            message.contains("robot.urdf:4: joint \"hinge\"") && message.contains(kind),
+            "{message}"
+        );
+    }
+    let branch = robot(&[
+        link("b", ""),
+        link("a", LINK),
+        link("c", LINK),
+        joint("left", "revolute", "b", "a"),
+        joint("right", "revolute", "b", "c"),
+    ]);
+    let message = refusal(&branch);
+    assert!(
+        message.contains("joint \"right\"") && message.contains("\"left\""),
+        "{message}"
+    );
+
+    let mimic = two("revolute").replace("</joint>", "<mimic joint=\"x\"/></joint>");
+    assert!(
+        refusal(&mimic).contains("joint \"hinge\": mimics"),
+        "{}",
+        refusal(&mimic)
+    );
+
+    let closed = robot(&[
+        link("b", ""),
+        link("a", LINK),
+        link("c", LINK),
+        joint("j1", "revolute", "b", "a"),
+        joint("j2", "revolute", "a", "c"),
+        joint("j3", "revolute", "b", "c"),
+    ]);
+    let message = refusal(&closed);
+    assert!(
+        message.contains("joint \"j3\"") && message.contains("loop"),
+        "{message}"
+    );
+
+    let ring = robot(&[
+        link("b", ""),
+        link("a", LINK),
+        joint("j1", "revolute", "b", "a"),
+        joint("j2", "revolute", "a", "b"),
+    ]);
+    assert!(refusal(&ring).contains("loop"), "{}", refusal(&ring));
+
+    let apart = robot(&[
+        link("b", ""),
+        link("a", LINK),
+        link("far", LINK),
+        joint("j", "revolute", "b", "a"),
+    ]);
+    assert!(refusal(&apart).contains("link \"far\""), "{}", refusal(&apart));
+
+    let unknown = robot(&[link("b", ""), joint("j", "revolute", "b", "nowhere")]);
+    assert!(refusal(&unknown).contains("\"nowhere\""), "{}", refusal(&unknown));
+
+    assert!(refusal(&two("fixed")).contains("no joint moves"));
+    assert!(refusal("not xml at all").contains("not a URDF"));
+}
+
+#[test]
+fn what_no_body_has_is_refused_by_name() {
+    let with = |inertial: &str| robot(&[link("b", ""), link("arm", inertial), joint("j", "revolute", "b", "arm")]);
+    let message = refusal(&with(""));
+    assert!(message.contains("no moving link has an <inertial>"), "{message}");
+    let message = refusal(&with(&LINK.replace("value=\"2\"", "value=\"-2\"")));
+    assert!(
+        message.contains("robot.urdf:3: link \"arm\": has the mass -2 kg"),
+        "{message}"
+    );
+    let message = refusal(&with(&LINK.replace("value=\"2\"", "value=\"nan\"")));
+    assert!(message.contains("not finite"), "{message}");
+    let message = refusal(&with(&LINK.replace("izz=\".1\"", "izz=\"-.1\"")));
+    assert!(message.contains("negative"), "{message}");
+
+    let bare_tip = robot(&[
+        link("b", ""),
+        link("a", LINK),
+        link("tip", ""),
+        joint("j1", "revolute", "b", "a"),
+        joint("j2", "revolute", "a", "tip"),
+    ]);
+    let message = refusal(&bare_tip);
+    assert!(
+        message.contains("link \"tip\"") && message.contains("\"j2\""),
+        "{message}"
+    );
+
+    let no_axis = with(LINK).replace("0 0 1", "0 0 0");
+    assert!(refusal(&no_axis).contains("axis"), "{}", refusal(&no_axis));
+}
+
+#[test]
+fn a_tensor_that_breaks_the_triangle_inequality_is_warned_of() {
+    let arm = Arm::from_urdf(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/puma560.urdf")).expect("it loads");
+    let [warning] = arm.warnings() else {
+        panic!("{:?}", arm.warnings())
+    };
+    assert!(warning.contains("link3"), "{warning}");
+    assert_eq!(arm.dof(), 6);
+    assert_eq!(arm.joints()[1].limits.effort, 186.4);
+}
