@@ -33,14 +33,14 @@ fn run(bencher: Bencher, mut call: impl FnMut(&Arm, &mut Workspace, &[Vec<f64>; 
 #[divan::bench]
 fn inverse_dynamics(bencher: Bencher) {
     run(bencher, |arm, w, [q, qd, qdd], tau| {
-        arm.inverse_dynamics(w, q, qd, qdd, tau)
+        arm.inverse_dynamics(w, q, qd, qdd, tau);
     });
 }
 
 #[divan::bench]
 fn forward_dynamics(bencher: Bencher) {
     run(bencher, |arm, w, [q, qd, tau], qdd| {
-        arm.forward_dynamics(w, q, qd, tau, qdd)
+        arm.forward_dynamics(w, q, qd, tau, qdd);
     });
 }
 
@@ -56,7 +56,7 @@ fn torque_regressor(bencher: Bencher) {
     let n = arm().dof();
     let mut y = DMatrix::zeros(n, 10 * n);
     run(bencher, move |arm, w, [q, qd, qdd], _| {
-        arm.torque_regressor(w, q, qd, qdd, &mut y)
+        arm.torque_regressor(w, q, qd, qdd, &mut y);
     });
 }
 

@@ -148,7 +148,7 @@ impl<'a> Reader<'a> {
                         waiting.push((body_from_link.compose(&origin), &joint.child.link));
                     }
                     urdf_rs::JointType::Revolute | urdf_rs::JointType::Continuous | urdf_rs::JointType::Prismatic => {
-                        body.moving.push((body_from_link, joint))
+                        body.moving.push((body_from_link, joint));
                     }
                     urdf_rs::JointType::Floating | urdf_rs::JointType::Planar | urdf_rs::JointType::Spherical => {
                         return Err(self.joint_error(

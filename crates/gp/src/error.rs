@@ -1,0 +1,84 @@
+//! What can go wrong in this crate.
+
+use std::path::PathBuf;
+
+/// Errors of fitting, saving and loading.
+#[derive(Debug, thiserror::Error)]
+pub enum GpError {
+    /// There are no samples, or the inputs have no dimension.
+    #[error("no training data: {samples} samples of {dim} inputs")]
+    Empty {
+        /// Number of targets.
+        samples: usize,
+        /// Number of inputs a sample.
+        dim: usize,
+    },
+    /// The inputs' length is not samples × dimension.
+    #[error("{values} input values for {samples} targets of {dim} inputs each: expected {}", samples * dim)]
+    Shape {
+        /// Number of input values.
+        values: usize,
+        /// Number of targets.
+        samples: usize,
+        /// Number of inputs a sample.
+        dim: usize,
+    },
+    /// An input is infinite or not a number.
+    #[error("input {column} of sample {row} is {value}: not a finite number")]
+    Input {
+        /// Index of the sample, from 0.
+        row: usize,
+        /// Index of the input, from 0.
+        column: usize,
+        /// The value.
+        value: f64,
+    },
+    /// A target is infinite or not a number.
+    #[error("target of sample {row} is {value}: not a finite number")]
+    Target {
+        /// Index of the sample, from 0.
+        row: usize,
+        /// The value.
+        value: f64,
+    },
+    /// A hyperparameter or an option is out of range.
+    #[error("{name} is {value}: it must be {requirement}")]
+    OutOfRange {
+        /// What.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// What it must be.
+        requirement: &'static str,
+    },
+    /// The number of length scales is not the number of inputs.
+    #[error("{given} length scales for {dim} inputs")]
+    Lengths {
+        /// Number of length scales given.
+        given: usize,
+        /// Number of inputs.
+        dim: usize,
+    },
+    /// The kernel matrix could not be factored, or the likelihood is not finite.
+    #[error("the likelihood cannot be computed: {0}")]
+    Likelihood(String),
+    /// The search library refused its settings.
+    #[error("likelihood search: {0}")]
+    Search(String),
+    /// A file could not be read or written.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system says.
+        source: std::io::Error,
+    },
+    /// A file is not a saved model.
+    #[error("{}: not a saved model: {reason}", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, with line and column where the text is at fault.
+        reason: String,
+    },
+}

@@ -1,0 +1,40 @@
+//! Gaussian-process regression with the squared-exponential kernel, exact, also where the kernel matrix is nearly singular.
+//!
+//! ```
+//! use gp::{FitOptions, Gp, TrainingSet, Workspace};
+//!
+//! let inputs: Vec<f64> = (0..40).map(|i| 0.1 * f64::from(i)).collect();
+//! let targets: Vec<f64> = inputs.iter().map(|x| x.sin()).collect();
+//! let training = TrainingSet::new(1, &inputs, &targets)?;
+//! let gp = Gp::fit(&training, &FitOptions::default())?;
+//! assert!((gp.mean(&[1.234]) - 1.234_f64.sin()).abs() < 1e-4);
+//! let (_, variance) = gp.mean_and_variance(&[50.0], &mut Workspace::default());
+//! assert!(variance > 0.1);
+//! println!("{}", gp.conditioning());
+//! # Ok::<(), gp::GpError>(())
+//! ```
+//!
+//! The kernel matrix of smooth, noise-free data has a numerical rank r far below its size n. A pivoted Cholesky factorisation finds that
+//! rank, and everything else then costs n r² rather than n³, and a mean r kernel values rather than n. The answer is the exact one: the
+//! factorisation stops only where what it leaves is negligible against the noise, or is rounding. Where r is not far below n, the matrix is
+//! factored in full.
+
+mod algebra;
+mod conditioning;
+mod data;
+mod dense;
+mod error;
+mod file;
+mod kernel;
+mod likelihood;
+mod low_rank;
+mod model;
+mod pivoted;
+mod posterior;
+mod search;
+mod starts;
+
+pub use conditioning::Conditioning;
+pub use data::{Hyperparameters, Lengths, TrainingSet};
+pub use error::GpError;
+pub use model::{FitOptions, Gp, LengthScales, Workspace};

@@ -1,0 +1,301 @@
+//! Maximum marginal likelihood: a grid of starts on few samples, then L-BFGS, then L-BFGS on all samples.
+
+use std::cell::RefCell;
+
+use argmin::core::{CostFunction, Error, Executor, Gradient, State};
+use argmin::solver::linesearch::MoreThuenteLineSearch;
+use argmin::solver::quasinewton::LBFGS;
+
+use crate::algebra::sum_of_squares;
+use crate::data::TrainingSet;
+use crate::error::GpError;
+use crate::kernel::Points;
+use crate::likelihood::{Factored, Precision};
+use crate::starts::{Bounds, LENGTH_FACTORS, RELATIVE_NOISES, shapes};
+use crate::{FitOptions, LengthScales};
+
+/// Points looked at in vain, beyond the number of parameters, before a search ends. Near the floor of ρ the likelihood is rough with
+/// rounding, where a line search, which takes it to be smooth, would never end.
+const PATIENCE: usize = 5;
+
+/// Samples the starts are tried on.
+const FEW: usize = 256;
+
+/// Relative noise up to which few samples are taken to have shown the function.
+const RESOLVED: f64 = 0.03;
+
+/// Steps L-BFGS remembers.
+const MEMORY: usize = 10;
+
+/// What the search found: length scales (one, or one an input) and relative noise ρ.
+pub(crate) struct Found {
+    pub(crate) lengths: Vec<f64>,
+    pub(crate) rho: f64,
+}
+
+/// Maximises the likelihood of `training` (targets of unit size, not all zero), with ρ at least `floor`.
+pub(crate) fn search(training: &TrainingSet, options: &FitOptions, floor: f64) -> Result<Found, GpError> {
+    let shapes = shapes(training, options.lengths);
+    let bounds = Bounds::new(&shapes[0], floor);
+    let few = training.thinned(FEW);
+    // On few samples only the neighbourhood of an optimum is wanted.
+    let on_few = Likelihood::new(&few, &bounds, options.lengths, 0.05);
+
+    let mut grid = Vec::new();
+    for shape in &shapes {
+        for factor in LENGTH_FACTORS {
+            for relative in RELATIVE_NOISES {
+                let rho = relative.max(2.0 * floor);
+                let mut at: Vec<f64> = shape.iter().map(|l| (l * factor).ln()).collect();
+                at.push(rho.ln());
+                let free = bounds.free_from_log(&at);
+                grid.push((on_few.value(&free), free));
+            }
+        }
+    }
+    // A stable sort: equal values keep the order of the grid.
+    grid.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut chosen: Vec<Vec<f64>> = Vec::new();
+    for (_, free) in grid {
+        // Starts next to each other climb the same hill.
+        let distant = |other: &Vec<f64>| other.iter().zip(&free).any(|(a, b)| (a - b).abs() > NEIGHBOURHOOD);
+        if chosen.len() < options.starts && chosen.iter().all(distant) {
+            chosen.push(free);
+        }
+    }
+
+    // A likelihood ratio of 1.003 is no evidence.
+    let on_all = Likelihood::new(training, &bounds, options.lengths, 0.003);
+    let mut best = (f64::NEG_INFINITY, Vec::new());
+    for start in &chosen {
+        let (_, free) = on_few.climb(start, options.max_iterations)?;
+        let value = on_all.value(&free);
+        if value > best.0 || best.1.is_empty() {
+            best = (value, free);
+        }
+    }
+    if on_all.found(&best.1).rho > RESOLVED {
+        // Mostly noise: or a function too fine for few samples to tell from it. All samples may tell.
+        for shape in &shapes {
+            for factor in LENGTH_FACTORS {
+                let mut at: Vec<f64> = shape.iter().map(|l| (l * factor).ln()).collect();
+                at.push(RESOLVED.max(2.0 * floor).ln());
+                let free = bounds.free_from_log(&at);
+                let value = on_all.value(&free);
+                if value > best.0 {
+                    best = (value, free);
+                }
+            }
+        }
+    }
+    if training.samples() > 4 * FEW {
+        // Halfway there on the geometric mean of few and all: first steps are long, and some of them lead to a high rank.
+        let between = training.thinned((FEW * training.samples()).isqrt());
+        let on_between = Likelihood::new(&between, &bounds, options.lengths, 0.05);
+        best = on_between.climb(&best.1, options.max_iterations)?;
+    }
+    let (_, free) = on_all.climb(&best.1, options.max_iterations)?;
+    Ok(on_all.found(&free))
+}
+
+/// Grid points closer than this, in every logarithm, count as one start.
+const NEIGHBOURHOOD: f64 = 1.5;
+
+/// The likelihood of one data set as a function of the free parameters.
+struct Likelihood<'a> {
+    training: &'a TrainingSet,
+    bounds: &'a Bounds,
+    lengths: LengthScales,
+    /// Gains that are no gain, nats.
+    tolerance: f64,
+    /// The last point asked for (the search asks for value and gradient separately), and the best one.
+    seen: RefCell<Seen>,
+}
+
+struct Seen {
+    last: Vec<f64>,
+    value: f64,
+    gradient: Vec<f64>,
+    best: f64,
+    best_at: Vec<f64>,
+    /// The tolerance, and what rounding makes of one likelihood near the floor of ρ, nats.
+    negligible: f64,
+    /// Points looked at since the last gain that was not negligible.
+    stalled: usize,
+}
+
+impl Default for Seen {
+    fn default() -> Self {
+        Self {
+            last: Vec::new(),
+            value: f64::NAN,
+            gradient: Vec::new(),
+            best: f64::NEG_INFINITY,
+            best_at: Vec::new(),
+            negligible: 0.0,
+            stalled: 0,
+        }
+    }
+}
+
+impl<'a> Likelihood<'a> {
+    fn new(training: &'a TrainingSet, bounds: &'a Bounds, lengths: LengthScales, tolerance: f64) -> Self {
+        Self {
+            training,
+            bounds,
+            lengths,
+            tolerance,
+            seen: RefCell::default(),
+        }
+    }
+
+    fn factored(&self, free: &[f64]) -> (Factored, Points) {
+        let found = self.found(free);
+        let lengths = match self.lengths {
+            LengthScales::Isotropic => vec![found.lengths[0]; self.training.dim()],
+            LengthScales::PerInput => found.lengths,
+        };
+        let points = self.training.scaled(&lengths);
+        let targets = self.training.targets();
+        let factored = Factored::new(&points, targets, found.rho, Precision::SEARCH);
+        (factored, points)
+    }
+
+    /// Log marginal likelihood; minus infinity where it cannot be computed.
+    fn value(&self, free: &[f64]) -> f64 {
+        let value = self.factored(free).0.evaluation().profiled();
+        if value.is_nan() { f64::NEG_INFINITY } else { value }
+    }
+
+    fn found(&self, free: &[f64]) -> Found {
+        let mut lengths: Vec<f64> = self.bounds.log_from_free(free);
+        for value in &mut lengths {
+            *value = value.exp();
+        }
+        let rho = lengths.pop().unwrap_or(f64::NAN);
+        Found { lengths, rho }
+    }
+
+    /// Makes `seen` hold value and gradient at `free`.
+    fn look(&self, free: &[f64]) -> Result<(), Error> {
+        if self.seen.borrow().last == free {
+            return Ok(());
+        }
+        if self.stalled() {
+            return Err(Error::msg("no more to gain"));
+        }
+        let (factored, points) = self.factored(free);
+        let value = factored.evaluation().profiled();
+        let by_log = factored.gradient(&points);
+        if !value.is_finite() || by_log.iter().any(|g| !g.is_finite()) {
+            return Err(Error::msg("the likelihood is not finite"));
+        }
+        let (by_length, by_rho) = by_log.split_at(self.training.dim());
+        let mut gradient = match self.lengths {
+            LengthScales::Isotropic => vec![by_length.iter().sum()],
+            LengthScales::PerInput => by_length.to_vec(),
+        };
+        gradient.extend(by_rho);
+        for (g, slope) in gradient.iter_mut().zip(self.bounds.slopes(free)) {
+            *g *= slope;
+        }
+        let mut seen = self.seen.borrow_mut();
+        let rounding = f64::EPSILON * self.training.samples() as f64 / self.found(free).rho;
+        seen.negligible = self.tolerance + 0.5 * rounding;
+        if value > seen.best + seen.negligible {
+            seen.stalled = 0;
+        } else {
+            seen.stalled += 1;
+        }
+        if value > seen.best {
+            seen.best = value;
+            seen.best_at = free.to_vec();
+        }
+        seen.last = free.to_vec();
+        seen.value = value;
+        seen.gradient = gradient;
+        Ok(())
+    }
+
+    fn stalled(&self) -> bool {
+        let seen = self.seen.borrow();
+        seen.stalled >= PATIENCE + seen.last.len()
+    }
+
+    /// Climbs from `start` to a maximum: its value and place.
+    ///
+    /// The value kept is the best one met, so that a line search that ends in rounding loses nothing. The search is taken up again from
+    /// there, with its memory cleared, for as long as that gains anything.
+    fn climb(&self, start: &[f64], max_iterations: u64) -> Result<(f64, Vec<f64>), GpError> {
+        self.seen.replace(Seen::default());
+        let mut best = (f64::NEG_INFINITY, start.to_vec());
+        let mut left = max_iterations;
+        while left > 0 {
+            // A start whose likelihood is not finite is no start.
+            if self.look(&best.1).is_err() {
+                break;
+            }
+            let steepness = sum_of_squares(&self.seen.borrow().gradient).sqrt();
+            // Of order one; and the first step, which is the gradient itself, no longer than one in the logarithms.
+            let divisor = steepness.max(self.training.samples() as f64);
+            self.seen.borrow_mut().stalled = 0;
+            let solver = solver().map_err(|error| GpError::Search(error.to_string()))?;
+            let problem = Scaled {
+                likelihood: self,
+                divisor,
+            };
+            let run = Executor::new(problem, solver)
+                .configure(|state| state.param(best.1.clone()).max_iters(left))
+                .ctrlc(false)
+                .timer(false)
+                .run();
+            // An error is the search's own end, with the best point seen.
+            let used = run.map_or(left, |run| run.state.get_iter() + 1);
+            left = left.saturating_sub(used);
+            let seen = self.seen.borrow();
+            let gained = seen.best - best.0;
+            best = (seen.best, seen.best_at.clone());
+            if gained <= seen.negligible || self.stalled() {
+                break;
+            }
+        }
+        Ok(best)
+    }
+}
+
+type Solver = LBFGS<MoreThuenteLineSearch<Vec<f64>, Vec<f64>, f64>, Vec<f64>, Vec<f64>, f64>;
+
+/// L-BFGS, for a function whose gradient is of order one.
+fn solver() -> Result<Solver, Error> {
+    let line_search = MoreThuenteLineSearch::new().with_width_tolerance(0.02)?;
+    LBFGS::new(line_search, MEMORY)
+        .with_tolerance_grad(1e-6)?
+        .with_tolerance_cost(1e-9)
+}
+
+/// The problem as argmin wants it: owned by the executor, minimised, of order one.
+struct Scaled<'a, 'b> {
+    likelihood: &'a Likelihood<'b>,
+    divisor: f64,
+}
+
+impl CostFunction for Scaled<'_, '_> {
+    type Param = Vec<f64>;
+    type Output = f64;
+
+    fn cost(&self, free: &Vec<f64>) -> Result<f64, Error> {
+        self.likelihood.look(free)?;
+        Ok(-self.likelihood.seen.borrow().value / self.divisor)
+    }
+}
+
+impl Gradient for Scaled<'_, '_> {
+    type Param = Vec<f64>;
+    type Gradient = Vec<f64>;
+
+    fn gradient(&self, free: &Vec<f64>) -> Result<Vec<f64>, Error> {
+        self.likelihood.look(free)?;
+        let seen = self.likelihood.seen.borrow();
+        Ok(seen.gradient.iter().map(|g| -g / self.divisor).collect())
+    }
+}

@@ -1,0 +1,113 @@
+//! The torques with which dry friction holds joints that are at rest.
+
+use arm::DMatrix;
+
+/// Where the torque of a joint is.
+#[derive(Clone, Copy, PartialEq)]
+enum Place {
+    /// Within its level: the joint stays.
+    Within,
+    /// At its level, up or down: the joint gives way.
+    At(f64),
+}
+
+/// The torques, each at most its level, that leave joints at rest as little acceleration as they
+/// can: none, or against the torque where it is at its level.
+///
+/// `response` is the symmetric, positive definite block of M⁻¹ that belongs to the joints, `free` their
+/// accelerations without these torques, `levels` the most each torque can be. The solution is unique. Source:
+/// least-index principal pivoting (Murty 1974), with two bounds instead of one.
+pub(crate) fn holding_torques(response: &DMatrix<f64>, free: &[f64], levels: &[f64]) -> Vec<f64> {
+    let n = free.len();
+    let mut places = vec![Place::Within; n];
+    let mut torques = vec![0.0; n];
+    // There are no more than 3ⁿ ways to place the joints.
+    for _ in 0..3_usize.saturating_pow(n as u32) {
+        solve_within(response, free, levels, &places, &mut torques);
+        let violated = (0..n).find_map(|i| match places[i] {
+            Place::Within if torques[i].abs() > levels[i] => Some((i, Place::At(torques[i].signum()))),
+            Place::At(sign) if sign * acceleration(response, free, &torques, i) > 0.0 => Some((i, Place::Within)),
+            _ => None,
+        });
+        let Some((i, place)) = violated else { break };
+        places[i] = place;
+    }
+    for i in 0..n {
+        torques[i] = torques[i].clamp(-levels[i], levels[i]);
+    }
+    torques
+}
+
+/// The torques that hold the joints fast, whatever it takes (N m or N).
+pub(crate) fn locking_torques(response: &DMatrix<f64>, free: &[f64]) -> Vec<f64> {
+    let mut torques = vec![0.0; free.len()];
+    solve_within(response, free, &[], &vec![Place::Within; free.len()], &mut torques);
+    torques
+}
+
+fn solve_within(response: &DMatrix<f64>, free: &[f64], levels: &[f64], places: &[Place], torques: &mut [f64]) {
+    for (i, place) in places.iter().enumerate() {
+        torques[i] = match place {
+            Place::Within => 0.0,
+            Place::At(sign) => sign * levels[i],
+        };
+    }
+    let within: Vec<usize> = (0..places.len()).filter(|&i| places[i] == Place::Within).collect();
+    if within.is_empty() {
+        return;
+    }
+    let block = DMatrix::from_fn(within.len(), within.len(), |a, b| response[(within[a], within[b])]);
+    let wanted = DMatrix::from_fn(within.len(), 1, |a, _| {
+        -acceleration(response, free, torques, within[a])
+    });
+    // Positive definite, so the solution is there.
+    if let Some(solution) = block.lu().solve(&wanted) {
+        for (a, &i) in within.iter().enumerate() {
+            torques[i] = solution[a];
+        }
+    }
+}
+
+fn acceleration(response: &DMatrix<f64>, free: &[f64], torques: &[f64], i: usize) -> f64 {
+    free[i]
+        + torques
+            .iter()
+            .enumerate()
+            .map(|(j, torque)| response[(i, j)] * torque)
+            .sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A joint within its level is at rest; one at its level does not move against its torque's sense. Any other
+    /// pivoting rule may cycle on such problems.
+    #[test]
+    fn every_joint_rests_or_gives_way() {
+        let mut seed = 1_u64;
+        let mut random = || {
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        for case in 0..500 {
+            let n = 1 + case % 7;
+            let factor = DMatrix::from_fn(n, n, |_, _| random());
+            let response = &factor * factor.transpose() + DMatrix::identity(n, n) * 0.01;
+            let free: Vec<f64> = (0..n).map(|_| 3.0 * random()).collect();
+            let levels: Vec<f64> = (0..n).map(|_| 0.1 + 2.0 * random().abs()).collect();
+            let torques = holding_torques(&response, &free, &levels);
+            for i in 0..n {
+                let acceleration = acceleration(&response, &free, &torques, i);
+                assert!(torques[i].abs() <= levels[i], "case {case}: beyond the level");
+                if torques[i].abs() < levels[i] {
+                    assert!(acceleration.abs() < 1e-8, "case {case}: moves by {acceleration}");
+                } else {
+                    assert!(acceleration * torques[i] < 1e-8, "case {case}: driven by friction");
+                }
+            }
+        }
+    }
+}

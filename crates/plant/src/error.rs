@@ -1,0 +1,64 @@
+//! What can be wrong with a plant.
+
+/// Why a [`crate::Plant`] cannot be built or cannot go on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PlantError {
+    /// A list has not one value a joint.
+    #[error("{what} has {found} values, but the arm has {expected} joints; give one a joint")]
+    Count {
+        /// The list.
+        what: &'static str,
+        /// The arm's number of joints.
+        expected: usize,
+        /// The list's length.
+        found: usize,
+    },
+    /// A value of a joint is not a number it can be.
+    #[error("{what} of joint \"{joint}\" is {value}; give a finite number, not negative")]
+    Value {
+        /// The quantity.
+        what: &'static str,
+        /// The joint's name.
+        joint: String,
+        /// What was given.
+        value: f64,
+    },
+    /// The step is not a length of time.
+    #[error("the plant's step is {step} s; give a positive, finite time")]
+    Step {
+        /// What was given (s).
+        step: f64,
+    },
+    /// The extrapolation order is out of range.
+    #[error("the plant's order is {order}; give 1 to {largest}")]
+    Order {
+        /// What was given.
+        order: usize,
+        /// The largest there is.
+        largest: usize,
+    },
+    /// Gravity is not finite.
+    #[error("the arm's gravity is not finite")]
+    Gravity,
+    /// rapier would silently move this link wrongly, and no equivalent body could be found.
+    #[error(
+        "link \"{link}\" has no moment of inertia about one of its axes ({smallest:e} kg m² at the least, {largest:e} at \
+         the most), which rapier cannot simulate; give it a small one"
+    )]
+    Singular {
+        /// The link's name.
+        link: String,
+        /// Its smallest principal moment (kg m²).
+        smallest: f64,
+        /// Its largest principal moment (kg m²).
+        largest: f64,
+    },
+    /// A position, velocity or torque is not a finite number, or a joint runs faster than any arm.
+    #[error("joint \"{joint}\" at {time} s: its motion or torque has left all bounds")]
+    Diverged {
+        /// The first such joint's name.
+        joint: String,
+        /// The time the step began (s).
+        time: f64,
+    },
+}

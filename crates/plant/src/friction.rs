@@ -1,0 +1,254 @@
+//! Dry friction: joints that slide one way, stick and break away.
+//!
+//! Extrapolation needs smooth motion, and with dry friction it is smooth between events only. So a
+//! joint's friction is a constant torque while it slides one way and a lock while it sticks, and a
+//! step within which a joint stops or breaks away is split there.
+
+use crate::complementarity::{holding_torques, locking_torques};
+use crate::error::PlantError;
+use crate::plant::Plant;
+use arm::DMatrix;
+
+/// A velocity (rad/s), or a torque's distance from its level (N m), this small is at the event.
+const AT_EVENT: f64 = 1e-12;
+
+/// How often the interval around an event is cut at most.
+const CUTS: usize = 60;
+
+/// A step has no more events than this, times the joints; chatter beyond it waits for the next step.
+const EVENTS_A_JOINT: usize = 8;
+
+/// What dry friction does to a joint at the moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Contact {
+    /// It slides up (1) or down (−1), or has no dry friction (0).
+    Sliding(f64),
+    /// It is held fast.
+    Stuck,
+}
+
+/// The joints' dry friction.
+#[derive(Clone, Debug)]
+pub(crate) struct DryFriction {
+    /// The most that friction can resist, one a joint (N m or N).
+    levels: Vec<f64>,
+    contacts: Vec<Contact>,
+    /// Joints that stay at rest for this step, whatever drives them.
+    pinned: Vec<bool>,
+    /// How far each joint was from its event at the end of the last trial; negative beyond it.
+    margins: Vec<f64>,
+    qdd: Vec<f64>,
+}
+
+impl DryFriction {
+    pub(crate) fn new(levels: &[f64], dof: usize) -> Self {
+        let mut all = levels.to_vec();
+        all.resize(dof, 0.0);
+        Self {
+            levels: all,
+            contacts: vec![Contact::Sliding(0.0); dof],
+            pinned: vec![false; dof],
+            margins: vec![f64::INFINITY; dof],
+            qdd: vec![0.0; dof],
+        }
+    }
+
+    /// Whether any joint has dry friction.
+    pub(crate) fn is_dry(&self) -> bool {
+        self.levels.iter().any(|&level| level > 0.0)
+    }
+
+    pub(crate) fn is_stuck(&self, i: usize) -> bool {
+        self.contacts[i] == Contact::Stuck
+    }
+
+    /// Forgets which joints stick: the next step finds out.
+    pub(crate) fn release(&mut self) {
+        self.contacts.fill(Contact::Sliding(0.0));
+    }
+
+    /// What friction adds to the torque of joint `i` while it slides (N m or N).
+    pub(crate) fn torque(&self, i: usize) -> f64 {
+        match self.contacts[i] {
+            Contact::Sliding(sign) => -sign * self.levels[i],
+            Contact::Stuck => 0.0,
+        }
+    }
+
+    fn stuck(&self) -> Vec<usize> {
+        (0..self.contacts.len()).filter(|&i| self.is_stuck(i)).collect()
+    }
+
+    /// A joint, other than `known`, beyond its event at the end of the last trial.
+    fn violated(&self, known: Option<usize>) -> Option<usize> {
+        (0..self.margins.len()).find(|&i| self.margins[i] < 0.0 && Some(i) != known)
+    }
+}
+
+impl Plant {
+    /// [`Plant::step`] over `remaining` seconds where there is dry friction.
+    pub(crate) fn step_with_friction(&mut self, tau: &[f64], mut remaining: f64) -> Result<(), PlantError> {
+        self.friction.pinned.fill(false);
+        for _ in 0..EVENTS_A_JOINT * self.dof() {
+            self.settle(tau);
+            self.try_interval(tau, remaining);
+            let Some(mut joint) = self.friction.violated(None) else {
+                return self.accept();
+            };
+            let mut until = self.locate(tau, joint, remaining);
+            // At the event of one joint another may be beyond its own: that was earlier.
+            for _ in 0..self.dof() {
+                let Some(earlier) = self.friction.violated(Some(joint)) else {
+                    break;
+                };
+                joint = earlier;
+                until = self.locate(tau, joint, until);
+            }
+            if until > 0.0 {
+                self.accept()?;
+                remaining -= until;
+            } else {
+                self.friction.pinned[joint] = true;
+            }
+            if !self.friction.is_stuck(joint) {
+                self.qd[joint] = 0.0;
+            }
+        }
+        self.settle(tau);
+        self.try_interval(tau, remaining);
+        for i in 0..self.dof() {
+            if self.friction.margins[i] < 0.0 {
+                self.trial_qd[i] = 0.0;
+            }
+        }
+        self.accept()
+    }
+
+    /// Decides of every joint, in the present state, whether it slides, and which way, or sticks.
+    pub(crate) fn settle(&mut self, tau: &[f64]) {
+        let friction = &mut self.friction;
+        for (i, contact) in friction.contacts.iter_mut().enumerate() {
+            *contact = match (friction.levels[i] > 0.0, self.qd[i] != 0.0) {
+                (false, _) => Contact::Sliding(0.0),
+                (true, true) => Contact::Sliding(self.qd[i].signum()),
+                (true, false) => Contact::Stuck,
+            };
+        }
+        let resting = friction.stuck();
+        if resting.is_empty() {
+            return;
+        }
+        let limits: Vec<f64> = resting
+            .iter()
+            .map(|&i| {
+                if friction.pinned[i] {
+                    f64::INFINITY
+                } else {
+                    friction.levels[i]
+                }
+            })
+            .collect();
+        let (response, free) = self.contact_problem(tau, &resting, false);
+        let holding = holding_torques(&response, &free, &limits);
+        for ((&i, torque), limit) in resting.iter().zip(holding).zip(limits) {
+            if torque.abs() >= limit {
+                self.friction.contacts[i] = Contact::Sliding(-torque.signum());
+            }
+        }
+    }
+
+    /// Tries an interval, and finds how far every joint is from its event at the end of it.
+    fn try_interval(&mut self, tau: &[f64], time: f64) {
+        for (i, torque) in tau.iter().enumerate() {
+            self.engine
+                .drive(i, torque + self.friction.torque(i), self.friction.is_stuck(i));
+        }
+        self.advance(time);
+        let friction = &mut self.friction;
+        for (i, margin) in friction.margins.iter_mut().enumerate() {
+            *margin = match friction.contacts[i] {
+                Contact::Sliding(sign) if sign != 0.0 => sign * self.trial_qd[i],
+                _ => f64::INFINITY,
+            };
+        }
+        let stuck = friction.stuck();
+        if stuck.is_empty() {
+            return;
+        }
+        let (response, free) = self.contact_problem(tau, &stuck, true);
+        for (&i, torque) in stuck.iter().zip(locking_torques(&response, &free)) {
+            if !self.friction.pinned[i] {
+                self.friction.margins[i] = self.friction.levels[i] - torque.abs();
+            }
+        }
+    }
+
+    /// Shortens the trial, `until` seconds long and beyond the event of `joint`, to end at that event.
+    ///
+    /// Returns its new length: 0, and no trial, if the joint is beyond its event all along.
+    /// Source: the Illinois method (Dowell and Jarratt 1971).
+    fn locate(&mut self, tau: &[f64], joint: usize, until: f64) -> f64 {
+        let (mut after, mut margin_after) = (until, self.friction.margins[joint]);
+        let (mut before, mut margin_before) = (0.0, self.qd[joint].abs());
+        if margin_before == 0.0 {
+            // A joint that was released or stuck just now may begin at its event: find it before it.
+            let mut cuts = 0..CUTS;
+            before = after;
+            while margin_before <= 0.0 {
+                if cuts.next().is_none() {
+                    return 0.0;
+                }
+                before *= 0.125;
+                self.try_interval(tau, before);
+                margin_before = self.friction.margins[joint];
+                if margin_before < 0.0 {
+                    (after, margin_after) = (before, margin_before);
+                }
+            }
+        }
+        let mut latest_is_after = None;
+        for _ in 0..CUTS {
+            let middle = before + (after - before) * margin_before / (margin_before - margin_after);
+            self.try_interval(tau, middle);
+            let margin = self.friction.margins[joint];
+            let is_after = margin < 0.0;
+            if is_after {
+                (after, margin_after) = (middle, margin);
+                margin_before *= if latest_is_after == Some(true) { 0.5 } else { 1.0 };
+            } else {
+                (before, margin_before) = (middle, margin);
+                margin_after *= if latest_is_after == Some(false) { 0.5 } else { 1.0 };
+            }
+            latest_is_after = Some(is_after);
+            // A stuck joint must be let go beyond its level, or it would stick again.
+            let arrived = margin.abs() <= AT_EVENT || after - before <= f64::EPSILON * until;
+            if arrived && (is_after || !self.friction.is_stuck(joint)) {
+                return middle;
+            }
+        }
+        self.try_interval(tau, after);
+        after
+    }
+
+    /// Of joints at rest, in the present state or at the end of the trial: how their accelerations
+    /// answer to torques on each other, and what they are without friction.
+    fn contact_problem(&mut self, tau: &[f64], resting: &[usize], of_trial: bool) -> (DMatrix<f64>, Vec<f64>) {
+        for (i, torque) in tau.iter().enumerate() {
+            self.engine.drive(i, torque + self.friction.torque(i), false);
+        }
+        let (q, qd) = if of_trial {
+            (&self.trial_q, &self.trial_qd)
+        } else {
+            (&self.q, &self.qd)
+        };
+        self.engine.probe(q, qd, &mut self.friction.qdd);
+        let mut response = DMatrix::zeros(resting.len(), resting.len());
+        for (b, &j) in resting.iter().enumerate() {
+            let column = self.engine.inverse_mass_column(j);
+            for (a, &i) in resting.iter().enumerate() {
+                response[(a, b)] = column[i];
+            }
+        }
+        (response, resting.iter().map(|&i| self.friction.qdd[i]).collect())
+    }
+}

@@ -1,0 +1,180 @@
+//! The plant: an arm that moves under torques.
+
+use arm::Arm;
+
+use crate::engine::Engine;
+use crate::error::PlantError;
+use crate::friction::DryFriction;
+use crate::options::{PlantOptions, check_count, extrapolation_weights};
+
+/// Faster than any joint (rad/s or m/s). rapier quietly puts a body that is not finite to rest: a
+/// motion without bounds must be seen before.
+const FASTEST: f64 = 1e6;
+
+/// The true arm, a rapier multibody on a fixed base, driven by joint torques.
+///
+/// Joint vectors have one entry a joint, base to tip: rad, rad/s, rad/s² and N m, or m, m/s, m/s²
+/// and N where the joint is prismatic. Positions are not wrapped, limits are not enforced.
+pub struct Plant {
+    pub(crate) engine: Engine,
+    pub(crate) friction: DryFriction,
+    weights: Vec<f64>,
+    names: Vec<String>,
+    step: f64,
+    steps: u64,
+    pub(crate) q: Vec<f64>,
+    pub(crate) qd: Vec<f64>,
+    /// Where a trial interval led.
+    pub(crate) trial_q: Vec<f64>,
+    pub(crate) trial_qd: Vec<f64>,
+}
+
+impl Plant {
+    /// A plant of `arm`, with its rotor inertias and its gravity, at q = 0 and at rest.
+    ///
+    /// # Errors
+    /// [`PlantError`], if an option does not fit the arm or rapier cannot simulate one of its links.
+    pub fn new(arm: &Arm, options: &PlantOptions) -> Result<Self, PlantError> {
+        options.check(arm)?;
+        let zeros = vec![0.0; arm.dof()];
+        Ok(Self {
+            engine: Engine::new(arm, &options.viscous)?,
+            friction: DryFriction::new(&options.coulomb, arm.dof()),
+            weights: extrapolation_weights(options.order),
+            names: arm.joints().iter().map(|joint| joint.name.clone()).collect(),
+            step: options.step,
+            steps: 0,
+            q: zeros.clone(),
+            qd: zeros.clone(),
+            trial_q: zeros.clone(),
+            trial_qd: zeros,
+        })
+    }
+
+    /// The number of joints.
+    pub fn dof(&self) -> usize {
+        self.q.len()
+    }
+
+    /// The joints' positions (rad or m).
+    pub fn q(&self) -> &[f64] {
+        &self.q
+    }
+
+    /// The joints' velocities (rad/s or m/s).
+    pub fn qd(&self) -> &[f64] {
+        &self.qd
+    }
+
+    /// The time since the plant was made or reset (s).
+    pub fn time(&self) -> f64 {
+        self.steps as f64 * self.step
+    }
+
+    /// How long [`Self::step`] holds its torques (s).
+    pub fn step_time(&self) -> f64 {
+        self.step
+    }
+
+    /// Whether dry friction holds joint `i` fast.
+    pub fn is_stuck(&self, i: usize) -> bool {
+        self.friction.is_stuck(i)
+    }
+
+    /// Puts the arm at `q`, moving at `qd`; the time goes on.
+    ///
+    /// # Errors
+    /// [`PlantError::Count`] if there is not one value a joint, [`PlantError::Diverged`] if one is out of bounds.
+    pub fn set_state(&mut self, q: &[f64], qd: &[f64]) -> Result<(), PlantError> {
+        check_count("the position", q, self.dof())?;
+        check_count("the velocity", qd, self.dof())?;
+        self.check_bounds(q, qd)?;
+        self.q.copy_from_slice(q);
+        self.qd.copy_from_slice(qd);
+        self.friction.release();
+        Ok(())
+    }
+
+    /// Back to q = 0, at rest, at time 0.
+    pub fn reset(&mut self) {
+        self.q.fill(0.0);
+        self.qd.fill(0.0);
+        self.steps = 0;
+        self.friction.release();
+    }
+
+    /// Holds the torques `tau` for one step.
+    ///
+    /// # Errors
+    /// [`PlantError::Count`] if there is not one torque a joint; [`PlantError::Diverged`] if the
+    /// torques or the motion leave all bounds. The state then is that of the last event within the step, or before it.
+    pub fn step(&mut self, tau: &[f64]) -> Result<(), PlantError> {
+        check_count("the torque", tau, self.dof())?;
+        self.check_bounds(tau, &self.qd)?;
+        if self.friction.is_dry() {
+            self.step_with_friction(tau, self.step)?;
+        } else {
+            for (i, &torque) in tau.iter().enumerate() {
+                self.engine.drive(i, torque, false);
+            }
+            self.advance(self.step);
+            self.accept()?;
+        }
+        self.steps += 1;
+        Ok(())
+    }
+
+    /// The accelerations `qdd` that rapier finds now under the torques `tau`, friction included.
+    ///
+    /// # Errors
+    /// [`PlantError::Count`] if there is not one torque, or one acceleration, a joint.
+    pub fn accelerations(&mut self, tau: &[f64], qdd: &mut [f64]) -> Result<(), PlantError> {
+        check_count("the torque", tau, self.dof())?;
+        check_count("the acceleration", qdd, self.dof())?;
+        if self.friction.is_dry() {
+            self.settle(tau);
+        }
+        for (i, &torque) in tau.iter().enumerate() {
+            self.engine
+                .drive(i, torque + self.friction.torque(i), self.friction.is_stuck(i));
+        }
+        self.engine.probe(&self.q, &self.qd, qdd);
+        Ok(())
+    }
+
+    /// Tries an interval of `time` from the present state under the torques driven, smooth
+    /// throughout: rapier's steps, extrapolated.
+    pub(crate) fn advance(&mut self, time: f64) {
+        self.trial_q.copy_from_slice(&self.q);
+        self.trial_qd.copy_from_slice(&self.qd);
+        for (n, weight) in self.weights.iter().enumerate() {
+            self.engine.load(&self.q, &self.qd);
+            self.engine.run(time, n + 1);
+            // Sums of differences round less, and leave a joint that does not move where it is.
+            for (i, (q, qd)) in self.engine.state().enumerate() {
+                self.trial_q[i] += weight * (q - self.q[i]);
+                self.trial_qd[i] += weight * (qd - self.qd[i]);
+            }
+        }
+    }
+
+    /// Makes the trial the present state.
+    pub(crate) fn accept(&mut self) -> Result<(), PlantError> {
+        self.check_bounds(&self.trial_q, &self.trial_qd)?;
+        self.q.copy_from_slice(&self.trial_q);
+        self.qd.copy_from_slice(&self.trial_qd);
+        Ok(())
+    }
+
+    /// Refuses positions (or torques) that are not finite and velocities beyond all arms'.
+    fn check_bounds(&self, q: &[f64], qd: &[f64]) -> Result<(), PlantError> {
+        let is_bounded = |(q, qd): (&f64, &f64)| q.is_finite() && qd.abs() < FASTEST;
+        match q.iter().zip(qd).position(|joint| !is_bounded(joint)) {
+            None => Ok(()),
+            Some(i) => Err(PlantError::Diverged {
+                joint: self.names[i].clone(),
+                time: self.time(),
+            }),
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use torque::{LengthScales, TrainingOptions};
+
+use crate::models::ModelKind;
+
+/// Tracking testbed and model diagnosis for robot arms
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    about,
+    args_conflicts_with_subcommands = true,
+    arg_required_else_help = true
+)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    #[command(flatten)]
+    pub run: Option<RunArgs>,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Print the paper's tables I and II and its figure 4, ours beside theirs
+    Tables(TablesArgs),
+}
+
+/// Close the loop on one scenario.
+#[derive(Debug, Args)]
+pub struct RunArgs {
+    /// The scenario: a name under scenarios/, or a .toml file
+    #[arg(long, value_name = "NAME|FILE")]
+    pub scenario: String,
+
+    /// The torque model that the controller feeds forward
+    #[arg(long, value_enum, default_value = "independent-joint")]
+    pub model: ModelKind,
+
+    /// What the model is trained on: scenarios, or recordings (.csv) [default: the scenario's own list]
+    #[arg(long, value_name = "A,B,…", value_delimiter = ',')]
+    pub train: Option<Vec<String>>,
+
+    /// The regressions' length scales: one for all inputs, as in the paper, or one an input
+    #[arg(long, value_enum, default_value = "one")]
+    pub length_scales: LengthScalesArg,
+
+    /// Where Rerun shows the run: off, save[=FILE], spawn or connect[=URL] [default: save into the run's folder]
+    #[cfg_attr(not(feature = "viewer"), arg(hide = true))]
+    #[arg(long, value_name = "WHERE", value_parser = parse_rerun)]
+    pub rerun: Option<Rerun>,
+
+    /// The run's folder [default: a new one under runs/]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+
+    /// Write the run's summary to this file as well
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+
+    /// Seed of what is random: the noise of the scenario's sensors
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+}
+
+#[derive(Debug, Args)]
+pub struct TablesArgs {
+    /// The regressions' length scales: one for all inputs, as in the paper, or one an input
+    #[arg(long, value_enum, default_value = "one")]
+    pub length_scales: LengthScalesArg,
+
+    /// Write the tables to this file as well
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+}
+
+/// How many length scales a regression has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LengthScalesArg {
+    /// One for all inputs (the paper's equation 4)
+    One,
+    /// One an input: slower to train, and it does not matter in which units the inputs are
+    PerInput,
+}
+
+impl LengthScalesArg {
+    /// The training that this asks for.
+    pub fn training_options(self) -> TrainingOptions {
+        let lengths = match self {
+            Self::One => LengthScales::Isotropic,
+            Self::PerInput => LengthScales::PerInput,
+        };
+        TrainingOptions { lengths }
+    }
+}
+
+/// Where Rerun shows a run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Rerun {
+    /// Nowhere.
+    Off,
+    /// Into a file: this one, or `run.rrd` in the run's folder.
+    Save(Option<PathBuf>),
+    /// In a viewer started for it.
+    Spawn,
+    /// In a viewer that listens, by default on this machine.
+    Connect(Option<String>),
+}
+
+fn parse_rerun(text: &str) -> Result<Rerun, String> {
+    let (word, value) = match text.split_once('=') {
+        Some((word, value)) => (word, Some(value)),
+        None => (text, None),
+    };
+    match (word, value) {
+        (_, Some("")) => Err("nothing follows the \"=\"".into()),
+        ("off", None) => Ok(Rerun::Off),
+        ("spawn", None) => Ok(Rerun::Spawn),
+        ("save", file) => Ok(Rerun::Save(file.map(PathBuf::from))),
+        ("connect", url) => Ok(Rerun::Connect(url.map(str::to_owned))),
+        _ => Err("give off, save, save=FILE, spawn, connect or connect=URL".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rerun_targets_parse() {
+        assert_eq!(parse_rerun("off"), Ok(Rerun::Off));
+        assert_eq!(parse_rerun("save=a=b.rrd"), Ok(Rerun::Save(Some("a=b.rrd".into()))));
+        assert_eq!(parse_rerun("connect"), Ok(Rerun::Connect(None)));
+        assert!(parse_rerun("save=").is_err());
+        assert!(parse_rerun("show").is_err());
+        assert!(parse_rerun("off=1").is_err());
+    }
+}

@@ -1,0 +1,117 @@
+//! The scenarios and robots that come with testbed, and where others are found.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use arm::Arm;
+
+/// The files are part of the program, so that it runs from any folder.
+const SCENARIOS: [(&str, &str); 4] = [
+    ("taskA", include_str!("../../../scenarios/taskA.toml")),
+    ("taskB", include_str!("../../../scenarios/taskB.toml")),
+    ("taskC", include_str!("../../../scenarios/taskC.toml")),
+    ("taskD", include_str!("../../../scenarios/taskD.toml")),
+];
+
+const ROBOTS: [(&str, &str); 1] = [("puma560", include_str!("../../../assets/puma560.urdf"))];
+
+/// The text of a scenario and where it came from.
+pub struct Source {
+    /// The scenario's name.
+    pub name: String,
+    /// Its file, or `scenarios/<name>.toml` for one that comes with testbed.
+    pub path: PathBuf,
+    /// What it says.
+    pub text: String,
+}
+
+impl Source {
+    /// `file:line` of a range of bytes of the text.
+    pub fn place(&self, span: Range<usize>) -> String {
+        let before = &self.text.as_bytes()[..span.start.min(self.text.len())];
+        let line = before.iter().filter(|byte| **byte == b'\n').count() + 1;
+        format!("{}:{line}", self.path.display())
+    }
+}
+
+/// Finds the scenario `name`: a file if it ends in `.toml` or has a folder in it, else
+/// `scenarios/<name>.toml` below the current folder, else one that comes with testbed.
+///
+/// # Errors
+/// If there is none, with the names that there are.
+pub fn find_scenario(name: &str) -> anyhow::Result<Source> {
+    let given = Path::new(name);
+    let is_file = given.extension().is_some_and(|extension| extension == "toml") || given.components().count() > 1;
+    let local = Path::new("scenarios").join(format!("{name}.toml"));
+    let path = if is_file {
+        given.to_owned()
+    } else if local.is_file() {
+        local
+    } else if let Some((name, text)) = SCENARIOS.iter().find(|(known, _)| *known == name) {
+        return Ok(Source {
+            name: (*name).into(),
+            path: local,
+            text: (*text).into(),
+        });
+    } else {
+        let mut known: Vec<String> = SCENARIOS.iter().map(|(name, _)| (*name).to_owned()).collect();
+        known.extend(
+            local_scenarios()
+                .into_iter()
+                .filter(|name| !SCENARIOS.iter().any(|(known, _)| known == name)),
+        );
+        let hint = nearest(name, &known).map_or(String::new(), |nearest| format!("did you mean {nearest}? "));
+        bail!(
+            "there is no scenario \"{name}\"; {hint}there are {}, or give the path of a .toml file",
+            known.join(", ")
+        );
+    };
+    let text =
+        std::fs::read_to_string(&path).with_context(|| format!("{}: the scenario cannot be read", path.display()))?;
+    let name = path
+        .file_stem()
+        .map_or(name.to_owned(), |stem| stem.to_string_lossy().into_owned());
+    Ok(Source { name, path, text })
+}
+
+/// The names of the scenarios below the current folder, sorted.
+fn local_scenarios() -> Vec<String> {
+    let entries = std::fs::read_dir("scenarios").into_iter().flatten().flatten();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+        .filter_map(|path| path.file_stem().map(|stem| stem.to_string_lossy().into_owned()))
+        .collect();
+    names.sort();
+    names
+}
+
+/// Loads the robot that a scenario names: the path of a URDF beside the scenario (or absolute), or the
+/// name of one that comes with testbed.
+///
+/// # Errors
+/// If there is none, or it is not a serial arm.
+pub fn load_arm(robot: &str, scenario: &Source) -> anyhow::Result<(Arm, PathBuf)> {
+    if let Some((name, text)) = ROBOTS.iter().find(|(known, _)| *known == robot) {
+        let path = PathBuf::from(format!("assets/{name}.urdf"));
+        return Ok((Arm::from_urdf_text(text, &path)?, path));
+    }
+    let is_path = Path::new(robot).extension().is_some_and(|e| e == "urdf" || e == "xml");
+    if !is_path {
+        let known: Vec<&str> = ROBOTS.iter().map(|(name, _)| *name).collect();
+        bail!(
+            "there is no robot of that name; there are {}, or give the path of a .urdf file",
+            known.join(", ")
+        );
+    }
+    let path = scenario.path.parent().unwrap_or(Path::new("")).join(robot);
+    Ok((Arm::from_urdf(&path)?, path))
+}
+
+/// The name in `known` nearest to `name`, if any is near enough to be meant.
+pub fn nearest<'a>(name: &str, known: &'a [String]) -> Option<&'a str> {
+    let distance = |other: &str| strsim::damerau_levenshtein(&name.to_lowercase(), &other.to_lowercase());
+    let best = known.iter().min_by_key(|other| distance(other))?;
+    (distance(best) <= name.len().max(best.len()).div_ceil(2)).then_some(best.as_str())
+}

@@ -1,0 +1,43 @@
+//! testbed: tracking testbed and model diagnosis for robot arms.
+
+mod cli;
+mod library;
+mod models;
+mod output;
+mod paper;
+mod reference;
+mod run;
+mod scenario;
+mod sensors;
+mod simulation;
+mod tables;
+mod telemetry;
+mod training;
+#[cfg(feature = "viewer")]
+mod viewer;
+
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser};
+
+fn main() -> ExitCode {
+    let cli = cli::Cli::parse();
+    let result = match (&cli.command, &cli.run) {
+        (Some(cli::Command::Tables(args)), _) => {
+            tables::run(args.json.as_deref(), &args.length_scales.training_options())
+        }
+        (None, Some(args)) => run::run(args),
+        (None, None) => {
+            let mut command = cli::Cli::command();
+            eprintln!("{}", command.render_help());
+            return ExitCode::from(2);
+        }
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

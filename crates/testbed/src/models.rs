@@ -1,0 +1,105 @@
+//! The models by name, and how each is made from an arm and training samples.
+
+use arm::Arm;
+use serde::{Serialize, Serializer};
+use torque::{Inputs, Learned, RigidBody, Samples, TorqueModel, TrainingOptions};
+
+/// The torque models one can ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum ModelKind {
+    /// The exact rigid-body model: the reference
+    True,
+    /// The rigid-body model alone, with the scenario's error (the paper's "RBD only")
+    RigidBody,
+    /// Gaussian-process regression alone, on (q, q̇, q̈) (the paper's "GPR only")
+    Gp,
+    /// Rigid body plus regression on (q, q̇, q̈) (the paper's "RBD+GPR")
+    Hybrid,
+    /// Rigid body plus one regression a joint on the 12 Newton-Euler inputs (the paper's IJL)
+    IndependentJoint,
+    /// The same with the model's own torque as the 13th input
+    #[value(name = "independent-joint-13")]
+    IndependentJoint13,
+}
+
+impl ModelKind {
+    /// All, from the reference down the columns of the paper's tables.
+    pub const ALL: [Self; 6] = [
+        Self::True,
+        Self::RigidBody,
+        Self::Gp,
+        Self::Hybrid,
+        Self::IndependentJoint,
+        Self::IndependentJoint13,
+    ];
+
+    /// The name in JSON.
+    pub fn json_name(self) -> &'static str {
+        match self {
+            Self::True => "true",
+            Self::RigidBody => "rigid_body",
+            Self::Gp => "gp",
+            Self::Hybrid => "hybrid",
+            Self::IndependentJoint => "independent_joint",
+            Self::IndependentJoint13 => "independent_joint_13",
+        }
+    }
+
+    /// The name on the command line.
+    pub fn flag(self) -> String {
+        self.json_name().replace('_', "-")
+    }
+
+    /// The name in a table for people.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::True => "exact model",
+            Self::RigidBody => "rigid body",
+            Self::Gp => "GP only",
+            Self::Hybrid => "rigid body + GP",
+            Self::IndependentJoint => "IJL, 12 inputs",
+            Self::IndependentJoint13 => "IJL, 13 inputs",
+        }
+    }
+
+    /// Whether it is trained.
+    pub fn learns(self) -> bool {
+        !matches!(self, Self::True | Self::RigidBody)
+    }
+
+    /// The rigid-body model the controller has beside it, for its mass matrix.
+    pub fn controller_arm(self, true_arm: &Arm, nominal_arm: &Arm) -> Arm {
+        match self {
+            Self::True => true_arm.clone(),
+            _ => nominal_arm.clone(),
+        }
+    }
+
+    /// Makes the model, training it on `samples` if it learns.
+    ///
+    /// # Errors
+    /// If training fails.
+    pub fn build(
+        self,
+        true_arm: &Arm,
+        nominal_arm: &Arm,
+        samples: &Samples,
+        options: &TrainingOptions,
+    ) -> anyhow::Result<Box<dyn TorqueModel>> {
+        let on_top = |inputs| Learned::on_top_of(nominal_arm, inputs, samples, options);
+        Ok(match self {
+            Self::True => Box::new(RigidBody::new(true_arm.clone())),
+            Self::RigidBody => Box::new(RigidBody::new(nominal_arm.clone())),
+            Self::Gp => Box::new(Learned::gp_only(samples, options)?),
+            Self::Hybrid => Box::new(on_top(Inputs::JointMotion)?),
+            Self::IndependentJoint => Box::new(on_top(Inputs::NewtonEuler12)?),
+            Self::IndependentJoint13 => Box::new(on_top(Inputs::NewtonEuler13)?),
+        })
+    }
+}
+
+impl Serialize for ModelKind {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.json_name())
+    }
+}

@@ -1,0 +1,104 @@
+//! What people read and files hold: tables, numbers, JSON.
+
+use std::path::Path;
+use std::time::Duration;
+
+use anyhow::bail;
+use comfy_table::{CellAlignment, Table, presets};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use crate::models::ModelKind;
+use crate::simulation::Outcome;
+
+/// The tracking error of one model, as JSON has it.
+#[derive(Serialize)]
+pub struct Tracking {
+    /// The model.
+    pub model: ModelKind,
+    /// Root mean square, one a joint (rad, or m).
+    pub rms_error_rad: Vec<f64>,
+    /// Largest, one a joint (rad, or m).
+    pub max_error_rad: Vec<f64>,
+}
+
+impl Tracking {
+    /// The tracking error of a run under `model`.
+    pub fn new(model: ModelKind, outcome: &Outcome) -> Self {
+        Self {
+            model,
+            rms_error_rad: outcome.rms_error.clone(),
+            max_error_rad: outcome.max_error.clone(),
+        }
+    }
+}
+
+/// A table with its first column at the left and numbers at the right.
+pub fn table(header: impl IntoIterator<Item = String>) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    table.set_header(header.into_iter().collect::<Vec<_>>());
+    for (index, column) in table.column_iter_mut().enumerate() {
+        column.set_cell_alignment(if index == 0 {
+            CellAlignment::Left
+        } else {
+            CellAlignment::Right
+        });
+    }
+    table
+}
+
+/// Four significant digits, with an exponent where the number is far from one.
+pub fn number(value: f64) -> String {
+    let magnitude = value.abs();
+    if value == 0.0 {
+        "0".into()
+    } else if (1e-2..1e4).contains(&magnitude) {
+        let decimals = (3 - magnitude.log10().floor() as i32).max(0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
+/// A progress line on standard error, hidden where that is no terminal.
+pub fn spinner(message: &'static str) -> ProgressBar {
+    let progress = ProgressBar::new_spinner();
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {
+        progress.set_style(style);
+    }
+    progress.set_message(message);
+    progress.enable_steady_tick(Duration::from_millis(100));
+    progress
+}
+
+/// Writes `value` as JSON to `path`, whole or not at all.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write_json(path: &Path, value: &impl Serialize) -> anyhow::Result<()> {
+    let text = serde_json::to_string_pretty(value)?;
+    recording::write_whole(path, |file| writeln!(file, "{text}"))?;
+    Ok(())
+}
+
+/// Refuses a file that could not be written, before any work is done for it.
+///
+/// # Errors
+/// If its folder does not exist or cannot be written to, or the path is a folder.
+pub fn check_writable(path: &Path) -> anyhow::Result<()> {
+    if path.is_dir() {
+        bail!("{}: is a folder; give the name of a file", path.display());
+    }
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    if let Err(error) = tempfile::tempfile_in(folder) {
+        bail!(
+            "{}: cannot be written: {error}; give a path in a folder that exists and is yours",
+            path.display()
+        );
+    }
+    Ok(())
+}

@@ -1,0 +1,100 @@
+//! The motion a run is to follow: sums of sines.
+
+use std::f64::consts::TAU;
+
+/// One sine of every joint: amplitude sin(2π frequency t + phase).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sine {
+    /// rad or m.
+    pub amplitude: Vec<f64>,
+    /// Hz.
+    pub frequency: Vec<f64>,
+    /// rad.
+    pub phase: Vec<f64>,
+}
+
+/// q(t) = centre + Σ sines, one entry a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reference {
+    /// rad or m.
+    pub centre: Vec<f64>,
+    /// The sines.
+    pub sines: Vec<Sine>,
+}
+
+/// Position, velocity and acceleration of every joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// rad or m.
+    pub q: Vec<f64>,
+    /// rad/s or m/s.
+    pub qd: Vec<f64>,
+    /// rad/s² or m/s².
+    pub qdd: Vec<f64>,
+}
+
+impl Motion {
+    /// At rest at zero.
+    pub fn new(dof: usize) -> Self {
+        Self {
+            q: vec![0.0; dof],
+            qd: vec![0.0; dof],
+            qdd: vec![0.0; dof],
+        }
+    }
+}
+
+impl Reference {
+    /// The motion at `time` (s), into `motion`.
+    pub fn at(&self, time: f64, motion: &mut Motion) {
+        motion.q.copy_from_slice(&self.centre);
+        motion.qd.fill(0.0);
+        motion.qdd.fill(0.0);
+        for sine in &self.sines {
+            for joint in 0..self.centre.len() {
+                let omega = TAU * sine.frequency[joint];
+                let (sin, cos) = (omega * time + sine.phase[joint]).sin_cos();
+                let amplitude = sine.amplitude[joint];
+                motion.q[joint] += amplitude * sin;
+                motion.qd[joint] += amplitude * omega * cos;
+                motion.qdd[joint] -= amplitude * omega * omega * sin;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Velocity and acceleration are the derivatives of position; fails if a factor ω is lost.
+    #[test]
+    fn derivatives_agree_with_differences() {
+        let reference = Reference {
+            centre: vec![0.3],
+            sines: vec![
+                Sine {
+                    amplitude: vec![0.8],
+                    frequency: vec![0.22],
+                    phase: vec![0.4],
+                },
+                Sine {
+                    amplitude: vec![0.2],
+                    frequency: vec![1.1],
+                    phase: vec![-1.0],
+                },
+            ],
+        };
+        let at = |t: f64| {
+            let mut motion = Motion::new(1);
+            reference.at(t, &mut motion);
+            motion
+        };
+        let h = 1e-4;
+        for t in [0.0, 0.7, 3.1] {
+            let (before, here, after) = (at(t - h), at(t), at(t + h));
+            assert!(((after.q[0] - before.q[0]) / (2.0 * h) - here.qd[0]).abs() < 1e-6);
+            assert!(((after.qd[0] - before.qd[0]) / (2.0 * h) - here.qdd[0]).abs() < 1e-5);
+        }
+    }
+}

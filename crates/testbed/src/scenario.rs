@@ -1,0 +1,68 @@
+//! Scenarios: which robot follows which reference under which controller.
+
+mod raw;
+mod validate;
+
+use std::path::PathBuf;
+
+use arm::Arm;
+use torque::Feedback;
+
+use crate::reference::Reference;
+use crate::sensors::SensorNoise;
+
+/// A validated scenario. Vectors have one entry a joint of the arm.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    /// The name it was asked for by, without folder and extension.
+    pub name: String,
+    /// One line for people.
+    pub title: String,
+    /// The true arm, with the drives' inertia.
+    pub arm: Arm,
+    /// Where the arm came from; meshes are looked for beside it.
+    pub urdf: PathBuf,
+    /// Length of the run (s).
+    pub duration: f64,
+    /// The factor on the masses and inertia tensors of the controller's model.
+    pub inertia_scale: f64,
+    /// The motion to follow.
+    pub reference: Reference,
+    /// Rate at which the reference is sampled for training and torque error (Hz).
+    pub sample_rate: f64,
+    /// Rate of the control loop (Hz).
+    pub control_rate: f64,
+    /// Feedback law and gains.
+    pub feedback: Feedback,
+    /// The scenarios that models are trained on by default.
+    pub training: Vec<String>,
+    /// Viscous friction of the plant (N m s/rad or N s/m).
+    pub viscous_friction: Vec<f64>,
+    /// Coulomb friction of the plant (N m or N).
+    pub coulomb_friction: Vec<f64>,
+    /// What the sensors add.
+    pub sensor_noise: SensorNoise,
+}
+
+impl Scenario {
+    /// Reads the scenario `name`: a file, or the name of one that comes with testbed.
+    ///
+    /// # Errors
+    /// One line that names file, line and key, what was found and how to mend it.
+    pub fn load(name: &str) -> anyhow::Result<Self> {
+        let source = crate::library::find_scenario(name)?;
+        let raw = raw::parse(&source)?;
+        validate::scenario(&source, raw)
+    }
+
+    /// The arm as the controller believes it to be: masses and inertia tensors off by the named factor.
+    pub fn nominal_arm(&self) -> Arm {
+        self.arm.clone().with_scaled_inertias(self.inertia_scale)
+    }
+
+    /// Time and state of the reference samples, from 0, `sample_rate` apart: as many as fit into the duration.
+    pub fn sample_times(&self) -> impl Iterator<Item = f64> + use<> {
+        let (count, rate) = ((self.duration * self.sample_rate).round() as usize, self.sample_rate);
+        (0..count).map(move |k| k as f64 / rate)
+    }
+}

@@ -1,0 +1,126 @@
+//! A scenario as it is written: TOML, nothing checked but its shape.
+
+use std::ops::Range;
+
+use anyhow::anyhow;
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::library::Source;
+
+/// One number for all joints, or a list with one a joint.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged, expecting = "a number, or a list of numbers with one a joint")]
+pub enum PerJoint {
+    All(f64),
+    Each(Vec<f64>),
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawScenario {
+    pub title: Option<String>,
+    pub robot: Spanned<String>,
+    pub duration: Spanned<f64>,
+    #[serde(default)]
+    pub model: RawModel,
+    pub reference: Spanned<RawReference>,
+    #[serde(default)]
+    pub controller: RawController,
+    #[serde(default)]
+    pub training: RawTraining,
+    #[serde(default)]
+    pub plant: RawPlant,
+    #[serde(default)]
+    pub sensors: RawSensors,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawModel {
+    pub inertia_scale: Option<Spanned<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawReference {
+    pub amplitude: Option<Spanned<PerJoint>>,
+    pub frequency_1: Option<Spanned<PerJoint>>,
+    pub frequency_2: Option<Spanned<PerJoint>>,
+    pub centre: Option<Spanned<PerJoint>>,
+    #[serde(default)]
+    pub sines: Vec<RawSine>,
+    pub sample_rate: Option<Spanned<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawSine {
+    pub amplitude: Spanned<PerJoint>,
+    pub frequency: Spanned<PerJoint>,
+    pub phase: Option<Spanned<PerJoint>>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawController {
+    pub rate: Option<Spanned<f64>>,
+    pub feedback: Option<Spanned<String>>,
+    pub kp: Option<Spanned<PerJoint>>,
+    pub kd: Option<Spanned<PerJoint>>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawTraining {
+    #[serde(default)]
+    pub scenarios: Vec<String>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawPlant {
+    pub rotor_inertia: Option<Spanned<PerJoint>>,
+    pub viscous_friction: Option<Spanned<PerJoint>>,
+    pub coulomb_friction: Option<Spanned<PerJoint>>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawSensors {
+    pub position_noise: Option<Spanned<PerJoint>>,
+    pub velocity_noise: Option<Spanned<PerJoint>>,
+    pub torque_noise: Option<Spanned<PerJoint>>,
+}
+
+/// Parses the text of a scenario.
+///
+/// # Errors
+/// One line with file, line and reason; an unknown key comes with the nearest known one.
+pub fn parse(source: &Source) -> anyhow::Result<RawScenario> {
+    toml::from_str(&source.text).map_err(|error| {
+        let place = source.place(error.span().unwrap_or(Range { start: 0, end: 0 }));
+        let message = error.message();
+        match unknown_field(message) {
+            Some((unknown, known)) => {
+                let hint = match crate::library::nearest(&unknown, &known) {
+                    Some(nearest) => format!("did you mean `{nearest}`? "),
+                    None => String::new(),
+                };
+                anyhow!(
+                    "{place}: unknown key `{unknown}`; {hint}known here: {}",
+                    known.join(", ")
+                )
+            }
+            None => anyhow!("{place}: {}", message.replace('\n', " ")),
+        }
+    })
+}
+
+/// The field and the known ones in serde's "unknown field `a`, expected one of `b`, `c`".
+fn unknown_field(message: &str) -> Option<(String, Vec<String>)> {
+    let rest = message.strip_prefix("unknown field `")?;
+    let (unknown, rest) = rest.split_once('`')?;
+    let known = rest.split('`').skip(1).step_by(2).map(str::to_owned).collect();
+    Some((unknown.to_owned(), known))
+}

@@ -1,0 +1,228 @@
+//! From what is written to what can be run.
+
+use anyhow::{Context, anyhow, bail, ensure};
+use arm::Arm;
+use toml::Spanned;
+use torque::Feedback;
+
+use super::Scenario;
+use super::raw::{PerJoint, RawReference, RawScenario};
+use crate::library::{self, Source};
+use crate::reference::{Reference, Sine};
+use crate::sensors::SensorNoise;
+
+/// Defaults of the optional keys, as docs/scenarios.md gives them.
+const SAMPLE_RATE: f64 = 80.0;
+const CONTROL_RATE: f64 = 1000.0;
+const KP: f64 = 100.0;
+const KD: f64 = 20.0;
+
+/// The longest run; a longer one is surely a slip of units.
+const MAX_DURATION: f64 = 36_000.0;
+
+/// Checks `raw`, which `source` holds.
+///
+/// # Errors
+/// One line that names file, line and key, what was found and how to mend it.
+pub fn scenario(source: &Source, raw: RawScenario) -> anyhow::Result<Scenario> {
+    let (arm, urdf) = library::load_arm(raw.robot.get_ref(), source).with_context(|| {
+        format!(
+            "{}: robot = \"{}\"",
+            source.place(raw.robot.span()),
+            raw.robot.get_ref()
+        )
+    })?;
+    let check = Check { source, arm: &arm };
+
+    let duration = check.number("duration", Some(&raw.duration), 0.0)?;
+    check.ensure(duration > 0.0 && duration <= MAX_DURATION, &raw.duration, || {
+        format!("duration is {duration} s; give more than 0 and at most {MAX_DURATION}")
+    })?;
+    let control_rate = check.rate("controller.rate", raw.controller.rate.as_ref(), CONTROL_RATE)?;
+    let reference_table = raw.reference.get_ref();
+    let sample_rate = check.rate(
+        "reference.sample_rate",
+        reference_table.sample_rate.as_ref(),
+        SAMPLE_RATE,
+    )?;
+    if let Some(written) = &reference_table.sample_rate {
+        check.ensure(duration * sample_rate >= 1.0, written, || {
+            format!("reference.sample_rate of {sample_rate} Hz gives no sample in {duration} s; raise it")
+        })?;
+    }
+    let inertia_scale = check.number("model.inertia_scale", raw.model.inertia_scale.as_ref(), 1.0)?;
+    if let Some(written) = &raw.model.inertia_scale {
+        check.ensure(inertia_scale > 0.0, written, || {
+            format!("model.inertia_scale is {inertia_scale}; give a positive factor, 1 for no error")
+        })?;
+    }
+    let reference = check.reference(&raw.reference, sample_rate.min(control_rate))?;
+    let kp = check.not_negative("controller.kp", raw.controller.kp.as_ref(), KP)?;
+    let kd = check.not_negative("controller.kd", raw.controller.kd.as_ref(), KD)?;
+    let feedback = match raw.controller.feedback.as_ref().map(|f| (f, f.get_ref().as_str())) {
+        None | Some((_, "mass-matrix")) => Feedback::MassMatrix { kp, kd },
+        Some((_, "gains")) => Feedback::Gains { kp, kd },
+        Some((written, other)) => bail!(
+            "{}: controller.feedback is \"{other}\"; known: \"mass-matrix\" (kp in 1/s², kd in 1/s) and \"gains\" \
+             (kp in N m/rad, kd in N m s/rad)",
+            source.place(written.span())
+        ),
+    };
+    let rotor_inertia = check.not_negative("plant.rotor_inertia", raw.plant.rotor_inertia.as_ref(), 0.0)?;
+    let viscous_friction = check.not_negative("plant.viscous_friction", raw.plant.viscous_friction.as_ref(), 0.0)?;
+    let coulomb_friction = check.not_negative("plant.coulomb_friction", raw.plant.coulomb_friction.as_ref(), 0.0)?;
+    let sensor_noise = SensorNoise {
+        position: check.not_negative("sensors.position_noise", raw.sensors.position_noise.as_ref(), 0.0)?,
+        velocity: check.not_negative("sensors.velocity_noise", raw.sensors.velocity_noise.as_ref(), 0.0)?,
+        torque: check.not_negative("sensors.torque_noise", raw.sensors.torque_noise.as_ref(), 0.0)?,
+    };
+    Ok(Scenario {
+        name: source.name.clone(),
+        title: raw.title.unwrap_or_else(|| source.name.clone()),
+        arm: arm.with_rotor_inertias(&rotor_inertia),
+        urdf,
+        duration,
+        inertia_scale,
+        reference,
+        sample_rate,
+        control_rate,
+        feedback,
+        training: raw.training.scenarios,
+        viscous_friction,
+        coulomb_friction,
+        sensor_noise,
+    })
+}
+
+struct Check<'a> {
+    source: &'a Source,
+    arm: &'a Arm,
+}
+
+impl Check<'_> {
+    fn ensure<T>(&self, holds: bool, written: &Spanned<T>, reason: impl FnOnce() -> String) -> anyhow::Result<()> {
+        ensure!(holds, "{}: {}", self.source.place(written.span()), reason());
+        Ok(())
+    }
+
+    fn number(&self, key: &str, written: Option<&Spanned<f64>>, default: f64) -> anyhow::Result<f64> {
+        let Some(written) = written else { return Ok(default) };
+        let value = *written.get_ref();
+        self.ensure(value.is_finite(), written, || {
+            format!("{key} is {value}; give a finite number")
+        })?;
+        Ok(value)
+    }
+
+    fn rate(&self, key: &str, written: Option<&Spanned<f64>>, default: f64) -> anyhow::Result<f64> {
+        let Some(written) = written else { return Ok(default) };
+        let value = self.number(key, Some(written), default)?;
+        self.ensure((1.0..=100_000.0).contains(&value), written, || {
+            format!("{key} is {value} Hz; give 1 to 100000")
+        })?;
+        Ok(value)
+    }
+
+    /// One finite value a joint.
+    fn joints(&self, key: &str, written: Option<&Spanned<PerJoint>>, default: f64) -> anyhow::Result<Vec<f64>> {
+        let dof = self.arm.dof();
+        let Some(written) = written else {
+            return Ok(vec![default; dof]);
+        };
+        let values = match written.get_ref() {
+            PerJoint::All(value) => vec![*value; dof],
+            PerJoint::Each(values) => values.clone(),
+        };
+        self.ensure(values.len() == dof, written, || {
+            let names: Vec<&str> = self.arm.joints().iter().map(|joint| joint.name.as_str()).collect();
+            format!(
+                "{key} has {} values, but robot \"{}\" has {dof} joints ({}); give one value a joint, or one for all",
+                values.len(),
+                self.arm.name(),
+                names.join(", ")
+            )
+        })?;
+        if let Some(joint) = values.iter().position(|value| !value.is_finite()) {
+            let name = &self.arm.joints()[joint].name;
+            bail!(
+                "{}: {key} of \"{name}\" is {}; give a finite number",
+                self.source.place(written.span()),
+                values[joint]
+            );
+        }
+        Ok(values)
+    }
+
+    fn not_negative(&self, key: &str, written: Option<&Spanned<PerJoint>>, default: f64) -> anyhow::Result<Vec<f64>> {
+        let values = self.joints(key, written, default)?;
+        match (values.iter().position(|value| *value < 0.0), written) {
+            (Some(joint), Some(written)) => bail!(
+                "{}: {key} of \"{}\" is {}; it must not be negative",
+                self.source.place(written.span()),
+                self.arm.joints()[joint].name,
+                values[joint]
+            ),
+            _ => Ok(values),
+        }
+    }
+
+    /// Frequencies from 0 to below half of `rate` (Hz).
+    fn frequencies(&self, key: &str, written: &Spanned<PerJoint>, rate: f64) -> anyhow::Result<Vec<f64>> {
+        let values = self.not_negative(key, Some(written), 0.0)?;
+        if let Some(joint) = values.iter().position(|value| *value >= rate / 2.0) {
+            bail!(
+                "{}: {key} of \"{}\" is {} Hz, beyond the Nyquist frequency {} Hz of the slower of controller.rate and \
+                 reference.sample_rate; lower it, or raise the rate",
+                self.source.place(written.span()),
+                self.arm.joints()[joint].name,
+                values[joint],
+                rate / 2.0
+            );
+        }
+        Ok(values)
+    }
+
+    fn reference(&self, table: &Spanned<RawReference>, rate: f64) -> anyhow::Result<Reference> {
+        let raw = table.get_ref();
+        let here = || self.source.place(table.span());
+        let centre = self.joints("reference.centre", raw.centre.as_ref(), 0.0)?;
+        let mut sines = Vec::new();
+        let paper = [&raw.amplitude, &raw.frequency_1, &raw.frequency_2];
+        match paper {
+            [Some(amplitude), Some(frequency_1), Some(frequency_2)] => {
+                let amplitude = self.joints("reference.amplitude", Some(amplitude), 0.0)?;
+                let third = amplitude.iter().map(|a| a / 3.0).collect();
+                for (key, frequency, amplitude) in [
+                    ("frequency_1", frequency_1, amplitude),
+                    ("frequency_2", frequency_2, third),
+                ] {
+                    sines.push(Sine {
+                        amplitude,
+                        frequency: self.frequencies(&format!("reference.{key}"), frequency, rate)?,
+                        phase: vec![0.0; self.arm.dof()],
+                    });
+                }
+            }
+            [None, None, None] => {}
+            _ => bail!(
+                "{}: amplitude, frequency_1 and frequency_2 go together (equation 20 of the paper); give all three, or \
+                 [[reference.sines]] with amplitude, frequency and phase",
+                here()
+            ),
+        }
+        for sine in &raw.sines {
+            sines.push(Sine {
+                amplitude: self.joints("reference.sines.amplitude", Some(&sine.amplitude), 0.0)?,
+                frequency: self.frequencies("reference.sines.frequency", &sine.frequency, rate)?,
+                phase: self.joints("reference.sines.phase", sine.phase.as_ref(), 0.0)?,
+            });
+        }
+        if sines.is_empty() {
+            return Err(anyhow!(
+                "{}: no motion; give amplitude, frequency_1 and frequency_2, or [[reference.sines]]",
+                here()
+            ));
+        }
+        Ok(Reference { centre, sines })
+    }
+}

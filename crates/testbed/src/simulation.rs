@@ -1,0 +1,258 @@
+//! The closed loop: a controller drives the plant along the reference.
+
+use std::time::{Duration, Instant};
+
+use anyhow::Context;
+use arm::Arm;
+use plant::{Plant, PlantOptions};
+use recording::Recording;
+use torque::{Command, Controller, TorqueModel};
+
+use crate::models::ModelKind;
+use crate::reference::Motion;
+use crate::scenario::Scenario;
+use crate::sensors::Sensors;
+use crate::telemetry::Sample;
+
+/// The learned torque's variance is dear: it is evaluated at this rate (Hz), outside the control step.
+const VARIANCE_RATE: f64 = 50.0;
+
+/// The sensors' noise in the loop and in the training samples, apart.
+const LOOP_STREAM: u64 = 1;
+
+/// What watches a run.
+pub trait Observer {
+    /// Whether it wants the learned torque's variance.
+    fn wants_variance(&self) -> bool {
+        false
+    }
+
+    /// One control step has been computed.
+    fn sample(&mut self, sample: &Sample<'_>);
+}
+
+/// What came of a run.
+pub struct Outcome {
+    /// Everything measured and commanded, at the control rate.
+    pub recording: Recording,
+    /// Root mean square of the tracking error, one a joint (rad or m).
+    pub rms_error: Vec<f64>,
+    /// Largest tracking error, one a joint (rad or m).
+    pub max_error: Vec<f64>,
+    /// Share of the steps in which the effort limit cut the torque, one a joint.
+    pub saturated: Vec<f64>,
+    /// Simulated time over the time it took.
+    pub real_time_factor: f64,
+    /// Median time of a control step (µs).
+    pub control_step_median: f64,
+    /// 99th percentile of the time of a control step (µs).
+    pub control_step_p99: f64,
+}
+
+/// Runs `scenario` under `model` from its start on the reference to its end.
+///
+/// Feedback acts on the state at the start of each control interval. The torque is held over the
+/// interval, so the feed-forward is that of its middle: a held torque then errs by second order in
+/// the interval only.
+///
+/// # Errors
+/// If the controller does not fit the arm, or the motion diverges.
+pub fn run(
+    scenario: &Scenario,
+    kind: ModelKind,
+    model: &dyn TorqueModel,
+    seed: u64,
+    observers: &mut [&mut dyn Observer],
+) -> anyhow::Result<Outcome> {
+    let arm = &scenario.arm;
+    let dof = arm.dof();
+    let step = 1.0 / scenario.control_rate;
+    let steps = (scenario.duration * scenario.control_rate).round() as usize;
+    let options = PlantOptions {
+        step,
+        viscous: scenario.viscous_friction.clone(),
+        coulomb: scenario.coulomb_friction.clone(),
+        ..PlantOptions::default()
+    };
+    let mut plant = Plant::new(arm, &options).context("the plant cannot be built")?;
+    let controller_arm = kind.controller_arm(arm, &scenario.nominal_arm());
+    let mut controller = Controller::new(model, controller_arm, scenario.feedback.clone())?;
+
+    let (mut here, mut middle) = (Motion::new(dof), Motion::new(dof));
+    scenario.reference.at(0.0, &mut here);
+    plant.set_state(&here.q, &here.qd)?;
+    let mut command = Command::new(dof);
+    let (mut error, mut error_rate) = (vec![0.0; dof], vec![0.0; dof]);
+    let mut measured = Motion::new(dof);
+    let mut measured_torque = vec![0.0; dof];
+    let mut sensors = Sensors::new(&scenario.sensor_noise, seed, LOOP_STREAM);
+    let mut log = Log::new(arm, steps);
+    let variance_every = (scenario.control_rate / VARIANCE_RATE).round().max(1.0) as usize;
+    let wants_variance = observers.iter().any(|observer| observer.wants_variance());
+
+    let started = Instant::now();
+    for k in 0..steps {
+        let time = k as f64 * step;
+        sensors.state(plant.q(), plant.qd(), &mut measured.q, &mut measured.qd);
+        let control_started = Instant::now();
+        scenario.reference.at(time, &mut here);
+        scenario.reference.at(time + 0.5 * step, &mut middle);
+        controller.feed_forward(&middle.q, &middle.qd, &middle.qdd, &mut command);
+        for joint in 0..dof {
+            error[joint] = here.q[joint] - measured.q[joint];
+            error_rate[joint] = here.qd[joint] - measured.qd[joint];
+        }
+        controller.feed_back(&measured.q, &error, &error_rate, &mut command);
+        let control_time = control_started.elapsed();
+
+        plant.accelerations(&command.torque, &mut measured.qdd)?;
+        sensors.torque(&command.torque, &mut measured_torque);
+        log.push(&Step {
+            time,
+            q: plant.q(),
+            measured: &measured,
+            measured_torque: &measured_torque,
+            reference: &here,
+            command: &command,
+            control_time,
+        });
+        let variance = if wants_variance && k % variance_every == 0 {
+            controller.variance(&middle.q, &middle.qd, &middle.qdd)
+        } else {
+            None
+        };
+        let sample = Sample {
+            time,
+            q: plant.q(),
+            q_ref: &here.q,
+            tau_rigid: &command.feedforward.rigid,
+            tau_learned: &command.feedforward.learned,
+            tau_feedback: &command.feedback,
+            tau_applied: &command.torque,
+            variance,
+        };
+        for observer in &mut *observers {
+            observer.sample(&sample);
+        }
+        plant.step(&command.torque).with_context(|| {
+            format!(
+                "the loop is unstable under the model \"{}\"; lower the gains or raise controller.rate",
+                kind.flag()
+            )
+        })?;
+    }
+    let wall = started.elapsed();
+    Ok(log.outcome(scenario.duration / wall.as_secs_f64()))
+}
+
+/// One control step, for the log.
+struct Step<'a> {
+    time: f64,
+    /// The true positions.
+    q: &'a [f64],
+    measured: &'a Motion,
+    measured_torque: &'a [f64],
+    reference: &'a Motion,
+    command: &'a Command,
+    control_time: Duration,
+}
+
+/// What a run has produced so far.
+struct Log {
+    recording: Recording,
+    /// The true positions, which the sensors may not tell.
+    actual: Vec<Vec<f64>>,
+    /// Columns of the reference and of the torque's parts, joint by joint.
+    reference: Vec<Vec<f64>>,
+    rigid: Vec<Vec<f64>>,
+    learned: Vec<Vec<f64>>,
+    feedback: Vec<Vec<f64>>,
+    saturated: Vec<usize>,
+    control_times: Vec<Duration>,
+}
+
+impl Log {
+    fn new(arm: &Arm, steps: usize) -> Self {
+        let signal = || vec![Vec::with_capacity(steps); arm.dof()];
+        Self {
+            recording: Recording {
+                joints: arm.joints().iter().map(|joint| joint.name.clone()).collect(),
+                time: Vec::with_capacity(steps),
+                q: signal(),
+                qd: Some(signal()),
+                qdd: Some(signal()),
+                tau: signal(),
+                others: Vec::new(),
+            },
+            actual: signal(),
+            reference: signal(),
+            rigid: signal(),
+            learned: signal(),
+            feedback: signal(),
+            saturated: vec![0; arm.dof()],
+            control_times: Vec::with_capacity(steps),
+        }
+    }
+
+    fn push(&mut self, step: &Step<'_>) {
+        let append = |signal: &mut Vec<Vec<f64>>, values: &[f64]| {
+            for (column, value) in signal.iter_mut().zip(values) {
+                column.push(*value);
+            }
+        };
+        self.recording.time.push(step.time);
+        append(&mut self.recording.q, &step.measured.q);
+        append(self.recording.qd.get_or_insert_default(), &step.measured.qd);
+        append(self.recording.qdd.get_or_insert_default(), &step.measured.qdd);
+        append(&mut self.recording.tau, step.measured_torque);
+        append(&mut self.actual, step.q);
+        append(&mut self.reference, &step.reference.q);
+        append(&mut self.rigid, &step.command.feedforward.rigid);
+        append(&mut self.learned, &step.command.feedforward.learned);
+        append(&mut self.feedback, &step.command.feedback);
+        for (count, cut) in self.saturated.iter_mut().zip(&step.command.saturated) {
+            *count += usize::from(*cut);
+        }
+        self.control_times.push(step.control_time);
+    }
+
+    fn outcome(self, real_time_factor: f64) -> Outcome {
+        let mut recording = self.recording;
+        let steps = recording.time.len() as f64;
+        let errors: Vec<Vec<f64>> = self
+            .reference
+            .iter()
+            .zip(&self.actual)
+            .map(|(reference, q)| reference.iter().zip(q).map(|(r, q)| r - q).collect())
+            .collect();
+        let rms = |error: &Vec<f64>| (error.iter().map(|e| e * e).sum::<f64>() / steps).sqrt();
+        let max = |error: &Vec<f64>| error.iter().fold(0.0, |m: f64, e| m.max(e.abs()));
+        let (rms_error, max_error) = (errors.iter().map(rms).collect(), errors.iter().map(max).collect());
+        let parts = [
+            ("reference", self.reference),
+            ("tau_rigid", self.rigid),
+            ("tau_learned", self.learned),
+            ("tau_feedback", self.feedback),
+        ];
+        for (name, signal) in parts {
+            for (joint, values) in recording.joints.iter().zip(signal) {
+                recording.others.push((format!("{name}_{joint}"), values));
+            }
+        }
+        let mut times = self.control_times;
+        times.sort_unstable();
+        let percentile = |share: f64| {
+            let index = (share * (times.len().saturating_sub(1)) as f64).round() as usize;
+            times.get(index).map_or(0.0, |time| time.as_secs_f64() * 1e6)
+        };
+        Outcome {
+            rms_error,
+            max_error,
+            saturated: self.saturated.iter().map(|count| *count as f64 / steps).collect(),
+            real_time_factor,
+            control_step_median: percentile(0.5),
+            control_step_p99: percentile(0.99),
+            recording,
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! `testbed tables`: the paper's tables I and II and its figure 4, ours beside theirs.
+
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::Context;
+use rayon::prelude::*;
+use serde::Serialize;
+use torque::{Samples, TorqueModel, TrainingOptions};
+
+use crate::models::ModelKind;
+use crate::output::{self, Tracking};
+use crate::scenario::Scenario;
+use crate::{paper, simulation, training};
+
+/// The training tasks of tables I and II.
+const TRAINING: [&[&str]; 2] = [&["taskA"], &["taskA", "taskB", "taskC"]];
+
+/// The rows of a table, in the paper's order, and ours.
+const ROWS: [ModelKind; 5] = [
+    ModelKind::Gp,
+    ModelKind::RigidBody,
+    ModelKind::Hybrid,
+    ModelKind::IndependentJoint,
+    ModelKind::IndependentJoint13,
+];
+
+/// All that the command finds.
+#[derive(Serialize)]
+struct Report {
+    tables: Vec<Table>,
+    tracking: Vec<Tracking>,
+}
+
+/// Torque errors of every model after one training set.
+#[derive(Serialize)]
+struct Table {
+    train: Vec<String>,
+    test: String,
+    rows: Vec<Row>,
+}
+
+/// Torque errors of one model.
+#[derive(Serialize)]
+struct Row {
+    model: ModelKind,
+    /// (N m)², one a joint.
+    mse: Vec<f64>,
+    mean: f64,
+    paper: Option<[f64; 6]>,
+}
+
+/// Computes the tables, prints them, and writes them to `json` if it is given.
+///
+/// # Errors
+/// If the file cannot be written; training and simulating the paper's tasks do not fail.
+pub fn run(json: Option<&Path>, options: &TrainingOptions) -> anyhow::Result<()> {
+    if let Some(path) = json {
+        output::check_writable(path)?;
+    }
+    let started = Instant::now();
+    let progress = output::spinner("training 2 × 4 models of 6 joints");
+    let test = Scenario::load("taskD")?;
+    let nominal = test.nominal_arm();
+    let test_samples = training::own_samples(&test)?;
+    let mut training_samples = Vec::new();
+    for tasks in TRAINING {
+        let names: Vec<String> = tasks.iter().map(|task| (*task).to_owned()).collect();
+        training_samples.push(training::training_samples(&test, &names, 0)?);
+    }
+    // The dearest first, so that the last thread does not wait for one of them.
+    let jobs: Vec<(usize, ModelKind)> = (0..TRAINING.len())
+        .rev()
+        .flat_map(|set| ROWS.map(|model| (set, model)))
+        .collect();
+    let train = |&(set, model): &(usize, ModelKind)| {
+        let samples: &Samples = &training_samples[set];
+        let built = model.build(&test.arm, &nominal, samples, options);
+        built.with_context(|| format!("training \"{}\" on {}", model.flag(), TRAINING[set].join(", ")))
+    };
+    let models: Vec<Box<dyn TorqueModel>> = jobs.par_iter().map(train).collect::<anyhow::Result<_>>()?;
+    let model_of = |set: usize, model: ModelKind| {
+        let index = jobs.iter().position(|job| *job == (set, model));
+        index.map(|index| models[index].as_ref())
+    };
+
+    progress.set_message("predicting task D");
+    let mut tables = Vec::new();
+    for (set, tasks) in TRAINING.iter().enumerate() {
+        let row = |&kind: &ModelKind| {
+            let mse = model_of(set, kind)?.mean_squared_error(&test_samples);
+            let mean = mse.iter().sum::<f64>() / mse.len() as f64;
+            Some(Row {
+                model: kind,
+                mse,
+                mean,
+                paper: paper::row(set + 1, kind),
+            })
+        };
+        tables.push(Table {
+            train: tasks.iter().map(|task| short(task)).collect(),
+            test: short(&test.name),
+            rows: ROWS.par_iter().filter_map(row).collect(),
+        });
+    }
+
+    progress.set_message("tracking task D with six models");
+    let exact = ModelKind::True.build(&test.arm, &nominal, &test_samples, options)?;
+    let track = |&kind: &ModelKind| -> anyhow::Result<Tracking> {
+        let model = model_of(TRAINING.len() - 1, kind).unwrap_or(exact.as_ref());
+        let outcome = simulation::run(&test, kind, model, 0, &mut [])?;
+        Ok(Tracking::new(kind, &outcome))
+    };
+    let tracking = ModelKind::ALL.par_iter().map(track).collect::<anyhow::Result<_>>()?;
+    progress.finish_and_clear();
+
+    let report = Report { tables, tracking };
+    print(&report);
+    if let Some(path) = json {
+        output::write_json(path, &report)?;
+        println!("\nwritten to {}", path.display());
+    }
+    eprintln!("done in {:.1} s", started.elapsed().as_secs_f64());
+    Ok(())
+}
+
+fn short(task: &str) -> String {
+    task.trim_start_matches("task").to_owned()
+}
+
+fn print(report: &Report) {
+    for (table, number) in report.tables.iter().zip(["I", "II"]) {
+        println!(
+            "Table {number}: mean squared torque error on task {} after training on {}, (N m)²",
+            table.test,
+            table.train.join(", ")
+        );
+        let joints = (1..=6).map(|joint| format!("joint {joint}"));
+        let header: Vec<String> = ["model".to_owned(), String::new()].into_iter().chain(joints).collect();
+        let mut printed = output::table(header.into_iter().chain(["mean".to_owned()]));
+        for row in &table.rows {
+            let numbers = |values: &[f64], mean: f64| -> Vec<String> {
+                values
+                    .iter()
+                    .chain([&mean])
+                    .map(|value| output::number(*value))
+                    .collect()
+            };
+            let mut cells = vec![row.model.title().to_owned(), "ours".to_owned()];
+            cells.extend(numbers(&row.mse, row.mean));
+            printed.add_row(cells);
+            if let Some(paper) = row.paper {
+                let mut cells = vec![String::new(), "paper".to_owned()];
+                cells.extend(numbers(&paper, paper.iter().sum::<f64>() / 6.0));
+                printed.add_row(cells);
+            }
+        }
+        println!("{printed}\n");
+    }
+    println!("Figure 4: tracking error on task D in the closed loop after training on A, B, C, RMS (max), mrad");
+    let joints = (1..=6).map(|joint| format!("joint {joint}"));
+    let mut printed = output::table(
+        ["model".to_owned()]
+            .into_iter()
+            .chain(joints)
+            .chain(["mean of 1 to 3".to_owned()]),
+    );
+    for row in &report.tracking {
+        let errors = row.rms_error_rad.iter().zip(&row.max_error_rad);
+        let mut cells = vec![row.model.title().to_owned()];
+        cells.extend(errors.map(|(rms, max)| format!("{} ({})", output::number(rms * 1e3), output::number(max * 1e3))));
+        cells.push(output::number(row.rms_error_rad[..3].iter().sum::<f64>() / 3.0 * 1e3));
+        printed.add_row(cells);
+    }
+    println!("{printed}");
+}

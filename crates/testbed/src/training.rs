@@ -1,0 +1,170 @@
+//! Samples to train and to test torque models on: of a scenario's reference, or of a recording.
+
+use std::path::Path;
+
+use anyhow::{Context, ensure};
+use arm::Arm;
+use recording::Recording;
+use torque::Samples;
+
+use crate::reference::{Motion, Reference};
+use crate::scenario::Scenario;
+use crate::sensors::Sensors;
+
+/// The sensors' noise in the training samples, apart from that in the loop.
+const TRAINING_STREAM: u64 = 2;
+
+/// The torque (N m or N) that the plant of `scenario` needs for a motion: rigid-body dynamics, drives and friction.
+pub struct TrueTorque<'a> {
+    arm: &'a Arm,
+    viscous: &'a [f64],
+    coulomb: &'a [f64],
+    workspace: arm::Workspace,
+}
+
+impl<'a> TrueTorque<'a> {
+    /// The true torques of `scenario`'s plant.
+    pub fn new(scenario: &'a Scenario) -> Self {
+        Self {
+            arm: &scenario.arm,
+            viscous: &scenario.viscous_friction,
+            coulomb: &scenario.coulomb_friction,
+            workspace: arm::Workspace::new(&scenario.arm),
+        }
+    }
+
+    /// The torques for `motion`, into `tau`. At standstill Coulomb friction counts as none.
+    pub fn of(&mut self, motion: &Motion, tau: &mut [f64]) {
+        self.arm
+            .inverse_dynamics(&mut self.workspace, &motion.q, &motion.qd, &motion.qdd, tau);
+        for (joint, tau) in tau.iter_mut().enumerate() {
+            let speed = motion.qd[joint];
+            let direction = if speed == 0.0 { 0.0 } else { speed.signum() };
+            *tau += self.viscous[joint] * speed + self.coulomb[joint] * direction;
+        }
+    }
+}
+
+/// Samples of `reference` at `times` (s), with the torques that `plant`'s plant needs for it, as
+/// `sensors` report them: the paper's data.
+///
+/// # Errors
+/// If the reference is of another arm.
+pub fn reference_samples(
+    plant: &Scenario,
+    reference: &Reference,
+    times: impl Iterator<Item = f64>,
+    mut sensors: Option<&mut Sensors<'_>>,
+    samples: &mut Samples,
+) -> anyhow::Result<()> {
+    let dof = plant.arm.dof();
+    let mut motion = Motion::new(reference.centre.len());
+    let mut tau = vec![0.0; dof];
+    let mut measured = vec![0.0; dof];
+    let mut torque = TrueTorque::new(plant);
+    ensure!(
+        reference.centre.len() == dof,
+        "the reference is for {} joints, the robot \"{}\" has {dof}",
+        reference.centre.len(),
+        plant.arm.name()
+    );
+    for time in times {
+        reference.at(time, &mut motion);
+        torque.of(&motion, &mut tau);
+        match &mut sensors {
+            Some(sensors) => sensors.torque(&tau, &mut measured),
+            None => measured.copy_from_slice(&tau),
+        }
+        samples.push(torque::Sample {
+            q: &motion.q,
+            qd: &motion.qd,
+            qdd: &motion.qdd,
+            tau: &measured,
+        })?;
+    }
+    Ok(())
+}
+
+/// The samples of the reference of `scenario` itself.
+///
+/// # Errors
+/// If its reference does not fit its arm.
+pub fn own_samples(scenario: &Scenario) -> anyhow::Result<Samples> {
+    let mut samples = Samples::new(scenario.arm.dof());
+    reference_samples(
+        scenario,
+        &scenario.reference,
+        scenario.sample_times(),
+        None,
+        &mut samples,
+    )?;
+    Ok(samples)
+}
+
+/// The samples of all `sources`: scenarios by name or file, whose references are sampled on the plant
+/// of `scenario`, and recordings (`.csv`) with accelerations, thinned to the scenario's sample rate.
+///
+/// # Errors
+/// If a source cannot be read or is of another robot.
+pub fn training_samples(scenario: &Scenario, sources: &[String], seed: u64) -> anyhow::Result<Samples> {
+    let mut samples = Samples::new(scenario.arm.dof());
+    let mut sensors = Sensors::new(&scenario.sensor_noise, seed, TRAINING_STREAM);
+    for source in sources {
+        let of_source = || format!("training on {source}");
+        if Path::new(source)
+            .extension()
+            .is_some_and(|extension| extension == "csv")
+        {
+            let recording = Recording::read_csv(Path::new(source)).with_context(of_source)?;
+            recording_samples(scenario, &recording, &mut samples).with_context(of_source)?;
+        } else {
+            let task = Scenario::load(source).with_context(of_source)?;
+            reference_samples(
+                scenario,
+                &task.reference,
+                task.sample_times(),
+                Some(&mut sensors),
+                &mut samples,
+            )
+            .with_context(of_source)?;
+        }
+    }
+    Ok(samples)
+}
+
+fn recording_samples(scenario: &Scenario, recording: &Recording, samples: &mut Samples) -> anyhow::Result<()> {
+    let joints = scenario.arm.joints();
+    let column = |name: &str| recording.joints.iter().position(|joint| joint == name);
+    let mut order = Vec::new();
+    for joint in joints {
+        let index = column(&joint.name).with_context(|| {
+            format!(
+                "it has no column \"q_{}\"; the robot's joints are named in its URDF",
+                joint.name
+            )
+        })?;
+        order.push(index);
+    }
+    let (Some(qd), Some(qdd)) = (&recording.qd, &recording.qdd) else {
+        anyhow::bail!(
+            "it lacks qd_<joint> (rad/s) or qdd_<joint> (rad/s²) columns, which training needs; \
+             a run's recording.csv has them"
+        );
+    };
+    let mut next = f64::NEG_INFINITY;
+    for (k, &time) in recording.time.iter().enumerate() {
+        // Half a microsecond forgives the rounding of stamps.
+        if time < next - 5e-7 {
+            continue;
+        }
+        next = if next.is_finite() { next } else { time } + 1.0 / scenario.sample_rate;
+        let pick = |signal: &recording::Signal| order.iter().map(|&joint| signal[joint][k]).collect::<Vec<f64>>();
+        samples.push(torque::Sample {
+            q: &pick(&recording.q),
+            qd: &pick(qd),
+            qdd: &pick(qdd),
+            tau: &pick(&recording.tau),
+        })?;
+    }
+    Ok(())
+}

@@ -1,0 +1,56 @@
+//! The mesh files that a URDF names, where they exist in a format Rerun reads.
+
+use std::path::{Path, PathBuf};
+
+/// The formats of [`rerun::Asset3D`].
+const FORMATS: [&str; 5] = ["glb", "gltf", "obj", "stl", "dae"];
+
+/// The file behind a URDF's mesh `name`, if it is there and Rerun can show it.
+///
+/// `package://<package>/<rest>` is `<package>/<rest>` in the URDF's folder or one above it, or `<rest>` in one
+/// of that name; `file://<path>` and plain paths are taken from the URDF's folder.
+pub fn resolve(name: &str, urdf_path: &Path) -> Option<PathBuf> {
+    let is_shown = Path::new(name)
+        .extension()
+        .is_some_and(|extension| FORMATS.iter().any(|format| extension.eq_ignore_ascii_case(format)));
+    if !is_shown {
+        return None;
+    }
+    let urdf_path = std::path::absolute(urdf_path).ok()?;
+    let folder = urdf_path.parent()?;
+    let existing = |path: PathBuf| path.is_file().then_some(path);
+    let Some(in_package) = name.strip_prefix("package://") else {
+        return existing(folder.join(name.strip_prefix("file://").unwrap_or(name)));
+    };
+    folder.ancestors().find_map(|ancestor| {
+        let (package, rest) = in_package.split_once('/')?;
+        let is_package = ancestor.file_name().is_some_and(|name| name == package);
+        existing(ancestor.join(in_package)).or_else(|| existing(ancestor.join(rest)).filter(|_| is_package))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn meshes_are_found_as_ros_lays_them_out() {
+        let root = tempfile::tempdir().expect("a folder");
+        let package = root.path().join("my_arm");
+        let urdf = package.join("urdf/arm.urdf");
+        for folder in ["urdf", "meshes"] {
+            std::fs::create_dir_all(package.join(folder)).expect("a folder");
+        }
+        let mesh = package.join("meshes/base.STL");
+        std::fs::write(&mesh, "solid").expect("a file");
+
+        assert_eq!(resolve("package://my_arm/meshes/base.STL", &urdf), Some(mesh.clone()));
+        assert_eq!(resolve("package://another/meshes/base.STL", &urdf), None);
+        assert_eq!(
+            resolve("../meshes/base.STL", &urdf),
+            Some(package.join("urdf/../meshes/base.STL"))
+        );
+        assert_eq!(resolve(&format!("file://{}", mesh.display()), &urdf), Some(mesh));
+        assert_eq!(resolve("package://my_arm/meshes/base.step", &urdf), None);
+    }
+}

@@ -1,0 +1,151 @@
+//! The computed-torque controller: feed-forward by a torque model, feedback by gains.
+
+use arm::{Arm, DMatrix};
+
+use crate::error::TorqueError;
+use crate::model::{Prediction, TorqueModel, Workspace};
+
+/// How the position and velocity errors become torque; one gain a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Feedback {
+    /// τ = M(q) (K_p e + K_d ė) with the controller's own mass matrix; K_p in 1/s², K_d in 1/s.
+    MassMatrix {
+        /// Position gains (1/s²).
+        kp: Vec<f64>,
+        /// Velocity gains (1/s).
+        kd: Vec<f64>,
+    },
+    /// τ = K_p e + K_d ė; K_p in N m/rad (or N/m), K_d in N m s/rad (or N s/m).
+    Gains {
+        /// Position gains (N m/rad or N/m).
+        kp: Vec<f64>,
+        /// Velocity gains (N m s/rad or N s/m).
+        kd: Vec<f64>,
+    },
+}
+
+/// The torques of one control step, one entry a joint (N m or N).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Command {
+    /// The model's feed-forward, in parts.
+    pub feedforward: Prediction,
+    /// The feedback.
+    pub feedback: Vec<f64>,
+    /// Their sum within the joints' effort limits.
+    pub torque: Vec<f64>,
+    /// Whether the limit cut the sum.
+    pub saturated: Vec<bool>,
+}
+
+impl Command {
+    /// No torque for `dof` joints.
+    pub fn new(dof: usize) -> Self {
+        Self {
+            feedforward: Prediction::new(dof),
+            feedback: vec![0.0; dof],
+            torque: vec![0.0; dof],
+            saturated: vec![false; dof],
+        }
+    }
+}
+
+/// Feed-forward of the reference motion by a torque model, plus proportional-derivative feedback.
+///
+/// τ = model(q_r, q̇_r, q̈_r) + feedback(q_r − q, q̇_r − q̇), cut at the effort limits: the computed-torque
+/// feed-forward scheme of An, Atkeson and Hollerbach 1988, chapter 5.
+pub struct Controller<'a> {
+    model: &'a dyn TorqueModel,
+    arm: Arm,
+    feedback: Feedback,
+    workspace: Workspace,
+    arm_workspace: arm::Workspace,
+    mass_matrix: DMatrix<f64>,
+}
+
+impl<'a> Controller<'a> {
+    /// A controller that feeds `model` forward; `arm` is the rigid-body model it takes the mass matrix
+    /// and the effort limits from.
+    ///
+    /// # Errors
+    /// [`TorqueError`] if the model is of another arm, or a gain is negative, not finite, or missing.
+    pub fn new(model: &'a dyn TorqueModel, arm: Arm, feedback: Feedback) -> Result<Self, TorqueError> {
+        let n = arm.dof();
+        let sized = |what: &str, found: usize| {
+            let what = what.to_owned();
+            (found == n).then_some(()).ok_or(TorqueError::Joints {
+                what,
+                found,
+                expected: n,
+            })
+        };
+        sized("torque model", model.dof())?;
+        let (Feedback::MassMatrix { kp, kd } | Feedback::Gains { kp, kd }) = &feedback;
+        for (what, gains) in [("kp", kp), ("kd", kd)] {
+            sized(what, gains.len())?;
+            if let Some(joint) = gains.iter().position(|gain| !(gain.is_finite() && *gain >= 0.0)) {
+                return Err(TorqueError::Gain {
+                    what,
+                    joint: joint + 1,
+                    value: gains[joint],
+                });
+            }
+        }
+        Ok(Self {
+            workspace: Workspace::new(n),
+            arm_workspace: arm::Workspace::new(&arm),
+            mass_matrix: DMatrix::zeros(n, n),
+            model,
+            arm,
+            feedback,
+        })
+    }
+
+    /// The feed-forward torques for the motion `q`, `qd`, `qdd` of the reference, into `command`.
+    ///
+    /// # Panics
+    /// If a slice is of another size than the arm.
+    pub fn feed_forward(&mut self, q: &[f64], qd: &[f64], qdd: &[f64], command: &mut Command) {
+        self.model
+            .predict(&mut self.workspace, q, qd, qdd, &mut command.feedforward);
+    }
+
+    /// The feedback torques at the measured `q` for the errors `error` (rad or m) and `error_rate`, and
+    /// the sum of all within the effort limits, into `command`.
+    ///
+    /// # Panics
+    /// If a slice is of another size than the arm.
+    pub fn feed_back(&mut self, q: &[f64], error: &[f64], error_rate: &[f64], command: &mut Command) {
+        let n = self.arm.dof();
+        match &self.feedback {
+            Feedback::Gains { kp, kd } => {
+                for i in 0..n {
+                    command.feedback[i] = kp[i] * error[i] + kd[i] * error_rate[i];
+                }
+            }
+            Feedback::MassMatrix { kp, kd } => {
+                self.arm.mass_matrix(&mut self.arm_workspace, q, &mut self.mass_matrix);
+                command.feedback.fill(0.0);
+                for j in 0..n {
+                    let acceleration = kp[j] * error[j] + kd[j] * error_rate[j];
+                    for i in 0..n {
+                        command.feedback[i] += self.mass_matrix[(i, j)] * acceleration;
+                    }
+                }
+            }
+        }
+        for (i, joint) in self.arm.joints().iter().enumerate() {
+            let wanted = command.feedforward.torque(i) + command.feedback[i];
+            let limit = joint.limits.effort;
+            command.torque[i] = wanted.clamp(-limit, limit);
+            command.saturated[i] = wanted.abs() > limit;
+        }
+    }
+
+    /// The variance of the model's learned part at a motion, as [`TorqueModel::variance`].
+    ///
+    /// # Panics
+    /// If a slice is of another size than the arm.
+    pub fn variance(&mut self, q: &[f64], qd: &[f64], qdd: &[f64]) -> Option<&[f64]> {
+        self.model.variance(&mut self.workspace, q, qd, qdd)
+    }
+}

@@ -1,0 +1,33 @@
+//! What a learned correction takes as its inputs.
+
+use crate::model::Workspace;
+
+/// The inputs of the regressions, one regression a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Inputs {
+    /// q, q̇ and q̈ of all joints, the same for every joint (the paper's "Lagrangian" form).
+    JointMotion,
+    /// ω_i, ω̇_i, τ_{i+1}, f_{i+1} of the rigid-body model: the paper's twelve (equation 19).
+    NewtonEuler12,
+    /// The twelve and the model's own torque τ_i (the paper's algorithms 1 to 3).
+    NewtonEuler13,
+}
+
+impl Inputs {
+    /// How many inputs the regression of one joint has, for an arm of `dof` joints.
+    pub fn dimension(self, dof: usize) -> usize {
+        match self {
+            Self::JointMotion => 3 * dof,
+            Self::NewtonEuler12 => 12,
+            Self::NewtonEuler13 => 13,
+        }
+    }
+
+    /// The inputs for `joint` of the motion whose features are in `workspace`.
+    pub(crate) fn of(self, joint: usize, workspace: &Workspace) -> &[f64] {
+        match self {
+            Self::JointMotion => &workspace.input,
+            Self::NewtonEuler12 | Self::NewtonEuler13 => &workspace.features[joint][..self.dimension(0)],
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! Torque models with a part learned by Gaussian-process regression: the paper's GPR only, RBD + GPR, and IJL.
+
+use arm::Arm;
+use gp::{FitOptions, Gp, LengthScales, TrainingSet};
+use rayon::prelude::*;
+
+use crate::error::TorqueError;
+use crate::inputs::Inputs;
+use crate::model::{Prediction, TorqueModel, Workspace};
+use crate::samples::Samples;
+
+/// How to train; the default is the paper's way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrainingOptions {
+    /// One length scale for all inputs (the paper's equation 4), or one an input.
+    pub lengths: LengthScales,
+}
+
+impl Default for TrainingOptions {
+    fn default() -> Self {
+        Self {
+            lengths: LengthScales::Isotropic,
+        }
+    }
+}
+
+/// A rigid-body model (or none) plus one regression a joint for what is left of the torque.
+#[derive(Clone, Debug)]
+pub struct Learned {
+    rigid_body: Option<Arm>,
+    inputs: Inputs,
+    regressions: Vec<Gp>,
+}
+
+impl Learned {
+    /// The paper's "GPR only": the whole torque from (q, q̇, q̈).
+    ///
+    /// # Errors
+    /// [`TorqueError`] if there are no samples or a regression fails.
+    pub fn gp_only(samples: &Samples, options: &TrainingOptions) -> Result<Self, TorqueError> {
+        Self::train(None, Inputs::JointMotion, samples, options)
+    }
+
+    /// What `arm` leaves of the torque, from `inputs`: the paper's "RBD + GPR" on
+    /// [`Inputs::JointMotion`], and Independent Joint Learning on the Newton-Euler inputs
+    /// (algorithm 2).
+    ///
+    /// # Errors
+    /// [`TorqueError`] if there are no samples, they are of another arm, or a regression fails.
+    pub fn on_top_of(
+        arm: &Arm,
+        inputs: Inputs,
+        samples: &Samples,
+        options: &TrainingOptions,
+    ) -> Result<Self, TorqueError> {
+        Self::train(Some(arm.clone()), inputs, samples, options)
+    }
+
+    fn train(
+        rigid_body: Option<Arm>,
+        inputs: Inputs,
+        samples: &Samples,
+        options: &TrainingOptions,
+    ) -> Result<Self, TorqueError> {
+        let dof = samples.dof();
+        if let Some(arm) = &rigid_body
+            && arm.dof() != dof
+        {
+            return Err(TorqueError::Joints {
+                what: "training samples".into(),
+                found: dof,
+                expected: arm.dof(),
+            });
+        }
+        if samples.is_empty() {
+            return Err(TorqueError::NoSamples);
+        }
+        let mut model = Self {
+            rigid_body,
+            inputs,
+            regressions: Vec::new(),
+        };
+        let mut workspace = Workspace::new(dof);
+        let dimension = inputs.dimension(dof);
+        let mut x = vec![Vec::with_capacity(samples.len() * dimension); dof];
+        let mut y = vec![Vec::with_capacity(samples.len()); dof];
+        for sample in samples.iter() {
+            model.evaluate_features(&mut workspace, sample.q, sample.qd, sample.qdd);
+            for joint in 0..dof {
+                x[joint].extend_from_slice(inputs.of(joint, &workspace));
+                y[joint].push(sample.tau[joint] - workspace.rigid[joint]);
+            }
+        }
+        let fit = FitOptions {
+            lengths: options.lengths,
+            ..FitOptions::default()
+        };
+        // Each regression is a computation of its own, so the result does not depend on the threads.
+        let fitted: Result<Vec<Gp>, TorqueError> = (0..dof)
+            .into_par_iter()
+            .map(|joint| {
+                let fitted = TrainingSet::new(dimension, &x[joint], &y[joint]).and_then(|set| Gp::fit(&set, &fit));
+                fitted.map_err(|source| TorqueError::Regression {
+                    joint: joint + 1,
+                    source,
+                })
+            })
+            .collect();
+        model.regressions = fitted?;
+        Ok(model)
+    }
+
+    /// The regressions, one a joint.
+    pub fn regressions(&self) -> &[Gp] {
+        &self.regressions
+    }
+
+    /// Leaves the rigid-body torque and what the regressions need in the workspace.
+    fn evaluate_features(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64]) {
+        let dof = q.len();
+        match &self.rigid_body {
+            None => workspace.rigid.fill(0.0),
+            Some(arm) => {
+                let scratch = workspace.arm.get_or_insert_with(|| arm::Workspace::new(arm));
+                match self.inputs {
+                    Inputs::JointMotion => arm.inverse_dynamics(scratch, q, qd, qdd, &mut workspace.rigid),
+                    Inputs::NewtonEuler12 | Inputs::NewtonEuler13 => {
+                        let (rigid, features) = (&mut workspace.rigid, &mut workspace.features);
+                        arm.newton_euler_features(scratch, q, qd, qdd, rigid, features);
+                    }
+                }
+            }
+        }
+        if self.inputs == Inputs::JointMotion {
+            workspace.input[..dof].copy_from_slice(q);
+            workspace.input[dof..2 * dof].copy_from_slice(qd);
+            workspace.input[2 * dof..3 * dof].copy_from_slice(qdd);
+        }
+    }
+}
+
+impl TorqueModel for Learned {
+    fn dof(&self) -> usize {
+        self.regressions.len()
+    }
+
+    fn predict(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64], prediction: &mut Prediction) {
+        self.evaluate_features(workspace, q, qd, qdd);
+        prediction.rigid.copy_from_slice(&workspace.rigid);
+        for (joint, gp) in self.regressions.iter().enumerate() {
+            prediction.learned[joint] = gp.mean(self.inputs.of(joint, workspace));
+        }
+    }
+
+    fn variance<'w>(&self, workspace: &'w mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64]) -> Option<&'w [f64]> {
+        self.evaluate_features(workspace, q, qd, qdd);
+        // Taken out so that the inputs can be read while the scratch is written.
+        let mut scratch = std::mem::take(&mut workspace.gp);
+        for (joint, gp) in self.regressions.iter().enumerate() {
+            let (_, variance) = gp.mean_and_variance(self.inputs.of(joint, workspace), &mut scratch);
+            workspace.variance[joint] = variance;
+        }
+        workspace.gp = scratch;
+        Some(&workspace.variance)
+    }
+}

@@ -1,0 +1,22 @@
+//! Torque models behind one trait, their training, and the computed-torque controller.
+//!
+//! A [`TorqueModel`] predicts the joint torques (N m or N) that a motion q, q̇, q̈ needs, in two parts:
+//! what rigid-body dynamics say and what was learned. There are the paper's four, the exact model as
+//! the reference, and room for more: the controller knows the trait alone.
+
+mod controller;
+mod error;
+mod inputs;
+mod learned;
+mod model;
+mod rigid_body;
+mod samples;
+
+pub use controller::{Command, Controller, Feedback};
+pub use error::TorqueError;
+pub use gp::LengthScales;
+pub use inputs::Inputs;
+pub use learned::{Learned, TrainingOptions};
+pub use model::{Prediction, TorqueModel, Workspace};
+pub use rigid_body::RigidBody;
+pub use samples::{Sample, Samples};

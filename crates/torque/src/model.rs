@@ -1,0 +1,93 @@
+//! The trait of all torque models.
+
+use arm::{Arm, NewtonEulerFeatures};
+
+use crate::samples::Samples;
+
+/// A model of the joint torques that a motion needs.
+pub trait TorqueModel: Send + Sync {
+    /// The number of joints.
+    fn dof(&self) -> usize;
+
+    /// The torques (N m or N) for the motion `q`, `qd`, `qdd`, in parts, without allocating.
+    ///
+    /// # Panics
+    /// If a slice or the workspace is of another size than the arm.
+    fn predict(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64], prediction: &mut Prediction);
+
+    /// The variance ((N m)² or N²) of the learned part for each joint, likewise; `None` from a model
+    /// without a learned part. Much dearer than [`Self::predict`].
+    ///
+    /// # Panics
+    /// If a slice or the workspace is of another size than the arm.
+    fn variance<'w>(&self, workspace: &'w mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64]) -> Option<&'w [f64]>;
+
+    /// The mean squared torque error on `samples` for each joint ((N m)² or N²), the paper's measure.
+    fn mean_squared_error(&self, samples: &Samples) -> Vec<f64> {
+        let mut workspace = Workspace::new(self.dof());
+        let mut prediction = Prediction::new(self.dof());
+        let mut sum = vec![0.0; self.dof()];
+        for sample in samples.iter() {
+            self.predict(&mut workspace, sample.q, sample.qd, sample.qdd, &mut prediction);
+            for (joint, sum) in sum.iter_mut().enumerate() {
+                let error = sample.tau[joint] - prediction.torque(joint);
+                *sum += error * error;
+            }
+        }
+        let n = samples.len() as f64;
+        sum.iter().map(|sum| sum / n).collect()
+    }
+}
+
+/// The torque of a model, one entry a joint (N m or N).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prediction {
+    /// What rigid-body dynamics say.
+    pub rigid: Vec<f64>,
+    /// What was learned on top.
+    pub learned: Vec<f64>,
+}
+
+impl Prediction {
+    /// Zero torque for `dof` joints.
+    pub fn new(dof: usize) -> Self {
+        Self {
+            rigid: vec![0.0; dof],
+            learned: vec![0.0; dof],
+        }
+    }
+
+    /// The whole torque of `joint`.
+    pub fn torque(&self, joint: usize) -> f64 {
+        self.rigid[joint] + self.learned[joint]
+    }
+}
+
+/// Scratch for any torque model of an arm; make it once, pass it to every call.
+#[derive(Clone, Debug)]
+pub struct Workspace {
+    pub(crate) arm: Option<arm::Workspace>,
+    pub(crate) features: Vec<NewtonEulerFeatures>,
+    pub(crate) input: Vec<f64>,
+    pub(crate) gp: gp::Workspace,
+    pub(crate) rigid: Vec<f64>,
+    pub(crate) variance: Vec<f64>,
+}
+
+impl Workspace {
+    /// Scratch for models of arms with `dof` joints. It grows to what the first call needs.
+    pub fn new(dof: usize) -> Self {
+        Self {
+            arm: None,
+            features: vec![[0.0; arm::FEATURES]; dof],
+            input: vec![0.0; arm::FEATURES.max(3 * dof)],
+            gp: gp::Workspace::default(),
+            rigid: vec![0.0; dof],
+            variance: vec![0.0; dof],
+        }
+    }
+
+    pub(crate) fn arm(&mut self, arm: &Arm) -> &mut arm::Workspace {
+        self.arm.get_or_insert_with(|| arm::Workspace::new(arm))
+    }
+}

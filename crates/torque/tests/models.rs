@@ -1,0 +1,173 @@
+//! The torque models and the controller: what each must be good at, and what they refuse.
+
+mod support;
+
+use arm::{Arm, DMatrix};
+use support::{motion, puma560, samples};
+use torque::{
+    Command, Controller, Feedback, Inputs, Learned, Prediction, RigidBody, Samples, TorqueError, TorqueModel,
+    TrainingOptions, Workspace,
+};
+
+fn nominal() -> Arm {
+    puma560().with_scaled_inertias(1.2)
+}
+
+fn learned(inputs: Inputs) -> Learned {
+    Learned::on_top_of(&nominal(), inputs, &samples(300, 0), &TrainingOptions::default()).expect("it trains")
+}
+
+/// The model error of the paper is one scalar: the scaled model's torque is 1.2 times the true one.
+#[test]
+fn scaled_inertias_scale_the_torque() {
+    let tests = samples(100, 1);
+    let wrong = RigidBody::new(nominal()).mean_squared_error(&tests);
+    let mut power = [0.0; 6];
+    for sample in tests.iter() {
+        for joint in 0..6 {
+            power[joint] += sample.tau[joint].powi(2) / 100.0;
+        }
+    }
+    for joint in 0..6 {
+        assert!((wrong[joint] / power[joint] - 0.04).abs() < 1e-9);
+    }
+    assert!(
+        RigidBody::new(puma560())
+            .mean_squared_error(&tests)
+            .iter()
+            .all(|error| *error == 0.0)
+    );
+}
+
+/// Every learned model explains what it was trained on. Fails if inputs and targets are mismatched.
+#[test]
+fn learned_models_explain_their_training() {
+    let train = samples(300, 0);
+    let wrong = RigidBody::new(nominal()).mean_squared_error(&train);
+    let gp_only = Learned::gp_only(&train, &TrainingOptions::default()).expect("it trains");
+    let models = [
+        gp_only,
+        learned(Inputs::JointMotion),
+        learned(Inputs::NewtonEuler12),
+        learned(Inputs::NewtonEuler13),
+    ];
+    for model in models {
+        let error = model.mean_squared_error(&train);
+        for joint in 0..3 {
+            assert!(
+                error[joint] < 1e-6 * wrong[joint],
+                "joint {joint}: {error:?} of {wrong:?}"
+            );
+        }
+    }
+}
+
+/// On another motion thirteen inputs transfer best, then twelve, then q, q̇, q̈: the paper's claim.
+#[test]
+fn newton_euler_inputs_transfer_to_another_task() {
+    let tests = samples(300, 1);
+    let error = |model: &dyn TorqueModel| model.mean_squared_error(&tests).iter().sum::<f64>();
+    let thirteen = error(&learned(Inputs::NewtonEuler13));
+    let twelve = error(&learned(Inputs::NewtonEuler12));
+    let joint_motion = error(&learned(Inputs::JointMotion));
+    let rigid = error(&RigidBody::new(nominal()));
+    assert!(
+        thirteen < twelve && twelve < joint_motion && joint_motion < rigid,
+        "{thirteen} {twelve} {joint_motion} {rigid}"
+    );
+}
+
+/// Variance grows away from the data, and only learned models have one.
+#[test]
+fn variance_tells_how_far_the_data_are() {
+    let model = learned(Inputs::NewtonEuler12);
+    let mut workspace = Workspace::new(6);
+    let mut at = |[q, qd, qdd]: [Vec<f64>; 3]| -> Vec<f64> {
+        model
+            .variance(&mut workspace, &q, &qd, &qdd)
+            .expect("it has one")
+            .to_vec()
+    };
+    let near = at(motion(1.0, 0));
+    let [q, qd, qdd] = motion(1.0, 0);
+    let far = at([
+        q,
+        qd.iter().map(|v| 20.0 * v).collect(),
+        qdd.iter().map(|a| 20.0 * a).collect(),
+    ]);
+    assert!(near.iter().all(|v| *v >= 0.0));
+    assert!((0..3).all(|joint| far[joint] > 100.0 * near[joint]), "{far:?} {near:?}");
+    let [q, qd, qdd] = motion(1.0, 0);
+    assert!(
+        RigidBody::new(puma560())
+            .variance(&mut Workspace::new(6), &q, &qd, &qdd)
+            .is_none()
+    );
+}
+
+#[test]
+fn what_does_not_fit_is_refused() {
+    let none = Learned::gp_only(&Samples::new(6), &TrainingOptions::default());
+    assert!(matches!(none, Err(TorqueError::NoSamples)));
+    let model = RigidBody::new(puma560());
+    let gains = |kp: Vec<f64>| Controller::new(&model, puma560(), Feedback::Gains { kp, kd: vec![1.0; 6] });
+    assert!(matches!(
+        gains(vec![1.0; 5]),
+        Err(TorqueError::Joints {
+            found: 5,
+            expected: 6,
+            ..
+        })
+    ));
+    let mut negative = vec![1.0; 6];
+    negative[3] = -1.0;
+    let message = gains(negative).err().expect("it is refused").to_string();
+    assert_eq!(message, "kp of joint 4 is -1; it must be finite and not negative");
+    assert!(gains(vec![f64::NAN; 6]).is_err());
+}
+
+/// The feedback is M(q)(K_p e + K_d ė), or the gains alone, and the sum is cut at the effort limits.
+#[test]
+fn the_controller_feeds_back_and_saturates() {
+    let arm = puma560();
+    let model = RigidBody::new(arm.clone());
+    let (kp, kd) = (vec![100.0; 6], vec![20.0; 6]);
+    let [q, qd, qdd] = motion(0.3, 0);
+    let error: Vec<f64> = (0..6).map(|i| 0.01 * (f64::from(i) - 2.0)).collect();
+    let rate: Vec<f64> = (0..6).map(|i| 0.02 * (f64::from(i) - 3.0)).collect();
+    let run = |feedback: Feedback, scale: f64| {
+        let mut controller = Controller::new(&model, arm.clone(), feedback).expect("it fits");
+        let mut command = Command::new(6);
+        controller.feed_forward(&q, &qd, &qdd, &mut command);
+        let scaled: Vec<f64> = error.iter().map(|e| scale * e).collect();
+        controller.feed_back(&q, &scaled, &rate, &mut command);
+        command
+    };
+    let command = run(
+        Feedback::MassMatrix {
+            kp: kp.clone(),
+            kd: kd.clone(),
+        },
+        1.0,
+    );
+    let mut mass_matrix = DMatrix::zeros(6, 6);
+    arm.mass_matrix(&mut arm::Workspace::new(&arm), &q, &mut mass_matrix);
+    let mut prediction = Prediction::new(6);
+    model.predict(&mut Workspace::new(6), &q, &qd, &qdd, &mut prediction);
+    for i in 0..6 {
+        let expected: f64 = (0..6)
+            .map(|j| mass_matrix[(i, j)] * (100.0 * error[j] + 20.0 * rate[j]))
+            .sum();
+        assert!((command.feedback[i] - expected).abs() < 1e-12);
+        assert!((command.torque[i] - expected - prediction.rigid[i]).abs() < 1e-12);
+        assert!(!command.saturated[i]);
+    }
+    let command = run(Feedback::Gains { kp, kd }, 1000.0);
+    for (i, joint) in arm.joints().iter().enumerate() {
+        let wanted = 100.0 * 1000.0 * error[i] + 20.0 * rate[i];
+        assert!((command.feedback[i] - wanted).abs() < 1e-9);
+        assert_eq!(command.saturated[i], command.torque[i].abs() == joint.limits.effort);
+        assert!(command.torque[i].abs() <= joint.limits.effort);
+    }
+    assert!(command.saturated[0] && !command.saturated[2]);
+}

@@ -1,0 +1,7 @@
+//! Tests of the whole, through the built program in a temporary folder.
+
+mod paper;
+mod refusals;
+mod runs;
+mod support;
+mod tidy;

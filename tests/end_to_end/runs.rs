@@ -1,0 +1,170 @@
+//! Runs of scenarios, through the built program: what they print, leave behind and repeat.
+
+use crate::support::Sandbox;
+
+/// A short run of the PUMA 560 with `extra` lines.
+fn short_scenario(extra: &str) -> String {
+    format!(
+        "robot = \"puma560\"\nduration = 0.5\n[model]\ninertia_scale = 1.2\n[reference]\namplitude = 0.5\n\
+         frequency_1 = 0.4\nfrequency_2 = 0.7\n{extra}"
+    )
+}
+
+const SLIDER: &str = r#"<robot name="slider"><link name="rail"/>
+<link name="carriage"><inertial><mass value="95"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+<joint name="x" type="prismatic"><parent link="rail"/><child link="carriage"/><axis xyz="1 0 0"/>
+<limit lower="-1" upper="1" effort="500" velocity="2"/></joint></robot>"#;
+
+#[test]
+fn the_main_job_leaves_a_recording_and_a_summary() {
+    let sandbox = Sandbox::new();
+    let printed = sandbox.succeed(&["--scenario", "taskD", "--model", "rigid-body", "--rerun", "off"]);
+    assert!(
+        printed.contains("joint6") && printed.contains("real-time factor"),
+        "{printed}"
+    );
+    assert_eq!(sandbox.list("runs"), ["001-taskD-rigid-body"]);
+    assert_eq!(
+        sandbox.list("runs/001-taskD-rigid-body"),
+        ["recording.csv", "summary.json"]
+    );
+    let summary = sandbox.json("runs/001-taskD-rigid-body/summary.json");
+    assert_eq!(summary["tracking"][0]["model"], "rigid_body");
+    assert_eq!(
+        summary["tracking"][0]["rms_error_rad"].as_array().map(Vec::len),
+        Some(6)
+    );
+    assert!(summary["real_time_factor"].as_f64().is_some_and(|factor| factor > 0.0));
+    assert!(summary["control_step_us"]["p99"].as_f64() >= summary["control_step_us"]["median"].as_f64());
+    let error = summary["torque_mse"][1].as_f64().expect("a number");
+    assert!((error - 46.5).abs() < 0.1, "{error}");
+    let recording =
+        std::fs::read_to_string(sandbox.path("runs/001-taskD-rigid-body/recording.csv")).expect("it is there");
+    assert_eq!(recording.lines().count(), 10_001);
+    assert!(recording.starts_with("t,q_joint1,"));
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes_whatever_the_threads() {
+    let sandbox = Sandbox::new();
+    let noisy = short_scenario("[sensors]\nposition_noise = 1e-4\nvelocity_noise = 1e-3\ntorque_noise = 0.1\n");
+    sandbox.write("noisy.toml", &noisy);
+    let record = |seed: &str, out: &str, threads: &str| {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_testbed"))
+            .args([
+                "--scenario",
+                "noisy.toml",
+                "--model",
+                "independent-joint-13",
+                "--train",
+                "noisy.toml",
+            ])
+            .args(["--rerun", "off", "--seed", seed, "--out", out])
+            .env("RAYON_NUM_THREADS", threads)
+            .current_dir(sandbox.path(""))
+            .output()
+            .expect("it runs");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        std::fs::read(sandbox.path(out).join("recording.csv")).expect("it is there")
+    };
+    let first = record("1", "a", "1");
+    assert!(first == record("1", "b", "2"), "two runs with one seed differ");
+    assert!(first != record("2", "c", "2"), "two seeds give the same noise");
+}
+
+#[test]
+fn a_model_learns_from_the_recording_of_a_run() {
+    let sandbox = Sandbox::new();
+    sandbox.write("short.toml", &short_scenario(""));
+    sandbox.succeed(&[
+        "--scenario",
+        "short.toml",
+        "--model",
+        "rigid-body",
+        "--rerun",
+        "off",
+        "--out",
+        "first",
+    ]);
+    let train = ["--train", "first/recording.csv"];
+    let learn = [
+        "--scenario",
+        "short.toml",
+        "--model",
+        "independent-joint-13",
+        "--rerun",
+        "off",
+        "--json",
+        "s.json",
+    ];
+    sandbox.succeed(&[&learn[..], &train].concat());
+    let before = sandbox.json("first/summary.json");
+    let after = sandbox.json("s.json");
+    let error = |summary: &serde_json::Value| summary["tracking"][0]["rms_error_rad"][1].as_f64().expect("a number");
+    assert!(
+        error(&after) < 0.1 * error(&before),
+        "{} after {}",
+        error(&after),
+        error(&before)
+    );
+}
+
+#[test]
+fn any_arm_runs_with_drives_and_friction() {
+    let sandbox = Sandbox::new();
+    sandbox.write("slider.urdf", SLIDER);
+    let text = "robot = \"slider.urdf\"\nduration = 2\n[reference]\ncentre = 0.1\n[[reference.sines]]\namplitude = 0.1\n\
+                frequency = 0.5\nphase = 1.0\n[controller]\nfeedback = \"gains\"\nkp = 20000\nkd = 2000\n\
+                [plant]\nrotor_inertia = 5\nviscous_friction = 203.5\ncoulomb_friction = 20.39\n";
+    sandbox.write("slider.toml", text);
+    let printed = sandbox.succeed(&[
+        "--scenario",
+        "slider.toml",
+        "--model",
+        "true",
+        "--rerun",
+        "off",
+        "--json",
+        "s.json",
+    ]);
+    assert!(printed.contains("mm"), "{printed}");
+    // Friction is all that the exact rigid-body model leaves to the feedback: about (20.4 + 203.5 × .22) / 20000 m.
+    let error = sandbox.json("s.json")["tracking"][0]["rms_error_rad"][0]
+        .as_f64()
+        .expect("a number");
+    assert!((1e-3..5e-3).contains(&error), "{error}");
+}
+
+#[cfg(feature = "viewer")]
+#[test]
+fn the_run_is_saved_for_the_viewer() {
+    let sandbox = Sandbox::new();
+    sandbox.write("short.toml", &short_scenario(""));
+    sandbox.succeed(&["--scenario", "short.toml", "--model", "true", "--out", "a"]);
+    assert_eq!(sandbox.list("a"), ["recording.csv", "run.rrd", "summary.json"]);
+    sandbox.succeed(&[
+        "--scenario",
+        "short.toml",
+        "--model",
+        "true",
+        "--out",
+        "b",
+        "--rerun",
+        "save=here.rrd",
+    ]);
+    assert_eq!(sandbox.list("b"), ["recording.csv", "summary.json"]);
+    let bytes = std::fs::read(sandbox.path("here.rrd")).expect("it is there");
+    assert!(bytes.starts_with(b"RRF") && bytes.len() > 10_000);
+    // Nothing listens at this port: the run goes on without a viewer.
+    let url = "connect=rerun+http://127.0.0.1:9/proxy";
+    sandbox.succeed(&[
+        "--scenario",
+        "short.toml",
+        "--model",
+        "true",
+        "--out",
+        "c",
+        "--rerun",
+        url,
+    ]);
+}

@@ -1,0 +1,84 @@
+//! What no compiler checks: the architecture page names the crates there are, files are headed and not over-long.
+
+use std::path::{Path, PathBuf};
+
+const LONGEST_FILE: usize = 400;
+
+fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("the folder can be read").flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            if path.file_name().is_some_and(|name| name != "target") {
+                rust_files(&path, found);
+            }
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+fn all_rust_files() -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for folder in ["crates", "tests"] {
+        rust_files(&crate::support::root().join(folder), &mut files);
+    }
+    assert!(files.len() > 30);
+    files
+}
+
+fn read(path: &Path) -> String {
+    std::fs::read_to_string(path).expect("the file can be read")
+}
+
+#[test]
+fn every_file_opens_with_its_line() {
+    for path in all_rust_files() {
+        assert!(
+            read(&path).starts_with("//! "),
+            "{} does not open with a //! line",
+            path.display()
+        );
+    }
+}
+
+#[test]
+fn no_file_is_over_long() {
+    for path in all_rust_files() {
+        let lines = read(&path).lines().count();
+        assert!(
+            lines <= LONGEST_FILE,
+            "{} has {lines} lines: two rooms in one?",
+            path.display()
+        );
+    }
+}
+
+#[test]
+fn the_architecture_page_names_the_crates_there_are() {
+    let page = read(&crate::support::root().join("ARCHITECTURE.md"));
+    let rows = page.lines().filter_map(|line| line.strip_prefix("| `crates/"));
+    let mut named: Vec<&str> = rows.filter_map(|row| row.split('`').next()).collect();
+    named.sort_unstable();
+    let entries = std::fs::read_dir(crate::support::root().join("crates"))
+        .expect("the folder can be read")
+        .flatten();
+    let mut there: Vec<String> = entries
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
+    there.sort_unstable();
+    assert_eq!(named, there);
+}
+
+#[test]
+fn every_scenario_and_robot_comes_with_the_program() {
+    let library = read(&crate::support::root().join("crates/testbed/src/library.rs"));
+    for folder in ["scenarios", "assets"] {
+        for entry in std::fs::read_dir(crate::support::root().join(folder))
+            .expect("the folder can be read")
+            .flatten()
+        {
+            let name = format!("{folder}/{}", entry.file_name().to_string_lossy());
+            assert!(library.contains(&name), "{name} is not in library.rs");
+        }
+    }
+}
