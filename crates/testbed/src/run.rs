@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use torque::TorqueModel;
+use torque::{Gp, TorqueModel};
 
 use crate::cli::{Rerun, RunArgs};
 use crate::output::{self, Tracking};
@@ -30,6 +30,18 @@ struct Summary<'a> {
     saturated: Vec<f64>,
     real_time_factor: f64,
     control_step_us: Percentiles,
+    /// The regressions of the model, one a joint; none if it does not learn.
+    regressions: Vec<Regression>,
+}
+
+/// What training found for one joint.
+#[derive(Serialize)]
+struct Regression {
+    log_marginal_likelihood: f64,
+    /// How many of the samples' directions the kernel matrix tells apart.
+    rank: usize,
+    /// What was added to the kernel matrix's diagonal, and why.
+    conditioning: String,
 }
 
 #[derive(Serialize)]
@@ -108,6 +120,7 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
             median: outcome.control_step_median,
             p99: outcome.control_step_p99,
         },
+        regressions: model.regressions().iter().map(regression).collect(),
     };
     let recording = folder.path.join("recording.csv");
     outcome.recording.write_csv(&recording)?;
@@ -124,6 +137,14 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
 /// The model's torque error against the truth on the reference, as the paper measures it.
 fn torque_error(scenario: &Scenario, model: &dyn TorqueModel) -> anyhow::Result<Vec<f64>> {
     Ok(model.mean_squared_error(&training::own_samples(scenario)?))
+}
+
+fn regression(gp: &Gp) -> Regression {
+    Regression {
+        log_marginal_likelihood: gp.log_marginal_likelihood(),
+        rank: gp.rank(),
+        conditioning: gp.conditioning().to_string(),
+    }
 }
 
 /// Says what is doubtful in the robot and the reference.

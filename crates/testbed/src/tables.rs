@@ -157,19 +157,24 @@ fn print(report: &Report) {
         }
         println!("{printed}\n");
     }
-    println!("Figure 4: tracking error on task D in the closed loop after training on A, B, C, RMS (max), mrad");
+    println!("Figure 4: RMS tracking error on task D in the closed loop after training on A, B, C, mrad");
+    let ends = ["mean of 1 to 3", "largest error"];
     let joints = (1..=6).map(|joint| format!("joint {joint}"));
-    let mut printed = output::table(
-        ["model".to_owned()]
-            .into_iter()
-            .chain(joints)
-            .chain(["mean of 1 to 3".to_owned()]),
-    );
+    let header = ["model".to_owned()]
+        .into_iter()
+        .chain(joints)
+        .chain(ends.map(str::to_owned));
+    let mut printed = output::table(header);
     for row in &report.tracking {
-        let errors = row.rms_error_rad.iter().zip(&row.max_error_rad);
+        let mean = row.rms_error_rad[..3].iter().sum::<f64>() / 3.0;
+        let largest = row.max_error_rad.iter().fold(0.0, |m: f64, e| m.max(*e));
         let mut cells = vec![row.model.title().to_owned()];
-        cells.extend(errors.map(|(rms, max)| format!("{} ({})", output::number(rms * 1e3), output::number(max * 1e3))));
-        cells.push(output::number(row.rms_error_rad[..3].iter().sum::<f64>() / 3.0 * 1e3));
+        cells.extend(
+            row.rms_error_rad
+                .iter()
+                .chain([&mean, &largest])
+                .map(|rad| output::number(rad * 1e3)),
+        );
         printed.add_row(cells);
     }
     println!("{printed}");

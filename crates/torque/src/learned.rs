@@ -110,11 +110,6 @@ impl Learned {
         Ok(model)
     }
 
-    /// The regressions, one a joint.
-    pub fn regressions(&self) -> &[Gp] {
-        &self.regressions
-    }
-
     /// Leaves the rigid-body torque and what the regressions need in the workspace.
     fn evaluate_features(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64]) {
         let dof = q.len();
@@ -142,6 +137,10 @@ impl Learned {
 impl TorqueModel for Learned {
     fn dof(&self) -> usize {
         self.regressions.len()
+    }
+
+    fn regressions(&self) -> &[Gp] {
+        &self.regressions
     }
 
     fn predict(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64], prediction: &mut Prediction) {

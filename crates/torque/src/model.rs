@@ -1,6 +1,7 @@
 //! The trait of all torque models.
 
 use arm::{Arm, NewtonEulerFeatures};
+use gp::Gp;
 
 use crate::samples::Samples;
 
@@ -21,6 +22,11 @@ pub trait TorqueModel: Send + Sync {
     /// # Panics
     /// If a slice or the workspace is of another size than the arm.
     fn variance<'w>(&self, workspace: &'w mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64]) -> Option<&'w [f64]>;
+
+    /// The regressions of the learned part, one a joint; none in a model without a learned part.
+    fn regressions(&self) -> &[Gp] {
+        &[]
+    }
 
     /// The mean squared torque error on `samples` for each joint ((N m)² or N²), the paper's measure.
     fn mean_squared_error(&self, samples: &Samples) -> Vec<f64> {
