@@ -20,6 +20,22 @@ impl Arm {
         self.accelerate(workspace, qdd);
     }
 
+    /// The last joint, if any, that can move without moving mass or a rotor; forward dynamics is not defined then.
+    pub fn massless_joint(&self) -> Option<usize> {
+        let mut workspace = Workspace::new(self);
+        let zeros = vec![0.0; self.dof()];
+        let mut qdd = zeros.clone();
+        // Any posture will do that is not a special one.
+        let q: Vec<f64> = (0..self.dof()).map(|i| 0.3 + 0.1 * i as f64).collect();
+        self.forward_dynamics(&mut workspace, &q, &zeros, &zeros, &mut qdd);
+        let inertias = workspace.links.iter().map(|link| link.d);
+        let largest = inertias.clone().fold(0.0, f64::max);
+        // Beyond the first such joint from the tip, towards the base, the recursion has divided by nothing.
+        (0..self.dof())
+            .rev()
+            .find(|&i| workspace.links[i].d.is_nan() || workspace.links[i].d <= 1e-12 * largest)
+    }
+
     /// Base to tip: velocities, velocity products c, bias wrenches p^A and the links' own inertias.
     fn propagate_velocities(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64]) {
         let mut w_parent = Vector3::zeros();

@@ -112,7 +112,7 @@ impl<'a> Reader<'a> {
                 "an arm needs at least one revolute, continuous or prismatic joint",
             ));
         }
-        self.check_mass_matrix(&arm)?;
+        self.check_masses(&mut arm)?;
         Ok(arm)
     }
 

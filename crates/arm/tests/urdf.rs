@@ -136,11 +136,16 @@ fn what_no_body_has_is_refused_by_name() {
         joint("j1", "revolute", "b", "a"),
         joint("j2", "revolute", "a", "tip"),
     ]);
-    let message = refusal(&bare_tip);
+    let arm = Arm::from_urdf_text(&bare_tip, "robot.urdf").expect("inverse dynamics can live with it");
+    let [warning] = arm.warnings() else {
+        panic!("{:?}", arm.warnings())
+    };
     assert!(
-        message.contains("link \"tip\"") && message.contains("\"j2\""),
-        "{message}"
+        warning.contains("link \"tip\"") && warning.contains("\"j2\""),
+        "{warning}"
     );
+    assert_eq!(arm.massless_joint(), Some(1));
+    assert_eq!(arm.with_rotor_inertias(&[0.0, 0.1]).massless_joint(), None);
 
     let no_axis = with(LINK).replace("0 0 1", "0 0 0");
     assert!(refusal(&no_axis).contains("axis"), "{}", refusal(&no_axis));

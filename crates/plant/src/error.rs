@@ -53,6 +53,12 @@ pub enum PlantError {
         /// Its largest principal moment (kg m²).
         largest: f64,
     },
+    /// A joint can move without moving mass.
+    #[error("joint \"{joint}\" moves no inertia; give the links beyond it an <inertial>, or its drive a rotor inertia")]
+    Massless {
+        /// The joint's name.
+        joint: String,
+    },
     /// A position, velocity or torque is not a finite number, or a joint runs faster than any arm.
     #[error("joint \"{joint}\" at {time} s: its motion or torque has left all bounds")]
     Diverged {

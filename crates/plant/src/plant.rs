@@ -36,6 +36,10 @@ impl Plant {
     /// [`PlantError`], if an option does not fit the arm or rapier cannot simulate one of its links.
     pub fn new(arm: &Arm, options: &PlantOptions) -> Result<Self, PlantError> {
         options.check(arm)?;
+        if let Some(joint) = arm.massless_joint() {
+            let joint = arm.joints()[joint].name.clone();
+            return Err(PlantError::Massless { joint });
+        }
         let zeros = vec![0.0; arm.dof()];
         Ok(Self {
             engine: Engine::new(arm, &options.viscous)?,

@@ -2,12 +2,9 @@
 
 use std::collections::HashSet;
 
-use nalgebra::DMatrix;
-
 use super::Reader;
 use crate::error::ArmError;
 use crate::model::{Arm, Inertia};
-use crate::workspace::Workspace;
 
 impl<'a> Reader<'a> {
     /// Checks that the links form one tree, and returns its root.
@@ -112,32 +109,21 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Refuses an arm some joint of which can move without moving mass.
-    pub(super) fn check_mass_matrix(&self, arm: &Arm) -> Result<(), ArmError> {
+    /// Refuses an arm without any inertia; warns if some joint can move without moving mass, which
+    /// inverse dynamics can live with and forward dynamics cannot.
+    pub(super) fn check_masses(&self, arm: &mut Arm) -> Result<(), ArmError> {
         if arm.joints.iter().all(|joint| joint.inertia == Inertia::zero()) {
             return Err(self.robot_error(
                 "no moving link has an <inertial>".into(),
                 "dynamics need masses and inertias: export them from the CAD model",
             ));
         }
-        let mut workspace = Workspace::new(arm);
-        let mut mass_matrix = DMatrix::zeros(arm.dof(), arm.dof());
-        // Any posture will do that is not a special one.
-        let q: Vec<f64> = (0..arm.dof()).map(|i| 0.3 + 0.1 * i as f64).collect();
-        arm.mass_matrix(&mut workspace, &q, &mut mass_matrix);
-        for (i, joint) in arm.joints.iter().enumerate() {
-            if mass_matrix[(i, i)] <= 0.0 {
-                return Err(self.link_error(
-                    &joint.link_name,
-                    format!("and the links beyond it have no inertia about joint \"{}\"", joint.name),
-                    "give the link an <inertial> with mass and inertia",
-                ));
-            }
-        }
-        if mass_matrix.clone().cholesky().is_none() {
-            return Err(self.robot_error(
-                "its mass matrix is not positive definite".into(),
-                "some link lacks an <inertial>, or has one that no body can have",
+        if let Some(joint) = arm.massless_joint() {
+            let joint = &arm.joints[joint];
+            arm.warnings.push(format!(
+                "link \"{}\" and those beyond it have no inertia about joint \"{}\"; simulating the arm needs some, \
+                 or a rotor inertia of its drive",
+                joint.link_name, joint.name
             ));
         }
         Ok(())

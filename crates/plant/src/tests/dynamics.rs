@@ -107,6 +107,18 @@ fn what_rapier_cannot_simulate_is_refused() {
         matches!(&error, PlantError::Singular { link, .. } if link == "shaft"),
         "{error}"
     );
+    // A last link without inertia, unless its drive has a rotor.
+    let tip = r#"<robot name="tip"><link name="base"/>
+<joint name="j1" type="continuous"><parent link="base"/><child link="l1"/><axis xyz="0 0 1"/></joint>
+<link name="l1"><inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
+<joint name="j2" type="continuous"><parent link="l1"/><child link="l2"/><axis xyz="1 0 0"/></joint><link name="l2"/></robot>"#;
+    let error = Plant::new(&read(tip), &PlantOptions::default()).err().unwrap();
+    assert!(
+        matches!(&error, PlantError::Massless { joint } if joint == "j2"),
+        "{error}"
+    );
+    let driven = read(tip).with_rotor_inertias(&[0.0, 0.1]);
+    assert!(acceleration_error(&driven, &PlantOptions::default()) < 1e-9);
 }
 
 #[test]
