@@ -166,17 +166,76 @@ fn a_recording_that_cannot_train_is_refused() {
 #[test]
 fn a_loop_that_is_unstable_says_so() {
     let sandbox = Sandbox::new();
-    sandbox.write(
-        "wild.toml",
-        &GOOD
-            .replace("kp = 100", "kp = 1e9\nkd = 1e6")
-            .replace("duration = 0.2", "duration = 5"),
+    // One torque a second cannot hold an arm.
+    let slow = GOOD
+        .replace("kp = 100", "rate = 1")
+        .replace("duration = 0.2", "duration = 60")
+        .replace("[0.5, 0.5, 0.5, 0.5, 0.5, 0.5]", "0.1")
+        .replace("frequency_1 = 0.4", "frequency_1 = 0.2")
+        .replace("frequency_2 = 0.7", "frequency_2 = 0.3");
+    sandbox.write("slow.toml", &slow);
+    let message = sandbox.refuse(&["--scenario", "slow.toml", "--model", "true", "--rerun", "off"]);
+    says(&message, &["unstable", "lower the gains", "controller.rate"]);
+    assert!(sandbox.list("runs").is_empty(), "something was left behind");
+}
+
+#[test]
+fn a_run_of_no_or_endless_steps_is_refused() {
+    says(
+        &refusal("duration = 0.2", "duration = 0.0001"),
+        &["bad.toml:3", "makes 0 steps"],
     );
-    let output = sandbox.run(&["--scenario", "wild.toml", "--model", "true", "--rerun", "off"]);
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(!stderr.contains("panicked"), "{stderr}");
-    // Saturation may keep the motion finite; if it does not, the reason and the remedy are given.
-    if !output.status.success() {
-        says(&stderr, &["unstable", "lower the gains"]);
-    }
+    let endless = "duration = 36000\n[controller]\nrate = 100000";
+    let sandbox = Sandbox::new();
+    sandbox.write(
+        "bad.toml",
+        &GOOD
+            .replace("[controller]\n", "")
+            .replace("kp = 100\n", "")
+            .replace("duration = 0.2\n", "")
+            .replace("[reference]", &format!("{endless}\n[reference]")),
+    );
+    let message = sandbox.refuse(&["--scenario", "bad.toml", "--model", "true"]);
+    says(&message, &["bad.toml:3", "controller.rate", "3600000000 steps"]);
+}
+
+#[test]
+fn outputs_in_each_others_way_are_refused() {
+    let sandbox = Sandbox::new();
+    sandbox.write("good.toml", GOOD);
+    let run = ["--scenario", "good.toml", "--model", "true", "--rerun", "off"];
+    let message = sandbox.refuse(&[&run[..], &["--json", "good.toml"]].concat());
+    says(&message, &["good.toml", "the --json file", "the scenario"]);
+    let message = sandbox.refuse(&[&run[..], &["--out", "o", "--json", "o/summary.json"]].concat());
+    says(&message, &["o/summary.json", "the run's summary", "the --json file"]);
+    // A file beside the others in a folder that the run makes is welcome.
+    sandbox.succeed(&[&run[..], &["--out", "o", "--json", "o/mine.json"]].concat());
+    assert_eq!(sandbox.list("o"), ["mine.json", "recording.csv", "summary.json"]);
+}
+
+#[test]
+fn an_arm_that_cannot_be_simulated_is_refused_before_the_work() {
+    let sandbox = Sandbox::new();
+    let urdf = r#"<robot name="r"><link name="b"/>
+<link name="a"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link><link name="tip"/>
+<joint name="j1" type="continuous"><parent link="b"/><child link="a"/><axis xyz="0 0 1"/></joint>
+<joint name="j2" type="continuous"><parent link="a"/><child link="tip"/><axis xyz="1 0 0"/></joint></robot>"#;
+    sandbox.write("r.urdf", urdf);
+    let scenario = GOOD
+        .replace("puma560", "r.urdf")
+        .replace("[0.5, 0.5, 0.5, 0.5, 0.5, 0.5]", "0.5");
+    sandbox.write("r.toml", &scenario);
+    let message = sandbox.refuse(&["--scenario", "r.toml", "--model", "true", "--rerun", "off"]);
+    says(
+        &message,
+        &[
+            "r.toml:2",
+            "r.urdf",
+            "link \"tip\"",
+            "joint \"j2\"",
+            "plant.rotor_inertia",
+        ],
+    );
+    sandbox.write("r.toml", &format!("{scenario}[plant]\nrotor_inertia = 0.1\n"));
+    sandbox.succeed(&["--scenario", "r.toml", "--model", "true", "--rerun", "off"]);
 }

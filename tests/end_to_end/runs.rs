@@ -135,6 +135,95 @@ fn any_arm_runs_with_drives_and_friction() {
     assert!((1e-3..5e-3).contains(&error), "{error}");
 }
 
+#[test]
+fn every_model_runs_on_arms_of_one_and_of_four_joints() {
+    let sandbox = Sandbox::new();
+    sandbox.write("slider.urdf", SLIDER);
+    let four = crate::support::root().join("crates/arm/tests/robots/prismatic.urdf");
+    std::fs::copy(four, sandbox.path("prismatic.urdf")).expect("it can be copied");
+    for robot in ["slider", "prismatic"] {
+        let scenario = short_scenario("")
+            .replace("puma560", &format!("{robot}.urdf"))
+            .replace("= 0.5\nfreq", "= 0.1\nfreq");
+        sandbox.write("r.toml", &scenario);
+        for model in [
+            "true",
+            "rigid-body",
+            "gp",
+            "hybrid",
+            "independent-joint",
+            "independent-joint-13",
+        ] {
+            sandbox.succeed(&[
+                "--scenario",
+                "r.toml",
+                "--model",
+                model,
+                "--train",
+                "r.toml",
+                "--rerun",
+                "off",
+                "--json",
+                "s.json",
+            ]);
+            let error = sandbox.json("s.json")["torque_mse"][0].as_f64().expect("a number");
+            // The twelve inputs do not tell a carriage's acceleration: on a slider they are all zero.
+            let limit = if matches!(model, "rigid-body" | "independent-joint") {
+                1e4
+            } else {
+                1e-2
+            };
+            assert!(error <= limit, "{robot} under {model}: {error}");
+        }
+    }
+}
+
+#[test]
+fn a_gap_in_a_recording_does_not_multiply_its_samples() {
+    let sandbox = Sandbox::new();
+    sandbox.write("slider.urdf", SLIDER);
+    sandbox.write("r.toml", &short_scenario("").replace("puma560", "slider.urdf"));
+    let mut csv = "t,q_x,qd_x,qdd_x,tau_x\n".to_owned();
+    for k in 0..500 {
+        // 1 kHz, with a gap of five seconds in the middle.
+        let t = f64::from(k) * 1e-3 + if k >= 250 { 5.0 } else { 0.0 };
+        csv += &format!("{t},{},{},{},{}\n", t.sin(), t.cos(), -t.sin(), -95.0 * t.sin());
+    }
+    sandbox.write("r.csv", &csv);
+    sandbox.succeed(&[
+        "--scenario",
+        "r.toml",
+        "--model",
+        "gp",
+        "--train",
+        "r.csv",
+        "--rerun",
+        "off",
+        "--json",
+        "s.json",
+    ]);
+    let summary = sandbox.json("s.json");
+    let text = summary["regressions"][0]["conditioning"].as_str().expect("a text");
+    // 80 Hz of half a second: 20 samples before the gap and 20 after it.
+    assert!(text.contains("of 40 samples"), "{text}");
+}
+
+#[test]
+fn a_reader_that_stops_reading_is_no_error() {
+    let sandbox = Sandbox::new();
+    sandbox.write("short.toml", &short_scenario(""));
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_testbed"))
+        .args(["--scenario", "short.toml", "--model", "true", "--rerun", "off"])
+        .current_dir(sandbox.path(""))
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("it ends");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
 #[cfg(feature = "viewer")]
 #[test]
 fn the_run_is_saved_for_the_viewer() {
@@ -155,6 +244,9 @@ fn the_run_is_saved_for_the_viewer() {
     assert_eq!(sandbox.list("b"), ["recording.csv", "summary.json"]);
     let bytes = std::fs::read(sandbox.path("here.rrd")).expect("it is there");
     assert!(bytes.starts_with(b"RRF") && bytes.len() > 10_000);
+    // What cannot be saved for the viewer does not cost the run.
+    let message = sandbox.refuse(&["--scenario", "short.toml", "--model", "true", "--rerun", "save=b"]);
+    assert!(message.contains("is a folder"), "{message}");
     // Nothing listens at this port: the run goes on without a viewer.
     let url = "connect=rerun+http://127.0.0.1:9/proxy";
     sandbox.succeed(&[

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum ArmError {
     /// The file cannot be read.
-    #[error("{path}: cannot be read: {source}")]
+    #[error("{path}: cannot be read: {source}; give the path of a URDF file")]
     Read {
         /// The file.
         path: PathBuf,
@@ -14,11 +14,13 @@ pub enum ArmError {
         source: std::io::Error,
     },
     /// The text is not URDF.
-    #[error("{path}: not a URDF: {reason}")]
+    #[error("{path}{place}: {reason}")]
     Syntax {
         /// The file.
         path: PathBuf,
-        /// What the parser met.
+        /// `:line`, or nothing where the line is not known.
+        place: String,
+        /// What the parser met, and the remedy.
         reason: String,
     },
     /// The URDF is well formed but does not describe a serial arm with physical inertias.

@@ -1,6 +1,7 @@
 //! Reading an [`Arm`] from a URDF.
 
 mod checks;
+mod syntax;
 
 use std::path::Path;
 
@@ -35,10 +36,8 @@ impl Arm {
     /// As [`Self::from_urdf`].
     pub fn from_urdf_text(text: &str, path: impl AsRef<Path>) -> Result<Self, ArmError> {
         let path = path.as_ref();
-        let robot = urdf_rs::read_from_string(text).map_err(|error| ArmError::Syntax {
-            path: path.to_owned(),
-            reason: error.to_string(),
-        })?;
+        syntax::refuse_xacro(text, path)?;
+        let robot = urdf_rs::read_from_string(text).map_err(|error| syntax::explain(text, path, &error))?;
         Reader {
             path,
             text,
@@ -112,7 +111,7 @@ impl<'a> Reader<'a> {
                 "an arm needs at least one revolute, continuous or prismatic joint",
             ));
         }
-        self.check_masses(&mut arm)?;
+        self.check_masses(&arm)?;
         Ok(arm)
     }
 

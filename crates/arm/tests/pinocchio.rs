@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use arm::{Arm, DMatrix, Matrix6xX, Workspace};
+use arm::{Arm, DMatrix, FEATURES, Matrix6xX, NewtonEulerFeatures, Workspace};
 
 /// Largest error allowed, relative to the largest value of the quantity in that state.
 const TOLERANCE: f64 = 1e-10;
@@ -23,7 +23,7 @@ fn check(robot: &str, urdf: &str) {
         .map(|b| f64::from_le_bytes(b.try_into().expect("eight bytes")))
         .collect();
     let n = arm.dof();
-    let width = 4 * n + 12 + 6 + 4 * n + n * (n + 1) / 2 + n;
+    let width = 4 * n + 12 + 6 + 4 * n + n * (n + 1) / 2 + 2 * n;
     assert_eq!(values.len(), 1000 * width);
 
     let mut workspace = Workspace::new(&arm);
@@ -32,6 +32,7 @@ fn check(robot: &str, urdf: &str) {
     let mut mass_matrix = DMatrix::zeros(n, n);
     let mut jacobian = Matrix6xX::zeros(n);
     let mut regressor = DMatrix::zeros(n, 10 * n);
+    let mut features = vec![[0.0; FEATURES]; n];
     let p: Vec<f64> = (0..10 * n).map(|k| (k as f64 + 1.0).sin()).collect();
     let mut worst: Vec<(&str, f64)> = Vec::new();
 
@@ -78,6 +79,12 @@ fn check(robot: &str, urdf: &str) {
         arm.torque_regressor(&mut workspace, q, qd, qdd, &mut regressor);
         let tau = &regressor * nalgebra::DVector::from_column_slice(&p);
         compare("regressor", tau.as_slice(), take(&mut row, n));
+
+        arm.newton_euler_features(&mut workspace, q, qd, qdd, &mut tau_out, &mut features);
+        let sum = |feature: &NewtonEulerFeatures| (0..12).map(|k| (k as f64 + 1.0).sin() * feature[k]).sum();
+        let sums: Vec<f64> = features.iter().map(sum).collect();
+        compare("Newton-Euler features", &sums, take(&mut row, n));
+        assert!((0..n).all(|i| features[i][12] == tau_out[i]));
     }
     println!("{robot}: largest relative errors {worst:?}");
 }

@@ -112,6 +112,14 @@ fn what_is_no_serial_arm_is_refused_by_name() {
 
     assert!(refusal(&two("fixed")).contains("no joint moves"));
     assert!(refusal("not xml at all").contains("not a URDF"));
+    assert!(refusal("<robot name=\"r\"></robot>").contains("no links"));
+    let message = refusal(&robot(&["<xacro:include filename=\"a\"/>\n".into()]));
+    assert!(message.contains("robot.urdf:2: is xacro"), "{message}");
+    let message = refusal(&two("revolute").replace("value=\"2\"", "value=\"two\""));
+    assert!(
+        message.contains("robot.urdf:3: value=\"two\" is not a number"),
+        "{message}"
+    );
 }
 
 #[test]
@@ -137,13 +145,6 @@ fn what_no_body_has_is_refused_by_name() {
         joint("j2", "revolute", "a", "tip"),
     ]);
     let arm = Arm::from_urdf_text(&bare_tip, "robot.urdf").expect("inverse dynamics can live with it");
-    let [warning] = arm.warnings() else {
-        panic!("{:?}", arm.warnings())
-    };
-    assert!(
-        warning.contains("link \"tip\"") && warning.contains("\"j2\""),
-        "{warning}"
-    );
     assert_eq!(arm.massless_joint(), Some(1));
     assert_eq!(arm.with_rotor_inertias(&[0.0, 0.1]).massless_joint(), None);
 

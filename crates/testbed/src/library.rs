@@ -33,6 +33,14 @@ impl Source {
         let line = before.iter().filter(|byte| **byte == b'\n').count() + 1;
         format!("{}:{line}", self.path.display())
     }
+
+    /// The line of the text that holds byte `position`, without its comment.
+    pub fn line(&self, position: usize) -> &str {
+        let position = self.text.floor_char_boundary(position.min(self.text.len()));
+        let start = self.text[..position].rfind('\n').map_or(0, |newline| newline + 1);
+        let line = self.text[start..].lines().next().unwrap_or_default();
+        line.split('#').next().unwrap_or_default().trim()
+    }
 }
 
 /// Finds the scenario `name`: a file if it ends in `.toml` or has a folder in it, else
@@ -41,6 +49,7 @@ impl Source {
 /// # Errors
 /// If there is none, with the names that there are.
 pub fn find_scenario(name: &str) -> anyhow::Result<Source> {
+    anyhow::ensure!(!name.is_empty(), "the name of a scenario is empty");
     let given = Path::new(name);
     let is_file = given.extension().is_some_and(|extension| extension == "toml") || given.components().count() > 1;
     let local = Path::new("scenarios").join(format!("{name}.toml"));
@@ -67,8 +76,12 @@ pub fn find_scenario(name: &str) -> anyhow::Result<Source> {
             known.join(", ")
         );
     };
-    let text =
-        std::fs::read_to_string(&path).with_context(|| format!("{}: the scenario cannot be read", path.display()))?;
+    let text = std::fs::read_to_string(&path).with_context(|| {
+        format!(
+            "{}: the scenario cannot be read; give the path of a .toml file, or a name such as taskD",
+            path.display()
+        )
+    })?;
     let name = path
         .file_stem()
         .map_or(name.to_owned(), |stem| stem.to_string_lossy().into_owned());
@@ -87,6 +100,11 @@ fn local_scenarios() -> Vec<String> {
     names
 }
 
+/// Whether `robot` is the name of a robot that comes with testbed.
+pub fn is_built_in(robot: &str) -> bool {
+    ROBOTS.iter().any(|(known, _)| *known == robot)
+}
+
 /// Loads the robot that a scenario names: the path of a URDF beside the scenario (or absolute), or the
 /// name of one that comes with testbed.
 ///
@@ -99,9 +117,10 @@ pub fn load_arm(robot: &str, scenario: &Source) -> anyhow::Result<(Arm, PathBuf)
     }
     let is_path = Path::new(robot).extension().is_some_and(|e| e == "urdf" || e == "xml");
     if !is_path {
-        let known: Vec<&str> = ROBOTS.iter().map(|(name, _)| *name).collect();
+        let known: Vec<String> = ROBOTS.iter().map(|(name, _)| (*name).to_owned()).collect();
+        let hint = nearest(robot, &known).map_or(String::new(), |nearest| format!("did you mean \"{nearest}\"? "));
         bail!(
-            "there is no robot of that name; there are {}, or give the path of a .urdf file",
+            "there is no robot of that name; {hint}there are {}, or give the path of a .urdf file",
             known.join(", ")
         );
     }

@@ -1,6 +1,7 @@
 //! testbed: tracking testbed and model diagnosis for robot arms.
 
 mod cli;
+mod interrupt;
 mod library;
 mod models;
 mod output;
@@ -20,8 +21,22 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser};
 
+/// The error and its causes in one line; a cause that its error has quoted already is not repeated.
+fn chain(error: &anyhow::Error) -> String {
+    let mut line = error.to_string();
+    for cause in error.chain().skip(1).map(ToString::to_string) {
+        if !line.contains(&cause) {
+            line = format!("{line}: {cause}");
+        }
+    }
+    line
+}
+
 fn main() -> ExitCode {
     let cli = cli::Cli::parse();
+    if let Err(error) = interrupt::listen() {
+        eprintln!("warning: Ctrl-C may leave partial files behind: {error}");
+    }
     let result = match (&cli.command, &cli.run) {
         (Some(cli::Command::Tables(args)), _) => {
             tables::run(args.json.as_deref(), &args.length_scales.training_options())
@@ -36,8 +51,12 @@ fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::FAILURE
+            eprintln!("error: {}", chain(&error));
+            if interrupt::requested() {
+                ExitCode::from(interrupt::EXIT_CODE)
+            } else {
+                ExitCode::FAILURE
+            }
         }
     }
 }

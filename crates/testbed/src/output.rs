@@ -1,5 +1,6 @@
 //! What people read and files hold: tables, numbers, JSON.
 
+use std::io::Write;
 use std::path::Path;
 use std::time::Duration;
 
@@ -50,14 +51,33 @@ pub fn table(header: impl IntoIterator<Item = String>) -> Table {
 
 /// Four significant digits, with an exponent where the number is far from one.
 pub fn number(value: f64) -> String {
+    rounded(value, 4)
+}
+
+/// `digits` significant digits, likewise.
+pub fn rounded(value: f64, digits: usize) -> String {
     let magnitude = value.abs();
     if value == 0.0 {
         "0".into()
     } else if (1e-2..1e4).contains(&magnitude) {
-        let decimals = (3 - magnitude.log10().floor() as i32).max(0) as usize;
+        let decimals = (digits as i32 - 1 - magnitude.log10().floor() as i32).max(0) as usize;
         format!("{value:.decimals$}")
     } else {
-        format!("{value:.3e}")
+        format!("{value:.*e}", digits - 1)
+    }
+}
+
+/// Prints `text` on standard output. Whoever stops reading (`| head`) has read enough.
+///
+/// # Errors
+/// If it cannot be written for another reason.
+pub fn print(text: &str) -> anyhow::Result<()> {
+    let mut stdout = std::io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(anyhow::Error::new(error).context("printing the result"))
+        }
+        _ => Ok(()),
     }
 }
 

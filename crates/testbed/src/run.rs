@@ -1,18 +1,25 @@
 //! `testbed --scenario …`: one run, from the scenario to its folder.
 
+mod folder;
+mod observers;
+
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use torque::{Gp, TorqueModel};
+use torque::{Gp, Lengths, Samples, TorqueModel};
 
-use crate::cli::{Rerun, RunArgs};
+use crate::cli::RunArgs;
+use crate::interrupt;
 use crate::output::{self, Tracking};
 use crate::scenario::Scenario;
 use crate::simulation::{self, Observer, Outcome};
-use crate::telemetry::Sample;
 use crate::training;
+use folder::RunFolder;
+use observers::{Progress, View};
+
+/// Beyond so many samples training takes long enough to say so.
+const MANY_SAMPLES: usize = 8000;
 
 /// What a run's summary.json holds.
 #[derive(Serialize)]
@@ -34,9 +41,15 @@ struct Summary<'a> {
     regressions: Vec<Regression>,
 }
 
-/// What training found for one joint.
+/// What training found for one joint: enough to repeat it.
 #[derive(Serialize)]
 struct Regression {
+    /// Standard deviation of the learned torque (N m or N).
+    amplitude: f64,
+    /// Length scale of all inputs, or of each.
+    length_scales: Vec<f64>,
+    /// Standard deviation of the noise (N m or N).
+    noise: f64,
     log_marginal_likelihood: f64,
     /// How many of the samples' directions the kernel matrix tells apart.
     rank: usize,
@@ -68,23 +81,17 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
             args.model.flag()
         );
     }
+    let out = args.out.as_deref();
+    check_outputs(args, &scenario, &sources)?;
     let samples = training::training_samples(&scenario, &sources, args.seed)?;
-    if let Some(path) = &args.json {
-        output::check_writable(path)?;
-    }
-    let folder = RunFolder::create(args.out.as_deref(), &format!("{}-{}", scenario.name, args.model.flag()))?;
-    notes(&scenario);
+    notes(args, &scenario, &samples);
 
     let options = args.length_scales.training_options();
     let model = {
         let progress = output::spinner("training");
         if args.model.learns() {
-            progress.set_message(format!(
-                "training {} on {} ({} samples)",
-                args.model.title(),
-                sources.join(", "),
-                samples.len()
-            ));
+            let (title, sources) = (args.model.title(), sources.join(", "));
+            progress.set_message(format!("training {title} on {sources} ({} samples)", samples.len()));
         }
         let model = args
             .model
@@ -92,7 +99,10 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
         progress.finish_and_clear();
         model.context("training failed")?
     };
-    let mut viewer = View::open(args, &scenario, &folder)?;
+    let deferred = interrupt::Deferred::start();
+    let folder = RunFolder::create(out, &format!("{}-{}", scenario.name, args.model.flag()))?;
+    let rerun_file = observers::rerun_file(args, &folder.path);
+    let mut viewer = View::open(args, &scenario, rerun_file.as_deref())?;
     let mut progress = Progress::new(scenario.duration);
     let outcome = simulation::run(
         &scenario,
@@ -103,7 +113,6 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
     );
     progress.bar.finish_and_clear();
     let outcome = outcome?;
-    let viewed = viewer.finish()?;
 
     let summary = Summary {
         schema: "testbed.run/1",
@@ -122,16 +131,52 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
         },
         regressions: model.regressions().iter().map(regression).collect(),
     };
-    let recording = folder.path.join("recording.csv");
-    outcome.recording.write_csv(&recording)?;
-    let summary_path = folder.path.join("summary.json");
-    output::write_json(&summary_path, &summary)?;
+    let mut written = vec![folder.path.join("recording.csv"), folder.path.join("summary.json")];
+    outcome.recording.write_csv(&written[0])?;
+    output::write_json(&written[1], &summary)?;
     if let Some(path) = &args.json {
         output::write_json(path, &summary)?;
+        written.push(path.clone());
     }
-    print(&scenario, args, &sources, &summary, &outcome);
-    println!("written: {}, {}{}", recording.display(), summary_path.display(), viewed);
-    Ok(())
+    if viewer.finish() {
+        written.extend(rerun_file.clone());
+    }
+    drop(deferred);
+    let mut text = text(&scenario, args, &sources, &summary, &outcome);
+    for path in &written {
+        text += &format!("written: {}\n", path.display());
+    }
+    if rerun_file.is_some_and(|file| written.contains(&file)) {
+        text += "The .rrd file opens with `rerun FILE` (pip install rerun-sdk==0.36.3).\n";
+    }
+    output::print(&text)
+}
+
+/// Refuses outputs that cannot be written or are in each other's way, before any work is done.
+fn check_outputs(args: &RunArgs, scenario: &Scenario, sources: &[String]) -> anyhow::Result<()> {
+    let out = args.out.as_deref();
+    observers::check_rerun(args)?;
+    RunFolder::check(out)?;
+    let here = out.unwrap_or(Path::new("runs/new"));
+    let mut outputs = vec![
+        ("the run's recording", here.join("recording.csv")),
+        ("the run's summary", here.join("summary.json")),
+    ];
+    outputs.extend(observers::rerun_file(args, here).map(|file| ("the file for Rerun", file)));
+    if let Some(json) = &args.json {
+        folder::check_json(json, out)?;
+        outputs.push(("the --json file", json.clone()));
+    }
+    let mut inputs = vec![
+        ("the scenario", scenario.path.clone()),
+        ("the robot", scenario.urdf.clone()),
+    ];
+    inputs.extend(
+        sources
+            .iter()
+            .map(|source| ("what the model learns from", PathBuf::from(source))),
+    );
+    folder::check_distinct(&outputs, &inputs)
 }
 
 /// The model's torque error against the truth on the reference, as the paper measures it.
@@ -140,17 +185,36 @@ fn torque_error(scenario: &Scenario, model: &dyn TorqueModel) -> anyhow::Result<
 }
 
 fn regression(gp: &Gp) -> Regression {
+    let hyperparameters = gp.hyperparameters();
     Regression {
+        amplitude: hyperparameters.amplitude,
+        length_scales: match &hyperparameters.lengths {
+            Lengths::Isotropic(length) => vec![*length],
+            Lengths::PerInput(lengths) => lengths.clone(),
+        },
+        noise: hyperparameters.noise,
         log_marginal_likelihood: gp.log_marginal_likelihood(),
         rank: gp.rank(),
         conditioning: gp.conditioning().to_string(),
     }
 }
 
-/// Says what is doubtful in the robot and the reference.
-fn notes(scenario: &Scenario) {
-    for warning in scenario.arm.warnings() {
-        eprintln!("note: {}: {warning}", scenario.urdf.display());
+/// Says what is doubtful in what was asked for, in the robot and in the reference.
+fn notes(args: &RunArgs, scenario: &Scenario, samples: &Samples) {
+    for note in &scenario.notes {
+        eprintln!("note: {note}");
+    }
+    if args.train.is_some() && !args.model.learns() {
+        eprintln!(
+            "note: the model \"{}\" does not learn; --train is not used",
+            args.model.flag()
+        );
+    }
+    if samples.len() > MANY_SAMPLES {
+        eprintln!(
+            "note: training on {} samples may take minutes; a lower reference.sample_rate takes fewer",
+            samples.len()
+        );
     }
     let mut motion = crate::reference::Motion::new(scenario.arm.dof());
     let mut outside = vec![false; scenario.arm.dof()];
@@ -178,14 +242,15 @@ fn notes(scenario: &Scenario) {
     }
 }
 
-fn print(scenario: &Scenario, args: &RunArgs, sources: &[String], summary: &Summary<'_>, outcome: &Outcome) {
+/// The result for people.
+fn text(scenario: &Scenario, args: &RunArgs, sources: &[String], summary: &Summary<'_>, outcome: &Outcome) -> String {
     let trained = if sources.is_empty() {
         String::new()
     } else {
         format!(", trained on {}", sources.join(", "))
     };
-    println!(
-        "{}: {} ({}), {} s at {} Hz under the model \"{}\"{trained}",
+    let mut text = format!(
+        "{}: {} ({} joints), {} s at {} Hz under the model \"{}\"{trained}\n",
         scenario.title,
         scenario.arm.name(),
         scenario.arm.dof(),
@@ -208,159 +273,10 @@ fn print(scenario: &Scenario, args: &RunArgs, sources: &[String], summary: &Summ
             format!("{:.1} %", 100.0 * outcome.saturated[i]),
         ]);
     }
-    println!("{table}");
-    println!(
-        "real-time factor {:.1}; control step {:.1} µs median, {:.1} µs at the 99th percentile",
+    text += &format!("{table}\n");
+    text += &format!(
+        "real-time factor {:.1}; control step {:.1} µs median, {:.1} µs at the 99th percentile\n",
         outcome.real_time_factor, outcome.control_step_median, outcome.control_step_p99
     );
-}
-
-/// The folder of a run, removed again if the run fails and nothing else is in it.
-struct RunFolder {
-    path: PathBuf,
-    created: bool,
-}
-
-impl RunFolder {
-    /// `out`, or a new numbered folder under `runs/`.
-    fn create(out: Option<&Path>, name: &str) -> anyhow::Result<Self> {
-        let path = match out {
-            Some(path) => path.to_owned(),
-            None => next_folder(Path::new("runs"), name),
-        };
-        let created = !path.exists();
-        std::fs::create_dir_all(&path).with_context(|| {
-            format!(
-                "{}: the run's folder cannot be made; give another with --out DIR",
-                path.display()
-            )
-        })?;
-        let folder = Self { path, created };
-        output::check_writable(&folder.path.join("summary.json"))?;
-        Ok(folder)
-    }
-}
-
-impl Drop for RunFolder {
-    fn drop(&mut self) {
-        if self.created {
-            // Only an empty folder goes; one with results stays.
-            let _ = std::fs::remove_dir(&self.path);
-        }
-    }
-}
-
-/// `runs/<number>-<name>`, the number one above the largest there is.
-fn next_folder(runs: &Path, name: &str) -> PathBuf {
-    let entries = std::fs::read_dir(runs).into_iter().flatten().flatten();
-    let number_of = |name: &str| name.split('-').next().and_then(|number| number.parse::<u32>().ok());
-    let last = entries
-        .filter_map(|entry| number_of(&entry.file_name().to_string_lossy()))
-        .max();
-    runs.join(format!("{:03}-{name}", last.unwrap_or(0) + 1))
-}
-
-/// A progress bar on standard error in simulated seconds, hidden where that is no terminal.
-struct Progress {
-    bar: ProgressBar,
-}
-
-impl Progress {
-    fn new(duration: f64) -> Self {
-        let bar = ProgressBar::new((duration * 10.0).ceil() as u64);
-        if let Ok(style) = ProgressStyle::with_template("simulating {bar:40} {percent} %  ({elapsed})") {
-            bar.set_style(style);
-        }
-        Self { bar }
-    }
-}
-
-impl Observer for Progress {
-    fn sample(&mut self, sample: &Sample<'_>) {
-        let tenths = (sample.time * 10.0) as u64;
-        if tenths > self.bar.position() {
-            self.bar.set_position(tenths);
-        }
-    }
-}
-
-#[cfg(feature = "viewer")]
-/// The run in Rerun, or nowhere.
-struct View {
-    viewer: Option<crate::viewer::Viewer>,
-    file: Option<PathBuf>,
-}
-
-#[cfg(feature = "viewer")]
-impl View {
-    fn open(args: &RunArgs, scenario: &Scenario, folder: &RunFolder) -> anyhow::Result<Self> {
-        use crate::viewer::{Sink, Viewer};
-        let sink = match args.rerun.clone().unwrap_or(Rerun::Save(None)) {
-            Rerun::Off => {
-                return Ok(Self {
-                    viewer: None,
-                    file: None,
-                });
-            }
-            Rerun::Save(file) => Sink::Save(file.unwrap_or_else(|| folder.path.join("run.rrd"))),
-            Rerun::Spawn => Sink::Spawn,
-            Rerun::Connect(url) => Sink::Connect(url),
-        };
-        let title = format!("{}, {}, seed {}", scenario.title, args.model.title(), args.seed);
-        let viewer = Viewer::open(&sink, &title, &scenario.arm, &scenario.urdf).context("opening Rerun")?;
-        let file = match sink {
-            Sink::Save(file) => Some(file),
-            Sink::Spawn | Sink::Connect(_) => None,
-        };
-        Ok(Self {
-            viewer: Some(viewer),
-            file,
-        })
-    }
-
-    /// Ends the recording; what to add to the list of files.
-    fn finish(self) -> anyhow::Result<String> {
-        if let Some(viewer) = self.viewer {
-            viewer.finish()?;
-        }
-        Ok(self.file.map_or(String::new(), |file| {
-            format!(", {} (open with `rerun {0}`)", file.display())
-        }))
-    }
-}
-
-#[cfg(feature = "viewer")]
-impl Observer for View {
-    fn wants_variance(&self) -> bool {
-        self.viewer.is_some()
-    }
-
-    fn sample(&mut self, sample: &Sample<'_>) {
-        if let Some(viewer) = &mut self.viewer {
-            viewer.log(sample);
-        }
-    }
-}
-
-#[cfg(not(feature = "viewer"))]
-/// This program was built without Rerun.
-struct View;
-
-#[cfg(not(feature = "viewer"))]
-impl View {
-    fn open(args: &RunArgs, _: &Scenario, _: &RunFolder) -> anyhow::Result<Self> {
-        match &args.rerun {
-            None | Some(Rerun::Off) => Ok(Self),
-            Some(_) => bail!("--rerun needs a program built with the feature \"viewer\", which this one lacks"),
-        }
-    }
-
-    fn finish(self) -> anyhow::Result<String> {
-        Ok(String::new())
-    }
-}
-
-#[cfg(not(feature = "viewer"))]
-impl Observer for View {
-    fn sample(&mut self, _: &Sample<'_>) {}
+    text
 }

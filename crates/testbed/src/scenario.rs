@@ -16,6 +16,8 @@ use crate::sensors::SensorNoise;
 pub struct Scenario {
     /// The name it was asked for by, without folder and extension.
     pub name: String,
+    /// Its file.
+    pub path: PathBuf,
     /// One line for people.
     pub title: String,
     /// The true arm, with the drives' inertia.
@@ -40,6 +42,8 @@ pub struct Scenario {
     pub viscous_friction: Vec<f64>,
     /// Coulomb friction of the plant (N m or N).
     pub coulomb_friction: Vec<f64>,
+    /// What is doubtful about the robot.
+    pub notes: Vec<String>,
     /// What the sensors add.
     pub sensor_noise: SensorNoise,
 }

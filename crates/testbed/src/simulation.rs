@@ -2,12 +2,13 @@
 
 use std::time::{Duration, Instant};
 
-use anyhow::Context;
+use anyhow::{Context, ensure};
 use arm::Arm;
 use plant::{Plant, PlantOptions};
 use recording::Recording;
 use torque::{Command, Controller, TorqueModel};
 
+use crate::interrupt;
 use crate::models::ModelKind;
 use crate::reference::Motion;
 use crate::scenario::Scenario;
@@ -94,6 +95,10 @@ pub fn run(
     let started = Instant::now();
     for k in 0..steps {
         let time = k as f64 * step;
+        ensure!(
+            !interrupt::requested(),
+            "interrupted at {time:.1} s; nothing was written"
+        );
         sensors.state(plant.q(), plant.qd(), &mut measured.q, &mut measured.qd);
         let control_started = Instant::now();
         scenario.reference.at(time, &mut here);

@@ -115,11 +115,10 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions) -> anyhow::Result<()>
     progress.finish_and_clear();
 
     let report = Report { tables, tracking };
-    print(&report);
     if let Some(path) = json {
         output::write_json(path, &report)?;
-        println!("\nwritten to {}", path.display());
     }
+    output::print(&text(&report))?;
     eprintln!("done in {:.1} s", started.elapsed().as_secs_f64());
     Ok(())
 }
@@ -128,54 +127,51 @@ fn short(task: &str) -> String {
     task.trim_start_matches("task").to_owned()
 }
 
-fn print(report: &Report) {
+/// The tables for people.
+fn text(report: &Report) -> String {
+    let header = |first: &str, last: &str| {
+        let joints = (1..=6).map(|joint| format!("joint {joint}"));
+        let cells: Vec<String> = [first.to_owned()]
+            .into_iter()
+            .chain(joints)
+            .chain([last.to_owned()])
+            .collect();
+        output::table(cells)
+    };
+    let numbers = |values: &[f64], last: f64| -> Vec<String> {
+        values
+            .iter()
+            .chain([&last])
+            .map(|value| output::rounded(*value, 3))
+            .collect()
+    };
+    let mut text = String::new();
     for (table, number) in report.tables.iter().zip(["I", "II"]) {
-        println!(
-            "Table {number}: mean squared torque error on task {} after training on {}, (N m)²",
+        text += &format!(
+            "Table {number}: mean squared torque error on task {} after training on {}, (N m)²\n",
             table.test,
             table.train.join(", ")
         );
-        let joints = (1..=6).map(|joint| format!("joint {joint}"));
-        let header: Vec<String> = ["model".to_owned(), String::new()].into_iter().chain(joints).collect();
-        let mut printed = output::table(header.into_iter().chain(["mean".to_owned()]));
+        let mut printed = header("model", "mean");
         for row in &table.rows {
-            let numbers = |values: &[f64], mean: f64| -> Vec<String> {
-                values
-                    .iter()
-                    .chain([&mean])
-                    .map(|value| output::number(*value))
-                    .collect()
-            };
-            let mut cells = vec![row.model.title().to_owned(), "ours".to_owned()];
+            let mut cells = vec![row.model.title().to_owned()];
             cells.extend(numbers(&row.mse, row.mean));
             printed.add_row(cells);
             if let Some(paper) = row.paper {
-                let mut cells = vec![String::new(), "paper".to_owned()];
+                let mut cells = vec!["  the paper's".to_owned()];
                 cells.extend(numbers(&paper, paper.iter().sum::<f64>() / 6.0));
                 printed.add_row(cells);
             }
         }
-        println!("{printed}\n");
+        text += &format!("{printed}\n\n");
     }
-    println!("Figure 4: RMS tracking error on task D in the closed loop after training on A, B, C, mrad");
-    let ends = ["mean of 1 to 3", "largest error"];
-    let joints = (1..=6).map(|joint| format!("joint {joint}"));
-    let header = ["model".to_owned()]
-        .into_iter()
-        .chain(joints)
-        .chain(ends.map(str::to_owned));
-    let mut printed = output::table(header);
+    text += "Figure 4: RMS tracking error on task D in the closed loop after A, B, C, mrad\n";
+    let mut printed = header("model", "1 to 3");
     for row in &report.tracking {
-        let mean = row.rms_error_rad[..3].iter().sum::<f64>() / 3.0;
-        let largest = row.max_error_rad.iter().fold(0.0, |m: f64, e| m.max(*e));
+        let errors: Vec<f64> = row.rms_error_rad.iter().map(|rad| rad * 1e3).collect();
         let mut cells = vec![row.model.title().to_owned()];
-        cells.extend(
-            row.rms_error_rad
-                .iter()
-                .chain([&mean, &largest])
-                .map(|rad| output::number(rad * 1e3)),
-        );
+        cells.extend(numbers(&errors, errors[..3].iter().sum::<f64>() / 3.0));
         printed.add_row(cells);
     }
-    println!("{printed}");
+    text + &format!("{printed}\n")
 }

@@ -157,7 +157,13 @@ fn recording_samples(scenario: &Scenario, recording: &Recording, samples: &mut S
         if time < next - 5e-7 {
             continue;
         }
-        next = if next.is_finite() { next } else { time } + 1.0 / scenario.sample_rate;
+        // The next sample is due a period after the last one was, or after this one if there was a gap.
+        let period = 1.0 / scenario.sample_rate;
+        next = if time < next + period {
+            next + period
+        } else {
+            time + period
+        };
         let pick = |signal: &recording::Signal| order.iter().map(|&joint| signal[joint][k]).collect::<Vec<f64>>();
         samples.push(torque::Sample {
             q: &pick(&recording.q),

@@ -3,11 +3,12 @@
 use crate::model::Workspace;
 
 /// The inputs of the regressions, one regression a joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inputs {
     /// q, q̇ and q̈ of all joints, the same for every joint (the paper's "Lagrangian" form).
     JointMotion,
-    /// ω_i, ω̇_i, τ_{i+1}, f_{i+1} of the rigid-body model: the paper's twelve (equation 19).
+    /// ω_i, ω̇_i, τ_{i+1}, f_{i+1} of the rigid-body model: the paper's twelve (equation 19). They are made for
+    /// revolute joints: that a link is accelerated along a slide, none of them tells.
     NewtonEuler12,
     /// The twelve and the model's own torque τ_i (the paper's algorithms 1 to 3).
     NewtonEuler13,

@@ -14,7 +14,7 @@ mod samples;
 
 pub use controller::{Command, Controller, Feedback};
 pub use error::TorqueError;
-pub use gp::{Gp, LengthScales};
+pub use gp::{Gp, LengthScales, Lengths};
 pub use inputs::Inputs;
 pub use learned::{Learned, TrainingOptions};
 pub use model::{Prediction, TorqueModel, Workspace};

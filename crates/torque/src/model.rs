@@ -86,7 +86,7 @@ impl Workspace {
         Self {
             arm: None,
             features: vec![[0.0; arm::FEATURES]; dof],
-            input: vec![0.0; arm::FEATURES.max(3 * dof)],
+            input: vec![0.0; 3 * dof],
             gp: gp::Workspace::default(),
             rigid: vec![0.0; dof],
             variance: vec![0.0; dof],

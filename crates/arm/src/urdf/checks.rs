@@ -41,6 +41,9 @@ impl<'a> Reader<'a> {
                 ));
             }
         }
+        if self.robot.links.is_empty() {
+            return Err(self.robot_error("has no links".into(), "is this a URDF?"));
+        }
         let mut roots = self
             .robot
             .links
@@ -109,23 +112,15 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Refuses an arm without any inertia; warns if some joint can move without moving mass, which
-    /// inverse dynamics can live with and forward dynamics cannot.
-    pub(super) fn check_masses(&self, arm: &mut Arm) -> Result<(), ArmError> {
-        if arm.joints.iter().all(|joint| joint.inertia == Inertia::zero()) {
-            return Err(self.robot_error(
-                "no moving link has an <inertial>".into(),
-                "dynamics need masses and inertias: export them from the CAD model",
-            ));
+    /// Refuses an arm without any inertia. A link or two without is a matter of what is to be done with the
+    /// arm: [`Arm::massless_joint`].
+    pub(super) fn check_masses(&self, arm: &Arm) -> Result<(), ArmError> {
+        if arm.joints.iter().any(|joint| joint.inertia != Inertia::zero()) {
+            return Ok(());
         }
-        if let Some(joint) = arm.massless_joint() {
-            let joint = &arm.joints[joint];
-            arm.warnings.push(format!(
-                "link \"{}\" and those beyond it have no inertia about joint \"{}\"; simulating the arm needs some, \
-                 or a rotor inertia of its drive",
-                joint.link_name, joint.name
-            ));
-        }
-        Ok(())
+        Err(self.robot_error(
+            "no moving link has an <inertial>".into(),
+            "dynamics need masses and inertias: export them from the CAD model",
+        ))
     }
 }

@@ -12,6 +12,8 @@ For each robot, <robot>.bin holds 1000 random states, each a row of little-endia
     aba(q, qd, tau)                     n
     M(q)                                n (n + 1) / 2; lower triangle, row by row
     Y(q, qd, qdd) p                     n; torque regressor times p_k = sin(k + 1)
+    features(q, qd, qdd) w              n; for joint i, the sum of sin(k + 1) times the k-th of
+                                        omega_i, domega_i (link i's frame), moment and force on link i + 1 (its frame)
 """
 import pathlib
 import numpy as np
@@ -24,6 +26,18 @@ robots = {
     "seven_axis": (here.parent / "robots/seven_axis.urdf", "tool"),
     "prismatic": (here.parent / "robots/prismatic.urdf", "tool"),
 }
+
+
+def features(model, data, q, qd, qdd):
+    """The twelve Newton-Euler features of each joint: omega, domega, moment and force of the next."""
+    pin.rnea(model, data, q, qd, qdd)
+    rows = []
+    for i in range(1, model.njoints):
+        distal = data.f[i + 1] if i + 1 < model.njoints else pin.Force.Zero()
+        rows.append(np.concatenate([data.v[i].angular, data.a_gf[i].angular, distal.angular, distal.linear]))
+    return np.array(rows)
+
+
 for name, (urdf, tool) in robots.items():
     model = pin.buildModelFromUrdf(str(urdf))
     data = model.createData()
@@ -52,6 +66,7 @@ for name, (urdf, tool) in robots.items():
             pin.aba(model, data, q, qd, tau),
             mass_matrix[lower],
             pin.computeJointTorqueRegressor(model, data, q, qd, qdd) @ p,
+            features(model, data, q, qd, qdd) @ np.sin(np.arange(12) + 1.0),
         ]))
     np.array(rows, dtype="<f8").tofile(here / f"{name}.bin")
     print(name, n, "joints,", len(rows[0]), "values a state; Pinocchio", pin.__version__)

@@ -112,7 +112,10 @@ pub fn parse(source: &Source) -> anyhow::Result<RawScenario> {
                     known.join(", ")
                 )
             }
-            None => anyhow!("{place}: {}", message.replace('\n', " ")),
+            None => {
+                let written = source.line(error.span().map_or(0, |span| span.start));
+                anyhow!("{place}: `{written}`: {}", message.replace('\n', " "))
+            }
         }
     })
 }

@@ -17,8 +17,13 @@ const CONTROL_RATE: f64 = 1000.0;
 const KP: f64 = 100.0;
 const KD: f64 = 20.0;
 
-/// The longest run; a longer one is surely a slip of units.
+/// The longest run (s), the most control steps and the most samples; more is surely a slip of units.
 const MAX_DURATION: f64 = 36_000.0;
+const MAX_STEPS: f64 = 1e7;
+const MAX_SAMPLES: f64 = 1e6;
+
+/// The largest number that a gain, an amplitude or the like can sensibly be, in any of the units.
+const MAX_VALUE: f64 = 1e9;
 
 /// Checks `raw`, which `source` holds.
 ///
@@ -36,7 +41,7 @@ pub fn scenario(source: &Source, raw: RawScenario) -> anyhow::Result<Scenario> {
 
     let duration = check.number("duration", Some(&raw.duration), 0.0)?;
     check.ensure(duration > 0.0 && duration <= MAX_DURATION, &raw.duration, || {
-        format!("duration is {duration} s; give more than 0 and at most {MAX_DURATION}")
+        format!("duration is {duration:?} s; give more than 0 and at most {MAX_DURATION}")
     })?;
     let control_rate = check.rate("controller.rate", raw.controller.rate.as_ref(), CONTROL_RATE)?;
     let reference_table = raw.reference.get_ref();
@@ -45,9 +50,13 @@ pub fn scenario(source: &Source, raw: RawScenario) -> anyhow::Result<Scenario> {
         reference_table.sample_rate.as_ref(),
         SAMPLE_RATE,
     )?;
-    if let Some(written) = &reference_table.sample_rate {
-        check.ensure(duration * sample_rate >= 1.0, written, || {
-            format!("reference.sample_rate of {sample_rate} Hz gives no sample in {duration} s; raise it")
+    for (what, rate, most) in [
+        ("controller.rate", control_rate, MAX_STEPS),
+        ("reference.sample_rate", sample_rate, MAX_SAMPLES),
+    ] {
+        let count = (duration * rate).round();
+        check.ensure((1.0..=most).contains(&count), &raw.duration, || {
+            format!("duration of {duration:?} s at a {what} of {rate} Hz makes {count} steps; 1 to {most} are possible")
         })?;
     }
     let inertia_scale = check.number("model.inertia_scale", raw.model.inertia_scale.as_ref(), 1.0)?;
@@ -69,8 +78,31 @@ pub fn scenario(source: &Source, raw: RawScenario) -> anyhow::Result<Scenario> {
         ),
     };
     let rotor_inertia = check.not_negative("plant.rotor_inertia", raw.plant.rotor_inertia.as_ref(), 0.0)?;
-    let viscous_friction = check.not_negative("plant.viscous_friction", raw.plant.viscous_friction.as_ref(), 0.0)?;
-    let coulomb_friction = check.not_negative("plant.coulomb_friction", raw.plant.coulomb_friction.as_ref(), 0.0)?;
+    let mut viscous_friction =
+        check.not_negative("plant.viscous_friction", raw.plant.viscous_friction.as_ref(), 0.0)?;
+    if raw.plant.viscous_friction.is_none() {
+        viscous_friction = arm.joints().iter().map(|joint| joint.damping).collect();
+    }
+    let mut coulomb_friction =
+        check.not_negative("plant.coulomb_friction", raw.plant.coulomb_friction.as_ref(), 0.0)?;
+    if raw.plant.coulomb_friction.is_none() {
+        coulomb_friction = arm.joints().iter().map(|joint| joint.friction).collect();
+    }
+    let built_in = library::is_built_in(raw.robot.get_ref());
+    let notes = if built_in { Vec::new() } else { arm.warnings().to_vec() };
+    let notes = notes.iter().map(|note| format!("{}: {note}", urdf.display())).collect();
+    let true_arm = arm.clone().with_rotor_inertias(&rotor_inertia);
+    if let Some(joint) = true_arm.massless_joint() {
+        let joint = &arm.joints()[joint];
+        bail!(
+            "{}: {}: link \"{}\" and those beyond it have no inertia about joint \"{}\", so the arm cannot be simulated; \
+             give the link an <inertial>, or the joint a plant.rotor_inertia",
+            source.place(raw.robot.span()),
+            urdf.display(),
+            joint.link_name,
+            joint.name
+        );
+    }
     let sensor_noise = SensorNoise {
         position: check.not_negative("sensors.position_noise", raw.sensors.position_noise.as_ref(), 0.0)?,
         velocity: check.not_negative("sensors.velocity_noise", raw.sensors.velocity_noise.as_ref(), 0.0)?,
@@ -79,7 +111,8 @@ pub fn scenario(source: &Source, raw: RawScenario) -> anyhow::Result<Scenario> {
     Ok(Scenario {
         name: source.name.clone(),
         title: raw.title.unwrap_or_else(|| source.name.clone()),
-        arm: arm.with_rotor_inertias(&rotor_inertia),
+        path: source.path.clone(),
+        arm: true_arm,
         urdf,
         duration,
         inertia_scale,
@@ -90,6 +123,7 @@ pub fn scenario(source: &Source, raw: RawScenario) -> anyhow::Result<Scenario> {
         training: raw.training.scenarios,
         viscous_friction,
         coulomb_friction,
+        notes,
         sensor_noise,
     })
 }
@@ -109,7 +143,7 @@ impl Check<'_> {
         let Some(written) = written else { return Ok(default) };
         let value = *written.get_ref();
         self.ensure(value.is_finite(), written, || {
-            format!("{key} is {value}; give a finite number")
+            format!("{key} is {value:?}; give a finite number")
         })?;
         Ok(value)
     }
@@ -118,7 +152,7 @@ impl Check<'_> {
         let Some(written) = written else { return Ok(default) };
         let value = self.number(key, Some(written), default)?;
         self.ensure((1.0..=100_000.0).contains(&value), written, || {
-            format!("{key} is {value} Hz; give 1 to 100000")
+            format!("{key} is {value:?} Hz; give 1 to 100000")
         })?;
         Ok(value)
     }
@@ -142,10 +176,13 @@ impl Check<'_> {
                 names.join(", ")
             )
         })?;
-        if let Some(joint) = values.iter().position(|value| !value.is_finite()) {
+        if let Some(joint) = values
+            .iter()
+            .position(|value| value.is_nan() || value.abs() > MAX_VALUE)
+        {
             let name = &self.arm.joints()[joint].name;
             bail!(
-                "{}: {key} of \"{name}\" is {}; give a finite number",
+                "{}: {key} of \"{name}\" is {:?}; give a number within ±{MAX_VALUE:e}",
                 self.source.place(written.span()),
                 values[joint]
             );

@@ -18,7 +18,8 @@ pub fn resolve(name: &str, urdf_path: &Path) -> Option<PathBuf> {
     }
     let urdf_path = std::path::absolute(urdf_path).ok()?;
     let folder = urdf_path.parent()?;
-    let existing = |path: PathBuf| path.is_file().then_some(path);
+    // A file that cannot be opened is as good as none.
+    let existing = |path: PathBuf| (path.is_file() && std::fs::File::open(&path).is_ok()).then_some(path);
     let Some(in_package) = name.strip_prefix("package://") else {
         return existing(folder.join(name.strip_prefix("file://").unwrap_or(name)));
     };

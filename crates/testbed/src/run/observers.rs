@@ -1,0 +1,136 @@
+//! What watches a run: the progress bar and the viewer.
+
+use std::path::{Path, PathBuf};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::cli::{Rerun, RunArgs};
+use crate::scenario::Scenario;
+use crate::simulation::Observer;
+use crate::telemetry::Sample;
+
+/// A progress bar on standard error in simulated seconds, hidden where that is no terminal.
+pub struct Progress {
+    /// The bar.
+    pub bar: ProgressBar,
+}
+
+impl Progress {
+    /// A bar for a run of `duration` (s).
+    pub fn new(duration: f64) -> Self {
+        let bar = ProgressBar::new((duration * 10.0).ceil() as u64);
+        if let Ok(style) = ProgressStyle::with_template("simulating {bar:40} {percent} %  ({elapsed})") {
+            bar.set_style(style);
+        }
+        Self { bar }
+    }
+}
+
+impl Observer for Progress {
+    fn sample(&mut self, sample: &Sample<'_>) {
+        let tenths = (sample.time * 10.0) as u64;
+        if tenths > self.bar.position() {
+            self.bar.set_position(tenths);
+        }
+    }
+}
+
+/// The file that `args` have Rerun save to, if they do.
+pub fn rerun_file(args: &RunArgs, folder: &Path) -> Option<PathBuf> {
+    match &args.rerun {
+        None | Some(Rerun::Save(None)) if cfg!(feature = "viewer") => Some(folder.join("run.rrd")),
+        Some(Rerun::Save(Some(file))) => Some(file.clone()),
+        _ => None,
+    }
+}
+
+/// Refuses what Rerun could not do.
+///
+/// # Errors
+/// If the program was built without it, or the file to save to is a folder.
+pub fn check_rerun(args: &RunArgs) -> anyhow::Result<()> {
+    match &args.rerun {
+        Some(Rerun::Save(_) | Rerun::Spawn | Rerun::Connect(_)) if cfg!(not(feature = "viewer")) => {
+            anyhow::bail!("--rerun needs a program built with the feature \"viewer\", which this one lacks")
+        }
+        Some(Rerun::Save(Some(file))) if file.is_dir() => {
+            anyhow::bail!("--rerun save={}: is a folder; give the name of a file", file.display())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The run in Rerun, or nowhere.
+#[cfg(feature = "viewer")]
+pub struct View(Option<crate::viewer::Viewer>);
+
+#[cfg(feature = "viewer")]
+impl View {
+    /// Opens what `args` say.
+    ///
+    /// # Errors
+    /// If the file cannot be created, or no viewer can be started.
+    pub fn open(args: &RunArgs, scenario: &Scenario, file: Option<&Path>) -> anyhow::Result<Self> {
+        use crate::viewer::{Sink, Viewer};
+        use anyhow::Context;
+        let sink = match (&args.rerun, file) {
+            (Some(Rerun::Spawn), _) => Sink::Spawn,
+            (Some(Rerun::Connect(url)), _) => Sink::Connect(url.clone()),
+            (_, Some(file)) => Sink::Save(file.to_owned()),
+            (_, None) => return Ok(Self(None)),
+        };
+        let title = format!("{}, {}, seed {}", scenario.title, args.model.title(), args.seed);
+        let viewer = Viewer::open(&sink, &title, &scenario.arm, &scenario.urdf).context("opening Rerun")?;
+        Ok(Self(Some(viewer)))
+    }
+
+    /// Ends the recording. A viewer's trouble is not the run's: it is a warning. Whether a file was saved.
+    pub fn finish(self) -> bool {
+        match self.0.map(crate::viewer::Viewer::finish) {
+            Some(Err(error)) => {
+                eprintln!("warning: {error:#}; the run goes on without it");
+                false
+            }
+            Some(Ok(())) => true,
+            None => false,
+        }
+    }
+}
+
+#[cfg(feature = "viewer")]
+impl Observer for View {
+    fn wants_variance(&self) -> bool {
+        self.0.is_some()
+    }
+
+    fn sample(&mut self, sample: &Sample<'_>) {
+        if let Some(viewer) = &mut self.0 {
+            viewer.log(sample);
+        }
+    }
+}
+
+/// This program was built without Rerun.
+#[cfg(not(feature = "viewer"))]
+pub struct View;
+
+#[cfg(not(feature = "viewer"))]
+impl View {
+    /// Nothing to open.
+    ///
+    /// # Errors
+    /// None.
+    pub fn open(_: &RunArgs, _: &Scenario, _: Option<&Path>) -> anyhow::Result<Self> {
+        Ok(Self)
+    }
+
+    /// Nothing was saved.
+    pub fn finish(self) -> bool {
+        false
+    }
+}
+
+#[cfg(not(feature = "viewer"))]
+impl Observer for View {
+    fn sample(&mut self, _: &Sample<'_>) {}
+}
