@@ -218,7 +218,7 @@ impl Log {
                 qd: Some(signal()),
                 qdd: Some(signal()),
                 tau: signal(),
-                others: Vec::new(),
+                ..Recording::default()
             },
             actual: signal(),
             reference: signal(),
