@@ -13,6 +13,8 @@ const BLOCK: usize = 128;
 const NO_CLOCK: f64 = 0.25;
 /// How many differences an estimate of the period uses at most.
 const SAMPLES: usize = 20_000;
+/// Stamps that scatter by less show a jump of the phase at once.
+const STEADY: f64 = 0.03;
 /// A row within this share of the period from its tick is beyond doubt.
 const SURE: f64 = 0.4;
 
@@ -45,12 +47,13 @@ pub struct Clock {
 /// Finds the clock of the stamps `time` (s, increasing, two at least), which begin anew at `breaks`.
 pub fn find(time: &[f64], breaks: &[usize]) -> Clock {
     let period = estimate_period(time, breaks);
-    let pieces = split(time, breaks, period);
+    let near = scatter(time, breaks, period, 1);
+    let pieces = split(time, breaks, period, near < STEADY);
     let mut clock = Clock {
         period,
         ticks: Vec::with_capacity(time.len()),
         pieces: Vec::new(),
-        regular: !accumulates(time, &pieces, period),
+        regular: !accumulates(time, &pieces, period, near),
         jitter: (0.0, 0.0, 0),
     };
     for rows in &pieces {
@@ -154,24 +157,29 @@ fn refine(time: &[f64], breaks: &[usize], mut period: f64) -> f64 {
     period
 }
 
+/// How far differences over `lag` rows are from whole periods, as a share of the period; robust.
+fn scatter(time: &[f64], breaks: &[usize], period: f64, lag: usize) -> f64 {
+    let mut off: Vec<f64> = differences(time, breaks, lag)
+        .map(|difference| fraction(difference / period).abs())
+        .collect();
+    if off.is_empty() { 0.0 } else { 1.4826 * median(&mut off) }
+}
+
 /// Whether the scatter adds up from row to row: then rows were taken when they were stamped.
-fn accumulates(time: &[f64], pieces: &[std::ops::Range<usize>], period: f64) -> bool {
+fn accumulates(time: &[f64], pieces: &[std::ops::Range<usize>], period: f64, near: f64) -> bool {
     let breaks: Vec<usize> = pieces.iter().skip(1).map(|rows| rows.start).collect();
-    let scatter = |lag: usize| {
-        let mut off: Vec<f64> = differences(time, &breaks, lag)
-            .map(|difference| fraction(difference / period).abs())
-            .collect();
-        1.4826 * median(&mut off)
-    };
-    let (near, far) = (scatter(1), scatter(16));
+    let far = scatter(time, &breaks, period, 16);
     far > 0.06 && far > 2.0 * near
 }
 
-fn split(time: &[f64], breaks: &[usize], period: f64) -> Vec<std::ops::Range<usize>> {
+/// The rows between long gaps, breaks and, where stamps are `steady`, jumps of the phase.
+fn split(time: &[f64], breaks: &[usize], period: f64, steady: bool) -> Vec<std::ops::Range<usize>> {
     let mut pieces = Vec::new();
     let mut begun = 0;
     for row in 1..time.len() {
-        if time[row] - time[row - 1] > PHASE_GAP * period || breaks.binary_search(&row).is_ok() {
+        let step = (time[row] - time[row - 1]) / period;
+        let jump = steady && step > 1.5 && fraction(step).abs() > 0.2;
+        if step > PHASE_GAP || jump || breaks.binary_search(&row).is_ok() {
             pieces.push(begun..row);
             begun = row;
         }

@@ -106,9 +106,9 @@ impl ColumnMap {
     /// # Errors
     /// [`RecordingError::Read`], or [`RecordingError::Map`] with the line.
     pub fn load(path: &Path) -> Result<Self, RecordingError> {
-        let text = std::fs::read_to_string(path).map_err(|source| RecordingError::Read {
+        let text = std::fs::read_to_string(path).map_err(|reason| RecordingError::Read {
             path: path.to_owned(),
-            source,
+            reason,
         })?;
         Self::parse(&text, path)
     }

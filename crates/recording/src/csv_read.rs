@@ -35,9 +35,9 @@ impl Recording {
     /// # Errors
     /// As [`Self::read_csv`], and [`RecordingError::Map`] if the file lacks a column that the map names.
     pub fn read_csv_with(path: &Path, map: Option<&ColumnMap>) -> Result<Self, RecordingError> {
-        let unreadable = |source| RecordingError::Read {
+        let unreadable = |reason| RecordingError::Read {
             path: path.to_owned(),
-            source,
+            reason,
         };
         let mut file = File::open(path).map_err(unreadable)?;
         let ends_whole = ends_with_newline(&mut file).map_err(unreadable)?;
@@ -352,9 +352,9 @@ fn line_of(row: &ByteRecord) -> u64 {
 fn csv_error(path: &Path, error: csv::Error) -> RecordingError {
     let line = error.position().map_or(1, csv::Position::line);
     match error.into_kind() {
-        csv::ErrorKind::Io(source) => RecordingError::Read {
+        csv::ErrorKind::Io(reason) => RecordingError::Read {
             path: path.to_owned(),
-            source,
+            reason,
         },
         kind => RecordingError::Row {
             path: path.to_owned(),

@@ -6,20 +6,20 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// The file cannot be opened or read.
-    #[error("{path}: cannot be read: {source}; check the path and that you may read it")]
+    #[error("{path}: cannot be read: {reason}; check the path and that you may read it")]
     Read {
         /// The file.
         path: PathBuf,
         /// The system's reason.
-        source: std::io::Error,
+        reason: std::io::Error,
     },
     /// The file or its folder cannot be written.
-    #[error("{path}: cannot be written: {source}; choose a folder you may write to")]
+    #[error("{path}: cannot be written: {reason}; choose a folder you may write to")]
     Write {
         /// The file.
         path: PathBuf,
         /// The system's reason.
-        source: std::io::Error,
+        reason: std::io::Error,
     },
     /// The header lacks what a recording needs.
     #[error("{path}:1: {reason}")]

@@ -48,7 +48,7 @@ impl Quality {
             .map(|q| velocity::Motion::of(q, &regular.segments, regular.period))
             .collect();
         let mut joints: Vec<JointQuality> = (0..regular.joints.len())
-            .map(|joint| JointQuality::of(regular, joint, &motions[joint]))
+            .map(|joint| JointQuality::of(recording, regular, joint, &motions[joint]))
             .collect();
         let swapped = velocity::compare(regular, &motions, &mut joints);
         let findings = findings::of(regular, &joints, &swapped);

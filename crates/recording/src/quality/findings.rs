@@ -128,13 +128,27 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
         && most.abs().max(least.abs()) > (0.5 * regular.period).max(5e-4)
     {
         let text = format!(
-            "recorded velocities are late by {:.1} to {:.1} ms (a filter?); testbed differentiates the positions instead",
-            1e3 * least,
-            1e3 * most
+            "recorded velocities are {}: filtered, it seems; testbed differentiates the positions instead",
+            lateness(*least, *most)
         );
         add(FindingKind::VelocityLate, None, text);
     }
     findings
+}
+
+/// "4.0 to 4.3 ms late", or early.
+fn lateness(least: f64, most: f64) -> String {
+    let (way, least, most) = if most <= 0.0 {
+        ("early", -most, -least)
+    } else {
+        ("late", least, most)
+    };
+    let (least, most) = (format!("{:.1}", 1e3 * least), format!("{:.1}", 1e3 * most));
+    if least == most {
+        format!("{most} ms {way}")
+    } else {
+        format!("{least} to {most} ms {way}")
+    }
 }
 
 fn near(value: f64, expected: f64) -> bool {
@@ -158,6 +172,10 @@ fn velocity(joint: &JointQuality, add: &mut impl FnMut(FindingKind, Option<&Join
         add(FindingKind::VelocitySign, Some(joint), text.into());
     }
     let size = ratio.abs();
+    // A filtered velocity is smaller than the slope where the motion is small and quick.
+    let clear = joint
+        .velocity_correlation
+        .is_some_and(|correlation| correlation.abs() > 0.98);
     let guess = if near(size, DEGREES) {
         "it is in deg/s, or the position in rad against it: give qd_unit = \"deg/s\" in a column map"
     } else if near(size, 1.0 / DEGREES) {
@@ -166,7 +184,7 @@ fn velocity(joint: &JointQuality, add: &mut impl FnMut(FindingKind, Option<&Join
         "it is in rpm: give qd_unit = \"rpm\" in a column map"
     } else if near(size, 1e3) || near(size, 1e-3) {
         "one of them is in thousandths (mm, mrad): give the units in a column map"
-    } else if !(0.9..1.1).contains(&size) {
+    } else if clear && !(0.8..1.25).contains(&size) {
         "other units, or motor side against joint side: give units or gear in a column map"
     } else {
         return;

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::measures;
 use super::velocity::Motion;
-use crate::RegularRecording;
+use crate::{Recording, RegularRecording};
 
 /// The least motion that counts as one (rad or m).
 const LEAST_RANGE: f64 = 1e-3;
@@ -50,11 +50,12 @@ pub struct JointQuality {
 
 impl JointQuality {
     /// The quality of `joint`, which moves by `motion`; nothing yet about its recorded velocity.
-    pub(super) fn of(regular: &RegularRecording, joint: usize, motion: &Motion) -> Self {
+    pub(super) fn of(recording: &Recording, regular: &RegularRecording, joint: usize, motion: &Motion) -> Self {
         let (q, tau) = (&regular.q[joint], &regular.tau[joint]);
         let (low, high) = measures::range(q);
-        let q_step = measures::step(q);
-        let tau_step = measures::step(tau);
+        // Interpolated values lie between the quantiser's.
+        let q_step = measures::step(&recording.q[joint]);
+        let tau_step = measures::step(&recording.tau[joint]);
         let q_noise = measures::noise(q, &regular.segments);
         let mut speeds: Vec<f64> = measures::inner(&regular.segments, motion.side)
             .map(|tick| motion.speed[tick].abs())

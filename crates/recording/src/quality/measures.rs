@@ -65,20 +65,28 @@ pub fn step(values: &[f64]) -> Option<f64> {
         return None;
     }
     steps.sort_by(f64::total_cmp);
-    let mut step = steps[0];
-    // The small steps sharpen it; then all but rounding must fit.
-    for within in [3.0, 10.0, 30.0] {
+    // The smallest step may be several of the quantiser's.
+    (1..=6).find_map(|part| multiples(&steps, steps[0] / f64::from(part)))
+}
+
+/// The step near `step` that sorted `steps` are multiples of, if all but a few are.
+fn multiples(steps: &[f64], mut step: f64) -> Option<f64> {
+    const MOST: f64 = 1000.0;
+    // Ever larger steps sharpen it.
+    for within in [3.0, 10.0, 30.0, 100.0, 300.0, MOST] {
         let (mut sum, mut count) = (0.0, 0.0);
-        for &other in steps.iter().take_while(|&&other| other < within * steps[0]) {
+        for other in steps.iter().take_while(|other| **other < within * step) {
             sum += other;
             count += (other / step).round();
         }
-        step = sum / count;
+        if count > 0.0 {
+            step = sum / count;
+        }
     }
-    let off = |&other: &f64| (other / step - (other / step).round()).abs();
-    let near: Vec<f64> = steps.iter().filter(|&&other| other < 200.0 * step).map(off).collect();
-    let fits = near.iter().filter(|off| **off < 0.05).count();
-    (near.len() * 4 > steps.len() && fits as f64 > 0.95 * near.len() as f64).then_some(step)
+    let near = steps.partition_point(|other| *other < MOST * step);
+    let off = |other: &f64| (other / step - (other / step).round()).abs();
+    let fits = steps[..near].iter().filter(|other| off(other) < 0.05).count();
+    (near >= 30 && fits as f64 > 0.95 * near as f64).then_some(step)
 }
 
 /// The share of the samples that lie on an extreme, if they stay there: `(value, share)` of the low and the high.
