@@ -14,6 +14,7 @@ mod header;
 mod interpolate;
 mod quality;
 mod regular;
+mod rows;
 mod spikes;
 mod toml_error;
 mod units;

@@ -142,9 +142,7 @@ fn print(report: &FileReport<'_>) {
     for column in table.column_iter_mut() {
         column.set_padding((0, 1));
     }
-    let optional = |value: Option<f64>, factor: f64, unit: &str| {
-        value.map_or_else(|| "–".to_owned(), |value| format!("{}{unit}", rounded(value * factor)))
-    };
+    let or_dash = |text: Option<String>| text.unwrap_or_else(|| "–".to_owned());
     for joint in &quality.joints {
         table.add_row([
             joint.joint.clone(),
@@ -157,8 +155,12 @@ fn print(report: &FileReport<'_>) {
             },
             joint.reversals.to_string(),
             span(joint.tau_range),
-            optional(joint.q_step, 1.0, ""),
-            optional(joint.velocity_lag, 1e3, " ms"),
+            or_dash(joint.q_step.map(rounded)),
+            or_dash(joint.velocity_lag.map(|lag| {
+                // No minus before a zero.
+                let tenths = (1e4 * lag).round() + 0.0;
+                format!("{:.1} ms", tenths / 10.0)
+            })),
         ]);
     }
     println!("{table}");

@@ -65,8 +65,11 @@ pub fn step(values: &[f64]) -> Option<f64> {
         return None;
     }
     steps.sort_by(f64::total_cmp);
+    let least = 1e-7 * (high - low);
     // The smallest step may be several of the quantiser's.
-    (1..=6).find_map(|part| multiples(&steps, steps[0] / f64::from(part)))
+    (1..=6)
+        .find_map(|part| multiples(&steps, steps[0] / f64::from(part)))
+        .filter(|step| *step > least)
 }
 
 /// The step near `step` that sorted `steps` are multiples of, if all but a few are.

@@ -104,10 +104,23 @@ enum Supposition {
     AsItIs,
     /// A joint's position has the other sign.
     Flipped(usize),
+    /// A joint's torque has.
+    TorqueFlipped(usize),
     /// The positions and torques of two joints are swapped.
     Swapped(usize, usize),
     /// The torques alone are.
     TorquesSwapped(usize, usize),
+}
+
+impl Supposition {
+    /// Whether both are about the signs of one joint.
+    fn same_joint(self, other: Self) -> bool {
+        let joint = |supposition| match supposition {
+            Self::Flipped(joint) | Self::TorqueFlipped(joint) => Some(joint),
+            _ => None,
+        };
+        joint(self).is_some() && joint(self) == joint(other)
+    }
 }
 
 /// The fit of measured torques by the model's, with dry and viscous friction and an offset.
@@ -132,7 +145,7 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
     let names: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
     let mut suppositions: Vec<Supposition> = (0..dof)
         .filter(|&joint| moves[joint])
-        .map(Supposition::Flipped)
+        .flat_map(|joint| [Supposition::Flipped(joint), Supposition::TorqueFlipped(joint)])
         .collect();
     for first in 0..dof {
         for second in (first + 1..dof).filter(|&second| moves[first] && moves[second]) {
@@ -154,42 +167,46 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
         text,
     };
     let remedy = "mend the header, or map the columns (--map)";
-    if let [(gain, supposition, fit), (next, ..), ..] = scored.as_slice()
-        && *gain > GAIN
-        && gain - next > LEAD
-    {
-        let good = |joint: &usize| fit.left[*joint] < EXPLAINED && as_it_is.left[*joint] > 2.0 * EXPLAINED;
-        match *supposition {
-            Supposition::Flipped(joint) if good(&joint) => {
-                let what = if fit.factor[joint] < 0.0 {
-                    "position and torque have"
-                } else {
-                    "the position has"
-                };
-                let text = format!("{what} the sign opposite to the URDF's axis; turn it (sign = -1 in a column map)");
-                return vec![told(Some(joint), text)];
+    if let Some((gain, best, fit)) = scored.first() {
+        let next = scored[1..].iter().find(|(_, other, _)| !best.same_joint(*other));
+        let lead = gain - next.map_or(0.0, |next| next.0);
+        let rival = scored
+            .get(1)
+            .is_some_and(|(next, other, _)| best.same_joint(*other) && gain - next < LEAD);
+        let good =
+            |joint: &usize| fit.left[*joint] < EXPLAINED && as_it_is.left[*joint] > 3.0 * fit.left[*joint].max(0.02);
+        let swapped = |what: &str, a: usize, b: usize| {
+            let text = format!("the {what} of {} and {} seem swapped; {remedy}", names[a], names[b]);
+            vec![told(None, text)]
+        };
+        if *gain > GAIN && lead > LEAD {
+            match *best {
+                Supposition::Flipped(joint) | Supposition::TorqueFlipped(joint) if good(&joint) => {
+                    let text = if rival {
+                        "the torque or the position has the sign opposite to the URDF's axis; turn one (tau_sign = -1, or \
+                         sign and tau_sign, in a column map)"
+                    } else if matches!(best, Supposition::TorqueFlipped(_)) {
+                        "the torque has the sign opposite to the URDF's axis; turn it (tau_sign = -1 in a column map)"
+                    } else if fit.factor[joint] < 0.0 {
+                        "position and torque have the sign opposite to the URDF's axis; turn both (sign = -1 in a column map)"
+                    } else {
+                        "the position has the sign opposite to the URDF's axis; turn it (sign = -1 and tau_sign = -1 in a \
+                         column map)"
+                    };
+                    return vec![told(Some(joint), text.into())];
+                }
+                Supposition::Swapped(a, b) if good(&a) && good(&b) => return swapped("columns", a, b),
+                Supposition::TorquesSwapped(a, b) if good(&a) && good(&b) => return swapped("torques", a, b),
+                _ => {}
             }
-            Supposition::Swapped(a, b) if good(&a) && good(&b) => {
-                let text = format!("the columns of {} and {} seem swapped; {remedy}", names[a], names[b]);
-                return vec![told(None, text)];
-            }
-            Supposition::TorquesSwapped(a, b) if good(&a) && good(&b) => {
-                let text = format!("the torques of {} and {} seem swapped; {remedy}", names[a], names[b]);
-                return vec![told(None, text)];
-            }
-            _ => {}
         }
     }
     let mut misfits = Vec::new();
     for (joint, &factor) in as_it_is.factor.iter().enumerate() {
         let matters =
             moves[joint] && as_it_is.left[joint] < EXPLAINED && as_it_is.without[joint] > 3.0 * as_it_is.left[joint];
-        if matters && factor < 0.0 {
-            let text = "the torque has the sign opposite to the model's; turn it (tau_sign = -1 in a column map)";
-            misfits.push(told(Some(joint), text.into()));
-        }
         let size = factor.abs();
-        if matters && !(MOTOR_SIDE..OTHER_UNIT).contains(&size) {
+        if matters && factor > 0.0 && !(MOTOR_SIDE..OTHER_UNIT).contains(&size) {
             let what = if size < 1.0 {
                 "motor side, or a current"
             } else {
@@ -212,7 +229,7 @@ fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
     let mut torque_source = source.clone();
     let mut sign = vec![1.0; dof];
     match supposition {
-        Supposition::AsItIs => {}
+        Supposition::AsItIs | Supposition::TorqueFlipped(_) => {}
         Supposition::Flipped(joint) => sign[joint] = -1.0,
         Supposition::Swapped(a, b) => {
             source.swap(a, b);
@@ -243,9 +260,14 @@ fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
         let measured = &smooth.tau[torque_source[joint]];
         let (without, _) = regress(&[&dry, speed], measured);
         let (left, factor) = regress(&[&model[joint], &dry, speed], measured);
-        // A flipped joint may have its torque flipped along; otherwise a negative factor explains nothing.
-        let free = matches!(supposition, Supposition::AsItIs) || supposition == Supposition::Flipped(joint);
-        fit.left.push(if factor >= 0.0 || free { left } else { without });
+        // A joint whose position is flipped may have its torque flipped along, one whose torque is must;
+        // otherwise a negative factor explains nothing.
+        let explains = match supposition {
+            Supposition::Flipped(flipped) if flipped == joint => true,
+            Supposition::TorqueFlipped(flipped) if flipped == joint => factor < 0.0,
+            _ => factor >= 0.0,
+        };
+        fit.left.push(if explains { left } else { without });
         fit.factor.push(factor);
         fit.without.push(without);
     }
