@@ -13,6 +13,8 @@ const BLOCK: usize = 128;
 const NO_CLOCK: f64 = 0.25;
 /// How many differences an estimate of the period uses at most.
 const SAMPLES: usize = 20_000;
+/// Steps that scatter by more about whole periods have another period (evenly spread, they scatter by 0.29).
+const NO_PULSE: f64 = 0.22;
 /// Stamps that scatter by less show a jump of the phase at once.
 const STEADY: f64 = 0.03;
 /// A row within this share of the period from its tick is beyond doubt.
@@ -128,8 +130,9 @@ fn estimate_period(time: &[f64], breaks: &[usize]) -> f64 {
             ticks += step / period;
             count += 1.0;
         }
-        // Rows lost or doubled count as much as stamps that scatter.
-        let cost = (off / count).sqrt() + (ticks / count - 1.0_f64).abs();
+        // Rows lost or doubled count as much as stamps that scatter, but a period without a pulse is none.
+        let off = (off / count).sqrt();
+        let cost = off + (ticks / count - 1.0_f64).abs() + if off > NO_PULSE { 1.0 } else { 0.0 };
         if cost < best.0 - 1e-6 {
             best = (cost, period);
         }

@@ -143,6 +143,23 @@ fn stamps_without_a_clock_are_told() {
 }
 
 #[test]
+fn a_clock_of_which_a_third_is_lost_is_found() {
+    let mut random = Random(11);
+    let truth = ticks(&mut random, 5000, 0.33);
+    let stamps: Vec<f64> = truth
+        .iter()
+        .map(|tick| 0.01 * *tick as f64 + 1e-3 * random.normal())
+        .collect();
+    let clock = find(&stamps, &[]);
+    assert!(clock.regular && (clock.period - 0.01).abs() < 1e-6);
+    // Long gaps part the pieces, and ticks count from each piece's first row.
+    for piece in &clock.pieces {
+        let first = truth[piece.rows.start];
+        assert!(piece.rows.clone().all(|row| clock.ticks[row] == truth[row] - first));
+    }
+}
+
+#[test]
 fn few_rows_make_a_clock_too() {
     for rows in 2..12 {
         let stamps: Vec<f64> = (0..rows).map(|tick| 0.004 * f64::from(tick)).collect();

@@ -65,3 +65,11 @@ fn a_bad_map_is_refused_with_its_line() {
     assert!(refusal("tau = \"tau_0\"\n", "").contains("missing field `tau`"));
     assert!(refusal("\";\"", "\";;\"").contains("map.toml:1"));
 }
+
+#[test]
+fn the_example_of_the_documentation_is_good() {
+    let page = include_str!("../../../docs/recordings.md");
+    let example = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next());
+    let map = parse(example.expect("the page has an example")).expect("it is good");
+    assert_eq!(map.joints, ["shoulder", "elbow"]);
+}

@@ -166,7 +166,11 @@ fn velocity(joint: &JointQuality, add: &mut impl FnMut(FindingKind, Option<&Join
         }
         return;
     };
-    if ratio < 0.0 {
+    if ratio < 0.0
+        && joint
+            .velocity_correlation
+            .is_some_and(|correlation| correlation.abs() > 0.95)
+    {
         let text =
             "the recorded velocity has the sign opposite to the position's slope; turn one (sign in a column map)";
         add(FindingKind::VelocitySign, Some(joint), text.into());

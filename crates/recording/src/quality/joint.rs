@@ -62,8 +62,9 @@ impl JointQuality {
             .collect();
         let speed_max = measures::quantile(&mut speeds, 1.0);
         let unsure = motion.gain * q_noise.max(q_step.unwrap_or(0.0) / 12.0_f64.sqrt());
-        let moves =
-            high - low > LEAST_RANGE.max(10.0 * q_noise).max(20.0 * q_step.unwrap_or(0.0)) && speed_max > 6.0 * unsure;
+        let range = high - low;
+        let wide = range > LEAST_RANGE.max(10.0 * q_noise).max(20.0 * q_step.unwrap_or(0.0));
+        let moves = wide && (speed_max > 6.0 * unsure || range > 50.0 * q_noise);
         let slow = (0.01 * speed_max).max(4.0 * unsure);
         let moving = speeds.iter().filter(|&&speed| speed > slow).count();
         let mean = tau.iter().sum::<f64>() / tau.len().max(1) as f64;

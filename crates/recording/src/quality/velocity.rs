@@ -93,7 +93,7 @@ pub fn compare(regular: &RegularRecording, motions: &[Motion], joints: &mut [Joi
             joints[joint].velocity_lag = Some((best as f64 + part) * regular.period);
             joints[joint].velocity_ratio = Some(ratio);
         }
-        if correlation.abs() < 0.6 {
+        if correlation.abs() < 0.9 {
             let other = (0..qd.len())
                 .filter(|&other| other != joint)
                 .map(|other| (other, correlate(&motion.speed, &qd[other], &ticks, 0).0.abs()))
