@@ -155,7 +155,7 @@ fn an_output_that_cannot_be_written_is_refused_before_the_work() {
 #[test]
 fn a_recording_that_cannot_train_is_refused() {
     let sandbox = Sandbox::new();
-    sandbox.write("r.csv", "t,q_joint1,tau_joint1\n0,1,2\n");
+    sandbox.write("r.csv", "t,q_joint1,tau_joint1\n0,1,2\n1,1,2\n");
     let message = sandbox.refuse(&["--scenario", "taskD", "--train", "r.csv", "--rerun", "off"]);
     says(&message, &["training on r.csv", "q_joint2"]);
     sandbox.write("r.csv", "t,q_joint1,tau_joint1\n0,1,x\n");

@@ -2,24 +2,24 @@
 
 use std::path::PathBuf;
 
-/// Why a recording could not be read or written.
+/// Why a recording could not be read, understood or written.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// The file cannot be opened or read.
-    #[error("{path}: cannot be read: {source}")]
+    #[error("{path}: cannot be read: {reason}; check the path and that you may read it")]
     Read {
         /// The file.
         path: PathBuf,
         /// The system's reason.
-        source: std::io::Error,
+        reason: std::io::Error,
     },
     /// The file or its folder cannot be written.
-    #[error("{path}: cannot be written: {source}; choose a folder you may write to")]
+    #[error("{path}: cannot be written: {reason}; choose a folder you may write to")]
     Write {
         /// The file.
         path: PathBuf,
         /// The system's reason.
-        source: std::io::Error,
+        reason: std::io::Error,
     },
     /// The header lacks what a recording needs.
     #[error("{path}:1: {reason}")]
@@ -29,7 +29,7 @@ pub enum RecordingError {
         /// What is missing or doubled, and the remedy.
         reason: String,
     },
-    /// A row or a value is not what the header promises.
+    /// A row is not what the header promises.
     #[error("{path}:{line}: {reason}")]
     Row {
         /// The file.
@@ -38,5 +38,47 @@ pub enum RecordingError {
         line: u64,
         /// What was found, and the remedy.
         reason: String,
+    },
+    /// A cell does not hold a finite number.
+    #[error("{path}:{line}: column \"{column}\" is \"{found}\", not a finite number; {remedy}")]
+    Value {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: u64,
+        /// The column's header.
+        column: String,
+        /// What the cell holds.
+        found: String,
+        /// How to mend it.
+        remedy: &'static str,
+    },
+    /// A column map is not what it should be.
+    #[error("{path}:{line}: {reason}")]
+    Map {
+        /// The map's file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// What was found, and the remedy.
+        reason: String,
+    },
+    /// Too few samples for a clock.
+    #[error("the recording has {rows} rows, too few to tell its clock; it takes at least {needed}")]
+    TooShort {
+        /// The rows there are.
+        rows: usize,
+        /// The rows it takes.
+        needed: usize,
+    },
+    /// Time stamps that a program gave do not increase.
+    #[error("sample {row}: time goes from {before} s to {after} s; it must increase")]
+    Time {
+        /// The sample, from 0.
+        row: usize,
+        /// The stamp before (s).
+        before: f64,
+        /// The stamp (s).
+        after: f64,
     },
 }

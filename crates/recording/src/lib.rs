@@ -1,24 +1,46 @@
-//! Recordings of joint motion and torque in SI units, and their files.
+//! Recordings of joint motion and torque in SI units, their files, their clock and their quality.
 //!
 //! A simulation and a robot both make a [`Recording`]: time, positions, velocities and torques of
-//! named joints, on the joint side, in s, rad (m), rad/s (m/s) and N m (N).
+//! named joints, on the joint side, in s, rad (m), rad/s (m/s) and N m (N). [`Recording::regular`]
+//! puts its rows on the regular clock that the drive sampled on; [`Quality`] says what the
+//! recording is worth, before anything is fitted to it.
 
-mod csv_file;
+mod clock;
+mod column_map;
+mod csv_read;
+mod csv_write;
 mod error;
+mod header;
+mod interpolate;
+mod quality;
+mod regular;
+mod rows;
+mod spikes;
+mod toml_error;
+mod units;
+mod warning;
 mod whole_file;
 
+pub use column_map::ColumnMap;
 pub use error::RecordingError;
+pub use quality::{Finding, FindingKind, JointQuality, Quality};
+pub use regular::{RegularRecording, Segment};
+pub use toml_error::{nearest, toml_reason};
+pub use warning::{Quantity, Warning};
 pub use whole_file::write_whole;
 
 /// One quantity of every joint: `signal[joint][sample]`.
 pub type Signal = Vec<Vec<f64>>;
+
+/// One quantity of some joints: `signal[joint]` is `None` where it was not recorded. Empty if no joint has it.
+pub type PartialSignal = Vec<Option<Vec<f64>>>;
 
 /// Motion and torque of named joints over time; every channel has one value a sample.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recording {
     /// The joints' names, in the order of every [`Signal`].
     pub joints: Vec<String>,
-    /// Time stamps (s).
+    /// Time stamps (s), increasing.
     pub time: Vec<f64>,
     /// Positions (rad or m).
     pub q: Signal,
@@ -28,8 +50,20 @@ pub struct Recording {
     pub qdd: Option<Signal>,
     /// Torques (N m) or forces (N) at the joint.
     pub tau: Signal,
+    /// Positions from a second encoder, on the link's side (rad or m).
+    pub q_secondary: PartialSignal,
+    /// Torques computed from motor currents, at the joint (N m or N).
+    pub tau_current: PartialSignal,
+    /// Motor currents (A).
+    pub current: PartialSignal,
+    /// Temperatures (°C).
+    pub temperature: PartialSignal,
     /// Other columns, by their header.
     pub others: Vec<(String, Vec<f64>)>,
+    /// The samples at which another run begins, where a file holds several.
+    pub breaks: Vec<usize>,
+    /// What was found and dealt with in reading.
+    pub warnings: Vec<Warning>,
 }
 
 impl Recording {
@@ -41,5 +75,13 @@ impl Recording {
     /// Whether there are no samples.
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()
+    }
+
+    /// From the first stamp to the last (s).
+    pub fn duration(&self) -> f64 {
+        match (self.time.first(), self.time.last()) {
+            (Some(first), Some(last)) => last - first,
+            _ => 0.0,
+        }
     }
 }

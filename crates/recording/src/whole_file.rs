@@ -28,9 +28,9 @@ pub fn write_whole(
         file.persist(path).map_err(|error| error.error)?;
         Ok(())
     };
-    attempt().map_err(|source| RecordingError::Write {
+    attempt().map_err(|reason| RecordingError::Write {
         path: path.to_owned(),
-        source,
+        reason,
     })
 }
 

@@ -26,6 +26,8 @@ pub struct Cli {
 pub enum Command {
     /// Print the paper's tables I and II and its figure 4, ours beside theirs
     Tables(TablesArgs),
+    /// Say what recordings are worth, before anything is fitted to them
+    Inspect(InspectArgs),
 }
 
 /// Close the loop on one scenario.
@@ -73,6 +75,25 @@ pub struct TablesArgs {
 
     /// Write the tables to this file as well
     #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct InspectArgs {
+    /// The recordings (.csv)
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+
+    /// The robot's URDF: names, limits, signs and torques are compared with it
+    #[arg(long, value_name = "URDF")]
+    pub robot: Option<String>,
+
+    /// The column map (.toml), for files with other headers or units
+    #[arg(long, value_name = "MAP")]
+    pub map: Option<PathBuf>,
+
+    /// Write everything to this file as JSON
+    #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
 }
 

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use arm::Arm;
+pub use recording::nearest;
 
 /// The files are part of the program, so that it runs from any folder.
 const SCENARIOS: [(&str, &str); 4] = [
@@ -126,11 +127,4 @@ pub fn load_arm(robot: &str, scenario: &Source) -> anyhow::Result<(Arm, PathBuf)
     }
     let path = scenario.path.parent().unwrap_or(Path::new("")).join(robot);
     Ok((Arm::from_urdf(&path)?, path))
-}
-
-/// The name in `known` nearest to `name`, if any is near enough to be meant.
-pub fn nearest<'a>(name: &str, known: &'a [String]) -> Option<&'a str> {
-    let distance = |other: &str| strsim::damerau_levenshtein(&name.to_lowercase(), &other.to_lowercase());
-    let best = known.iter().min_by_key(|other| distance(other))?;
-    (distance(best) <= name.len().max(best.len()).div_ceil(2)).then_some(best.as_str())
 }

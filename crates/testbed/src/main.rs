@@ -1,6 +1,7 @@
 //! testbed: tracking testbed and model diagnosis for robot arms.
 
 mod cli;
+mod inspect;
 mod interrupt;
 mod library;
 mod models;
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
         (Some(cli::Command::Tables(args)), _) => {
             tables::run(args.json.as_deref(), &args.length_scales.training_options())
         }
+        (Some(cli::Command::Inspect(args)), _) => inspect::run(args),
         (None, Some(args)) => run::run(args),
         (None, None) => {
             let mut command = cli::Cli::command();

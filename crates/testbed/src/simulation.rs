@@ -223,7 +223,7 @@ impl Log {
                 qd: Some(signal()),
                 qdd: Some(signal()),
                 tau: signal(),
-                others: Vec::new(),
+                ..Recording::default()
             },
             actual: signal(),
             reference: signal(),

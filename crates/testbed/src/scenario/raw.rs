@@ -100,30 +100,7 @@ pub struct RawSensors {
 pub fn parse(source: &Source) -> anyhow::Result<RawScenario> {
     toml::from_str(&source.text).map_err(|error| {
         let place = source.place(error.span().unwrap_or(Range { start: 0, end: 0 }));
-        let message = error.message();
-        match unknown_field(message) {
-            Some((unknown, known)) => {
-                let hint = match crate::library::nearest(&unknown, &known) {
-                    Some(nearest) => format!("did you mean `{nearest}`? "),
-                    None => String::new(),
-                };
-                anyhow!(
-                    "{place}: unknown key `{unknown}`; {hint}known here: {}",
-                    known.join(", ")
-                )
-            }
-            None => {
-                let written = source.line(error.span().map_or(0, |span| span.start));
-                anyhow!("{place}: `{written}`: {}", message.replace('\n', " "))
-            }
-        }
+        let written = source.line(error.span().map_or(0, |span| span.start));
+        anyhow!("{place}: `{written}`: {}", recording::toml_reason(error.message()))
     })
-}
-
-/// The field and the known ones in serde's "unknown field `a`, expected one of `b`, `c`".
-fn unknown_field(message: &str) -> Option<(String, Vec<String>)> {
-    let rest = message.strip_prefix("unknown field `")?;
-    let (unknown, rest) = rest.split_once('`')?;
-    let known = rest.split('`').skip(1).step_by(2).map(str::to_owned).collect();
-    Some((unknown.to_owned(), known))
 }

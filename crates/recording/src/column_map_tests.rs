@@ -1,0 +1,75 @@
+//! Column maps: what they mean, and what is refused.
+
+use super::*;
+
+const GOOD: &str = r#"delimiter = ";"
+[time]
+column = "stamp"
+unit = "ms"
+[joints.shoulder]
+q = "pos_1"
+q_unit = "deg"
+sign = -1
+tau = "current_1"
+tau_unit = "A"
+tau_scale = 12.3
+[joints.base]
+q = "pos_0"
+gear = 100
+tau = "tau_0"
+"#;
+
+fn parse(text: &str) -> Result<ColumnMap, RecordingError> {
+    ColumnMap::parse(text, Path::new("map.toml"))
+}
+
+fn refusal(from: &str, to: &str) -> String {
+    assert!(GOOD.contains(from));
+    parse(&GOOD.replace(from, to)).expect_err("it is refused").to_string()
+}
+
+#[test]
+fn units_signs_gears_and_order_come_out() {
+    let map = parse(GOOD).expect("it is good");
+    assert_eq!(map.joints, ["shoulder", "base"]);
+    let headers: Vec<String> = ["stamp", "pos_0", "pos_1", "current_1", "tau_0", "mode"]
+        .map(str::to_owned)
+        .to_vec();
+    let plan = map.plan(&headers, Path::new("r.csv")).expect("it fits");
+    assert_eq!((plan.time, plan.time_factor), (0, 1e-3));
+    let factors: Vec<f64> = plan.channels.iter().map(|channel| channel.factor).collect();
+    let expected = [-std::f64::consts::PI / 180.0, -12.3, 0.01, 100.0];
+    for (factor, expected) in factors.iter().zip(expected) {
+        assert!((factor - expected).abs() < 1e-12, "{factor} {expected}");
+    }
+    assert_eq!(plan.others, [(5, "mode".to_owned())]);
+    let missing = map
+        .plan(&headers[..4], Path::new("r.csv"))
+        .expect_err("a column is missing")
+        .to_string();
+    assert!(
+        missing.contains("map.toml:15") && missing.contains("r.csv has no column \"tau_0\""),
+        "{missing}"
+    );
+}
+
+#[test]
+fn a_bad_map_is_refused_with_its_line() {
+    assert!(refusal("q_unit", "q_unti").contains("map.toml:7: unknown key `q_unti`; did you mean `q_unit`?"));
+    assert!(refusal("\"deg\"", "\"degrees\"").contains("map.toml:7: unknown unit \"degrees\"; known here: rad"));
+    assert!(refusal("sign = -1", "sign = 2").contains("map.toml:8: sign is 2; it must be 1 or -1"));
+    assert!(refusal("tau_scale = 12.3\n", "").contains("map.toml:10: a torque in \"A\" needs tau_scale"));
+    assert!(refusal("gear = 100", "gear = 0").contains("map.toml:14: gear is 0"));
+    assert!(refusal("\"ms\"", "\"hours\"").contains("map.toml:4"));
+    assert!(refusal("gear = 100", "qd = \"v\"").contains("joint \"shoulder\" has no `qd`"));
+    assert!(refusal("tau = \"tau_0\"\n", "").contains("missing field `tau`"));
+    assert!(refusal("\";\"", "\";;\"").contains("map.toml:1"));
+}
+
+#[test]
+fn the_example_of_the_documentation_is_good() {
+    let page = include_str!("../../../docs/recordings.md");
+    let example = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next());
+    let map = parse(example.expect("the page has an example")).expect("it is good");
+    assert_eq!(map.joints, ["shoulder", "elbow"]);
+}

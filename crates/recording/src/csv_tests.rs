@@ -1,0 +1,142 @@
+//! CSV there and back, and what is refused.
+
+use std::path::PathBuf;
+
+use super::*;
+use crate::Warning;
+
+fn recording() -> Recording {
+    Recording {
+        joints: vec!["shoulder".into(), "elbow".into()],
+        time: vec![0.0, 0.1, 0.2],
+        q: vec![vec![0.1, 1.0 / 3.0, -1e-17], vec![1.0, 2.0, 3.0]],
+        qd: Some(vec![vec![0.0; 3], vec![5e300; 3]]),
+        tau: vec![vec![1.0, -2.0, 3.5], vec![0.0; 3]],
+        q_secondary: vec![None, Some(vec![1.0, 2.5, 3.0])],
+        temperature: vec![Some(vec![20.0, 20.5, 21.0]); 2],
+        others: vec![("mode".into(), vec![1.0, 1.0, 2.0])],
+        ..Recording::default()
+    }
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+fn write(folder: &tempfile::TempDir, text: &str) -> PathBuf {
+    let path = folder.path().join("r.csv");
+    std::fs::write(&path, text).expect("it writes");
+    path
+}
+
+fn read(text: &str) -> Result<Recording, RecordingError> {
+    let folder = folder();
+    Recording::read_csv(&write(&folder, text))
+}
+
+fn refusal(text: &str) -> String {
+    read(text).expect_err("it is refused").to_string()
+}
+
+#[test]
+fn what_is_written_reads_back_to_the_same_bits() {
+    let folder = folder();
+    let path = folder.path().join("r.csv");
+    recording().write_csv(&path).expect("it writes");
+    assert_eq!(Recording::read_csv(&path).expect("it reads"), recording());
+}
+
+#[test]
+fn a_bad_file_is_refused_with_its_place() {
+    let text = refusal("t,q_a,tau_a\n0,1,2\n1,x,2\n2,1,2\n");
+    assert!(
+        text.contains("r.csv:3: column \"q_a\" is \"x\", not a finite number; delete the row"),
+        "{text}"
+    );
+    for bad in ["NaN", "", "inf", "-Infinity", "1e999", "1,5"] {
+        let text = refusal(&format!("t;q_a;tau_a\n0;1;2\n1;1;{bad}\n2;1;2\n"));
+        assert!(text.contains("r.csv:3: column \"tau_a\""), "{text}");
+    }
+    assert!(refusal("t,q_a,tau_a\n0,1,2\n1,1,2\n.5,1,2\n").contains("r.csv:4: time runs back, from 1 s to 0.5 s"));
+    assert!(refusal("t,q_a,q_b,tau_a\n0,1,2,3\n").contains("r.csv:1: there is no column \"tau_b\""));
+    assert!(refusal("t,q_a,tau_a\n").contains("no rows"));
+    assert!(refusal("").contains("r.csv:1"));
+    assert!(refusal("t,q_a,tau_a\n0,1,2\n").contains("one row"));
+    assert!(refusal("t,q_a,tau_a\n0,1,2\n0,1,2\n").contains("one row"));
+    assert!(refusal("t,q_a,tau_a\n0,1\n1,1,2\n2,1,2\n").contains("r.csv:2: the row has 2 cells, the header 3"));
+    assert!(refusal("t,q_a,tau_a,q_a\n").contains("two columns \"q_a\""));
+    let gone = Recording::read_csv(Path::new("/nowhere/r.csv"))
+        .expect_err("it is not there")
+        .to_string();
+    assert!(gone.contains("/nowhere/r.csv: cannot be read"), "{gone}");
+}
+
+#[test]
+fn a_file_cut_in_its_last_row_gives_what_is_whole() {
+    let whole = "t,q_a,tau_a\n0,1,2.25\n1,1,2.25\n2,1,2.25\n";
+    for cut in [1, 2, 4, 5, 6, 7] {
+        let read = read(&whole[..whole.len() - cut]).expect("what is whole is used");
+        // Without its newline alone, the last row is whole still.
+        let rows = if cut == 1 { 3 } else { 2 };
+        assert_eq!(read.len(), rows, "cut by {cut}");
+        assert_eq!(
+            read.warnings.contains(&Warning::CutFile { line: 4 }),
+            cut > 1,
+            "cut by {cut}"
+        );
+    }
+    assert!(refusal("t,q_a,tau_a\n0,1,2\n1,x,2\n2,1,2").contains("r.csv:3"));
+}
+
+#[test]
+fn a_duplicated_row_is_left_out() {
+    let read = read("t,q_a,tau_a\n0,1,2\n1,1,2\n1,1,2\n2,1,2\n").expect("it reads");
+    assert_eq!(read.time, [0.0, 1.0, 2.0]);
+    let expected = Warning::Duplicates {
+        rows: 1,
+        line: 4,
+        differ: false,
+    };
+    assert!(read.warnings.contains(&expected), "{:?}", read.warnings);
+    let coarse = refusal("t,q_a,tau_a\n0,1,2\n1,1,2\n1,2,2\n2,1,2\n2,2,2\n3,1,2\n3,2,2\n");
+    assert!(
+        coarse.contains("r.csv:4: 3 rows have the time of the row before"),
+        "{coarse}"
+    );
+}
+
+#[test]
+fn runs_end_to_end_in_one_file_are_told_apart() {
+    let mut text = "t,q_a,tau_a\n".to_owned();
+    for _ in 0..2 {
+        for k in 0..100 {
+            text += &format!("{},1,2\n", f64::from(k) * 0.01);
+        }
+    }
+    let read = read(&text).expect("two runs");
+    assert_eq!((read.len(), read.breaks.as_slice()), (200, &[100][..]));
+    assert!(read.time.windows(2).all(|pair| pair[1] > pair[0]));
+    let told = |warning: &Warning| matches!(warning, Warning::ClockRestart { line: 102, .. });
+    assert!(read.warnings.iter().any(told), "{:?}", read.warnings);
+}
+
+#[test]
+fn a_column_that_is_not_needed_may_hold_anything() {
+    let read = read("t,q_a,tau_a,mode,n\n0,1,2,3,RUN\n1,1,2,RUN,5\n2,1,2,,6\n").expect("it reads");
+    assert!(read.others.is_empty());
+    let left_out = |warning: &&Warning| matches!(warning, Warning::ColumnLeftOut { .. });
+    assert_eq!(read.warnings.iter().filter(left_out).count(), 2);
+}
+
+#[test]
+fn a_map_reads_anybodys_columns() {
+    let folder = folder();
+    let path = write(&folder, "stamp;pos;cur\n0;180;1\n10;90;2\n");
+    let map = "[time]\ncolumn = \"stamp\"\nunit = \"ms\"\n[joints.a]\nq = \"pos\"\nq_unit = \"deg\"\nsign = -1\ntau = \"cur\"\n\
+               tau_unit = \"A\"\ntau_scale = 12.5\n";
+    let map = ColumnMap::parse(map, Path::new("m.toml")).expect("it is good");
+    let read = Recording::read_csv_with(&path, Some(&map)).expect("it reads");
+    assert_eq!(read.time, [0.0, 0.01]);
+    assert!((read.q[0][0] + std::f64::consts::PI).abs() < 1e-15);
+    assert_eq!(read.tau[0], [-12.5, -25.0]);
+}

@@ -1,0 +1,172 @@
+//! What a file's columns are: by their names, or by a column map.
+
+use crate::{Quantity, nearest};
+
+/// One column of one joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// The column, from 0.
+    pub index: usize,
+    /// The column's header.
+    pub header: String,
+    /// What it holds.
+    pub quantity: Quantity,
+    /// Of which joint, from 0.
+    pub joint: usize,
+    /// The value in SI is factor × cell + offset.
+    pub factor: f64,
+    /// See `factor`.
+    pub offset: f64,
+}
+
+/// What to read from where.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// The joints' names, in order.
+    pub joints: Vec<String>,
+    /// The column of the time stamps, from 0.
+    pub time: usize,
+    /// The header of that column.
+    pub time_header: String,
+    /// Seconds in the stamps' unit.
+    pub time_factor: f64,
+    /// The joints' columns.
+    pub channels: Vec<Channel>,
+    /// The other columns, from 0, with their headers.
+    pub others: Vec<(usize, String)>,
+}
+
+/// The first header that is there twice.
+pub fn doubled(headers: &[String]) -> Option<&str> {
+    let mut seen = std::collections::HashSet::new();
+    headers
+        .iter()
+        .find(|header| !header.is_empty() && !seen.insert(header.as_str()))
+        .map(String::as_str)
+}
+
+/// The plan for headers named as testbed names them; else what is missing.
+pub fn plan_by_names(headers: &[String]) -> Result<Plan, String> {
+    let at = |name: &str| headers.iter().position(|header| header == name);
+    let remedy = "name the columns so, or give a column map (--map)";
+    let time = at("t").ok_or_else(|| format!("there is no column \"t\" (time in s); {remedy}"))?;
+    let of = |prefix: &'static str| headers.iter().filter_map(move |header| header.strip_prefix(prefix));
+    let joints: Vec<String> = of("q_")
+        .filter(|name| at(&format!("tau_{name}")).is_some())
+        .map(str::to_owned)
+        .collect();
+    if of("q_").next().is_none() {
+        return Err(format!(
+            "there is no column \"q_<joint>\" (position in rad or m); {remedy}"
+        ));
+    }
+    if of("tau_").next().is_none() {
+        return Err(format!(
+            "there is no column \"tau_<joint>\" (torque in N m, or force in N); {remedy}"
+        ));
+    }
+    // Something more about a joint that is there: q_secondary_a, q_desired_a, tau_current_a.
+    let more = |name: &str| {
+        joints.iter().any(|joint| {
+            name.strip_suffix(joint.as_str())
+                .is_some_and(|word| word.ends_with('_'))
+        })
+    };
+    for (prefix, partner) in [("q_", "tau_"), ("tau_", "q_")] {
+        for name in of(prefix).filter(|name| !more(name)) {
+            if at(&format!("{partner}{name}")).is_none() {
+                let there: Vec<String> = of(partner).map(str::to_owned).collect();
+                let hint = match nearest(name, &there) {
+                    Some(other) if !joints.iter().any(|joint| joint == other) => {
+                        format!("is \"{partner}{other}\" meant? ")
+                    }
+                    _ => String::new(),
+                };
+                return Err(format!(
+                    "there is no column \"{partner}{name}\" beside \"{prefix}{name}\"; {hint}every joint needs both: add \
+                     the one or take out the other"
+                ));
+            }
+        }
+    }
+    let mut channels = Vec::new();
+    let quantities = [
+        (Quantity::Position, true),
+        (Quantity::Velocity, true),
+        (Quantity::Acceleration, true),
+        (Quantity::Torque, true),
+        (Quantity::SecondaryPosition, false),
+        (Quantity::CurrentTorque, false),
+        (Quantity::Current, false),
+        (Quantity::Temperature, false),
+    ];
+    for (quantity, whole) in quantities {
+        let before = channels.len();
+        for (joint, name) in joints.iter().enumerate() {
+            let header = format!("{}{name}", quantity.prefix());
+            if let Some(index) = at(&header) {
+                channels.push(Channel {
+                    index,
+                    header,
+                    quantity,
+                    joint,
+                    factor: 1.0,
+                    offset: 0.0,
+                });
+            }
+        }
+        let found = &channels[before..];
+        if whole && !found.is_empty() && found.len() < joints.len() {
+            let has = |joint: usize| found.iter().any(|channel| channel.joint == joint);
+            let missing = (0..joints.len()).find(|&joint| !has(joint)).unwrap_or(0);
+            return Err(format!(
+                "there is no column \"{}{}\", though other joints have one; give it for all joints or for none",
+                quantity.prefix(),
+                joints[missing]
+            ));
+        }
+    }
+    let taken = |index: usize| index == time || channels.iter().any(|channel: &Channel| channel.index == index);
+    let others = (0..headers.len())
+        .filter(|&index| !taken(index))
+        .map(|index| (index, headers[index].clone()))
+        .collect();
+    Ok(Plan {
+        joints,
+        time,
+        time_header: headers[time].clone(),
+        time_factor: 1.0,
+        channels,
+        others,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan(header: &str) -> Result<Plan, String> {
+        plan_by_names(&header.split(',').map(str::to_owned).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn a_joint_has_both_position_and_torque() {
+        let plan = plan("t,q_a,q_secondary_a,tau_a,tau_current_a,q_desired_a,mode").expect("it is whole");
+        assert_eq!(plan.joints, ["a"]);
+        assert_eq!(plan.channels.len(), 4);
+        let others: Vec<&str> = plan.others.iter().map(|(_, name)| name.as_str()).collect();
+        assert_eq!(others, ["q_desired_a", "mode"]);
+    }
+
+    #[test]
+    fn an_incomplete_set_is_refused_by_name() {
+        let refusal = |header: &str| plan(header).expect_err("it is incomplete");
+        assert!(refusal("t,q_a,q_b,tau_a").contains("no column \"tau_b\""));
+        assert!(refusal("t,q_a,tau_a,tau_b").contains("no column \"q_b\""));
+        assert!(refusal("t,q_elbow,q_b,tau_elbov,tau_b").contains("is \"tau_elbov\" meant?"));
+        assert!(refusal("t,q_a,q_b,tau_a,tau_b,qd_a").contains("\"qd_b\""));
+        assert!(refusal("q_a,tau_a").contains("no column \"t\""));
+        assert!(refusal("t,q_a").contains("tau_<joint>"));
+        assert!(refusal("t,tau_a").contains("q_<joint>"));
+    }
+}

@@ -1,0 +1,198 @@
+//! What is doubtful in a recording, in sentences with the remedy.
+
+use serde::Serialize;
+
+use super::JointQuality;
+use crate::RegularRecording;
+
+const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+/// Revolutions per minute in rad/s.
+const RPM: f64 = 30.0 / std::f64::consts::PI;
+
+/// What kind of doubt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FindingKind {
+    /// No joint moves.
+    NoMotion,
+    /// The torque is the same throughout.
+    NoTorque,
+    /// Positions look like degrees.
+    Degrees,
+    /// The recorded velocity is in another unit than the positions.
+    VelocityUnit,
+    /// The recorded velocity has the other sign.
+    VelocitySign,
+    /// The recorded velocity is another joint's.
+    VelocitySwapped,
+    /// The recorded velocity has little to do with the position.
+    VelocityUnrelated,
+    /// The torque stays on its extreme.
+    Saturation,
+    /// Some joints do not move.
+    JointAtRest,
+    /// The encoder is coarse against the motion.
+    CoarseEncoder,
+    /// The recorded velocity is late.
+    VelocityLate,
+}
+
+/// One doubt, of one joint or of the whole file.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// What kind.
+    pub kind: FindingKind,
+    /// The joint, if it is about one.
+    pub joint: Option<String>,
+    /// What was found, and the remedy.
+    pub text: String,
+}
+
+/// The findings on `joints`; `swapped` pairs joints with the joint whose velocity theirs is.
+pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize, usize)]) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let mut add = |kind, joint: Option<&JointQuality>, text: String| {
+        findings.push(Finding {
+            kind,
+            joint: joint.map(|joint| joint.joint.clone()),
+            text,
+        });
+    };
+    if joints.iter().all(|joint| !joint.moves) {
+        let text = "no joint moves, so nothing but gravity and offsets can be learnt; record a motion".into();
+        add(FindingKind::NoMotion, None, text);
+    }
+    for joint in joints.iter().filter(|joint| joint.tau_range.0 == joint.tau_range.1) {
+        let text = format!(
+            "the torque is {} throughout; was it logged? Check its column",
+            joint.tau_range.0
+        );
+        add(FindingKind::NoTorque, Some(joint), text);
+    }
+    for (index, joint) in joints.iter().enumerate() {
+        if let Some((_, other)) = swapped.iter().find(|(position, _)| *position == index) {
+            let text = format!(
+                "its recorded velocity is not its position's slope, but that of \"{}\" is; were columns swapped? Mend the \
+                 header or map the columns",
+                joints[*other].joint
+            );
+            add(FindingKind::VelocitySwapped, Some(joint), text);
+        } else {
+            velocity(joint, &mut add);
+        }
+        let reach = joint.q_range.0.abs().max(joint.q_range.1.abs());
+        let in_degrees = joint
+            .velocity_ratio
+            .is_some_and(|ratio| near(ratio.abs(), 1.0 / DEGREES));
+        if reach > 4.0 * std::f64::consts::PI && !in_degrees {
+            let text = format!(
+                "positions reach {reach:.1}: degrees taken for radians, or millimetres for metres? Give q_unit in a column \
+                 map; for a joint that turns without end this is as it should be"
+            );
+            add(FindingKind::Degrees, Some(joint), text);
+        }
+        for (value, share) in joint.plateaus.iter().flatten() {
+            let text = format!(
+                "the torque stays at its extreme of {value:.4} for {:.1} % of the time: a limit? What the model asked beyond \
+                 it was not applied",
+                100.0 * share
+            );
+            add(FindingKind::Saturation, Some(joint), text);
+        }
+        let range = joint.q_range.1 - joint.q_range.0;
+        if let Some(step) = joint.q_step.filter(|&step| joint.moves && step > range / 1000.0) {
+            let text = format!(
+                "the encoder's step ({step:.2e}) is {:.1} % of the whole motion; accelerations will be coarse: move further",
+                100.0 * step / range
+            );
+            add(FindingKind::CoarseEncoder, Some(joint), text);
+        }
+    }
+    let still: Vec<&str> = joints
+        .iter()
+        .filter(|joint| !joint.moves)
+        .map(|joint| joint.joint.as_str())
+        .collect();
+    if !still.is_empty() && still.len() < joints.len() {
+        let text = format!(
+            "{} {} not move: nothing of {} friction or drive can be learnt here",
+            still.join(", "),
+            if still.len() == 1 { "does" } else { "do" },
+            if still.len() == 1 { "its" } else { "their" },
+        );
+        add(FindingKind::JointAtRest, None, text);
+    }
+    let mut lags: Vec<f64> = joints.iter().filter_map(|joint| joint.velocity_lag).collect();
+    lags.sort_by(f64::total_cmp);
+    if let (Some(least), Some(most)) = (lags.first(), lags.last())
+        && most.abs().max(least.abs()) > (0.5 * regular.period).max(5e-4)
+    {
+        let text = format!(
+            "recorded velocities are {}: filtered, it seems; testbed differentiates the positions instead",
+            lateness(*least, *most)
+        );
+        add(FindingKind::VelocityLate, None, text);
+    }
+    findings
+}
+
+/// "4.0 to 4.3 ms late", or early.
+fn lateness(least: f64, most: f64) -> String {
+    let (way, least, most) = if most <= 0.0 {
+        ("early", -most, -least)
+    } else {
+        ("late", least, most)
+    };
+    let (least, most) = (format!("{:.1}", 1e3 * least), format!("{:.1}", 1e3 * most));
+    if least == most {
+        format!("{most} ms {way}")
+    } else {
+        format!("{least} to {most} ms {way}")
+    }
+}
+
+fn near(value: f64, expected: f64) -> bool {
+    (value / expected - 1.0).abs() < 0.04
+}
+
+fn velocity(joint: &JointQuality, add: &mut impl FnMut(FindingKind, Option<&JointQuality>, String)) {
+    let Some(ratio) = joint.velocity_ratio else {
+        if let Some(correlation) = joint.velocity_correlation.filter(|correlation| correlation.abs() < 0.6) {
+            let text = format!(
+                "the recorded velocity has little to do with the position's slope (correlation {correlation:.2}); check its \
+                 column"
+            );
+            add(FindingKind::VelocityUnrelated, Some(joint), text);
+        }
+        return;
+    };
+    if ratio < 0.0
+        && joint
+            .velocity_correlation
+            .is_some_and(|correlation| correlation.abs() > 0.95)
+    {
+        let text =
+            "the recorded velocity has the sign opposite to the position's slope; turn one (sign in a column map)";
+        add(FindingKind::VelocitySign, Some(joint), text.into());
+    }
+    let size = ratio.abs();
+    // A filtered velocity is smaller than the slope where the motion is small and quick.
+    let clear = joint
+        .velocity_correlation
+        .is_some_and(|correlation| correlation.abs() > 0.98);
+    let guess = if near(size, DEGREES) {
+        "it is in deg/s, or the position in rad against it: give qd_unit = \"deg/s\" in a column map"
+    } else if near(size, 1.0 / DEGREES) {
+        "the position is in degrees: give q_unit = \"deg\" in a column map"
+    } else if near(size, RPM) {
+        "it is in rpm: give qd_unit = \"rpm\" in a column map"
+    } else if near(size, 1e3) || near(size, 1e-3) {
+        "one of them is in thousandths (mm, mrad): give the units in a column map"
+    } else if clear && !(0.8..1.25).contains(&size) {
+        "other units, or motor side against joint side: give units or gear in a column map"
+    } else {
+        return;
+    };
+    let text = format!("the recorded velocity is {size:.4} times the position's slope; {guess}");
+    add(FindingKind::VelocityUnit, Some(joint), text);
+}

@@ -1,0 +1,112 @@
+//! The motion that the positions tell, and what the recorded velocity makes of it.
+
+use super::JointQuality;
+use super::measures::{self, inner};
+use crate::{RegularRecording, Segment};
+
+/// The span of a slope (s), where the clock is fast enough.
+const SPAN: f64 = 0.008;
+/// The longest lag that is looked for (s), and in ticks.
+const LONGEST_LAG: f64 = 0.1;
+const MOST_TICKS: usize = 80;
+/// How many samples a correlation takes at most.
+const SAMPLES: usize = 20_000;
+
+/// A joint's velocity by slopes of its position.
+pub struct Motion {
+    /// Slopes, at every tick that has the neighbours; 0 elsewhere.
+    pub speed: Vec<f64>,
+    /// Neighbours on either side that a slope takes.
+    pub side: usize,
+    /// How much of the position's noise (rad) is in the slope (rad/s): a factor in 1/s.
+    pub gain: f64,
+}
+
+impl Motion {
+    /// The slopes of `q` over some milliseconds.
+    pub fn of(q: &[f64], segments: &[Segment], period: f64) -> Self {
+        let side = ((SPAN / period).round() as usize).clamp(1, 16);
+        let squares: f64 = 2.0 * (1..=side).map(|k| (k * k) as f64).sum::<f64>();
+        let mut speed = vec![0.0; q.len()];
+        for segment in segments {
+            for k in segment.ticks.start + side..segment.ticks.end.saturating_sub(side) {
+                let rise: f64 = (1..=side).map(|away| away as f64 * (q[k + away] - q[k - away])).sum();
+                speed[k] = rise / (squares * period);
+            }
+        }
+        Self {
+            speed,
+            side,
+            gain: 1.0 / (squares.sqrt() * period),
+        }
+    }
+}
+
+/// Correlation of two signals over `ticks`, the second taken `lag` later, and the slope of the second on the first.
+fn correlate(first: &[f64], second: &[f64], ticks: &[usize], lag: isize) -> (f64, f64) {
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for &tick in ticks {
+        let (x, y) = (first[tick], second[tick.wrapping_add_signed(lag)]);
+        xx += x * x;
+        xy += x * y;
+        yy += y * y;
+    }
+    if xx > 0.0 && yy > 0.0 {
+        (xy / (xx * yy).sqrt(), xy / xx)
+    } else {
+        (0.0, 0.0)
+    }
+}
+
+/// Compares recorded velocities with the positions' slopes, into `joints`; the pairs of joints
+/// (position, velocity) whose velocities are swapped.
+pub fn compare(regular: &RegularRecording, motions: &[Motion], joints: &mut [JointQuality]) -> Vec<(usize, usize)> {
+    let Some(qd) = &regular.qd else { return Vec::new() };
+    let reach = ((LONGEST_LAG / regular.period) as usize).clamp(4, MOST_TICKS);
+    let Some(side) = motions.first().map(|motion| motion.side + reach) else {
+        return Vec::new();
+    };
+    let mut ticks: Vec<usize> = inner(&regular.segments, side).collect();
+    let stride = (ticks.len() / SAMPLES).max(1);
+    ticks = ticks.into_iter().step_by(stride).collect();
+    if ticks.len() < 50 {
+        return Vec::new();
+    }
+    let mut swapped = Vec::new();
+    for (joint, motion) in motions.iter().enumerate() {
+        if !joints[joint].moves {
+            continue;
+        }
+        let at = |lag: isize| correlate(&motion.speed, &qd[joint], &ticks, lag);
+        let limit = reach as isize;
+        let best = (-limit..=limit).fold(0, |best: isize, lag| {
+            let better = at(lag).0.abs() > at(best).0.abs();
+            if better { lag } else { best }
+        });
+        let (correlation, ratio) = at(best);
+        joints[joint].velocity_correlation = Some(correlation);
+        if correlation.abs() > 0.8 && best.abs() < limit {
+            // The peak of the parabola through three correlations.
+            let (before, after) = (at(best - 1).0.abs(), at(best + 1).0.abs());
+            let bend = before - 2.0 * correlation.abs() + after;
+            let part = if bend < 0.0 { 0.5 * (before - after) / bend } else { 0.0 };
+            joints[joint].velocity_lag = Some((best as f64 + part) * regular.period);
+            joints[joint].velocity_ratio = Some(ratio);
+        }
+        if correlation.abs() < 0.9 {
+            let other = (0..qd.len())
+                .filter(|&other| other != joint)
+                .map(|other| (other, correlate(&motion.speed, &qd[other], &ticks, 0).0.abs()))
+                .max_by(|a, b| a.1.total_cmp(&b.1));
+            if let Some((other, found)) = other
+                && found > 0.95
+            {
+                swapped.push((joint, other));
+            }
+        }
+    }
+    for (joint, quality) in joints.iter_mut().enumerate() {
+        quality.qd_noise = Some(measures::noise(&qd[joint], &regular.segments));
+    }
+    swapped
+}

@@ -1,0 +1,338 @@
+//! A recording on the regular clock of the drive: what can be filtered and differentiated.
+
+use std::ops::Range;
+
+use crate::clock::{self, Clock};
+use crate::interpolate::between;
+use crate::{PartialSignal, Quantity, Recording, RecordingError, Signal, Warning, spikes};
+
+/// As many missing ticks in a row are interpolated; more part the recording.
+const FILLED: i64 = 5;
+/// Stamps closer to the clock than this share of the period are not worth a word.
+const QUIET: f64 = 0.01;
+
+/// A stretch of evenly spaced ticks without a long gap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Segment {
+    /// Its ticks, as indices into every signal of the [`RegularRecording`].
+    pub ticks: Range<usize>,
+    /// The time of its first tick (s).
+    pub start: f64,
+}
+
+/// A recording whose samples lie on a regular clock, in segments parted by long gaps.
+///
+/// Filter and differentiate segment by segment: from the last tick of one to the first of the next
+/// is more than one period.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RegularRecording {
+    /// The joints' names, in the order of every [`Signal`].
+    pub joints: Vec<String>,
+    /// The time of the first tick (s).
+    pub start: f64,
+    /// From tick to tick (s).
+    pub period: f64,
+    /// The stretches without a long gap, in order; they hold every tick.
+    pub segments: Vec<Segment>,
+    /// Whether a tick was recorded; if not, its values are interpolated.
+    pub present: Vec<bool>,
+    /// Positions (rad or m).
+    pub q: Signal,
+    /// Velocities as recorded (rad/s or m/s): usually filtered, and late.
+    pub qd: Option<Signal>,
+    /// Accelerations as recorded (rad/s² or m/s²).
+    pub qdd: Option<Signal>,
+    /// Torques (N m) or forces (N) at the joint.
+    pub tau: Signal,
+    /// Positions from a second encoder (rad or m).
+    pub q_secondary: PartialSignal,
+    /// Torques computed from motor currents, at the joint (N m or N).
+    pub tau_current: PartialSignal,
+    /// Motor currents (A).
+    pub current: PartialSignal,
+    /// Temperatures (°C).
+    pub temperature: PartialSignal,
+    /// Other columns, by their header.
+    pub others: Vec<(String, Vec<f64>)>,
+    /// Whether the stamps have a regular clock; if not, the rows were resampled by interpolation.
+    pub has_clock: bool,
+    /// Distance of the stamps from the clock, root mean square (s).
+    pub jitter_rms: f64,
+    /// Distance of the stamps from the clock, largest (s).
+    pub jitter_max: f64,
+}
+
+impl RegularRecording {
+    /// The number of ticks.
+    pub fn len(&self) -> usize {
+        self.present.len()
+    }
+
+    /// Whether there are no ticks.
+    pub fn is_empty(&self) -> bool {
+        self.present.is_empty()
+    }
+
+    /// The time of a tick (s).
+    pub fn time(&self, tick: usize) -> f64 {
+        let at = self.segments.partition_point(|segment| segment.ticks.end <= tick);
+        self.segments.get(at).map_or(f64::NAN, |segment| {
+            segment.start + (tick - segment.ticks.start) as f64 * self.period
+        })
+    }
+
+    /// The times of all ticks (s).
+    pub fn times(&self) -> impl Iterator<Item = f64> + '_ {
+        self.segments.iter().flat_map(move |segment| {
+            (0..segment.ticks.len()).map(move |tick| segment.start + tick as f64 * self.period)
+        })
+    }
+}
+
+/// Rows between long gaps and the ticks they make.
+struct Stretch {
+    rows: Range<usize>,
+    /// The place of each row, in periods after the stretch's first tick.
+    places: Vec<f64>,
+    /// How many ticks.
+    ticks: usize,
+    start: f64,
+}
+
+impl Recording {
+    /// The recording on the regular clock that its drive sampled on, and what was found on the way.
+    ///
+    /// Each row goes to its tick, wherever its stamp lies; up to five missing ticks are interpolated
+    /// (and marked in [`RegularRecording::present`]), longer gaps part the segments; single-sample spikes
+    /// are interpolated. Stamps without a regular clock are taken at their word, and the rows resampled.
+    ///
+    /// # Errors
+    /// [`RecordingError::TooShort`] below two samples, [`RecordingError::Time`] if stamps do not increase.
+    pub fn regular(&self) -> Result<(RegularRecording, Vec<Warning>), RecordingError> {
+        let rows = self.len();
+        if rows < 2 {
+            return Err(RecordingError::TooShort { rows, needed: 2 });
+        }
+        let increases = |row: usize| self.time[row] > self.time[row - 1];
+        if let Some(row) = (1..rows).find(|&row| !increases(row)) {
+            let (before, after) = (self.time[row - 1], self.time[row]);
+            return Err(RecordingError::Time { row, before, after });
+        }
+        let clock = clock::find(&self.time, &self.breaks);
+        let mut warnings = Vec::new();
+        let stretches = self.stretches(&clock, &mut warnings);
+        let mut segments = Vec::new();
+        let mut ticks = 0;
+        for stretch in &stretches {
+            segments.push(Segment {
+                ticks: ticks..ticks + stretch.ticks,
+                start: stretch.start,
+            });
+            ticks += stretch.ticks;
+        }
+        let mut present = vec![false; ticks];
+        for (stretch, segment) in stretches.iter().zip(&segments) {
+            for place in &stretch.places {
+                let tick = segment.ticks.start + place.round() as usize;
+                present[tick.min(ticks - 1)] = true;
+            }
+        }
+        self.warn(&clock, &segments, &present, &mut warnings);
+        let mut resample = Resampler {
+            recording: self,
+            stretches: &stretches,
+            period: clock.period,
+            even: clock.regular,
+            warnings: &mut warnings,
+        };
+        let regular = RegularRecording {
+            joints: self.joints.clone(),
+            start: segments.first().map_or(0.0, |segment| segment.start),
+            period: clock.period,
+            q: resample.signal(Quantity::Position, &self.q),
+            qd: self.qd.as_ref().map(|qd| resample.signal(Quantity::Velocity, qd)),
+            qdd: self
+                .qdd
+                .as_ref()
+                .map(|qdd| resample.signal(Quantity::Acceleration, qdd)),
+            tau: resample.signal(Quantity::Torque, &self.tau),
+            q_secondary: resample.partial(Quantity::SecondaryPosition, &self.q_secondary),
+            tau_current: resample.partial(Quantity::CurrentTorque, &self.tau_current),
+            current: resample.partial(Quantity::Current, &self.current),
+            temperature: resample.partial(Quantity::Temperature, &self.temperature),
+            others: self
+                .others
+                .iter()
+                .map(|(name, values)| (name.clone(), resample.channel(None, values)))
+                .collect(),
+            segments,
+            present,
+            has_clock: clock.regular,
+            jitter_rms: clock.jitter.0,
+            jitter_max: clock.jitter.1,
+        };
+        Ok((regular, warnings))
+    }
+
+    /// The rows between long gaps.
+    fn stretches(&self, clock: &Clock, warnings: &mut Vec<Warning>) -> Vec<Stretch> {
+        let mut stretches: Vec<Stretch> = Vec::new();
+        for piece in &clock.pieces {
+            let mut begun = piece.rows.start;
+            let mut shift = piece.shift;
+            for row in piece.rows.clone() {
+                let last = row + 1 == piece.rows.end;
+                if !last && (!clock.regular || clock.ticks[row + 1] - clock.ticks[row] <= FILLED + 1) {
+                    continue;
+                }
+                let first = clock.ticks[begun];
+                let (places, start): (Vec<f64>, f64) = if clock.regular {
+                    let places = clock.ticks[begun..=row].iter().map(|tick| (tick - first) as f64);
+                    (places.collect(), piece.start + first as f64 * clock.period)
+                } else {
+                    let origin = self.time[begun];
+                    let places = self.time[begun..=row]
+                        .iter()
+                        .map(|stamp| (stamp - origin) / clock.period);
+                    (places.collect(), origin)
+                };
+                // A clock that restarts was told in reading.
+                if begun > 0 && !self.breaks.contains(&begun) {
+                    warnings.push(Warning::Gap {
+                        from: self.time[begun - 1],
+                        to: self.time[begun],
+                        shift: std::mem::take(&mut shift),
+                    });
+                }
+                let ticks = 1 + places.last().map_or(0, |place| (place + 1e-6).floor() as usize);
+                stretches.push(Stretch {
+                    rows: begun..row + 1,
+                    places,
+                    ticks,
+                    start,
+                });
+                begun = row + 1;
+            }
+        }
+        stretches
+    }
+
+    fn warn(&self, clock: &Clock, segments: &[Segment], present: &[bool], warnings: &mut Vec<Warning>) {
+        let (rms, max, row) = clock.jitter;
+        if !clock.regular {
+            let share = rms / clock.period;
+            warnings.push(Warning::NoRegularClock {
+                share,
+                period: clock.period,
+            });
+            return;
+        }
+        if rms > QUIET * clock.period {
+            let (time, period) = (self.time[row], clock.period);
+            warnings.push(Warning::Jitter { rms, max, time, period });
+        }
+        let mut lost = (0..present.len()).filter(|&tick| !present[tick]);
+        if let Some(first) = lost.next() {
+            let at = segments.partition_point(|segment| segment.ticks.end <= first);
+            let into = (first - segments[at].ticks.start) as f64;
+            warnings.push(Warning::LostRows {
+                rows: 1 + lost.count(),
+                of: present.len(),
+                time: segments[at].start + into * clock.period,
+            });
+        }
+    }
+}
+
+/// Puts channels on the ticks.
+struct Resampler<'a> {
+    recording: &'a Recording,
+    stretches: &'a [Stretch],
+    period: f64,
+    /// Whether rows lie on ticks.
+    even: bool,
+    warnings: &'a mut Vec<Warning>,
+}
+
+impl Resampler<'_> {
+    fn signal(&mut self, quantity: Quantity, signal: &Signal) -> Signal {
+        (0..signal.len())
+            .map(|joint| self.channel(Some((quantity, joint)), &signal[joint]))
+            .collect()
+    }
+
+    fn partial(&mut self, quantity: Quantity, signal: &PartialSignal) -> PartialSignal {
+        (0..signal.len())
+            .map(|joint| {
+                signal[joint]
+                    .as_ref()
+                    .map(|values| self.channel(Some((quantity, joint)), values))
+            })
+            .collect()
+    }
+
+    fn channel(&mut self, what: Option<(Quantity, usize)>, values: &[f64]) -> Vec<f64> {
+        let count = self
+            .stretches
+            .last()
+            .map_or(0, |_| self.stretches.iter().map(|s| s.ticks).sum());
+        let mut resampled = Vec::with_capacity(count);
+        let mut times = Vec::new();
+        let mut largest = 0.0_f64;
+        for stretch in self.stretches {
+            let mut values = values[stretch.rows.clone()].to_vec();
+            // Temperatures and unknown columns may jump as they like.
+            if matches!(what, Some((quantity, _)) if quantity != Quantity::Temperature) {
+                for spike in spikes::remove(&stretch.places, &mut values) {
+                    times.push(stretch.start + stretch.places[spike.row] * self.period);
+                    largest = if spike.height.abs() > largest.abs() {
+                        spike.height
+                    } else {
+                        largest
+                    };
+                }
+            }
+            self.put(stretch, values, what.is_some(), &mut resampled);
+        }
+        if let (Some((quantity, joint)), false) = (what, times.is_empty()) {
+            self.warnings.push(Warning::Spikes {
+                joint: self.recording.joints[joint].clone(),
+                quantity,
+                times,
+                largest,
+            });
+        }
+        resampled
+    }
+
+    /// The values of a stretch at its ticks; by smooth interpolation, or (`smooth` false) the value before.
+    fn put(&self, stretch: &Stretch, values: Vec<f64>, smooth: bool, into: &mut Vec<f64>) {
+        if self.even && stretch.ticks == values.len() {
+            into.extend(values);
+            return;
+        }
+        let mut next = 0;
+        for tick in 0..stretch.ticks {
+            let at = tick as f64;
+            while next < values.len() && stretch.places[next] < at - 1e-9 {
+                next += 1;
+            }
+            let here = stretch.places.get(next).is_some_and(|place| (place - at).abs() <= 1e-9);
+            into.push(if here {
+                values[next]
+            } else if next == 0 || next >= values.len() {
+                values[next.min(values.len() - 1)]
+            } else if smooth {
+                // One missing sample takes six around it; more take four, which do not amplify noise.
+                let one = stretch.places[next] - stretch.places[next - 1] < 2.5;
+                between(&stretch.places, &values, next, if one && self.even { 3 } else { 2 }, at)
+            } else {
+                values[next - 1]
+            });
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "regular_tests.rs"]
+mod tests;

@@ -1,0 +1,279 @@
+//! The rows of a file as they are read: values by the plan, duplicates and runs told apart.
+
+use std::path::Path;
+
+use csv::ByteRecord;
+
+use crate::header::Plan;
+use crate::{PartialSignal, Quantity, Recording, RecordingError, Signal, Warning};
+
+/// A clock that starts anew does so within this share of its run's length from where it started.
+const RESTART_SHARE: f64 = 0.01;
+/// A run in a file of several has at least this many rows.
+const RUN_ROWS: usize = 50;
+/// The time between two runs whose clocks say nothing of it (s).
+const RUN_PAUSE: f64 = 1.0;
+/// Rows with the stamp of the row before but other values may be this share of all.
+const DIFFERING_SHARE: f64 = 0.01;
+
+/// The rows read so far, by the plan.
+pub struct Rows<'a> {
+    path: &'a Path,
+    plan: &'a Plan,
+    width: usize,
+    time: Vec<f64>,
+    channels: Vec<Vec<f64>>,
+    others: Vec<Option<Vec<f64>>>,
+    breaks: Vec<usize>,
+    warnings: Vec<Warning>,
+    /// The row before, as bytes, and its stamp as the file has it (s).
+    before: ByteRecord,
+    stamp: f64,
+    /// The first stamp of this run as the file has it (s), and what is added to the stamps (s).
+    first: f64,
+    shift: f64,
+    /// Duplicated rows: how many, how many of them differ, the lines of the first and of the first that differs.
+    duplicates: usize,
+    differing: usize,
+    duplicate_line: u64,
+    differing_line: u64,
+}
+
+impl<'a> Rows<'a> {
+    /// None yet, of a file with `width` columns.
+    pub fn new(path: &'a Path, plan: &'a Plan, width: usize) -> Self {
+        Self {
+            path,
+            plan,
+            width,
+            time: Vec::new(),
+            channels: vec![Vec::new(); plan.channels.len()],
+            others: vec![Some(Vec::new()); plan.others.len()],
+            breaks: Vec::new(),
+            warnings: Vec::new(),
+            before: ByteRecord::new(),
+            stamp: f64::NAN,
+            first: f64::NAN,
+            shift: 0.0,
+            duplicates: 0,
+            differing: 0,
+            duplicate_line: 0,
+            differing_line: 0,
+        }
+    }
+
+    /// The last row, which is left out if the file is cut in it.
+    pub fn take_last(&mut self, row: &ByteRecord, ends_whole: bool) -> Result<(), RecordingError> {
+        let cell = |row: &ByteRecord| row.iter().next_back().map_or(0, <[u8]>::len);
+        // Without a newline at the end, the last number may have lost digits.
+        let may_be_cut = !ends_whole && cell(row) < cell(&self.before);
+        let whole = row.len() == self.width && !may_be_cut;
+        if whole || (row.len() > self.width) {
+            let taken = self.take(row);
+            if ends_whole || taken.is_ok() || row.iter().next_back().and_then(number).is_some() {
+                return taken;
+            }
+        }
+        let line = line_of(row);
+        self.warnings.push(Warning::CutFile { line });
+        Ok(())
+    }
+
+    /// Takes a row, which must be whole.
+    pub fn take(&mut self, row: &ByteRecord) -> Result<(), RecordingError> {
+        if row.len() != self.width {
+            return Err(self.row_error(
+                row,
+                format!(
+                    "the row has {} cells, the header {}; mend or delete the row",
+                    row.len(),
+                    self.width
+                ),
+            ));
+        }
+        let stamp = self.value(row, self.plan.time, &self.plan.time_header)? * self.plan.time_factor;
+        if !self.time.is_empty() && stamp <= self.stamp {
+            if stamp == self.stamp {
+                self.duplicate(row);
+                return Ok(());
+            }
+            self.restart(row, stamp)?;
+        } else if self.time.is_empty() {
+            self.first = stamp;
+        }
+        for index in 0..self.plan.channels.len() {
+            let channel = &self.plan.channels[index];
+            let value = self.value(row, channel.index, &channel.header)?;
+            self.channels[index].push(channel.factor * value + channel.offset);
+        }
+        for (other, (index, header)) in self.others.iter_mut().zip(&self.plan.others) {
+            if let Some(values) = other {
+                match row.get(*index).and_then(number) {
+                    Some(value) => values.push(value),
+                    None => {
+                        *other = None;
+                        self.warnings.push(Warning::ColumnLeftOut {
+                            column: header.clone(),
+                            line: line_of(row),
+                            found: text(row.get(*index)),
+                        });
+                    }
+                }
+            }
+        }
+        self.time.push(stamp + self.shift);
+        self.stamp = stamp;
+        self.before.clone_from(row);
+        Ok(())
+    }
+
+    fn value(&self, row: &ByteRecord, index: usize, column: &str) -> Result<f64, RecordingError> {
+        row.get(index).and_then(number).ok_or_else(|| RecordingError::Value {
+            path: self.path.to_owned(),
+            line: line_of(row),
+            column: column.to_owned(),
+            found: text(row.get(index)),
+            remedy: "delete the row: a row that is missing is a gap, and gaps are dealt with",
+        })
+    }
+
+    fn row_error(&self, row: &ByteRecord, reason: String) -> RecordingError {
+        RecordingError::Row {
+            path: self.path.to_owned(),
+            line: line_of(row),
+            reason,
+        }
+    }
+
+    fn duplicate(&mut self, row: &ByteRecord) {
+        self.duplicates += 1;
+        if self.duplicates == 1 {
+            self.duplicate_line = line_of(row);
+        }
+        if row != &self.before {
+            self.differing += 1;
+            if self.differing == 1 {
+                self.differing_line = line_of(row);
+            }
+        }
+    }
+
+    /// Time that runs back: another run if it starts where this one started, else an error.
+    fn restart(&mut self, row: &ByteRecord, stamp: f64) -> Result<(), RecordingError> {
+        let begun = self.breaks.last().copied().unwrap_or(0);
+        let length = self.stamp - self.first;
+        let near_start = (stamp - self.first).abs() <= RESTART_SHARE * length;
+        if self.time.len() - begun < RUN_ROWS || !near_start {
+            return Err(self.row_error(
+                row,
+                format!(
+                    "time runs back, from {} s to {stamp} s; sort the rows by time, or keep each run in a file of its own",
+                    self.stamp
+                ),
+            ));
+        }
+        let before = self.stamp;
+        self.breaks.push(self.time.len());
+        self.shift += self.stamp + RUN_PAUSE - stamp;
+        self.first = stamp;
+        self.warnings.push(Warning::ClockRestart {
+            line: line_of(row),
+            before,
+            after: stamp,
+            placed: stamp + self.shift,
+        });
+        Ok(())
+    }
+
+    /// The recording that the rows make.
+    pub fn finish(mut self) -> Result<Recording, RecordingError> {
+        let path = self.path.to_owned();
+        let rows = self.time.len();
+        if rows < 2 {
+            let found = if rows == 0 { "no rows" } else { "one row" };
+            return Err(RecordingError::Header {
+                path,
+                reason: format!("there is {found} below the header; a motion takes at least two, and a fit thousands"),
+            });
+        }
+        if self.differing as f64 > DIFFERING_SHARE * rows as f64 + 1.0 {
+            return Err(RecordingError::Row {
+                path,
+                line: self.differing_line,
+                reason: format!(
+                    "{} rows have the time of the row before but other values; log the time with finer digits",
+                    self.differing
+                ),
+            });
+        }
+        if self.duplicates > 0 {
+            self.warnings.push(Warning::Duplicates {
+                rows: self.duplicates,
+                line: self.duplicate_line,
+                differ: self.differing > 0,
+            });
+        }
+        let joints = self.plan.joints.len();
+        let mut partial = |quantity: Quantity| -> PartialSignal {
+            let mut signal = vec![None; joints];
+            for (channel, values) in self.plan.channels.iter().zip(&mut self.channels) {
+                if channel.quantity == quantity {
+                    signal[channel.joint] = Some(std::mem::take(values));
+                }
+            }
+            if signal.iter().all(Option::is_none) {
+                Vec::new()
+            } else {
+                signal
+            }
+        };
+        let mut whole = |quantity: Quantity| -> Signal { partial(quantity).into_iter().flatten().collect() };
+        let some = |signal: Signal| if signal.is_empty() { None } else { Some(signal) };
+        let (q, tau) = (whole(Quantity::Position), whole(Quantity::Torque));
+        let (qd, qdd) = (some(whole(Quantity::Velocity)), some(whole(Quantity::Acceleration)));
+        if qd.is_none() {
+            self.warnings.push(Warning::NoVelocity);
+        }
+        let q_secondary = partial(Quantity::SecondaryPosition);
+        let tau_current = partial(Quantity::CurrentTorque);
+        let (current, temperature) = (partial(Quantity::Current), partial(Quantity::Temperature));
+        let others = self.plan.others.iter().zip(self.others);
+        Ok(Recording {
+            joints: self.plan.joints.clone(),
+            time: self.time,
+            q,
+            qd,
+            qdd,
+            tau,
+            q_secondary,
+            tau_current,
+            current,
+            temperature,
+            others: others
+                .filter_map(|((_, name), values)| values.map(|values| (name.clone(), values)))
+                .collect(),
+            breaks: self.breaks,
+            warnings: self.warnings,
+        })
+    }
+}
+
+/// The finite number that a cell holds.
+fn number(cell: &[u8]) -> Option<f64> {
+    let text = std::str::from_utf8(cell.trim_ascii()).ok()?;
+    text.parse().ok().filter(|value: &f64| value.is_finite())
+}
+
+fn text(cell: Option<&[u8]>) -> String {
+    let text = String::from_utf8_lossy(cell.unwrap_or_default());
+    let short: String = text.chars().take(40).collect();
+    if short.len() < text.len() {
+        format!("{short}…")
+    } else {
+        short
+    }
+}
+
+fn line_of(row: &ByteRecord) -> u64 {
+    row.position().map_or(1, csv::Position::line)
+}

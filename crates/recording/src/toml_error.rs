@@ -1,0 +1,30 @@
+//! What TOML's errors mean to the one who wrote the file.
+
+/// What is wrong, in one line; an unknown key comes with the nearest known one.
+pub fn toml_reason(message: &str) -> String {
+    match unknown_field(message) {
+        Some((unknown, known)) => {
+            let hint = match nearest(&unknown, &known) {
+                Some(nearest) => format!("did you mean `{nearest}`? "),
+                None => String::new(),
+            };
+            format!("unknown key `{unknown}`; {hint}known here: {}", known.join(", "))
+        }
+        None => message.replace('\n', " "),
+    }
+}
+
+/// The name in `known` nearest to `name`, if any is near enough to be meant.
+pub fn nearest<'a>(name: &str, known: &'a [String]) -> Option<&'a str> {
+    let distance = |other: &str| strsim::damerau_levenshtein(&name.to_lowercase(), &other.to_lowercase());
+    let best = known.iter().min_by_key(|other| distance(other))?;
+    (distance(best) <= name.len().max(best.len()).div_ceil(2)).then_some(best.as_str())
+}
+
+/// The field and the known ones in serde's "unknown field `a`, expected one of `b`, `c`".
+fn unknown_field(message: &str) -> Option<(String, Vec<String>)> {
+    let rest = message.strip_prefix("unknown field `")?;
+    let (unknown, rest) = rest.split_once('`')?;
+    let known = rest.split('`').skip(1).step_by(2).map(str::to_owned).collect();
+    Some((unknown.to_owned(), known))
+}

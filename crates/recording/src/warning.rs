@@ -1,0 +1,215 @@
+//! What is doubtful in a recording, though it can be used: each with its place.
+
+use std::fmt;
+
+use serde::Serialize;
+
+/// Which quantity of a joint a warning is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Position.
+    Position,
+    /// Velocity.
+    Velocity,
+    /// Acceleration.
+    Acceleration,
+    /// Torque or force.
+    Torque,
+    /// The second encoder's position.
+    SecondaryPosition,
+    /// Torque computed from current.
+    CurrentTorque,
+    /// Motor current.
+    Current,
+    /// Temperature.
+    Temperature,
+}
+
+impl Quantity {
+    /// The prefix of its columns, with the underscore.
+    pub fn prefix(self) -> &'static str {
+        match self {
+            Self::Position => "q_",
+            Self::Velocity => "qd_",
+            Self::Acceleration => "qdd_",
+            Self::Torque => "tau_",
+            Self::SecondaryPosition => "q_secondary_",
+            Self::CurrentTorque => "tau_current_",
+            Self::Current => "current_",
+            Self::Temperature => "temperature_",
+        }
+    }
+}
+
+/// Something found in a recording and dealt with.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Warning {
+    /// The file ends in the middle of a row, which was left out.
+    CutFile {
+        /// The line of the row.
+        line: u64,
+    },
+    /// Rows equal to the one before (or with its time stamp) were left out.
+    Duplicates {
+        /// How many.
+        rows: usize,
+        /// The line of the first.
+        line: u64,
+        /// Whether some had the stamp of the row before but other values.
+        differ: bool,
+    },
+    /// The time starts anew: several runs in one file.
+    ClockRestart {
+        /// The line of the new run's first row.
+        line: u64,
+        /// The last stamp before (s).
+        before: f64,
+        /// The first stamp after, as the file has it (s).
+        after: f64,
+        /// The stamp that the row has in the recording (s).
+        placed: f64,
+    },
+    /// A column that is not needed holds something other than numbers and was left out.
+    ColumnLeftOut {
+        /// Its header.
+        column: String,
+        /// The first line where it does.
+        line: u64,
+        /// What stands there.
+        found: String,
+    },
+    /// There is no velocity; it has to be differentiated from the position.
+    NoVelocity,
+    /// Stamps scatter about the regular clock; rows were put on its ticks.
+    Jitter {
+        /// Root mean square (s).
+        rms: f64,
+        /// Largest (s).
+        max: f64,
+        /// The time of the largest (s).
+        time: f64,
+        /// The clock's period (s).
+        period: f64,
+    },
+    /// No regular clock fits the stamps; the rows were resampled by interpolation.
+    NoRegularClock {
+        /// Root mean square distance of the stamps from the best clock, as a share of its period.
+        share: f64,
+        /// The period chosen (s).
+        period: f64,
+    },
+    /// Single rows are missing; their values were interpolated.
+    LostRows {
+        /// How many.
+        rows: usize,
+        /// Of how many ticks.
+        of: usize,
+        /// The time of the first (s).
+        time: f64,
+    },
+    /// A gap too long to interpolate; the recording is in pieces there.
+    Gap {
+        /// The last time before it (s).
+        from: f64,
+        /// The first time after it (s).
+        to: f64,
+        /// The clock's shift over the gap, as a share of the period, where it is not the same clock on both sides.
+        shift: f64,
+    },
+    /// Single samples far from their neighbours were interpolated.
+    Spikes {
+        /// The joint.
+        joint: String,
+        /// The quantity.
+        quantity: Quantity,
+        /// The times (s).
+        times: Vec<f64>,
+        /// The largest, against its neighbours (the quantity's unit).
+        largest: f64,
+    },
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::CutFile { line } => write!(
+                f,
+                "line {line}: the file is cut in the middle of this row; it was left out"
+            ),
+            Self::Duplicates { rows, line, differ } => {
+                let what = if *differ {
+                    "with the time of the row before"
+                } else {
+                    "equal to the row before"
+                };
+                let verb = if *rows == 1 { "row was" } else { "rows were" };
+                write!(f, "line {line}: {rows} {verb} left out, {what}")
+            }
+            Self::ClockRestart {
+                line,
+                before,
+                after,
+                placed,
+            } => write!(
+                f,
+                "line {line}: time starts anew ({before} s, then {after} s): taken as another run, placed at {placed:.6} s"
+            ),
+            Self::ColumnLeftOut { column, line, found } => {
+                write!(
+                    f,
+                    "line {line}: column \"{column}\" is \"{found}\", not a number; the column was left out"
+                )
+            }
+            Self::NoVelocity => write!(
+                f,
+                "there is no velocity (qd_<joint>); it is differentiated from the position"
+            ),
+            Self::Jitter { rms, max, time, period } => write!(
+                f,
+                "the stamps scatter about a clock of {:.6} Hz by {:.1} % of its period (at most {:.0} %, at {time:.3} s); \
+                 rows were put on its ticks",
+                1.0 / period,
+                100.0 * rms / period,
+                100.0 * max / period
+            ),
+            Self::NoRegularClock { share, period } => write!(
+                f,
+                "no regular clock fits the stamps (they scatter by {:.0} % of the period about {:.3} Hz); resampled by \
+                 interpolation, so derivatives are less sure: log with the drive's own clock",
+                100.0 * share,
+                1.0 / period
+            ),
+            Self::LostRows { rows, of, time } => write!(
+                f,
+                "{rows} of {of} rows are missing one or a few at a time (the first at {time:.3} s); interpolated"
+            ),
+            Self::Gap { from, to, shift } => {
+                write!(f, "nothing from {from:.4} s to {to:.4} s; taken as separate pieces")?;
+                if *shift == 0.0 {
+                    Ok(())
+                } else {
+                    write!(f, " (the clock is shifted by {:.0} % of a period)", 100.0 * shift)
+                }
+            }
+            Self::Spikes {
+                joint,
+                quantity,
+                times,
+                largest,
+            } => {
+                let shown: Vec<String> = times.iter().take(5).map(|time| format!("{time:.3}")).collect();
+                let more = if times.len() > shown.len() { ", …" } else { "" };
+                write!(
+                    f,
+                    "{}{joint}: {} single-sample spike{} (up to {largest:.3e}) at {}{more} s; interpolated",
+                    quantity.prefix(),
+                    times.len(),
+                    if times.len() == 1 { "" } else { "s" },
+                    shown.join(", ")
+                )
+            }
+        }
+    }
+}

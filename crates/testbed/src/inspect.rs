@@ -1,0 +1,242 @@
+//! `testbed inspect FILE…`: what recordings are worth, before anything is fitted to them.
+
+mod model_check;
+mod smooth;
+
+use std::path::Path;
+
+use anyhow::{Context, bail};
+use arm::Arm;
+use recording::{ColumnMap, Quality, Recording, Warning};
+use serde::Serialize;
+
+use crate::cli::InspectArgs;
+use crate::library::{self, Source};
+use crate::output;
+
+/// What `--json` holds.
+#[derive(Serialize)]
+struct Report<'a> {
+    schema: &'static str,
+    robot: Option<&'a str>,
+    files: Vec<FileReport<'a>>,
+}
+
+/// One recording.
+#[derive(Serialize)]
+struct FileReport<'a> {
+    file: &'a Path,
+    #[serde(flatten)]
+    quality: Quality,
+    /// What does not fit the robot's model.
+    against_robot: Vec<model_check::Misfit>,
+    warnings: Vec<Told>,
+}
+
+/// A warning with its sentence.
+#[derive(Serialize)]
+struct Told {
+    text: String,
+    #[serde(flatten)]
+    warning: Warning,
+}
+
+/// Inspects the recordings that `args` name.
+///
+/// # Errors
+/// If the robot or the map cannot be read, an output cannot be written, or a recording is unreadable;
+/// the others are inspected all the same.
+pub fn run(args: &InspectArgs) -> anyhow::Result<()> {
+    if let Some(path) = &args.json {
+        output::check_writable(path)?;
+    }
+    let arm = args.robot.as_deref().map(load_robot).transpose()?;
+    let map = args.map.as_deref().map(ColumnMap::load).transpose()?;
+    let mut files = Vec::new();
+    for file in &args.files {
+        let report = match inspect(file, map.as_ref(), arm.as_ref()) {
+            Ok(report) => report,
+            Err(error) => {
+                eprintln!("error: {error:#}");
+                continue;
+            }
+        };
+        print(&report);
+        files.push(report);
+    }
+    if files.len() < args.files.len() {
+        let unread = args.files.len() - files.len();
+        bail!("{unread} of {} recordings cannot be used", args.files.len());
+    }
+    if let Some(path) = &args.json {
+        let report = Report {
+            schema: "testbed.inspect/1",
+            robot: arm.as_ref().map(Arm::name),
+            files,
+        };
+        output::write_json(path, &report)?;
+        println!("written: {}", path.display());
+    }
+    Ok(())
+}
+
+fn load_robot(robot: &str) -> anyhow::Result<Arm> {
+    let here = Source {
+        name: String::new(),
+        path: "".into(),
+        text: String::new(),
+    };
+    let (arm, path) = library::load_arm(robot, &here).with_context(|| format!("--robot {robot}"))?;
+    for warning in arm.warnings() {
+        eprintln!("note: {}: {warning}", path.display());
+    }
+    Ok(arm)
+}
+
+fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> anyhow::Result<FileReport<'a>> {
+    let recording = Recording::read_csv_with(file, map)?;
+    let (regular, found) = recording.regular().with_context(|| file.display().to_string())?;
+    let quality = Quality::of(&recording, &regular);
+    let warnings = recording.warnings.iter().cloned().chain(found);
+    let against_robot = arm.map_or(Vec::new(), |arm| model_check::check(arm, &regular, &quality));
+    Ok(FileReport {
+        file,
+        quality,
+        against_robot,
+        warnings: warnings
+            .map(|warning| Told {
+                text: warning.to_string(),
+                warning,
+            })
+            .collect(),
+    })
+}
+
+/// Longer lists of one kind are shortened on the terminal.
+const MOST_GAPS: usize = 3;
+
+fn print(report: &FileReport<'_>) {
+    let quality = &report.quality;
+    let clock = if !quality.has_clock {
+        "no regular clock".into()
+    } else if quality.jitter_rms < 1e-3 / quality.rate {
+        "regular clock".to_owned()
+    } else {
+        format!(
+            "stamps off by {:.1} % of a period",
+            100.0 * quality.jitter_rms * quality.rate
+        )
+    };
+    println!(
+        "{}: {} joints, {} rows, {:.2} s at {} Hz, {clock}",
+        report.file.display(),
+        quality.joints.len(),
+        quality.rows,
+        quality.duration,
+        rounded(quality.rate)
+    );
+    let header = [
+        "joint", "position", "speed", "moves", "turns", "torque", "q step", "qd late",
+    ];
+    let mut table = output::table(header.map(str::to_owned));
+    for column in table.column_iter_mut() {
+        column.set_padding((0, 1));
+    }
+    let or_dash = |text: Option<String>| text.unwrap_or_else(|| "–".to_owned());
+    for joint in &quality.joints {
+        table.add_row([
+            joint.joint.clone(),
+            span(joint.q_range),
+            rounded(joint.speed_max),
+            if joint.moves {
+                format!("{:.0} %", 100.0 * joint.moving_share)
+            } else {
+                "no".into()
+            },
+            joint.reversals.to_string(),
+            span(joint.tau_range),
+            or_dash(joint.q_step.map(rounded)),
+            or_dash(joint.velocity_lag.map(|lag| {
+                // No minus before a zero.
+                let tenths = (1e4 * lag).round() + 0.0;
+                format!("{:.1} ms", tenths / 10.0)
+            })),
+        ]);
+    }
+    println!("{table}");
+    let mut gaps = 0;
+    for told in &report.warnings {
+        if matches!(told.warning, Warning::Gap { .. }) {
+            gaps += 1;
+            if gaps > MOST_GAPS {
+                continue;
+            }
+        }
+        println!("- {}", told.text);
+    }
+    if gaps > MOST_GAPS {
+        println!("- gaps in all: {gaps} (--json has them)");
+    }
+    for finding in &quality.findings {
+        println!("- {}{}", about(finding.joint.as_deref()), finding.text);
+    }
+    for misfit in &report.against_robot {
+        println!("- {}{}", about(misfit.joint.as_deref()), misfit.text);
+    }
+    if report.warnings.is_empty() && quality.findings.is_empty() && report.against_robot.is_empty() {
+        println!("- nothing to remark");
+    }
+    println!();
+}
+
+fn about(joint: Option<&str>) -> String {
+    joint.map_or_else(String::new, |joint| format!("{joint}: "))
+}
+
+fn span((low, high): (f64, f64)) -> String {
+    let size = low.abs().max(high.abs());
+    let short = |value: f64| rounded(if value.abs() < 2e-3 * size { 0.0 } else { value });
+    if high - low < 2e-3 * size {
+        short(high)
+    } else {
+        format!("{} … {}", short(low), short(high))
+    }
+}
+
+/// Three significant digits, for narrow tables.
+fn rounded(value: f64) -> String {
+    let magnitude = value.abs();
+    if value == 0.0 {
+        "0".into()
+    } else if (1e-3..1e5).contains(&magnitude) {
+        let decimals = (2 - magnitude.log10().floor() as i32).max(0) as usize;
+        let text = format!("{value:.decimals$}");
+        if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        } else {
+            text
+        }
+    } else {
+        format!("{value:.1e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        let cases = [
+            (250.0, "250"),
+            (0.1234, "0.123"),
+            (-1570.72, "-1571"),
+            (5e-5, "5.0e-5"),
+            (0.5, "0.5"),
+            (1e3, "1000"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(rounded(value), text);
+        }
+    }
+}
