@@ -102,7 +102,7 @@ pub struct InspectArgs {
 pub enum LengthScalesArg {
     /// One for all inputs (the paper's equation 4)
     One,
-    /// One an input: slower to train, and it does not matter in which units the inputs are
+    /// One an input: in which units the inputs are does not matter then
     PerInput,
 }
 
