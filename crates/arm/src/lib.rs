@@ -17,6 +17,7 @@ mod model;
 mod pose;
 mod regressor;
 mod urdf;
+mod variants;
 mod visual;
 mod workspace;
 

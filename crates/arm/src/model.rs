@@ -230,34 +230,6 @@ impl Arm {
         &self.warnings
     }
 
-    /// The same arm under another gravity (m/s², base frame).
-    pub fn with_gravity(mut self, gravity: Vector3<f64>) -> Self {
-        self.gravity = gravity;
-        self
-    }
-
-    /// The same arm with drives: reflected rotor inertias (kg m² or kg), one a joint.
-    ///
-    /// # Panics
-    /// If there is not one value a joint.
-    pub fn with_rotor_inertias(mut self, rotor_inertias: &[f64]) -> Self {
-        assert_eq!(rotor_inertias.len(), self.dof(), "one rotor inertia a joint");
-        for (joint, &inertia) in self.joints.iter_mut().zip(rotor_inertias) {
-            joint.rotor_inertia = inertia;
-        }
-        self
-    }
-
-    /// The arm with every link's mass and inertia tensor times `factor`, centres of mass kept: the
-    /// model error of the paper (section IV.A) at 1.2.
-    pub fn with_scaled_inertias(mut self, factor: f64) -> Self {
-        for joint in &mut self.joints {
-            joint.inertia.mass *= factor;
-            joint.inertia.tensor *= factor;
-        }
-        self
-    }
-
     /// The ten inertial parameters of every link, base to tip: what the columns of the torque
     /// regressor multiply.
     pub fn inertial_parameters(&self) -> Vec<f64> {

@@ -1,0 +1,119 @@
+//! Arms that differ from the one a URDF describes: another gravity, other masses, drives, a payload.
+
+use nalgebra::{Rotation3, Unit, Vector3};
+
+use crate::model::{Arm, Inertia};
+
+impl Arm {
+    /// The same arm under another gravity (m/s², base frame).
+    pub fn with_gravity(mut self, gravity: Vector3<f64>) -> Self {
+        self.gravity = gravity;
+        self
+    }
+
+    /// The same arm on a base turned by `angle` (rad) about `axis` (in the base's frame, of any length but
+    /// zero): seen from the base, gravity is turned the other way, g' = R(axis, angle)ᵀ g.
+    ///
+    /// # Panics
+    /// If the axis has no length.
+    pub fn with_turned_base(mut self, axis: Vector3<f64>, angle: f64) -> Self {
+        let axis = Unit::try_new(axis, 0.0).expect("an axis has a length");
+        let world_from_base = Rotation3::from_axis_angle(&axis, angle);
+        self.gravity = world_from_base.inverse_transform_vector(&self.gravity);
+        self
+    }
+
+    /// The same arm with drives: reflected rotor inertias (kg m² or kg), one a joint.
+    ///
+    /// # Panics
+    /// If there is not one value a joint.
+    pub fn with_rotor_inertias(mut self, rotor_inertias: &[f64]) -> Self {
+        assert_eq!(rotor_inertias.len(), self.dof(), "one rotor inertia a joint");
+        for (joint, &inertia) in self.joints.iter_mut().zip(rotor_inertias) {
+            joint.rotor_inertia = inertia;
+        }
+        self
+    }
+
+    /// The arm with every link's mass and inertia tensor times `factor`, centres of mass kept: the
+    /// model error of the paper (section IV.A) at 1.2.
+    pub fn with_scaled_inertias(mut self, factor: f64) -> Self {
+        for link in 0..self.dof() {
+            self = self.with_scaled_link(link, factor);
+        }
+        self
+    }
+
+    /// The arm with the mass and inertia tensor of moving link `link` (from 0) times `factor`, its centre of mass kept.
+    ///
+    /// # Panics
+    /// If there is no such link.
+    pub fn with_scaled_link(mut self, link: usize, factor: f64) -> Self {
+        let body = &mut self.joints[link].inertia;
+        body.mass *= factor;
+        body.tensor *= factor;
+        self
+    }
+
+    /// The arm with `payload` welded to its tool: mass (kg), centre of mass (m) and tensor about it (kg m²) in the
+    /// frame of [`Self::tool_frame`].
+    pub fn with_payload(mut self, payload: &Inertia) -> Self {
+        let tool = self.tool_frame();
+        let last = self.dof() - 1;
+        let body = &mut self.joints[last].inertia;
+        *body = body.merged(&payload.transformed(&tool.link_from_frame));
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Workspace;
+    use nalgebra::Matrix3;
+
+    /// A vertical axis whose link has its centre of mass .5 m out, and a tool turned by a right angle about z.
+    const ARM: &str = r#"<robot name="a"><link name="base"/>
+<joint name="j" type="continuous"><parent link="base"/><child link="l"/><axis xyz="0 1 0"/></joint>
+<link name="l"><inertial><origin xyz=".5 0 0"/><mass value="2"/><inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".1"/></inertial></link>
+<joint name="f" type="fixed"><origin xyz="1 0 0" rpy="0 0 1.5707963267948966"/><parent link="l"/><child link="tool"/></joint>
+<link name="tool"/></robot>"#;
+
+    fn holding(arm: &Arm) -> f64 {
+        let mut tau = [0.0];
+        arm.gravity_torque(&mut Workspace::new(arm), &[0.0], &mut tau);
+        tau[0]
+    }
+
+    #[test]
+    fn a_payload_is_given_in_the_tools_frame() {
+        let arm = Arm::from_urdf_text(ARM, "a.urdf").expect("it is an arm");
+        // The tool's y axis is the link's −x axis: .2 m along it brings the payload back to .8 m.
+        let payload = Inertia {
+            mass: 3.0,
+            com: Vector3::new(0.0, 0.2, 0.0),
+            tensor: Matrix3::from_diagonal(&Vector3::new(0.01, 0.02, 0.03)),
+        };
+        let loaded = arm.clone().with_payload(&payload);
+        assert!((holding(&arm) + 9.81 * 2.0 * 0.5).abs() < 1e-12);
+        assert!((holding(&loaded) + 9.81 * (2.0 * 0.5 + 3.0 * 0.8)).abs() < 1e-12);
+        // About the link's y axis turns what is the tool's x axis.
+        let about_origin = loaded.joints()[0].inertia.tensor_about_origin()[(1, 1)];
+        assert!((about_origin - (0.1 + 2.0 * 0.25 + 0.01 + 3.0 * 0.64)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_turned_base_turns_gravity_the_other_way() {
+        let arm = Arm::from_urdf_text(ARM, "a.urdf").expect("it is an arm");
+        // Turned by +30° about x, the base's y axis points up by 30°: gravity has a part against it.
+        let turned = arm.with_turned_base(Vector3::new(2.0, 0.0, 0.0), std::f64::consts::FRAC_PI_6);
+        let expected = 9.81 * Vector3::new(0.0, -0.5, -(0.75_f64).sqrt());
+        assert!((turned.gravity() - expected).norm() < 1e-12);
+    }
+
+    #[test]
+    fn one_link_scales_alone() {
+        let arm = Arm::from_urdf_text(ARM, "a.urdf").expect("it is an arm");
+        assert!((holding(&arm.clone().with_scaled_link(0, 1.5)) - 1.5 * holding(&arm)).abs() < 1e-12);
+    }
+}
