@@ -53,6 +53,10 @@ impl DryFriction {
         }
     }
 
+    pub(crate) fn set_levels(&mut self, levels: &[f64]) {
+        self.levels.copy_from_slice(levels);
+    }
+
     /// Whether any joint has dry friction.
     pub(crate) fn is_dry(&self) -> bool {
         self.levels.iter().any(|&level| level > 0.0)

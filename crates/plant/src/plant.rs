@@ -85,6 +85,21 @@ impl Plant {
         self.friction.is_stuck(i)
     }
 
+    /// Dry friction is `levels` from now on, one value a joint (N m or N): it may change from step to step.
+    ///
+    /// # Errors
+    /// [`PlantError::Count`] if there is not one value a joint, [`PlantError::Value`] if one is negative or not finite.
+    pub fn set_dry_friction(&mut self, levels: &[f64]) -> Result<(), PlantError> {
+        let what = "the dry friction";
+        check_count(what, levels, self.dof())?;
+        if let Some(i) = levels.iter().position(|level| !(level.is_finite() && *level >= 0.0)) {
+            let (joint, value) = (self.names[i].clone(), levels[i]);
+            return Err(PlantError::Value { what, joint, value });
+        }
+        self.friction.set_levels(levels);
+        Ok(())
+    }
+
     /// Puts the arm at `q`, moving at `qd`; the time goes on.
     ///
     /// # Errors

@@ -143,6 +143,28 @@ fn no_friction_is_no_friction() {
     assert!(distance(&run(vec![]), &little) < 1e-6, "{little:?}");
 }
 
+/// Levels set later are as levels set at first, and what is no level is refused.
+#[test]
+fn levels_may_change() {
+    let arm = puma();
+    let options = PlantOptions {
+        coulomb: vec![2.0; 6],
+        ..PlantOptions::default()
+    };
+    let mut at_first = Plant::new(&arm, &options).unwrap();
+    let mut later = Plant::new(&arm, &PlantOptions::default()).unwrap();
+    later.set_dry_friction(&[2.0; 6]).unwrap();
+    for plant in [&mut at_first, &mut later] {
+        plant.set_state(&[0.3; 6], &[0.1; 6]).unwrap();
+        for _ in 0..100 {
+            plant.step(&[0.0; 6]).unwrap();
+        }
+    }
+    assert_eq!(at_first.q(), later.q());
+    assert!(later.set_dry_friction(&[2.0; 5]).is_err());
+    assert!(later.set_dry_friction(&[0.0, 0.0, -1.0, 0.0, 0.0, 0.0]).is_err());
+}
+
 /// Dry friction takes energy out and never puts any in, until every joint has stopped for good. The wrist,
 /// light and under friction a thousand times its weight's, stops and breaks away many times within some of
 /// the steps.
