@@ -14,12 +14,19 @@ use crate::samples::Samples;
 pub struct TrainingOptions {
     /// One length scale for all inputs (the paper's equation 4), or one an input.
     pub lengths: LengthScales,
+    /// Starts that the likelihood search climbs from, at least 1: [`FitOptions::starts`].
+    pub starts: usize,
+    /// Iterations from each start: [`FitOptions::max_iterations`].
+    pub max_iterations: u64,
 }
 
 impl Default for TrainingOptions {
     fn default() -> Self {
+        let fit = FitOptions::default();
         Self {
             lengths: LengthScales::Isotropic,
+            starts: fit.starts,
+            max_iterations: fit.max_iterations,
         }
     }
 }
@@ -93,6 +100,8 @@ impl Learned {
         }
         let fit = FitOptions {
             lengths: options.lengths,
+            starts: options.starts,
+            max_iterations: options.max_iterations,
             ..FitOptions::default()
         };
         // Each regression is a computation of its own, so the result does not depend on the threads.
@@ -146,6 +155,7 @@ impl TorqueModel for Learned {
     fn predict(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64], prediction: &mut Prediction) {
         self.evaluate_features(workspace, q, qd, qdd);
         prediction.rigid.copy_from_slice(&workspace.rigid);
+        prediction.effects.fill(0.0);
         for (joint, gp) in self.regressions.iter().enumerate() {
             prediction.learned[joint] = gp.mean(self.inputs.of(joint, workspace));
         }

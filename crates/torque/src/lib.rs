@@ -1,10 +1,12 @@
 //! Torque models behind one trait, their training, and the computed-torque controller.
 //!
-//! A [`TorqueModel`] predicts the joint torques (N m or N) that a motion q, q̇, q̈ needs, in two parts:
-//! what rigid-body dynamics say and what was learned. There are the paper's four, the exact model as
-//! the reference, and room for more: the controller knows the trait alone.
+//! A [`TorqueModel`] predicts the joint torques (N m or N) that a motion q, q̇, q̈ needs, in parts:
+//! what rigid-body dynamics say, and what was named or learned on top. There are the paper's four, the exact model as
+//! the reference, the [`Corrected`] one of a diagnosis, and room for more: the controller knows the trait alone.
 
 mod controller;
+mod corrected;
+mod effect;
 mod error;
 mod inputs;
 mod learned;
@@ -13,6 +15,8 @@ mod rigid_body;
 mod samples;
 
 pub use controller::{Command, Controller, Feedback};
+pub use corrected::Corrected;
+pub use effect::Effect;
 pub use error::TorqueError;
 pub use gp::{Gp, LengthScales, Lengths};
 pub use inputs::Inputs;

@@ -10,7 +10,8 @@ pub trait TorqueModel: Send + Sync {
     /// The number of joints.
     fn dof(&self) -> usize;
 
-    /// The torques (N m or N) for the motion `q`, `qd`, `qdd`, in parts, without allocating.
+    /// The torques (N m or N) for the motion `q`, `qd`, `qdd`, in parts, without allocating; parts that the
+    /// model has not are set to zero.
     ///
     /// # Panics
     /// If a slice or the workspace is of another size than the arm.
@@ -50,6 +51,8 @@ pub trait TorqueModel: Send + Sync {
 pub struct Prediction {
     /// What rigid-body dynamics say.
     pub rigid: Vec<f64>,
+    /// What named effects add to it (and a scale or a limit takes off it).
+    pub effects: Vec<f64>,
     /// What was learned on top.
     pub learned: Vec<f64>,
 }
@@ -59,13 +62,14 @@ impl Prediction {
     pub fn new(dof: usize) -> Self {
         Self {
             rigid: vec![0.0; dof],
+            effects: vec![0.0; dof],
             learned: vec![0.0; dof],
         }
     }
 
     /// The whole torque of `joint`.
     pub fn torque(&self, joint: usize) -> f64 {
-        self.rigid[joint] + self.learned[joint]
+        self.rigid[joint] + self.effects[joint] + self.learned[joint]
     }
 }
 

@@ -3,7 +3,10 @@
 mod support;
 
 use support::{motion, puma560, samples};
-use torque::{Command, Controller, Feedback, Inputs, Learned, TrainingOptions};
+use torque::{
+    Command, Controller, Corrected, Effect, Feedback, Inputs, Learned, Prediction, TorqueModel, TrainingOptions,
+    Workspace,
+};
 
 #[test]
 fn no_control_step_allocates() {
@@ -29,4 +32,37 @@ fn no_control_step_allocates() {
         });
         assert_eq!(counted.count_total, 0, "{inputs:?}");
     }
+}
+
+#[test]
+fn a_corrected_model_does_not_allocate() {
+    let joint = || puma560().joints()[1].name.clone();
+    let effects = [
+        Effect::LoadDependentFriction {
+            joint: joint(),
+            coulomb: 1.0,
+            gain: 0.1,
+        },
+        Effect::Spring {
+            joint: joint(),
+            stiffness: 1.0,
+            rest: 0.0,
+            curve: vec![[0.0, 0.0], [1.0, 2.0]],
+        },
+        Effect::ExternalContact {
+            start: 0.0,
+            duration: 1.0,
+            force: [1.0, 2.0, 3.0],
+        },
+    ];
+    let model = Corrected::new(&puma560(), &effects).expect("they are physical");
+    let mut workspace = Workspace::new(6);
+    let mut prediction = Prediction::new(6);
+    let [q, qd, qdd] = motion(0.4, 0);
+    model.predict(&mut workspace, &q, &qd, &qdd, &mut prediction);
+    let counted = allocation_counter::measure(|| {
+        model.predict(&mut workspace, &q, &qd, &qdd, &mut prediction);
+        model.predict_at(0.5, &mut workspace, &q, &qd, &qdd, &mut prediction);
+    });
+    assert_eq!(counted.count_total, 0);
 }

@@ -1,0 +1,86 @@
+//! The effects as loads on a simulated arm: dry friction apart from what is smooth, and contacts.
+
+use arm::JointKind;
+
+use super::laws::{Circumstance, Smooth};
+use super::{Contact, Corrected};
+use crate::model::Workspace;
+
+impl Corrected {
+    /// Viscous friction of each joint (N m s/rad or N s/m).
+    pub fn viscous(&self) -> Vec<f64> {
+        let mut coefficients = vec![0.0; self.arm.dof()];
+        for (joint, smooth) in &self.smooth {
+            if let Smooth::Viscous { coefficient } = smooth {
+                coefficients[*joint] += coefficient;
+            }
+        }
+        coefficients
+    }
+
+    /// What loads the joints of a simulated [`Self::arm`] at `time` (s), beside gravity and inertia, in two parts (N m or N):
+    /// `dry`, the most that dry friction resists, and `opposing`, the torque of all other effects but viscous friction,
+    /// to be taken off the drives' torque. The encoders say `q`; `qdd` is needed for couplings and loads only and may lag.
+    ///
+    /// Friction that differs by direction is a level and an offset, also at rest. Torque scale and limit are the drive's and
+    /// not in it.
+    ///
+    /// # Panics
+    /// If a slice or the workspace is of another size than the arm.
+    #[expect(clippy::too_many_arguments, reason = "a motion, its time, scratch and two results")]
+    pub fn joint_loads(
+        &self,
+        time: f64,
+        workspace: &mut Workspace,
+        q: &[f64],
+        qd: &[f64],
+        qdd: &[f64],
+        dry: &mut [f64],
+        opposing: &mut [f64],
+    ) {
+        let needs_rigid = !self.contacts.is_empty() || self.dry.iter().any(|(_, dry)| dry.depends_on_load());
+        if needs_rigid {
+            // `dry` holds the rigid torque for as long as it is needed.
+            self.rigid_torque(workspace, q, qd, qdd, dry);
+            workspace.rigid.copy_from_slice(dry);
+        }
+        dry.fill(0.0);
+        opposing.fill(0.0);
+        for (joint, law) in &self.dry {
+            let at = Circumstance {
+                time: Some(time),
+                load: if needs_rigid { workspace.rigid[*joint] } else { 0.0 },
+            };
+            dry[*joint] += law.level(qd[*joint], at);
+            opposing[*joint] += law.bias();
+        }
+        for (joint, smooth) in &self.smooth {
+            if !matches!(smooth, Smooth::Viscous { .. }) {
+                opposing[*joint] += smooth.torque(*joint, q, qd, qdd);
+            }
+        }
+        self.add_contacts(Some(time), workspace, opposing);
+    }
+
+    /// Adds −Jᵀ F of the contacts that last at `time`; the workspace knows where the joints stand.
+    pub(super) fn add_contacts(&self, time: Option<f64>, workspace: &mut Workspace, tau: &mut [f64]) {
+        let Some(time) = time else { return };
+        let lasts = |contact: &&Contact| contact.start <= time && time < contact.end;
+        for contact in self.contacts.iter().filter(lasts) {
+            let Workspace {
+                arm: scratch, input, ..
+            } = &mut *workspace;
+            let scratch = scratch.get_or_insert_with(|| arm::Workspace::new(&self.arm));
+            self.arm.forward_kinematics(scratch, &input[..tau.len()]);
+            let tool = scratch.base_from_frame(&self.tool).translation;
+            for (i, (joint, tau)) in self.arm.joints().iter().zip(tau.iter_mut()).enumerate() {
+                let base_from_link = scratch.base_from_link(i);
+                let axis = base_from_link.rotation * joint.axis;
+                *tau -= match joint.kind {
+                    JointKind::Revolute => axis.cross(&(tool - base_from_link.translation)).dot(&contact.force),
+                    JointKind::Prismatic => axis.dot(&contact.force),
+                };
+            }
+        }
+    }
+}

@@ -1,0 +1,376 @@
+//! The forms of the effects against numbers worked out by hand, and what is refused.
+
+use arm::Arm;
+
+use super::*;
+
+/// Two parallel axes along z in a horizontal plane: without motion nothing is rigid.
+const FLAT: &str = r#"<robot name="flat"><link name="base"/>
+<joint name="a" type="continuous"><parent link="base"/><child link="la"/><axis xyz="0 0 1"/></joint>
+<link name="la"><inertial><mass value="1"/><inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".2"/></inertial></link>
+<joint name="b" type="continuous"><origin xyz="1 0 0"/><parent link="la"/><child link="lb"/><axis xyz="0 0 1"/></joint>
+<link name="lb"><inertial><mass value="2"/><inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".3"/></inertial></link>
+<joint name="f" type="fixed"><origin xyz=".5 0 0"/><parent link="lb"/><child link="tool"/></joint><link name="tool"/></robot>"#;
+
+/// One axis along y, its centre of mass .5 m out.
+const PENDULUM: &str = r#"<robot name="pendulum"><link name="base"/>
+<joint name="a" type="continuous"><parent link="base"/><child link="l"/><axis xyz="0 1 0"/></joint>
+<link name="l"><inertial><origin xyz=".5 0 0"/><mass value="2"/><inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".1"/></inertial></link></robot>"#;
+
+fn arm(urdf: &str) -> Arm {
+    Arm::from_urdf_text(urdf, "test.urdf").expect("it is an arm")
+}
+
+fn a() -> String {
+    "a".into()
+}
+
+fn predict(model: &Corrected, time: Option<f64>, q: &[f64], qd: &[f64], qdd: &[f64]) -> Prediction {
+    let mut workspace = Workspace::new(model.dof());
+    let mut prediction = Prediction::new(model.dof());
+    match time {
+        Some(time) => model.predict_at(time, &mut workspace, q, qd, qdd, &mut prediction),
+        None => model.predict(&mut workspace, q, qd, qdd, &mut prediction),
+    }
+    prediction
+}
+
+/// What `effect` adds on joint a of the flat arm at angle `q` and velocity `qd`, without acceleration.
+fn added(effect: Effect, q: f64, qd: f64) -> f64 {
+    let model = Corrected::new(&arm(FLAT), &[effect]).expect("it is physical");
+    predict(&model, None, &[q, 0.0], &[qd, 0.0], &[0.0, 0.0]).effects[0]
+}
+
+#[track_caller]
+fn near(found: f64, expected: f64) {
+    assert!((found - expected).abs() < 1e-12, "{found} instead of {expected}");
+}
+
+#[test]
+fn friction_follows_the_sign_of_the_velocity() {
+    let coulomb = || Effect::CoulombFriction { joint: a(), level: 2.0 };
+    for (qd, expected) in [(0.3, 2.0), (-0.3, -2.0), (0.0, 0.0), (-0.0, 0.0)] {
+        near(added(coulomb(), 0.0, qd), expected);
+    }
+    near(
+        added(
+            Effect::ViscousFriction {
+                joint: a(),
+                coefficient: 4.0,
+            },
+            0.0,
+            -0.5,
+        ),
+        -2.0,
+    );
+    near(
+        added(
+            Effect::QuadraticDrag {
+                joint: a(),
+                coefficient: 4.0,
+            },
+            0.0,
+            -0.5,
+        ),
+        -1.0,
+    );
+    let uneven = || Effect::FrictionAsymmetry {
+        joint: a(),
+        positive: 3.0,
+        negative: 1.0,
+    };
+    for (qd, expected) in [(0.3, 3.0), (-0.3, -1.0), (0.0, 0.0)] {
+        near(added(uneven(), 0.0, qd), expected);
+    }
+    let stribeck = Effect::StribeckFriction {
+        joint: a(),
+        coulomb: 1.0,
+        breakaway: 3.0,
+        velocity: 0.2,
+        exponent: 2.0,
+    };
+    near(added(stribeck, 0.0, -0.4), -(1.0 + 2.0 * (-4.0_f64).exp()));
+}
+
+#[test]
+fn position_makes_springs_and_ripple() {
+    near(
+        added(
+            Effect::TorqueOffset {
+                joint: a(),
+                offset: -0.7,
+            },
+            1.0,
+            1.0,
+        ),
+        -0.7,
+    );
+    let ripple = Effect::TorqueRipple {
+        joint: a(),
+        amplitude: 0.5,
+        periods: 6.0,
+        phase: 0.1,
+    };
+    near(added(ripple, 0.3, 0.0), 0.5 * 1.9_f64.sin());
+    let spring = |curve| Effect::Spring {
+        joint: a(),
+        stiffness: 10.0,
+        rest: 0.2,
+        curve,
+    };
+    near(added(spring(vec![]), 0.5, 0.0), 3.0);
+    let curve = vec![[-1.0, 4.0], [0.0, 2.0], [1.0, 3.0]];
+    for (q, expected) in [(-2.0, 4.0), (-0.5, 3.0), (0.0, 2.0), (0.25, 2.25), (9.0, 3.0)] {
+        near(added(spring(curve.clone()), q, 0.0), expected);
+    }
+}
+
+#[test]
+fn drift_is_warm_unless_the_time_is_told() {
+    let drift = Effect::ThermalDrift {
+        joint: a(),
+        coulomb: 2.0,
+        amplitude: 0.5,
+        time_constant: 10.0,
+    };
+    let model = Corrected::new(&arm(FLAT), &[drift]).expect("it is physical");
+    let at = |time| predict(&model, time, &[0.0, 0.0], &[-1.0, 0.0], &[0.0, 0.0]).effects[0];
+    near(at(None), -2.0);
+    near(at(Some(0.0)), -3.0);
+    near(at(Some(10.0)), -2.0 * (1.0 + 0.5 * (-1.0_f64).exp()));
+}
+
+#[test]
+fn load_is_the_rigid_torque_of_the_corrected_arm() {
+    let effects = [
+        Effect::Payload {
+            mass: 1.0,
+            com: [0.5, 0.0, 0.0],
+            inertia: [0.0; 6],
+        },
+        Effect::LoadDependentFriction {
+            joint: a(),
+            coulomb: 0.5,
+            gain: 0.1,
+        },
+    ];
+    let model = Corrected::new(&arm(PENDULUM), &effects).expect("it is physical");
+    // About y, gravity on what sticks out along x pulls the arm down: the drive holds with a negative torque.
+    let found = predict(&model, None, &[0.0], &[0.0], &[0.0]);
+    near(found.rigid[0], -9.81 * 1.5);
+    near(found.effects[0], 0.0);
+    near(
+        predict(&model, None, &[0.0], &[-1e-9], &[0.0]).effects[0],
+        -(0.5 + 0.1 * 9.81 * 1.5),
+    );
+}
+
+#[test]
+fn inertial_effects_are_in_the_rigid_part() {
+    let rigid = |effects: &[Effect], q: f64, qdd: f64| {
+        let model = Corrected::new(&arm(PENDULUM), effects).expect("they are physical");
+        let found = predict(&model, None, &[q], &[0.0], &[qdd]);
+        assert_eq!(found.effects[0], 0.0);
+        found.rigid[0]
+    };
+    let weight = -9.81 * 2.0 * 0.5;
+    near(rigid(&[], 0.0, 0.0), weight);
+    near(
+        rigid(
+            &[Effect::RotorInertia {
+                joint: a(),
+                inertia: 0.4,
+            }],
+            0.0,
+            2.0,
+        ),
+        weight + 2.0 * (0.1 + 0.5 + 0.4),
+    );
+    near(
+        rigid(
+            &[Effect::LinkInertialError {
+                joint: a(),
+                relative: 0.1,
+            }],
+            0.0,
+            0.0,
+        ),
+        1.1 * weight,
+    );
+    near(rigid(&[Effect::InertialScale { factor: 1.2 }], 0.0, 0.0), 1.2 * weight);
+    near(
+        rigid(
+            &[Effect::EncoderOffset {
+                joint: a(),
+                offset: -0.3,
+            }],
+            0.2,
+            0.0,
+        ),
+        weight * 0.5_f64.cos(),
+    );
+    // A base turned about the joint's own axis is a joint turned as far.
+    let tilt = Effect::GravityMisalignment {
+        angle: 0.3,
+        axis: [0.0, 1.0, 0.0],
+    };
+    near(rigid(&[tilt], 0.2, 0.0), weight * 0.5_f64.cos());
+}
+
+#[test]
+fn a_coupling_follows_the_other_joint() {
+    let coupling = Effect::TransmissionCoupling {
+        sense: 1.0,
+        joint: a(),
+        other: "b".into(),
+        viscous: 2.0,
+        coulomb: 0.5,
+        inertia: 3.0,
+    };
+    let model = Corrected::new(&arm(FLAT), &[coupling]).expect("it is physical");
+    let found = predict(&model, None, &[0.0, 0.0], &[0.0, -0.1], &[0.0, 0.2]);
+    near(found.effects[0], -0.2 - 0.5 + 0.6);
+    // The reaction: the other joint feels this one's motion, which rests, and the drive's dry friction.
+    near(found.effects[1], -0.5);
+}
+
+#[test]
+fn scale_and_limit_come_last() {
+    let effects = [
+        Effect::TorqueOffset {
+            joint: a(),
+            offset: 2.0,
+        },
+        Effect::TorqueScale {
+            joint: a(),
+            factor: 1.5,
+        },
+        Effect::TorqueSaturation { joint: a(), limit: 2.5 },
+    ];
+    let of = |effects: &[Effect]| {
+        let model = Corrected::new(&arm(PENDULUM), effects).expect("they are physical");
+        predict(&model, None, &[std::f64::consts::FRAC_PI_2], &[0.0], &[1.0]).torque(0)
+    };
+    near(of(&effects[..1]), 2.6);
+    near(of(&effects[..2]), 3.9);
+    near(of(&effects), 2.5);
+}
+
+/// At q = 0 the tool is 1.5 m from axis a and .5 m from axis b, along x.
+#[test]
+fn a_contact_pushes_while_it_lasts() {
+    let contact = Effect::ExternalContact {
+        start: 1.0,
+        duration: 0.5,
+        force: [5.0, 2.0, 7.0],
+    };
+    let model = Corrected::new(&arm(FLAT), &[contact]).expect("it is physical");
+    let at = |time| predict(&model, time, &[0.0; 2], &[0.0; 2], &[0.0; 2]).effects;
+    assert_eq!(at(None), [0.0, 0.0]);
+    assert_eq!(at(Some(1.5)), [0.0, 0.0]);
+    near(at(Some(1.0))[0], -3.0);
+    near(at(Some(1.4))[1], -1.0);
+}
+
+/// As loads on a simulated arm the effects add up to what the model says.
+#[test]
+fn loads_and_torques_agree() {
+    let effects = [
+        Effect::FrictionAsymmetry {
+            joint: a(),
+            positive: 3.0,
+            negative: 1.0,
+        },
+        Effect::LoadDependentFriction {
+            joint: "b".into(),
+            coulomb: 0.5,
+            gain: 0.1,
+        },
+        Effect::ViscousFriction {
+            joint: a(),
+            coefficient: 0.7,
+        },
+        Effect::Spring {
+            joint: "b".into(),
+            stiffness: 3.0,
+            rest: 0.1,
+            curve: vec![],
+        },
+        Effect::ExternalContact {
+            start: 0.0,
+            duration: 1.0,
+            force: [1.0, 2.0, 3.0],
+        },
+    ];
+    let model = Corrected::new(&arm(FLAT), &effects).expect("they are physical");
+    let (q, qd, qdd) = ([0.3, -0.8], [-0.5, 0.9], [2.0, -1.0]);
+    let mut workspace = Workspace::new(2);
+    let (mut dry, mut opposing) = ([0.0; 2], [0.0; 2]);
+    model.joint_loads(0.5, &mut workspace, &q, &qd, &qdd, &mut dry, &mut opposing);
+    let expected = predict(&model, Some(0.5), &q, &qd, &qdd).effects;
+    for j in 0..2 {
+        near(
+            dry[j] * sign(qd[j]) + opposing[j] + model.viscous()[j] * qd[j],
+            expected[j],
+        );
+    }
+}
+
+#[test]
+fn refusals_name_effect_joint_and_value() {
+    let refused = |effect| {
+        Corrected::new(&arm(FLAT), &[effect])
+            .expect_err("it is refused")
+            .to_string()
+    };
+    assert_eq!(
+        refused(Effect::CoulombFriction {
+            joint: "c".into(),
+            level: 1.0
+        }),
+        "coulomb_friction: the robot has no joint \"c\"; it has a, b"
+    );
+    assert_eq!(
+        refused(Effect::CoulombFriction {
+            joint: a(),
+            level: -1.0
+        }),
+        "coulomb_friction of a: level is -1; it must be finite and not negative"
+    );
+    assert_eq!(
+        refused(Effect::TorqueScale {
+            joint: a(),
+            factor: f64::NAN
+        }),
+        "torque_scale of a: factor is NaN; it must be finite and positive"
+    );
+    assert_eq!(
+        refused(Effect::Payload {
+            mass: 1.0,
+            com: [0.0; 3],
+            inertia: [-1.0, 0.0, 1.0, 0.0, 0.0, 1.0]
+        }),
+        "payload of the whole arm: inertia's smallest principal moment is -1; it must be finite and not negative"
+    );
+    let coupling = Effect::TransmissionCoupling {
+        sense: 1.0,
+        joint: a(),
+        other: "x".into(),
+        viscous: 1.0,
+        coulomb: 0.0,
+        inertia: 0.0,
+    };
+    assert!(refused(coupling).contains("no joint \"x\""));
+    let bent = Effect::Spring {
+        joint: a(),
+        stiffness: 0.0,
+        rest: 0.0,
+        curve: vec![[1.0, 0.0], [0.5, 0.0]],
+    };
+    assert!(refused(bent).contains("larger than the one before"));
+    let nowhere = Effect::GravityMisalignment {
+        angle: 0.1,
+        axis: [0.0; 3],
+    };
+    assert!(refused(nowhere).contains("axis' length is 0"));
+}
