@@ -10,6 +10,9 @@ use crate::header;
 use crate::rows::Rows;
 use crate::{ColumnMap, Recording, RecordingError};
 
+/// Of a file with more values, means over longer times are kept (1 GiB).
+const MOST_VALUES: usize = 1 << 27;
+
 impl Recording {
     /// Reads a recording whose header names `t` (s) and `q_<joint>`, `tau_<joint>` for the same joints,
     /// `qd_`, `qdd_`, `q_secondary_`, `tau_current_`, `current_` and `temperature_<joint>` where there are
@@ -27,6 +30,10 @@ impl Recording {
     /// # Errors
     /// As [`Self::read_csv`], and [`RecordingError::Map`] if the file lacks a column that the map names.
     pub fn read_csv_with(path: &Path, map: Option<&ColumnMap>) -> Result<Self, RecordingError> {
+        Self::read_within(path, map, MOST_VALUES)
+    }
+
+    fn read_within(path: &Path, map: Option<&ColumnMap>, most: usize) -> Result<Self, RecordingError> {
         let unreadable = |reason| RecordingError::Read {
             path: path.to_owned(),
             reason,
@@ -57,7 +64,7 @@ impl Recording {
             Some(map) => map.plan(&headers, path)?,
             None => header::plan_by_names(&headers).map_err(header_error)?,
         };
-        let mut rows = Rows::new(path, &plan, headers.len());
+        let mut rows = Rows::new(path, &plan, headers.len(), most);
         let mut record = ByteRecord::new();
         // A row is taken once the next is there: the last one may be cut.
         let mut held = ByteRecord::new();

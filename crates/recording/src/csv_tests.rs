@@ -140,3 +140,36 @@ fn a_map_reads_anybodys_columns() {
     assert!((read.q[0][0] + std::f64::consts::PI).abs() < 1e-15);
     assert_eq!(read.tau[0], [-12.5, -25.0]);
 }
+
+#[test]
+fn a_file_of_many_rows_is_read_as_means() {
+    let folder = folder();
+    let mut text = "t,q_a,tau_a,mode\n".to_owned();
+    for row in 0..5000 {
+        let t = f64::from(row) * 1e-3;
+        let mode = if row == 4000 { "x" } else { "1" };
+        text += &format!("{t},{},{},{mode}\n", t.sin(), t.cos());
+    }
+    let path = write(&folder, &text);
+    let read = Recording::read_within(&path, None, 4 * 1000).expect("it reads");
+    assert_eq!(read.len(), 625);
+    for (row, t) in read.time.iter().enumerate() {
+        assert!((read.q[0][row] - t.sin()).abs() < 1e-5 && (read.tau[0][row] - t.cos()).abs() < 1e-5);
+    }
+    let thinned = |warning: &Warning| {
+        matches!(
+            warning,
+            Warning::Thinned {
+                rows: 5000,
+                kept: 625,
+                ..
+            }
+        )
+    };
+    assert!(read.warnings.iter().any(thinned), "{:?}", read.warnings);
+    assert!(read.others.is_empty());
+    // A bad value is found wherever it stands.
+    std::fs::write(&path, text.replace("4.9,", "4.9x,")).expect("it writes");
+    let error = Recording::read_within(&path, None, 4 * 1000).expect_err("it is refused");
+    assert!(error.to_string().contains("r.csv:4902"), "{error}");
+}

@@ -16,6 +16,7 @@ mod quality;
 mod regular;
 mod rows;
 mod spikes;
+mod thinned;
 mod toml_error;
 mod units;
 mod warning;

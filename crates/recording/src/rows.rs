@@ -5,6 +5,7 @@ use std::path::Path;
 use csv::ByteRecord;
 
 use crate::header::Plan;
+use crate::thinned::Thinned;
 use crate::{PartialSignal, Quantity, Recording, RecordingError, Signal, Warning};
 
 /// A clock that starts anew does so within this share of its run's length from where it started.
@@ -21,10 +22,14 @@ pub struct Rows<'a> {
     path: &'a Path,
     plan: &'a Plan,
     width: usize,
-    time: Vec<f64>,
-    channels: Vec<Vec<f64>>,
-    others: Vec<Option<Vec<f64>>>,
-    breaks: Vec<usize>,
+    /// The time, the channels, the other columns.
+    values: Thinned,
+    /// The row that is being taken.
+    row: Vec<f64>,
+    /// Whether another column holds numbers alone so far.
+    numeric: Vec<bool>,
+    /// Rows of this run.
+    in_run: usize,
     warnings: Vec<Warning>,
     /// The row before, as bytes, and its stamp as the file has it (s).
     before: ByteRecord,
@@ -40,16 +45,16 @@ pub struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    /// None yet, of a file with `width` columns.
-    pub fn new(path: &'a Path, plan: &'a Plan, width: usize) -> Self {
+    /// None yet, of a file with `width` columns, of which at most `most` values are kept.
+    pub fn new(path: &'a Path, plan: &'a Plan, width: usize, most: usize) -> Self {
         Self {
             path,
             plan,
             width,
-            time: Vec::new(),
-            channels: vec![Vec::new(); plan.channels.len()],
-            others: vec![Some(Vec::new()); plan.others.len()],
-            breaks: Vec::new(),
+            values: Thinned::new(1 + plan.channels.len() + plan.others.len(), most),
+            row: Vec::new(),
+            numeric: vec![true; plan.others.len()],
+            in_run: 0,
             warnings: Vec::new(),
             before: ByteRecord::new(),
             stamp: f64::NAN,
@@ -92,36 +97,38 @@ impl<'a> Rows<'a> {
             ));
         }
         let stamp = self.value(row, self.plan.time, &self.plan.time_header)? * self.plan.time_factor;
-        if !self.time.is_empty() && stamp <= self.stamp {
+        let mut begins = false;
+        if self.in_run > 0 && stamp <= self.stamp {
             if stamp == self.stamp {
                 self.duplicate(row);
                 return Ok(());
             }
             self.restart(row, stamp)?;
-        } else if self.time.is_empty() {
+            begins = true;
+        } else if self.in_run == 0 {
             self.first = stamp;
         }
+        self.row.clear();
+        self.row.push(stamp + self.shift);
         for index in 0..self.plan.channels.len() {
             let channel = &self.plan.channels[index];
             let value = self.value(row, channel.index, &channel.header)?;
-            self.channels[index].push(channel.factor * value + channel.offset);
+            self.row.push(channel.factor * value + channel.offset);
         }
-        for (other, (index, header)) in self.others.iter_mut().zip(&self.plan.others) {
-            if let Some(values) = other {
-                match row.get(*index).and_then(number) {
-                    Some(value) => values.push(value),
-                    None => {
-                        *other = None;
-                        self.warnings.push(Warning::ColumnLeftOut {
-                            column: header.clone(),
-                            line: line_of(row),
-                            found: text(row.get(*index)),
-                        });
-                    }
-                }
+        for (numeric, (index, header)) in self.numeric.iter_mut().zip(&self.plan.others) {
+            let value = row.get(*index).and_then(number);
+            if *numeric && value.is_none() {
+                *numeric = false;
+                self.warnings.push(Warning::ColumnLeftOut {
+                    column: header.clone(),
+                    line: line_of(row),
+                    found: text(row.get(*index)),
+                });
             }
+            self.row.push(value.unwrap_or(f64::NAN));
         }
-        self.time.push(stamp + self.shift);
+        self.values.push(&self.row, begins);
+        self.in_run = if begins { 1 } else { self.in_run + 1 };
         self.stamp = stamp;
         self.before.clone_from(row);
         Ok(())
@@ -160,10 +167,9 @@ impl<'a> Rows<'a> {
 
     /// Time that runs back: another run if it starts where this one started, else an error.
     fn restart(&mut self, row: &ByteRecord, stamp: f64) -> Result<(), RecordingError> {
-        let begun = self.breaks.last().copied().unwrap_or(0);
         let length = self.stamp - self.first;
         let near_start = (stamp - self.first).abs() <= RESTART_SHARE * length;
-        if self.time.len() - begun < RUN_ROWS || !near_start {
+        if self.in_run < RUN_ROWS || !near_start {
             return Err(self.row_error(
                 row,
                 format!(
@@ -173,7 +179,6 @@ impl<'a> Rows<'a> {
             ));
         }
         let before = self.stamp;
-        self.breaks.push(self.time.len());
         self.shift += self.stamp + RUN_PAUSE - stamp;
         self.first = stamp;
         self.warnings.push(Warning::ClockRestart {
@@ -188,12 +193,12 @@ impl<'a> Rows<'a> {
     /// The recording that the rows make.
     pub fn finish(mut self) -> Result<Recording, RecordingError> {
         let path = self.path.to_owned();
-        let rows = self.time.len();
+        let rows = self.values.read();
         if rows < 2 {
-            let found = if rows == 0 { "no rows" } else { "one row" };
+            let found = if rows == 0 { "are no rows" } else { "is one row" };
             return Err(RecordingError::Header {
                 path,
-                reason: format!("there is {found} below the header; a motion takes at least two, and a fit thousands"),
+                reason: format!("there {found} below the header; a motion takes at least two, and a fit thousands"),
             });
         }
         if self.differing as f64 > DIFFERING_SHARE * rows as f64 + 1.0 {
@@ -213,10 +218,21 @@ impl<'a> Rows<'a> {
                 differ: self.differing > 0,
             });
         }
+        let (mut columns, breaks, span) = self.values.finish();
+        if let Some(span) = span {
+            self.warnings.push(Warning::Thinned {
+                rows,
+                kept: columns[0].len(),
+                span,
+            });
+        }
+        let others: Vec<Vec<f64>> = columns.split_off(1 + self.plan.channels.len());
+        let mut channels = columns.split_off(1);
+        let time = columns.swap_remove(0);
         let joints = self.plan.joints.len();
         let mut partial = |quantity: Quantity| -> PartialSignal {
             let mut signal = vec![None; joints];
-            for (channel, values) in self.plan.channels.iter().zip(&mut self.channels) {
+            for (channel, values) in self.plan.channels.iter().zip(&mut channels) {
                 if channel.quantity == quantity {
                     signal[channel.joint] = Some(std::mem::take(values));
                 }
@@ -237,10 +253,10 @@ impl<'a> Rows<'a> {
         let q_secondary = partial(Quantity::SecondaryPosition);
         let tau_current = partial(Quantity::CurrentTorque);
         let (current, temperature) = (partial(Quantity::Current), partial(Quantity::Temperature));
-        let others = self.plan.others.iter().zip(self.others);
+        let others = self.plan.others.iter().zip(others).zip(self.numeric);
         Ok(Recording {
             joints: self.plan.joints.clone(),
-            time: self.time,
+            time,
             q,
             qd,
             qdd,
@@ -250,9 +266,10 @@ impl<'a> Rows<'a> {
             current,
             temperature,
             others: others
-                .filter_map(|((_, name), values)| values.map(|values| (name.clone(), values)))
+                .filter(|(_, numeric)| *numeric)
+                .map(|(((_, name), values), _)| (name.clone(), values))
                 .collect(),
-            breaks: self.breaks,
+            breaks,
             warnings: self.warnings,
         })
     }

@@ -60,6 +60,15 @@ pub enum Warning {
         /// Whether some had the stamp of the row before but other values.
         differ: bool,
     },
+    /// The file has more rows than are kept: each is the mean of several.
+    Thinned {
+        /// Rows read.
+        rows: usize,
+        /// Rows kept.
+        kept: usize,
+        /// The time that one is the mean over (s).
+        span: f64,
+    },
     /// The time starts anew: several runs in one file.
     ClockRestart {
         /// The line of the new run's first row.
@@ -147,6 +156,11 @@ impl fmt::Display for Warning {
                 let verb = if *rows == 1 { "row was" } else { "rows were" };
                 write!(f, "line {line}: {rows} {verb} left out, {what}")
             }
+            Self::Thinned { rows, kept, span } => write!(
+                f,
+                "{rows} rows are more than are kept: {kept} means over {:.3} ms stand for them",
+                span * 1e3
+            ),
             Self::ClockRestart {
                 line,
                 before,
