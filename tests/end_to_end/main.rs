@@ -1,5 +1,9 @@
 //! Tests of the whole, through the built program in a temporary folder.
 
+mod diagnose;
+mod diagnose_blind;
+mod diagnose_made;
+mod diagnose_refusals;
 mod inspect;
 mod paper;
 mod refusals;

@@ -1,6 +1,6 @@
 //! The command line.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use torque::{LengthScales, TrainingOptions};
@@ -26,6 +26,8 @@ pub struct Cli {
 pub enum Command {
     /// Print the paper's tables I and II and its figure 4, ours beside theirs
     Tables(TablesArgs),
+    /// Find which physics a robot's model leaves out, from recordings
+    Diagnose(DiagnoseArgs),
     /// Say what recordings are worth, before anything is fitted to them
     Inspect(InspectArgs),
 }
@@ -97,6 +99,78 @@ pub struct InspectArgs {
     pub json: Option<PathBuf>,
 }
 
+#[derive(Debug, Args)]
+pub struct DiagnoseArgs {
+    /// The robot's URDF
+    #[arg(long, value_name = "URDF")]
+    pub robot: String,
+
+    /// The recordings to fit (.csv)
+    #[arg(long, required = true, num_args = 1.., value_name = "FILE")]
+    pub train: Vec<PathBuf>,
+
+    /// The recordings to prove the fit on; without one no finding is proved
+    #[arg(long, num_args = 1.., value_name = "FILE")]
+    pub held_out: Vec<PathBuf>,
+
+    /// The column map (.toml), for files with other headers or units
+    #[arg(long, value_name = "MAP")]
+    pub map: Option<PathBuf>,
+
+    /// Effects that the model is known to leave out (.toml, as --model writes them): they are not reported again
+    #[arg(long, value_name = "FILE")]
+    pub known: Option<PathBuf>,
+
+    /// Write the diagnosis to this file as JSON
+    #[arg(long, value_name = "OUT")]
+    pub json: Option<PathBuf>,
+
+    /// Write a page to this file (.html): figures, parameters, what could not be seen
+    #[arg(long, value_name = "OUT")]
+    pub report: Option<PathBuf>,
+
+    /// Write the corrected model to this file (.toml): the known effects and those found
+    #[arg(long, value_name = "OUT")]
+    pub model: Option<PathBuf>,
+
+    /// Write the URDF with what it can hold of the corrected model to this file
+    #[arg(long, value_name = "OUT")]
+    pub urdf: Option<PathBuf>,
+
+    /// Where Rerun shows the diagnosis: off, save[=FILE], spawn or connect[=URL]
+    #[cfg_attr(not(feature = "viewer"), arg(hide = true))]
+    #[arg(long, value_name = "WHERE", value_parser = parse_rerun)]
+    pub rerun: Option<Rerun>,
+
+    /// How many threads; the result is the same [default: one a core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub jobs: Option<u16>,
+
+    /// Half-power frequency of the low-pass filter (Hz)
+    #[arg(long, value_name = "HZ", value_parser = parse_frequency)]
+    pub cutoff: Option<f64>,
+}
+
+impl DiagnoseArgs {
+    /// The files that will be written.
+    pub fn outputs(&self) -> Vec<&Path> {
+        let rerun = match &self.rerun {
+            Some(Rerun::Save(Some(path))) => Some(path.as_path()),
+            Some(Rerun::Save(None)) => Some(Path::new("diagnosis.rrd")),
+            _ => None,
+        };
+        let files = [&self.json, &self.report, &self.model, &self.urdf];
+        files.into_iter().flatten().map(PathBuf::as_path).chain(rerun).collect()
+    }
+}
+
+fn parse_frequency(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(hertz) if (0.1..=1000.0).contains(&hertz) => Ok(hertz),
+        _ => Err("give a frequency from 0.1 to 1000 Hz".into()),
+    }
+}
+
 /// How many length scales a regression has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LengthScalesArg {
@@ -113,7 +187,10 @@ impl LengthScalesArg {
             Self::One => LengthScales::Isotropic,
             Self::PerInput => LengthScales::PerInput,
         };
-        TrainingOptions { lengths }
+        TrainingOptions {
+            lengths,
+            ..TrainingOptions::default()
+        }
     }
 }
 

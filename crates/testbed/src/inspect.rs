@@ -1,6 +1,6 @@
 //! `testbed inspect FILE…`: what recordings are worth, before anything is fitted to them.
 
-mod model_check;
+pub mod model_check;
 mod smooth;
 
 use std::path::Path;

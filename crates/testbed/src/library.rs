@@ -106,6 +106,17 @@ pub fn is_built_in(robot: &str) -> bool {
     ROBOTS.iter().any(|(known, _)| *known == robot)
 }
 
+/// The URDF of `robot`, which [`load_arm`] loaded from `path`.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn urdf_text(robot: &str, path: &Path) -> anyhow::Result<String> {
+    match ROBOTS.iter().find(|(known, _)| *known == robot) {
+        Some((_, text)) => Ok((*text).to_owned()),
+        None => std::fs::read_to_string(path).with_context(|| path.display().to_string()),
+    }
+}
+
 /// Loads the robot that a scenario names: the path of a URDF beside the scenario (or absolute), or the
 /// name of one that comes with testbed.
 ///

@@ -1,6 +1,7 @@
 //! testbed: tracking testbed and model diagnosis for robot arms.
 
 mod cli;
+mod diagnose;
 mod inspect;
 mod interrupt;
 mod library;
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
             tables::run(args.json.as_deref(), &args.length_scales.training_options())
         }
         (Some(cli::Command::Inspect(args)), _) => inspect::run(args),
+        (Some(cli::Command::Diagnose(args)), _) => diagnose::run(args),
         (None, Some(args)) => run::run(args),
         (None, None) => {
             let mut command = cli::Cli::command();

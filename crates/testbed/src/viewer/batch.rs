@@ -116,7 +116,8 @@ impl Batch {
     }
 }
 
-fn send_scalars(
+/// Logs a column of scalars.
+pub fn send_scalars(
     recording: &RecordingStream,
     entity: EntityPath,
     time: &TimeColumn,
@@ -129,7 +130,8 @@ fn send_scalars(
     recording.send_columns(entity, [time.clone()], columns)
 }
 
-fn send_poses(
+/// Logs a column of poses.
+pub fn send_poses(
     recording: &RecordingStream,
     entity: EntityPath,
     time: &TimeColumn,

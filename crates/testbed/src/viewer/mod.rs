@@ -3,12 +3,13 @@
 //! Entities: `world/{actual,reference}/link_<i>`, and for every joint `joint/<name>/` with
 //! `position/{actual,reference}`, `error`, `torque/{applied,feedback,learned,model}`, `variance`.
 
-mod batch;
+pub mod batch;
 mod blueprint;
-mod end;
+pub mod end;
 mod file;
+pub mod layout;
 mod mesh;
-mod shapes;
+pub mod shapes;
 mod stream;
 mod worker;
 
@@ -142,7 +143,7 @@ fn is_due(time: f64, next: &mut f64, period: f64) -> bool {
 }
 
 /// The entity that holds everything of one joint.
-fn joint_entity(name: &str) -> rerun::EntityPath {
+pub fn joint_entity(name: &str) -> rerun::EntityPath {
     rerun::EntityPath::from(vec!["joint".into(), rerun::EntityPathPart::new(name)])
 }
 

@@ -20,10 +20,10 @@ const REFERENCE: [u8; 4] = [242, 165, 65, 34];
 const SHELL: f64 = 1.3;
 const VISUAL_SHELL: f64 = 1.02;
 
-/// Logs everything in `world` that does not move, and the shapes that ride on the links.
-pub fn log_scene(recording: &RecordingStream, arm: &Arm, urdf_path: &Path) -> anyhow::Result<()> {
+/// Logs everything in `world` that does not move, and the shapes that ride on the links of `arms` (of [`ARMS`]).
+pub fn log_scene(recording: &RecordingStream, arm: &Arm, urdf_path: &Path, arms: &[&str]) -> anyhow::Result<()> {
     recording.log_static("world", &rerun::ViewCoordinates::RIGHT_HAND_Z_UP())?;
-    for name in ARMS {
+    for &name in arms {
         let artist = Artist {
             recording,
             arm,

@@ -12,7 +12,7 @@ use rerun::external::re_sdk_types::blueprint::components::PlayState;
 use rerun::external::re_uri::ProxyUri;
 use rerun::sink::SinkFlushError;
 
-use super::batch::Batch;
+use super::batch::{ARMS, Batch};
 use super::end::End;
 use super::{blueprint, shapes};
 
@@ -64,7 +64,7 @@ impl Worker {
     fn pass_on(&self, inbox: &Receiver<Job>) -> anyhow::Result<()> {
         let recording = &self.recording;
         recording.send_recording_name(self.title.as_str())?;
-        shapes::log_scene(recording, &self.arm, &self.urdf_path)?;
+        shapes::log_scene(recording, &self.arm, &self.urdf_path, &ARMS)?;
         blueprint::log_styles(recording, &self.arm, &self.title)?;
         let mut is_first = true;
         let mut has_answered = false;

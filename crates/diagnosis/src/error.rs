@@ -1,0 +1,46 @@
+//! Why there is no diagnosis.
+
+use thiserror::Error;
+
+/// What keeps recordings from being diagnosed.
+#[derive(Debug, Error)]
+pub enum DiagnosisError {
+    /// A recording's joints are not the arm's.
+    #[error("{recording}: its joints {found:?} are not the arm's {expected:?}")]
+    Joints {
+        /// The recording.
+        recording: String,
+        /// Its joints.
+        found: Vec<String>,
+        /// The arm's.
+        expected: Vec<String>,
+    },
+    /// A known effect that a torque at one time does not tell.
+    #[error(
+        "{effect} cannot be taken as known: it depends on the past of the motion or on the commanded torque; leave it out of the file"
+    )]
+    KnownWithMemory {
+        /// The effect.
+        effect: &'static str,
+    },
+    /// A known effect that does not fit the arm.
+    #[error(transparent)]
+    Known(#[from] torque::TorqueError),
+    /// Nothing to fit.
+    #[error("no recording to train on")]
+    NoTraining,
+    /// All too short for the filter.
+    #[error(
+        "{recording}: {seconds:.2} s are too short for a filter at {cutoff} Hz, which needs {needed:.2} s in one piece"
+    )]
+    TooShort {
+        /// The recording.
+        recording: String,
+        /// How long it is.
+        seconds: f64,
+        /// The cut-off (Hz).
+        cutoff: f64,
+        /// How long it must be.
+        needed: f64,
+    },
+}

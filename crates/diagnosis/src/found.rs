@@ -1,0 +1,186 @@
+//! From what was judged to findings: names, rivals, gains, places.
+
+use std::collections::BTreeMap;
+
+use crate::bootstrap::Resampled;
+use crate::candidate::Cause;
+use crate::fit::Products;
+use crate::judge::{Judged, Member};
+use crate::naming::name;
+use crate::report::{Confusable, Finding, Place};
+use crate::rivals::{Standing, standing};
+use crate::search::Problem;
+use crate::study::Study;
+use crate::term::Term;
+
+/// The findings, each with the candidate it was named from.
+pub fn findings(
+    study: &Study,
+    products: &Products,
+    held: Option<&Products>,
+    judged: &Judged,
+    resampled: &Resampled,
+) -> Vec<(Finding, Option<usize>)> {
+    let problem = study.problem(products);
+    judged
+        .members
+        .iter()
+        .flat_map(|member| {
+            let standing = standing(study, &problem, &judged.named, member.candidate);
+            let list = finding(study, &problem, held, judged, resampled, member, &standing);
+            list.into_iter()
+                .map(|finding| (finding, Some(member.candidate)))
+                .collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+fn finding(
+    study: &Study,
+    problem: &Problem<'_>,
+    held: Option<&Products>,
+    judged: &Judged,
+    resampled: &Resampled,
+    member: &Member,
+    standing: &Standing,
+) -> Vec<Finding> {
+    let candidate = &study.candidates[member.candidate];
+    let joint_name = |joint: usize| study.arm.joints()[joint].name.clone();
+    let share_by_joint: BTreeMap<String, f64> = member
+        .shares
+        .iter()
+        .enumerate()
+        .filter(|(_, share)| **share > 1e-4)
+        .map(|(joint, share)| (joint_name(joint), *share))
+        .collect();
+    let place = place(study, candidate.cause, member.candidate);
+    let gain = held_out_gain(study, problem, held, judged, member);
+    let mut list = Vec::new();
+    for (k, named) in name(study, resampled, member.candidate).into_iter().enumerate() {
+        let share = if k == 0 {
+            member.share()
+        } else {
+            rotor_share(study, judged, member.candidate)
+        };
+        list.push(Finding {
+            effect: named.effect.name(),
+            joint: named.effect.joint().map(str::to_owned),
+            other: named.other,
+            parameters: named.parameters,
+            probability: standing.probability(member.evidence),
+            share,
+            share_by_joint: if k == 0 {
+                share_by_joint.clone()
+            } else {
+                candidate
+                    .joint
+                    .map(|joint| (joint_name(joint), share))
+                    .into_iter()
+                    .collect()
+            },
+            held_out_gain: gain,
+            confusable_with: if k == 0 {
+                let mut list: Vec<Confusable> = Vec::new();
+                for &(cause, joint) in &standing.rivals {
+                    let rival = Confusable {
+                        effect: cause.name().unwrap_or_default(),
+                        joint: joint.map(joint_name),
+                    };
+                    if !list.contains(&rival) {
+                        list.push(rival);
+                    }
+                }
+                list
+            } else {
+                Vec::new()
+            },
+            place: place.clone(),
+            sentence: String::new(),
+            corrects: true,
+            as_effect: named.effect,
+        });
+    }
+    list
+}
+
+/// The share of the drive's inertia that comes with a spring or a gap.
+fn rotor_share(study: &Study, judged: &Judged, candidate: usize) -> f64 {
+    let columns = &study.candidates[candidate].columns;
+    let Some(joint) = study.candidates[candidate].joint else {
+        return 0.0;
+    };
+    let rotor: Vec<usize> = columns
+        .iter()
+        .copied()
+        .filter(|&column| matches!(study.table.terms[column], Term::Acceleration(_)))
+        .collect();
+    let values: Vec<f64> = rotor
+        .iter()
+        .map(|&column| judged.named.fit.coefficient(column))
+        .collect();
+    let torque = study.table.torque(joint, &rotor, &values);
+    crate::predict::deviation(&torque, &study.training_rows(joint)) / study.scales.torque[joint].max(1e-300)
+}
+
+/// The relative drop of the NRMSE on recordings it was not fitted to, on the joint where it is largest. A contact is in
+/// one recording alone: its force is fitted to every other piece of its window and tried on the rest.
+fn held_out_gain(
+    study: &Study,
+    problem: &Problem<'_>,
+    held: Option<&Products>,
+    judged: &Judged,
+    member: &Member,
+) -> f64 {
+    let table = &study.table;
+    let set: Vec<usize> = judged
+        .named
+        .set
+        .iter()
+        .copied()
+        .filter(|&c| c != member.candidate)
+        .collect();
+    let without = problem.choose(set, &judged.named.fit.weights);
+    if study.candidates[member.candidate].cause == Cause::Contact {
+        return crate::scan::contact_gain(study, &without.fit, &study.candidates[member.candidate].columns);
+    }
+    let Some(held) = held else { return 0.0 };
+    let fit = &judged.named.fit;
+    let (with, without) = (
+        held.rss(table, &fit.columns, &fit.coefficients),
+        held.rss(table, &without.fit.columns, &without.fit.coefficients),
+    );
+    let at = (0..with.len())
+        .filter(|&joint| held.count[joint] > 0.0)
+        .max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b]));
+    at.map_or(0.0, |joint| {
+        1.0 - (with[joint].max(0.0) / without[joint].max(1e-300)).sqrt()
+    })
+}
+
+fn place(study: &Study, cause: Cause, candidate: usize) -> Place {
+    let terms = study.terms(candidate);
+    match (cause, terms.first()) {
+        (Cause::Contact, Some(&Term::Force { from, to, .. })) => {
+            let at = study.motions.recording_at(0.5 * (from + to));
+            let own = |time: f64| at.map_or(time, |at| study.motions.own_time(at, time));
+            let recording = at.map(|at| study.motions.sources[at].name.clone());
+            Place {
+                time: vec![[own(from), own(to)]],
+                recording,
+                state: None,
+            }
+        }
+        (Cause::Stribeck, _) => Place {
+            state: terms.iter().find_map(|term| match term {
+                Term::Stribeck { velocity, .. } => Some(format!("below about {:.3} rad/s", 2.0 * velocity)),
+                _ => None,
+            }),
+            ..Place::default()
+        },
+        (Cause::Saturation, Some(Term::Excess { limit, .. })) => Place {
+            state: Some(format!("where more than {limit:.3} N m are commanded")),
+            ..Place::default()
+        },
+        _ => Place::default(),
+    }
+}

@@ -1,0 +1,42 @@
+//! From recordings to named causes: locate where a rigid model misses, name what it leaves out, refuse what has no name.
+
+mod behind;
+mod bootstrap;
+mod bursts;
+mod candidate;
+mod columns;
+mod diagnose;
+mod error;
+mod fit;
+mod found;
+mod judge;
+mod known;
+mod locate;
+mod measure;
+mod motion;
+mod naming;
+mod physics;
+mod predict;
+mod refine;
+mod report;
+mod rigid;
+mod rivals;
+mod scan;
+mod search;
+mod search_plan;
+mod sentences;
+mod settings;
+mod signal;
+mod study;
+mod table;
+mod term;
+mod traces;
+mod two_sides;
+mod units;
+mod unseen;
+
+pub use diagnose::{Diagnosis, Options, diagnose};
+pub use error::DiagnosisError;
+pub use motion::Input;
+pub use predict::LEAST_ROWS;
+pub use report::*;

@@ -1,0 +1,171 @@
+//! What is measured of the recordings before anything is fitted: scales, noise, sizes to try.
+
+use arm::{Inertia, Matrix3, Vector3};
+
+use crate::candidate::Cause;
+use crate::columns::Scales;
+use crate::motion::Motions;
+use crate::rigid::Rigid;
+use crate::settings;
+use crate::term::Term;
+
+/// A torque limit is at least this part of what the motion needs, by a model that may be wrong.
+const BELOW_NEED: f64 = 0.7;
+
+/// The body of ten inertial parameters about a frame's origin; possible or not.
+pub fn inertia(parameters: &[f64; 10]) -> Inertia {
+    let [mass, hx, hy, hz, xx, xy, yy, xz, yz, zz] = *parameters;
+    let com = Vector3::new(hx, hy, hz) / mass;
+    let about_origin = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+    Inertia {
+        mass,
+        com,
+        tensor: about_origin - mass * (Matrix3::identity() * com.norm_squared() - com * com.transpose()),
+    }
+}
+
+/// The mean; zero of nothing.
+pub fn mean<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for value in values {
+        sum += value;
+        count += 1.0;
+    }
+    if count > 0.0 { sum / count } else { 0.0 }
+}
+
+/// Elasticities by their resonance, and torque limits by the largest torque.
+pub fn drives(
+    joint: usize,
+    mass: f64,
+    scales: &Scales,
+    motions: &Motions,
+    rigid: &[Rigid],
+) -> Vec<(Cause, Option<usize>, Vec<Term>)> {
+    let mut list = Vec::new();
+    if scales.speed[joint] <= scales.rest[joint] {
+        return list;
+    }
+    if mass > 0.0 {
+        for hertz in [2.5, 3.5, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0] {
+            let omega = 2.0 * std::f64::consts::PI * hertz;
+            let elastic = Term::Elastic {
+                joint,
+                stiffness: mass * omega * omega,
+                damping: 2.0 * settings::DAMPING_RATIO * mass * omega,
+            };
+            list.push((Cause::Elasticity, Some(joint), vec![elastic, Term::Acceleration(joint)]));
+        }
+    }
+    let largest = motions
+        .chunks
+        .iter()
+        .flat_map(|chunk| &chunk.tau[joint])
+        .fold(0.0_f64, |largest, tau| largest.max(tau.abs()));
+    // A drive that moved or held the arm against this torque is not limited far below it.
+    let mut needed: Vec<f64> = rigid
+        .iter()
+        .flat_map(|rigid| rigid.tau[joint].iter().map(|tau| tau.abs()))
+        .collect();
+    let at = (0.999 * needed.len() as f64) as usize;
+    let needed = if needed.is_empty() {
+        0.0
+    } else {
+        *needed.select_nth_unstable_by(at, f64::total_cmp).1
+    };
+    for share in [0.2, 0.27, 0.36, 0.45, 0.55, 0.65, 0.73, 0.8, 0.86, 0.91, 0.95] {
+        let limit = share * largest;
+        if limit < BELOW_NEED * needed {
+            continue;
+        }
+        list.push((Cause::Saturation, Some(joint), vec![Term::Excess { joint, limit }]));
+    }
+    list
+}
+
+/// Speeds, ranges and torques of all joints.
+pub fn scales(motions: &Motions) -> Scales {
+    let sorted = |pick: &dyn Fn(&crate::motion::Chunk) -> Vec<f64>| -> Vec<f64> {
+        let mut values: Vec<f64> = motions.chunks.iter().flat_map(pick).collect();
+        values.sort_by(f64::total_cmp);
+        values
+    };
+    let quantile = |sorted: &[f64], share: f64| -> f64 {
+        let last = sorted.len().saturating_sub(1);
+        sorted
+            .get((share * last as f64).round() as usize)
+            .copied()
+            .unwrap_or(0.0)
+    };
+    let mut scales = Scales {
+        speed: Vec::new(),
+        rest: Vec::new(),
+        middle: Vec::new(),
+        range: Vec::new(),
+        torque: Vec::new(),
+    };
+    for joint in 0..motions.dof {
+        let speeds = sorted(&|chunk| chunk.qd[joint].iter().map(|v| v.abs()).collect());
+        let positions = sorted(&|chunk| chunk.q[joint].clone());
+        let speed = quantile(&speeds, 0.99);
+        let noise = motions
+            .sources
+            .iter()
+            .map(|source| source.velocity_noise[joint])
+            .fold(0.0, f64::max);
+        scales.speed.push(speed);
+        scales.rest.push((settings::REST * speed).max(6.0 * noise).max(1e-6));
+        let (low, high) = (quantile(&positions, 0.002), quantile(&positions, 0.998));
+        scales.middle.push(0.5 * (low + high));
+        scales.range.push((high - low).max(1e-6));
+        let torques: Vec<f64> = motions
+            .chunks
+            .iter()
+            .filter(|chunk| !motions.sources[chunk.recording].held_out)
+            .flat_map(|chunk| chunk.tau[joint].iter().copied())
+            .collect();
+        let mean = torques.iter().sum::<f64>() / torques.len().max(1) as f64;
+        let variance = torques.iter().map(|t| (t - mean).powi(2)).sum::<f64>() / torques.len().max(1) as f64;
+        scales.torque.push(variance.sqrt());
+    }
+    scales
+}
+
+/// From row to row of each recording (s).
+pub fn seconds(motions: &Motions) -> Vec<f64> {
+    let mut seconds = vec![0.0; motions.sources.len()];
+    for chunk in &motions.chunks {
+        seconds[chunk.recording] = chunk.period * chunk.stride as f64;
+    }
+    seconds
+}
+
+/// First and last time of each chunk, by recording (s).
+pub fn spans(motions: &Motions) -> Vec<Vec<(f64, f64)>> {
+    let mut spans: Vec<Vec<(f64, f64)>> = vec![Vec::new(); motions.sources.len()];
+    for chunk in &motions.chunks {
+        spans[chunk.recording].push((chunk.time(0), chunk.time(chunk.ticks() - 1)));
+    }
+    spans
+}
+
+/// The variance of the filtered torque's noise and of the rigid torque's, by the positions' noise.
+pub fn noise(motions: &Motions, rigid: &[Rigid], fitted: &[bool]) -> Vec<f64> {
+    (0..motions.dof)
+        .map(|joint| {
+            let mut largest = 0.0_f64;
+            for (source, &fitted) in motions.sources.iter().zip(fitted) {
+                if !fitted {
+                    continue;
+                }
+                let mut variance = source.torque_noise[joint].powi(2);
+                for by in 0..motions.dof {
+                    let mass = mean(rigid.iter().flat_map(|r| &r.mass[joint][by]));
+                    variance += (mass * source.acceleration_noise[by]).powi(2);
+                }
+                largest = largest.max(variance);
+            }
+            largest
+        })
+        .collect()
+}

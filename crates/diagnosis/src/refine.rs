@@ -1,0 +1,194 @@
+//! Sizes that a column is not linear in, found by trying sizes between the catalogue's.
+
+use rayon::prelude::*;
+
+use crate::search::Chosen;
+use crate::study::Study;
+use crate::term::Term;
+
+/// Factors on a size, each round finer.
+const ROUNDS: [[f64; 4]; 4] = [
+    [0.75, 0.87, 1.15, 1.33],
+    [0.9, 0.95, 1.05, 1.1],
+    [0.965, 0.983, 1.017, 1.035],
+    [0.988, 0.994, 1.006, 1.012],
+];
+
+/// A size that a column is not linear in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Size {
+    /// A velocity, a time, a limit, a stiffness, a gap.
+    Main,
+    /// The damping beside a stiffness.
+    Damping,
+    /// The periods of a ripple.
+    Periods,
+}
+
+/// The sizes that some terms have.
+pub fn sizes(terms: &[Term]) -> Vec<Size> {
+    [Size::Main, Size::Damping, Size::Periods]
+        .into_iter()
+        .filter(|&size| varied(terms, size, 1.01) != terms)
+        .collect()
+}
+
+/// The same terms with one size times `factor`.
+pub fn varied(terms: &[Term], size: Size, factor: f64) -> Vec<Term> {
+    let mut terms = terms.to_vec();
+    for term in &mut terms {
+        match (size, term) {
+            (
+                Size::Main,
+                Term::Stribeck { velocity: value, .. }
+                | Term::Warm {
+                    time_constant: value, ..
+                }
+                | Term::Excess { limit: value, .. }
+                | Term::Late { delay: value, .. }
+                | Term::Elastic { stiffness: value, .. }
+                | Term::Gap { halfgap: value, .. },
+            )
+            | (Size::Damping, Term::Elastic { damping: value, .. })
+            | (Size::Periods, Term::Ripple { periods: value, .. }) => *value *= factor,
+            _ => {}
+        }
+    }
+    terms
+}
+
+/// The same terms with their main size times `factor`; empty if they have none.
+fn resized(terms: &[Term], factor: f64) -> Vec<Term> {
+    let new = varied(terms, Size::Main, factor);
+    if new == terms { Vec::new() } else { new }
+}
+
+/// Variants of a candidate's terms in a round of refinement.
+fn variants(terms: &[Term], round: usize) -> Vec<Vec<Term>> {
+    let mut list: Vec<Vec<Term>> = ROUNDS[round].iter().map(|&factor| resized(terms, factor)).collect();
+    list.retain(|terms| !terms.is_empty());
+    // A finer step about a ripple's period, relative to one period over the range.
+    let nudges = [-1.0, -0.4, 0.4, 1.0].map(|step| step * 0.25_f64.powi(round as i32));
+    let mut nudged = |change: &dyn Fn(&mut Term, f64) -> bool| {
+        for step in nudges {
+            let mut terms = terms.to_vec();
+            let mut changed = false;
+            for term in &mut terms {
+                changed |= change(term, step);
+            }
+            if changed {
+                list.push(terms);
+            }
+        }
+    };
+    nudged(&|term, step| match term {
+        Term::Ripple { periods, .. } => {
+            *periods *= 1.0 + 0.02 * step;
+            true
+        }
+        Term::Wave { omega, .. } => {
+            *omega *= 1.0 + 0.01 * step;
+            true
+        }
+        Term::Elastic { damping, .. } => {
+            *damping *= (1.2 * step).exp();
+            true
+        }
+        Term::Force { from, to, .. } => {
+            *from += 0.25 * step * (*to - *from).max(0.3);
+            true
+        }
+        _ => false,
+    });
+    nudged(&|term, step| match term {
+        Term::Force { from, to, .. } => {
+            *to += 0.25 * step * (*to - *from).max(0.3);
+            true
+        }
+        _ => false,
+    });
+    nudged(&|term, step| match term {
+        Term::Force { from, to, .. } => {
+            let (middle, half) = (0.5 * (*from + *to), 0.5 * (*to - *from) * (0.4 * step).exp());
+            (*from, *to) = (middle - half, middle + half);
+            true
+        }
+        _ => false,
+    });
+    list.retain(|terms| {
+        terms.iter().all(|term| match term {
+            Term::Force { from, to, .. } => to - from > 0.05,
+            _ => true,
+        })
+    });
+    list
+}
+
+/// Finds the sizes of what is in `chosen`; coarsely first if they were not refined before.
+pub fn refine(study: &mut Study, mut chosen: Chosen, again: bool) -> Chosen {
+    let fitted = study.fitted.clone();
+    for round in (if again { 2 } else { 0 })..ROUNDS.len() {
+        let mut options: Vec<(usize, Vec<Vec<Term>>)> = Vec::new();
+        let mut missing = Vec::new();
+        for &member in &chosen.set {
+            let candidate = &study.candidates[member];
+            let terms: Vec<Term> = candidate
+                .columns
+                .iter()
+                .map(|&column| study.table.terms[column])
+                .collect();
+            let list = variants(&terms, round);
+            for &term in list.iter().flatten() {
+                if !study.table.terms.contains(&term) && !missing.contains(&term) {
+                    missing.push(term);
+                }
+            }
+            if !list.is_empty() {
+                options.push((member, list));
+            }
+        }
+        if options.is_empty() {
+            break;
+        }
+        study.extend(missing);
+        let options: Vec<(usize, Vec<usize>)> = options
+            .into_iter()
+            .map(|(member, list)| {
+                let (cause, joint) = (study.candidates[member].cause, study.candidates[member].joint);
+                let known = study.candidates.len();
+                let add = |terms| study.add(cause, joint, terms);
+                let indices = list.into_iter().map(add).collect();
+                study.candidates[known..]
+                    .iter_mut()
+                    .for_each(|trial| trial.is_trial = true);
+                (member, indices)
+            })
+            .collect();
+        let products = study.products(|r| fitted[r]);
+        let problem = study.problem(&products);
+        for (member, indices) in options {
+            let best = indices
+                .into_par_iter()
+                .filter_map(|index| {
+                    let set = chosen
+                        .set
+                        .iter()
+                        .map(|&m| if m == member { index } else { m })
+                        .collect();
+                    let next = problem.choose(set, &chosen.fit.weights);
+                    problem.is_possible(index, &next.fit).then_some(next)
+                })
+                .collect::<Vec<_>>()
+                .into_iter()
+                .min_by(|a, b| a.score.total_cmp(&b.score));
+            if let Some(best) = best
+                && best.score < chosen.score
+            {
+                chosen = best;
+            }
+        }
+    }
+    let products = study.products(|r| fitted[r]);
+    let problem = study.problem(&products);
+    problem.prune(chosen)
+}

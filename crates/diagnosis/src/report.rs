@@ -1,0 +1,267 @@
+//! The diagnosis as others read it: `testbed diagnose --json`, schema `testbed.diagnosis/1`.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use torque::Effect;
+
+/// What was found. Maps are keyed by the URDF joint's name.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// `testbed.diagnosis/1`.
+    pub schema: &'static str,
+    /// The robot's name in its URDF.
+    pub robot: String,
+    /// The recordings, as they were named.
+    pub recordings: RecordingNames,
+    /// In one word.
+    pub verdict: Verdict,
+    /// The effects named, the largest share first.
+    pub findings: Vec<Finding>,
+    /// What has structure and no name.
+    pub unexplained: Vec<Unexplained>,
+    /// Effects that these recordings could not show.
+    pub not_observable: Vec<NotObservable>,
+    /// Why nothing more can be said, where the data are too few; empty otherwise.
+    pub not_enough_data: Vec<String>,
+    /// Where the nominal model misses, joint by joint.
+    pub located: Vec<Located>,
+    /// How well each joint's torque is predicted.
+    pub fit: BTreeMap<String, JointFit>,
+    /// How the simulated arm follows the recorded one; empty where it was not simulated.
+    pub rollout: BTreeMap<String, JointRollout>,
+}
+
+/// Paths as given on the command line.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct RecordingNames {
+    /// Fitted.
+    pub train: Vec<String>,
+    /// Not used to fit.
+    pub held_out: Vec<String>,
+}
+
+/// The diagnosis in one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// The model explains the recordings.
+    NoMismatch,
+    /// What differs has names.
+    Explained,
+    /// Some of it has.
+    PartlyExplained,
+    /// None of it has.
+    Unexplained,
+    /// The recordings do not say.
+    NotEnoughData,
+}
+
+/// One effect named.
+#[derive(Clone, Debug, Serialize)]
+pub struct Finding {
+    /// The catalogue's name.
+    pub effect: &'static str,
+    /// The joint, or `None` for the whole arm.
+    pub joint: Option<String>,
+    /// The joint whose motion it depends on (transmission coupling).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub other: Option<String>,
+    /// Its parameters.
+    pub parameters: BTreeMap<&'static str, Parameter>,
+    /// How likely it is that this effect is there, on this joint.
+    pub probability: f64,
+    /// Standard deviation of its torque over that of the measured torque, training recordings; the largest of the joints.
+    pub share: f64,
+    /// The same for each joint it acts on.
+    pub share_by_joint: BTreeMap<String, f64>,
+    /// Relative drop of the NRMSE, over recordings it was not fitted to.
+    pub held_out_gain: f64,
+    /// What explains nearly as much in its place.
+    pub confusable_with: Vec<Confusable>,
+    /// Where it acts.
+    #[serde(rename = "where")]
+    pub place: Place,
+    /// One sentence for a person.
+    pub sentence: String,
+    /// Whether it corrects the model of the measured torque; not if it was seen elsewhere (a second encoder, motor currents).
+    #[serde(skip)]
+    pub corrects: bool,
+    /// The effect as `--known` and the corrected model take it.
+    #[serde(skip)]
+    pub as_effect: Effect,
+}
+
+/// A number with its interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Parameter {
+    /// The estimate.
+    pub value: f64,
+    /// Its 95 % interval.
+    pub ci95: [f64; 2],
+    /// SI unit at the joint.
+    pub unit: &'static str,
+}
+
+/// What a finding could be instead.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Confusable {
+    /// The catalogue's name.
+    pub effect: &'static str,
+    /// The joint, or `None` for the whole arm.
+    pub joint: Option<String>,
+}
+
+/// Where a finding acts.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Place {
+    /// Stretches of time (s); all of it where empty.
+    pub time: Vec<[f64; 2]>,
+    /// The recording that `time` is of, where it is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recording: Option<String>,
+    /// Region of state, in words.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub state: Option<String>,
+}
+
+/// Structure without a name.
+#[derive(Clone, Debug, Serialize)]
+pub struct Unexplained {
+    /// The joint.
+    pub joint: String,
+    /// Standard deviation of what is left and has structure, over that of the measured torque.
+    pub share: f64,
+    /// `own_position`, `own_speed`, `time`, `history`, `other_joint:NAME`, …; empty if nothing tried predicts it.
+    pub depends_on: Vec<String>,
+    /// Stretches of time where it is largest; all of it where empty.
+    pub time: Vec<TimeWindow>,
+    /// Which experiment would tell more.
+    pub next: String,
+}
+
+/// An effect that the recordings could not show.
+#[derive(Clone, Debug, Serialize)]
+pub struct NotObservable {
+    /// The catalogue's name.
+    pub effect: &'static str,
+    /// The joint, or `None` for the whole arm.
+    pub joint: Option<String>,
+    /// Why.
+    pub because: String,
+    /// The size from which it would have been seen.
+    pub would_be_seen_above: BTreeMap<&'static str, f64>,
+    /// The size below which it would have been seen: a limit, a stiffness.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub would_be_seen_below: BTreeMap<&'static str, f64>,
+}
+
+/// Where a joint's nominal residual is larger than noise and filtering explain.
+#[derive(Clone, Debug, Serialize)]
+pub struct Located {
+    /// The joint.
+    pub joint: String,
+    /// RMS of the nominal residual over what noise and filtering leave.
+    pub over_noise: f64,
+    /// The part of the residual's power that repeats where the motion does; `None` without repeats.
+    pub repeatable: Option<f64>,
+    /// Regions of state where it is largest, in words, with the RMS there over the joint's torque spread.
+    pub regions: Vec<Region>,
+    /// Stretches of time where it is largest.
+    pub time: Vec<TimeWindow>,
+}
+
+/// A stretch of one recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TimeWindow {
+    /// The recording, as it was named.
+    pub recording: String,
+    /// s, on the recording's clock.
+    pub start: f64,
+    /// s.
+    pub end: f64,
+}
+
+/// A region of state.
+#[derive(Clone, Debug, Serialize)]
+pub struct Region {
+    /// `near_reversal`, `speed`, `load`, `angle`, `elapsed_time`.
+    pub axis: &'static str,
+    /// Its bounds, in the axis' unit.
+    pub range: [f64; 2],
+    /// RMS of the nominal residual there, over the joint's torque spread.
+    pub residual: f64,
+    /// RMS of the augmented residual there, likewise.
+    pub residual_augmented: f64,
+}
+
+/// How well one joint's torque is predicted. NRMSE: RMS error over the standard deviation of the measured torque.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct JointFit {
+    /// Of the measured torque, training recordings (N m or N).
+    pub torque_std: f64,
+    /// Measured noise after filtering (N m or N).
+    pub noise: f64,
+    /// Held-out NRMSE of the nominal model over the samples in motion (over all where the joint hardly moves); `None` where
+    /// there is no held-out recording.
+    pub held_out_nrmse_nominal: Option<f64>,
+    /// Held-out NRMSE with the named effects.
+    pub held_out_nrmse_augmented: Option<f64>,
+    /// Held-out NRMSE with a correction learned (IJL) from the same recordings.
+    pub held_out_nrmse_learned: Option<f64>,
+    /// With the named effects, resting samples only: the distance to what dry friction may hold.
+    pub held_out_nrmse_resting: Option<f64>,
+    /// Nominal, resting samples only.
+    pub held_out_nrmse_resting_nominal: Option<f64>,
+    /// Nominal, training recordings, moving samples.
+    pub train_nrmse_nominal: f64,
+    /// With the named effects, training recordings, moving samples.
+    pub train_nrmse_augmented: f64,
+    /// Autocorrelation of the augmented residual at lag .1 s (0: white).
+    pub residual_autocorrelation: f64,
+    /// The same of the nominal residual.
+    pub residual_autocorrelation_nominal: f64,
+}
+
+/// How the simulated joint follows the recorded one.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct JointRollout {
+    /// RMS distance, nominal model (rad or m).
+    pub nominal_rms_rad: f64,
+    /// RMS distance, with the named effects (rad or m).
+    pub augmented_rms_rad: f64,
+}
+
+/// What figures are drawn from: all recordings on the diagnosis' own grid.
+#[derive(Clone, Debug, Default)]
+pub struct Traces {
+    /// One a recording.
+    pub recordings: Vec<Trace>,
+}
+
+/// One recording; signals are `[joint][row]`, effects `[finding][joint][row]` (empty where it does not act).
+#[derive(Clone, Debug, Default)]
+pub struct Trace {
+    /// The file, as named.
+    pub name: String,
+    /// Whether it is held out.
+    pub held_out: bool,
+    /// s.
+    pub time: Vec<f64>,
+    /// rad or m.
+    pub q: Vec<Vec<f64>>,
+    /// rad/s or m/s.
+    pub qd: Vec<Vec<f64>>,
+    /// rad/s² or m/s².
+    pub qdd: Vec<Vec<f64>>,
+    /// Measured, filtered (N m or N).
+    pub tau: Vec<Vec<f64>>,
+    /// Measured less nominal (N m or N).
+    pub residual: Vec<Vec<f64>>,
+    /// Measured less nominal less named effects (N m or N).
+    pub residual_augmented: Vec<Vec<f64>>,
+    /// The torque of each finding (N m or N), as its column says.
+    pub effects: Vec<Vec<Vec<f64>>>,
+    /// Whether the joint moves: rows at rest were not fitted.
+    pub moving: Vec<Vec<bool>>,
+}

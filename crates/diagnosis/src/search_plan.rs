@@ -1,0 +1,66 @@
+//! The order of the search: suggest, grow, refine, relinearise, swap.
+
+use crate::candidate::Cause;
+use crate::refine::refine;
+use crate::search::Chosen;
+use crate::study::Study;
+
+/// Rounds of suggestion, at most.
+const SUGGESTIONS: usize = 3;
+/// Rounds of refinement, at most.
+const REFINEMENTS: usize = 2;
+/// Swaps in a row, at most.
+const SWAPS: usize = 4;
+
+/// Finds the candidates that together explain the training recordings. `progress` is told what is going on.
+pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
+    let fitted = study.fitted.clone();
+    let ordinary: Vec<usize> = (0..study.candidates.len())
+        .filter(|&c| matches!(study.candidates[c].cause, Cause::Viscous | Cause::Coulomb))
+        .collect();
+    let products = study.products(|r| fitted[r]);
+    let mut chosen = study.problem(&products).choose(ordinary, &products.first_weights());
+    for round in 1..=SUGGESTIONS {
+        progress(&format!("looking for causes, round {round}"));
+        let before = chosen.set.clone();
+        // What has no name must not hide what the residual suggests.
+        let products = study.products(|r| fitted[r]);
+        let named = before
+            .iter()
+            .copied()
+            .filter(|&c| study.candidates[c].cause.name().is_some())
+            .collect();
+        chosen = study.problem(&products).choose(named, &chosen.fit.weights);
+        study.suggest(&chosen);
+        let products = study.products(|r| fitted[r]);
+        let problem = study.problem(&products);
+        let allowed: Vec<usize> = (0..study.candidates.len()).collect();
+        chosen = problem.choose(chosen.set, &chosen.fit.weights);
+        chosen = problem.forward(chosen, &allowed);
+        let mut sets = [before, chosen.set.clone()];
+        sets.iter_mut().for_each(|set| set.sort_unstable());
+        if sets[0] == sets[1] {
+            break;
+        }
+    }
+    for round in 1..=REFINEMENTS {
+        progress(&format!("refining sizes, round {round}"));
+        chosen = refine(study, chosen, round > 1);
+        let formed_anew = study.relinearise(&chosen.fit, &chosen.set);
+        let again = formed_anew.is_some();
+        let set = formed_anew.unwrap_or_else(|| chosen.set.clone());
+        let products = study.products(|r| fitted[r]);
+        let problem = study.problem(&products);
+        let allowed: Vec<usize> = (0..study.candidates.len()).collect();
+        let before = set.clone();
+        chosen = problem.choose(set, &chosen.fit.weights);
+        chosen = problem.forward(problem.prune(chosen), &allowed);
+        chosen = problem.swap(chosen, &allowed, SWAPS);
+        if chosen.set != before {
+            chosen = refine(study, chosen, false);
+        } else if !again {
+            break;
+        }
+    }
+    chosen
+}

@@ -1,0 +1,129 @@
+//! Inner products of columns over stretches of rows.
+
+use std::ops::Range;
+
+use faer::{Accum, Mat, MatRef, Par, linalg::matmul::matmul};
+
+/// The only recording that moves a joint is cut into so many stretches, to be left out in turns.
+const STRETCHES: usize = 4;
+
+/// A recording, or a stretch of one, as one joint moves in it.
+#[derive(Clone, Debug)]
+pub struct Stretch {
+    /// The recording that it is of.
+    pub recording: usize,
+    /// Inner products over its moving rows.
+    pub gram: Gram,
+    /// The moving rows.
+    rows: Vec<usize>,
+    /// The columns on them, one after the other.
+    packed: Vec<f64>,
+}
+
+impl Stretch {
+    /// The stretches of a joint that is `moving` on some rows: the recordings, whose rows are `recordings`. If but one of
+    /// those to be fitted moves the joint, that one is cut.
+    pub fn of(recordings: &[Range<usize>], held_out: &[bool], moving: &[bool]) -> Vec<Self> {
+        let rows_of = |range: &Range<usize>| -> Vec<usize> { range.clone().filter(|&row| moving[row]).collect() };
+        let rows: Vec<Vec<usize>> = recordings.iter().map(rows_of).collect();
+        let is_fitted = |r: &usize| !held_out[*r] && !rows[*r].is_empty();
+        let fitted = (0..rows.len()).filter(is_fitted).count();
+        let mut stretches = Vec::with_capacity(rows.len() + STRETCHES - 1);
+        for (recording, rows) in rows.iter().enumerate() {
+            let pieces = if fitted == 1 && is_fitted(&recording) {
+                STRETCHES
+            } else {
+                1
+            };
+            let length = rows.len().div_ceil(pieces).max(1);
+            stretches.extend(rows.chunks(length).map(|rows| Self {
+                recording,
+                gram: Gram::default(),
+                rows: rows.to_vec(),
+                packed: Vec::new(),
+            }));
+        }
+        stretches
+    }
+
+    /// Inner products of those of the columns `x` that are new, with all and with `y`.
+    pub fn refresh(&mut self, x: &[Vec<f64>], y: &[f64]) {
+        let known = self.gram.len();
+        let total = x.len();
+        let pick = |signal: &[f64]| -> Vec<f64> { self.rows.iter().map(|&row| signal[row]).collect() };
+        let y = pick(y);
+        self.gram.square = y.iter().map(|y| y * y).sum();
+        for x in &x[known..] {
+            let x = pick(x);
+            self.gram.right.push(x.iter().zip(&y).map(|(x, y)| x * y).sum());
+            self.packed.extend(x);
+        }
+        let all = MatRef::from_column_major_slice(&self.packed, y.len(), total);
+        let mut product = Mat::zeros(total, total - known);
+        matmul(
+            product.as_mut(),
+            Accum::Replace,
+            all.transpose(),
+            all.subcols(known, total - known),
+            1.0,
+            Par::Seq,
+        );
+        for k in known..total {
+            self.gram.rows.push((0..=k).map(|i| product[(i, k - known)]).collect());
+        }
+    }
+}
+
+/// Inner products of columns with each other and with y.
+#[derive(Clone, Debug, Default)]
+pub struct Gram {
+    /// The lower triangle, row by row.
+    rows: Vec<Vec<f64>>,
+    /// With y.
+    right: Vec<f64>,
+    /// y with itself.
+    square: f64,
+}
+
+impl Gram {
+    /// The number of columns.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Of two columns.
+    pub fn of(&self, i: usize, k: usize) -> f64 {
+        self.rows[i.max(k)][i.min(k)]
+    }
+
+    /// Of a column and y.
+    pub fn with_y(&self, i: usize) -> f64 {
+        self.right[i]
+    }
+
+    /// Of y with itself.
+    pub fn y_square(&self) -> f64 {
+        self.square
+    }
+
+    /// The sum of several of the same `columns` columns.
+    pub fn sum<'a>(columns: usize, grams: impl Iterator<Item = &'a Gram>) -> Gram {
+        let mut sum = Gram {
+            rows: (0..columns).map(|k| vec![0.0; k + 1]).collect(),
+            right: vec![0.0; columns],
+            square: 0.0,
+        };
+        for gram in grams {
+            for (row, more) in sum.rows.iter_mut().zip(&gram.rows) {
+                for (value, more) in row.iter_mut().zip(more) {
+                    *value += more;
+                }
+            }
+            for (value, more) in sum.right.iter_mut().zip(&gram.right) {
+                *value += more;
+            }
+            sum.square += gram.square;
+        }
+        sum
+    }
+}

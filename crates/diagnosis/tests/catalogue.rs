@@ -1,0 +1,310 @@
+//! Each effect of the catalogue, concealed alone beside a little friction, is named on its joint with its size, and nothing else is.
+
+mod support;
+
+use arm::{Arm, Vector3};
+use diagnosis::{Diagnosis, Verdict};
+use support::{Concealed, ELBOW, Motion, SHOULDER, diagnosed, motion, trio};
+
+/// Friction of every joint, which every robot has.
+fn ordinary(motion: &Motion, tau: &mut [f64]) {
+    for joint in 0..3 {
+        let speed = motion.qd[joint];
+        tau[joint] += 0.6 * speed.signum() + 0.4 * speed;
+    }
+}
+
+/// What is found beside plain friction must be `effect` on `joint`, with parameters within a part `tolerance` of the truth.
+fn check(
+    robot: &Arm,
+    concealed: Concealed<'_>,
+    effect: &str,
+    joint: Option<&str>,
+    truth: &[(&str, f64)],
+    tolerance: f64,
+) {
+    let diagnosis = diagnosed(&trio(), robot, concealed, Vec::new());
+    let report = &diagnosis.report;
+    let plain = ["viscous_friction", "coulomb_friction"];
+    let special: Vec<_> = report
+        .findings
+        .iter()
+        .filter(|finding| !plain.contains(&finding.effect) || finding.effect == effect)
+        .map(|finding| (finding.effect, finding.joint.as_deref()))
+        .collect();
+    assert_eq!(
+        special,
+        [(effect, joint)],
+        "{:?} {:#?}",
+        sentences(&diagnosis),
+        report.unexplained
+    );
+    assert_eq!(report.verdict, Verdict::Explained, "{:?}", report.unexplained);
+    let finding = report
+        .findings
+        .iter()
+        .find(|finding| finding.effect == effect)
+        .expect("it is there");
+    for (name, truth) in truth {
+        let found = finding.parameters[name];
+        assert!(
+            (found.value / truth - 1.0).abs() < tolerance,
+            "{name}: {found:?} instead of {truth}"
+        );
+    }
+    assert!(finding.held_out_gain > 0.05, "{}", finding.held_out_gain);
+    // What is found, taken as known, leaves nothing to find.
+    if !["actuation_delay", "joint_elasticity"].contains(&effect) {
+        let again = diagnosed(&trio(), robot, concealed, diagnosis.effects.clone());
+        assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
+    }
+    for (joint, fit) in &report.fit {
+        let (nominal, augmented) = (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented);
+        assert!(augmented < nominal, "{joint}: {nominal:?} → {augmented:?}");
+    }
+}
+
+fn sentences(diagnosis: &Diagnosis) -> Vec<&str> {
+    diagnosis
+        .report
+        .findings
+        .iter()
+        .map(|finding| finding.sentence.as_str())
+        .collect()
+}
+
+/// An effect that adds a torque to one joint.
+fn added(effect: &str, joint: usize, torque: impl Fn(&Motion) -> f64, truth: &[(&str, f64)], tolerance: f64) {
+    let arm = trio();
+    let name = arm.joints()[joint].name.clone();
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        ordinary(motion, tau);
+        tau[joint] += torque(motion);
+    };
+    check(&arm, &concealed, effect, Some(&name), truth, tolerance);
+}
+
+#[test]
+fn quadratic_drag() {
+    added(
+        "quadratic_drag",
+        ELBOW,
+        |m| 1.2 * m.qd[ELBOW] * m.qd[ELBOW].abs(),
+        &[("coefficient", 1.2)],
+        0.05,
+    );
+}
+
+#[test]
+fn rotor_inertia() {
+    added(
+        "rotor_inertia",
+        ELBOW,
+        |m| 0.3 * m.qdd[ELBOW],
+        &[("inertia", 0.3)],
+        0.05,
+    );
+}
+
+#[test]
+fn torque_offset() {
+    added("torque_offset", ELBOW, |_| 1.5, &[("offset", 1.5)], 0.05);
+}
+
+#[test]
+fn torque_ripple() {
+    let ripple = |m: &Motion| 1.2 * (17.0 * m.q[ELBOW] + 0.6).sin();
+    added(
+        "torque_ripple",
+        ELBOW,
+        ripple,
+        &[("amplitude", 1.2), ("periods", 17.0)],
+        0.05,
+    );
+}
+
+#[test]
+fn friction_asymmetry() {
+    let law = |m: &Motion| if m.qd[ELBOW] > 0.0 { 3.0 } else { -1.0 };
+    added(
+        "friction_asymmetry",
+        ELBOW,
+        law,
+        &[("positive", 3.6), ("negative", 1.6)],
+        0.05,
+    );
+}
+
+#[test]
+fn stribeck_friction() {
+    let law = |m: &Motion| 3.0 * (-(m.qd[ELBOW] / 0.12).powi(2)).exp() * m.qd[ELBOW].signum();
+    added(
+        "stribeck_friction",
+        ELBOW,
+        law,
+        &[("coulomb", 0.6), ("velocity", 0.12)],
+        0.25,
+    );
+}
+
+#[test]
+fn spring() {
+    let law = |m: &Motion| 9.0 * (m.q[SHOULDER] - 0.3);
+    added("spring", SHOULDER, law, &[("stiffness", 9.0), ("rest", 0.3)], 0.06);
+}
+
+#[test]
+fn load_dependent_friction() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        let load = tau[SHOULDER].abs();
+        ordinary(motion, tau);
+        tau[SHOULDER] += 0.15 * load * motion.qd[SHOULDER].signum();
+    };
+    check(
+        &trio(),
+        &concealed,
+        "load_dependent_friction",
+        Some("shoulder"),
+        &[("gain", 0.15)],
+        0.06,
+    );
+}
+
+#[test]
+fn transmission_coupling() {
+    // Gears that turn two joints' drives together act on both.
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        ordinary(motion, tau);
+        tau[ELBOW] += 1.1 * motion.qd[SHOULDER] + 0.12 * motion.qdd[SHOULDER];
+        tau[SHOULDER] += 1.1 * motion.qd[ELBOW] + 0.12 * motion.qdd[ELBOW];
+    };
+    let truth = [("viscous", 1.1), ("inertia", 0.12)];
+    check(&trio(), &concealed, "transmission_coupling", Some("elbow"), &truth, 0.1);
+}
+
+#[test]
+fn torque_scale() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        ordinary(motion, tau);
+        tau[SHOULDER] *= 1.15;
+    };
+    check(
+        &trio(),
+        &concealed,
+        "torque_scale",
+        Some("shoulder"),
+        &[("factor", 1.15)],
+        0.03,
+    );
+}
+
+/// Torques as they are commanded, `delay` before they are needed, on the shoulder.
+fn delayed(delay: f64) -> impl Fn(&mut Motion, &mut [f64]) {
+    let arm = trio();
+    move |now: &mut Motion, tau: &mut [f64]| {
+        ordinary(now, tau);
+        let is_this = |&variant: &usize| motion(3, now.time, variant).q == now.q;
+        let variant = (0..3).find(is_this).expect("it is one of the three");
+        let ahead = motion(3, now.time + delay, variant);
+        let mut later = [0.0; 3];
+        let mut workspace = arm::Workspace::new(&arm);
+        arm.inverse_dynamics(&mut workspace, &ahead.q, &ahead.qd, &ahead.qdd, &mut later);
+        ordinary(&ahead, &mut later);
+        tau[SHOULDER] = later[SHOULDER];
+    }
+}
+
+#[test]
+fn actuation_delay() {
+    check(&trio(), &delayed(0.012), "actuation_delay", Some("shoulder"), &[], 0.0);
+}
+
+#[test]
+fn actuation_delay_has_its_size() {
+    for delay in [0.006, 0.012] {
+        let truth = [("delay", delay)];
+        check(
+            &trio(),
+            &delayed(delay),
+            "actuation_delay",
+            Some("shoulder"),
+            &truth,
+            0.1,
+        );
+    }
+}
+
+#[test]
+fn encoder_offset() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        ordinary(motion, tau);
+        motion.q[ELBOW] += 0.06;
+    };
+    check(
+        &trio(),
+        &concealed,
+        "encoder_offset",
+        Some("elbow"),
+        &[("offset", 0.06)],
+        0.1,
+    );
+}
+
+#[test]
+fn link_inertial_error() {
+    let robot = trio().with_scaled_link(SHOULDER, 1.2);
+    check(
+        &robot,
+        &|m, tau| ordinary(m, tau),
+        "link_inertial_error",
+        Some("shoulder"),
+        &[("relative", 0.2)],
+        0.1,
+    );
+}
+
+#[test]
+fn gravity_misalignment() {
+    let robot = trio().with_turned_base(Vector3::new(1.0, 0.0, 0.0), 0.08);
+    check(
+        &robot,
+        &|m, tau| ordinary(m, tau),
+        "gravity_misalignment",
+        None,
+        &[("angle", 0.08)],
+        0.1,
+    );
+}
+
+#[test]
+fn joint_elasticity() {
+    // The link follows the motion; the drive, which is what the encoder sees, is ahead by the spring's deflection.
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        motion.q[ELBOW] += tau[ELBOW] / 250.0;
+        ordinary(motion, tau);
+    };
+    check(
+        &trio(),
+        &concealed,
+        "joint_elasticity",
+        Some("elbow"),
+        &[("stiffness", 250.0)],
+        0.15,
+    );
+}
+
+#[test]
+fn plain_friction_on_every_joint_and_nothing_else() {
+    let diagnosis = diagnosed(&trio(), &trio(), &|m, tau| ordinary(m, tau), Vec::new());
+    let report = &diagnosis.report;
+    assert_eq!(report.findings.len(), 6, "{:?}", sentences(&diagnosis));
+    for finding in &report.findings {
+        let (parameter, truth) = match finding.effect {
+            "coulomb_friction" => ("level", 0.6),
+            _ => ("coefficient", 0.4),
+        };
+        let [low, high] = finding.parameters[parameter].ci95;
+        assert!(low < truth && truth < high, "{}", finding.sentence);
+    }
+    assert_eq!(report.verdict, Verdict::Explained);
+}

@@ -1,0 +1,150 @@
+//! What tests and benches of the diagnosis share: arms, a known motion, and recordings of both with something concealed.
+
+#![allow(dead_code, reason = "each test takes what it needs")]
+
+use std::f64::consts::TAU;
+
+use arm::{Arm, Workspace};
+use diagnosis::{Diagnosis, Input, Options, diagnose};
+use recording::{Recording, RegularRecording};
+use torque::Effect;
+
+/// Three joints: a turning column, a shoulder and an elbow.
+pub const TRIO: &str = r#"<robot name="trio">
+<link name="floor"/>
+<link name="column"><inertial><origin xyz="0 0 0.2"/><mass value="6"/>
+<inertia ixx="0.08" ixy="0" ixz="0" iyy="0.08" iyz="0" izz="0.05"/></inertial></link>
+<link name="upper"><inertial><origin xyz="0.22 0.01 0.02"/><mass value="5"/>
+<inertia ixx="0.02" ixy="0" ixz="0" iyy="0.11" iyz="0" izz="0.11"/></inertial></link>
+<link name="fore"><inertial><origin xyz="0.15 0 0.03"/><mass value="3"/>
+<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.05" iyz="0" izz="0.05"/></inertial></link>
+<joint name="turn" type="revolute"><parent link="floor"/><child link="column"/><axis xyz="0 0 1"/>
+<limit lower="-3" upper="3" effort="200" velocity="5"/></joint>
+<joint name="shoulder" type="revolute"><origin xyz="0 0 0.4"/><parent link="column"/><child link="upper"/>
+<axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="200" velocity="5"/></joint>
+<joint name="elbow" type="revolute"><origin xyz="0.45 0 0"/><parent link="upper"/><child link="fore"/>
+<axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="200" velocity="5"/></joint>
+</robot>
+"#;
+
+/// The joints of [`TRIO`].
+pub const TURN: usize = 0;
+/// The second.
+pub const SHOULDER: usize = 1;
+/// The third.
+pub const ELBOW: usize = 2;
+
+/// The arm of [`TRIO`].
+pub fn trio() -> Arm {
+    Arm::from_urdf_text(TRIO, "trio.urdf").expect("it is an arm")
+}
+
+/// The motion at one time.
+pub struct Motion {
+    /// s, since the recording's start.
+    pub time: f64,
+    /// rad.
+    pub q: Vec<f64>,
+    /// rad/s.
+    pub qd: Vec<f64>,
+    /// rad/s².
+    pub qdd: Vec<f64>,
+}
+
+/// Four sines a joint about a bent arm; `variant` chooses frequencies and phases.
+pub fn motion(dof: usize, time: f64, variant: usize) -> Motion {
+    let middle = |joint: usize| [0.0, -0.5, 0.7][joint % 3];
+    let mut motion = Motion {
+        time,
+        q: (0..dof).map(middle).collect(),
+        qd: vec![0.0; dof],
+        qdd: vec![0.0; dof],
+    };
+    for joint in 0..dof {
+        for (k, hertz) in [0.11, 0.23, 0.41, 0.67].into_iter().enumerate() {
+            let turn = (7 * joint + 3 * k + 5 * variant) as f64;
+            let omega = TAU * hertz * (1.0 + 0.08 * (2.4 * turn).sin());
+            let amplitude = 0.34 / (1.0 + 0.6 * k as f64);
+            let (sin, cos) = (omega * time + 1.9 * turn).sin_cos();
+            motion.q[joint] += amplitude * sin;
+            motion.qd[joint] += amplitude * omega * cos;
+            motion.qdd[joint] -= amplitude * omega * omega * sin;
+        }
+    }
+    motion
+}
+
+/// What is concealed: it changes what is recorded of the motion and of its torques.
+pub type Concealed<'a> = &'a dyn Fn(&mut Motion, &mut [f64]);
+
+/// The time of the first row of a recording (s): time runs on through recordings.
+pub fn start(variant: usize) -> f64 {
+    1e3 * variant as f64
+}
+
+/// A recording of `seconds` at 250 Hz of `arm` with what is `concealed`, and noise of 0.02 N m.
+pub fn recorded(arm: &Arm, variant: usize, seconds: f64, concealed: Concealed<'_>) -> Recording {
+    let dof = arm.dof();
+    let mut workspace = Workspace::new(arm);
+    let mut recording = Recording {
+        joints: arm.joints().iter().map(|joint| joint.name.clone()).collect(),
+        q: vec![Vec::new(); dof],
+        tau: vec![Vec::new(); dof],
+        ..Recording::default()
+    };
+    let mut random = 1 + variant as u64;
+    let mut tau = vec![0.0; dof];
+    for k in 0..(250.0 * seconds) as usize {
+        let time = k as f64 / 250.0;
+        let mut motion = motion(dof, time, variant);
+        arm.inverse_dynamics(&mut workspace, &motion.q, &motion.qd, &motion.qdd, &mut tau);
+        concealed(&mut motion, &mut tau);
+        recording.time.push(time + start(variant));
+        for joint in 0..dof {
+            recording.q[joint].push((motion.q[joint] * 1e6).round() / 1e6);
+            recording.tau[joint].push(tau[joint] + 0.02 * normal(&mut random));
+        }
+    }
+    recording
+}
+
+/// Nearly normal: the sum of twelve uniform numbers (splitmix64), less six.
+fn normal(state: &mut u64) -> f64 {
+    let uniform = |state: &mut u64| {
+        *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = *state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..12).map(|_| uniform(state)).sum::<f64>() - 6.0
+}
+
+/// The same on its clock.
+pub fn regular(recording: &Recording) -> RegularRecording {
+    recording.regular().expect("the clock is regular").0
+}
+
+/// Diagnoses `believed` and what is `known` on two recordings of 16 s and one of 10 s, held out, of `robot` with what is `concealed`.
+pub fn diagnosed(believed: &Arm, robot: &Arm, concealed: Concealed<'_>, known: Vec<Effect>) -> Diagnosis {
+    let recordings = [16.0, 16.0, 10.0];
+    let recordings: Vec<RegularRecording> = recordings
+        .into_iter()
+        .enumerate()
+        .map(|(variant, seconds)| regular(&recorded(robot, variant, seconds, concealed)))
+        .collect();
+    let inputs: Vec<Input<'_>> = ["a", "b", "c"]
+        .into_iter()
+        .zip(&recordings)
+        .map(|(name, recording)| Input {
+            name,
+            recording,
+            held_out: name == "c",
+        })
+        .collect();
+    let options = Options {
+        known,
+        ..Options::default()
+    };
+    diagnose(believed, &inputs, &options, &|_| {}).expect("it can be diagnosed")
+}

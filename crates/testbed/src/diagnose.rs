@@ -1,0 +1,18 @@
+//! `testbed diagnose`: which physics the model leaves out, as a table, a page, a timeline, and a corrected model.
+
+mod command;
+mod effect_file;
+mod inputs;
+mod learned;
+mod numbers;
+mod page;
+#[cfg(feature = "viewer")]
+mod rerun;
+mod rollout;
+#[cfg(test)]
+mod sample;
+mod terminal;
+mod urdf_file;
+mod words;
+
+pub use command::run;

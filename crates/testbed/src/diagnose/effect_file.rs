@@ -1,0 +1,233 @@
+//! Effects as a TOML file: what `--known` takes, and the corrected model that a diagnosis writes.
+
+use std::ops::Range;
+use std::path::Path;
+
+use anyhow::{Context, anyhow, ensure};
+use arm::Arm;
+use recording::{nearest, toml_reason};
+use serde::Deserialize;
+use toml::Spanned;
+use torque::{Corrected, Effect, TorqueError};
+
+use crate::library::Source;
+
+/// What the `schema` line says.
+const SCHEMA: &str = "testbed.model/1";
+
+/// Effects, and whose they are.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct EffectFile {
+    /// The robot's name in its URDF, where the file tells.
+    pub robot: Option<String>,
+    /// The effects, in the file's order.
+    pub effects: Vec<Effect>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawFile {
+    schema: Spanned<String>,
+    robot: Option<Spanned<String>>,
+    #[serde(default)]
+    effects: Vec<Spanned<toml::Table>>,
+}
+
+impl EffectFile {
+    /// Reads the file at `path`, whose effects must fit `arm`.
+    ///
+    /// # Errors
+    /// With file, line, reason and remedy: unreadable, no such TOML, another robot's, an effect or joint that is not
+    /// there, a parameter that no physics has.
+    pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Self> {
+        let text = std::fs::read_to_string(path).with_context(|| {
+            let path = path.display();
+            format!("{path}: the effects cannot be read; give a file with schema = \"{SCHEMA}\"")
+        })?;
+        Self::parse(text, path, arm)
+    }
+
+    /// As [`Self::load`], from text; `path` is what errors call it.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn parse(text: String, path: &Path, arm: &Arm) -> anyhow::Result<Self> {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let path = path.to_owned();
+        let source = Source { name, path, text };
+        let fail = |span: Range<usize>, reason: String| anyhow!("{}: {reason}", source.place(span));
+        let raw: RawFile = toml::from_str(&source.text)
+            .map_err(|error| fail(error.span().unwrap_or(0..0), reason(error.message(), arm)))?;
+        let schema = raw.schema.get_ref();
+        ensure!(
+            schema == SCHEMA,
+            fail(
+                raw.schema.span(),
+                format!("the schema is \"{schema}\"; this program reads \"{SCHEMA}\"")
+            )
+        );
+        if let Some(robot) = &raw.robot {
+            let (found, wanted) = (robot.get_ref(), arm.name());
+            ensure!(
+                found == wanted,
+                fail(
+                    robot.span(),
+                    format!(
+                        "the effects are of robot \"{found}\", not of \"{wanted}\"; give its file, or leave the line out"
+                    )
+                )
+            );
+        }
+        let mut effects = Vec::new();
+        for table in raw.effects {
+            let span = table.span();
+            let effect = Effect::deserialize(toml::Value::Table(table.into_inner())).map_err(|error| {
+                let message = error.message();
+                // The key that serde quotes first is the one in question.
+                let key = if message.starts_with("unknown variant") {
+                    Some("effect")
+                } else {
+                    message.split('`').nth(1)
+                };
+                fail(key_span(&source.text, &span, key), reason(message, arm))
+            })?;
+            if let Err(error) = Corrected::new(arm, std::slice::from_ref(&effect)) {
+                let (key, reason) = refusal(&error);
+                return Err(fail(key_span(&source.text, &span, key.as_deref()), reason));
+            }
+            effects.push(effect);
+        }
+        let robot = raw.robot.map(Spanned::into_inner);
+        Ok(Self { robot, effects })
+    }
+
+    /// The file's text, each parameter with its unit.
+    ///
+    /// # Errors
+    /// If an effect cannot be written as TOML.
+    pub fn to_text(&self) -> anyhow::Result<String> {
+        let mut text = String::from(
+            "# Effects that the URDF leaves out; testbed diagnose reads them with --known.\n\
+             # SI units at the joint; of a prismatic joint read N for N m and m for rad.\n\n",
+        );
+        text.push_str(&format!("schema = \"{SCHEMA}\"\n"));
+        if let Some(robot) = &self.robot {
+            text.push_str(&format!("robot = {}\n", toml::Value::from(robot.as_str())));
+        }
+        for effect in &self.effects {
+            text.push_str("\n[[effects]]\n");
+            let table = toml::to_string(effect).with_context(|| format!("{} cannot be written", effect.name()))?;
+            for line in table.lines().filter(|line| *line != "curve = []") {
+                let key = line.split(" = ").next().unwrap_or_default();
+                text.push_str(line);
+                if let Some(unit) = unit(effect, key) {
+                    text.push_str(&format!(" # {unit}"));
+                }
+                text.push('\n');
+            }
+        }
+        Ok(text)
+    }
+
+    /// Writes the file whole or not at all.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write(&self, path: &Path) -> anyhow::Result<()> {
+        let text = self.to_text()?;
+        Ok(recording::write_whole(path, |file| file.write_all(text.as_bytes()))?)
+    }
+}
+
+/// What TOML's or serde's message means to the one who wrote the file.
+fn reason(message: &str, arm: &Arm) -> String {
+    if let Some((unknown, known)) = unknown_effect(message) {
+        let hint = nearest(&unknown, &known).map_or(String::new(), |near| format!("did you mean \"{near}\"? "));
+        return format!("there is no effect \"{unknown}\"; {hint}there are {}", known.join(", "));
+    }
+    match message.strip_prefix("missing field `") {
+        Some("joint`") => format!(
+            "the line joint = \"…\" is missing; the robot has {}",
+            joints(arm).join(", ")
+        ),
+        Some(field) => format!("the line {} = … is missing; add it", field.trim_end_matches('`')),
+        None => toml_reason(message),
+    }
+}
+
+fn unknown_effect(message: &str) -> Option<(String, Vec<String>)> {
+    let rest = message.strip_prefix("unknown variant `")?;
+    let (unknown, rest) = rest.split_once('`')?;
+    Some((
+        unknown.to_owned(),
+        rest.split('`').skip(1).step_by(2).map(str::to_owned).collect(),
+    ))
+}
+
+fn joints(arm: &Arm) -> Vec<String> {
+    arm.joints().iter().map(|joint| joint.name.clone()).collect()
+}
+
+/// The key that an effect is refused for, and why.
+fn refusal(error: &TorqueError) -> (Option<String>, String) {
+    match error {
+        TorqueError::UnknownJoint { joint, known, .. } => {
+            let hint = nearest(joint, known).map_or(String::new(), |near| format!("; did you mean \"{near}\"?"));
+            (Some(joint.clone()), format!("{error}{hint}"))
+        }
+        TorqueError::Parameter { parameter, .. } => (Some((*parameter).to_owned()), error.to_string()),
+        _ => (None, error.to_string()),
+    }
+}
+
+/// Where within the table that begins at `table` a line has `key` as its key (or as its text value); the table itself, if none has.
+fn key_span(text: &str, table: &Range<usize>, key: Option<&str>) -> Range<usize> {
+    let start = table.start.min(text.len());
+    let Some(key) = key else { return start..start };
+    let mut at = start;
+    for line in text[start..].split_inclusive('\n') {
+        if at > start && line.trim_start().starts_with("[[") {
+            break;
+        }
+        let mut parts = line.split('#').next().unwrap_or_default().splitn(2, '=').map(str::trim);
+        let (name, value) = (parts.next(), parts.next());
+        if name == Some(key) || value.is_some_and(|value| value.trim_matches(['"', '\'']) == key) {
+            return at..at;
+        }
+        at += line.len();
+    }
+    start..start
+}
+
+/// The unit of a parameter, for a comment.
+fn unit(effect: &Effect, parameter: &str) -> Option<&'static str> {
+    Some(match (effect, parameter) {
+        (Effect::QuadraticDrag { .. }, "coefficient") => "N m s²/rad²",
+        (Effect::ThermalDrift { .. }, "amplitude") => "of the warm level, at time 0",
+        (Effect::ThermalDrift { .. }, "coulomb") => "N m, when warm",
+        (Effect::Payload { .. }, "inertia") => {
+            "kg m²: Ixx Ixy Iyy Ixz Iyz Izz about the centre of mass, along the tool's axes"
+        }
+        (Effect::EncoderOffset { .. }, "offset") | (_, "phase" | "halfgap" | "angle" | "rest") => "rad",
+        (Effect::LoadDependentFriction { .. }, "gain") => "N m per N m of load",
+        (Effect::TorqueScale { .. }, "factor") => "measured over true",
+        (Effect::InertialScale { .. }, "factor") => "true over model",
+        (_, "relative") => "true over model, less one",
+        (_, "level" | "positive" | "negative" | "coulomb" | "breakaway" | "amplitude" | "offset" | "limit") => "N m",
+        (_, "inertia") => "kg m²",
+        (_, "velocity") => "rad/s",
+        (_, "time_constant" | "delay" | "start" | "duration") => "s",
+        (_, "periods") => "a turn",
+        (_, "stiffness") => "N m/rad",
+        (Effect::ViscousFriction { .. }, "coefficient") | (_, "damping" | "viscous") => "N m s/rad",
+        (_, "mass") => "kg",
+        (_, "com") => "m, in the tool's frame",
+        (_, "axis") => "in the base's frame",
+        (_, "curve") => "rad, N m",
+        (_, "force") => "N, in the base's frame",
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,213 @@
+//! Effect files go round, and what is wrong with one is said with its line.
+
+use super::*;
+
+fn arm() -> Arm {
+    Arm::from_urdf_text(include_str!("../../../../../assets/puma560.urdf"), "puma560.urdf").expect("it is an arm")
+}
+
+/// One effect of each kind.
+fn all(joint: &str, other: &str) -> Vec<Effect> {
+    let joint = || joint.to_owned();
+    vec![
+        Effect::ViscousFriction {
+            joint: joint(),
+            coefficient: 0.1,
+        },
+        Effect::CoulombFriction {
+            joint: joint(),
+            level: 2.0,
+        },
+        Effect::FrictionAsymmetry {
+            joint: joint(),
+            positive: 1.0 / 3.0,
+            negative: 0.25,
+        },
+        Effect::StribeckFriction {
+            joint: joint(),
+            coulomb: 1.0,
+            breakaway: 1.5,
+            velocity: 0.02,
+            exponent: 1.0,
+        },
+        Effect::LoadDependentFriction {
+            joint: joint(),
+            coulomb: 1e-9,
+            gain: 0.1,
+        },
+        Effect::ThermalDrift {
+            joint: joint(),
+            coulomb: 1.0,
+            amplitude: 0.4,
+            time_constant: 600.0,
+        },
+        Effect::QuadraticDrag {
+            joint: joint(),
+            coefficient: 0.3,
+        },
+        Effect::RotorInertia {
+            joint: joint(),
+            inertia: 0.2,
+        },
+        Effect::TorqueScale {
+            joint: joint(),
+            factor: 1.1,
+        },
+        Effect::TorqueOffset {
+            joint: joint(),
+            offset: -0.1,
+        },
+        Effect::TorqueRipple {
+            joint: joint(),
+            amplitude: 0.2,
+            periods: 12.0,
+            phase: 0.3,
+        },
+        Effect::TorqueSaturation {
+            joint: joint(),
+            limit: 20.0,
+        },
+        Effect::ActuationDelay {
+            joint: joint(),
+            delay: 0.004,
+        },
+        Effect::JointElasticity {
+            joint: joint(),
+            stiffness: 1e4,
+            damping: 3.0,
+        },
+        Effect::Backlash {
+            joint: joint(),
+            halfgap: 0.001,
+        },
+        Effect::TransmissionCoupling {
+            sense: 1.0,
+            joint: joint(),
+            other: other.into(),
+            viscous: 0.6,
+            coulomb: 1.9,
+            inertia: 0.01,
+        },
+        Effect::Payload {
+            mass: 1.5,
+            com: [0.0, 0.01, 0.1],
+            inertia: [0.01, 0.0, 0.01, 0.0, 0.0, 0.02],
+        },
+        Effect::LinkInertialError {
+            joint: joint(),
+            relative: -0.1,
+        },
+        Effect::InertialScale { factor: 1.05 },
+        Effect::GravityMisalignment {
+            angle: 0.05,
+            axis: [0.0, 1.0, 0.0],
+        },
+        Effect::EncoderOffset {
+            joint: joint(),
+            offset: 0.01,
+        },
+        Effect::Spring {
+            joint: joint(),
+            stiffness: 10.0,
+            rest: 0.1,
+            curve: vec![],
+        },
+        Effect::Spring {
+            joint: joint(),
+            stiffness: 0.0,
+            rest: 0.0,
+            curve: vec![[-1.0, 2.0], [0.5, 1.0]],
+        },
+        Effect::ExternalContact {
+            start: 12.0,
+            duration: 0.5,
+            force: [0.0, 10.0, -5.0],
+        },
+    ]
+}
+
+#[test]
+fn every_effect_goes_round() {
+    let arm = arm();
+    let joints = joints(&arm);
+    let file = EffectFile {
+        robot: Some(arm.name().to_owned()),
+        effects: all(&joints[1], &joints[2]),
+    };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("corrected.toml");
+    file.write(&path).expect("it is written");
+    assert_eq!(EffectFile::load(&path, &arm).expect("it is read"), file);
+    let text = file.to_text().expect("it is text");
+    assert!(text.contains("level = 2.0 # N m\n"), "{text}");
+    assert!(
+        text.contains("com = [0.0, 0.01, 0.1] # m, in the tool's frame\n"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_file_without_effects_is_one() {
+    let read = EffectFile::parse(format!("schema = \"{SCHEMA}\"\n"), Path::new("k.toml"), &arm());
+    assert_eq!(read.expect("it is read"), EffectFile::default());
+}
+
+#[test]
+fn what_is_wrong_has_its_line_and_a_remedy() {
+    let arm = arm();
+    let joint = joints(&arm)[1].clone();
+    let head =
+        format!("schema = \"{SCHEMA}\"\n\n[[effects]]\neffect = \"inertial_scale\"\nfactor = 1\n\n[[effects]]\n");
+    let cases = [
+        (
+            "effect = \"coulomb_frictoin\"\n".to_owned(),
+            ":8: there is no effect \"coulomb_frictoin\"; did you mean \"coulomb_friction\"?",
+        ),
+        ("joint = \"x\"\n".to_owned(), ":7: the line effect = … is missing"),
+        (
+            "effect = \"coulomb_friction\"\nlevel = 2\n".to_owned(),
+            ":7: the line joint = \"…\" is missing; the robot has",
+        ),
+        (
+            format!("effect = \"coulomb_friction\"\njoint = \"{joint}\"\n"),
+            ":7: the line level = … is missing",
+        ),
+        (
+            format!("effect = \"coulomb_friction\"\njoint = \"{joint}x\"\nlevel = 2\n"),
+            &format!(":9: coulomb_friction: the robot has no joint \"{joint}x\""),
+        ),
+        (
+            format!("effect = \"coulomb_friction\"\njoint = \"{joint}\"\n# a remark\nlevel = -2\n"),
+            ":11: coulomb_friction of ",
+        ),
+        (
+            format!("effect = \"coulomb_friction\"\njoint = \"{joint}\"\nlevle = 2\n"),
+            ":10: unknown key `levle`; did you mean `level`?",
+        ),
+        (
+            format!("effect = \"coulomb_friction\"\njoint = \"{joint}\"\nlevel = nan\n"),
+            "level is NaN; it must be finite",
+        ),
+        ("effect = \n".to_owned(), ":8: "),
+    ];
+    for (text, expected) in cases {
+        let error =
+            EffectFile::parse(format!("{head}{text}"), Path::new("known.toml"), &arm).expect_err("it is refused");
+        let error = error.to_string();
+        assert!(
+            error.starts_with("known.toml:") && error.contains(expected),
+            "{error}\n is not\n{expected}"
+        );
+    }
+    for (text, expected) in [
+        ("schema = \"testbed.model/9\"\n", "known.toml:1: the schema is"),
+        ("[[effects]]\n", "the line schema = … is missing"),
+        (
+            "schema = \"testbed.model/1\"\nrobot = \"other\"\n",
+            "known.toml:2: the effects are of robot \"other\"",
+        ),
+    ] {
+        let error = EffectFile::parse(text.to_owned(), Path::new("known.toml"), &arm).expect_err("it is refused");
+        assert!(error.to_string().contains(expected), "{error}");
+    }
+}

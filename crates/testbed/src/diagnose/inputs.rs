@@ -1,0 +1,288 @@
+//! The recordings of a diagnosis, checked before anything is fitted.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use arm::Arm;
+use indicatif::ProgressBar;
+use recording::{ColumnMap, FindingKind, Quality, Recording, RegularRecording, Signal, nearest};
+use torque::Effect;
+
+use super::effect_file::EffectFile;
+use crate::cli::{DiagnoseArgs, Rerun};
+use crate::inspect::model_check;
+use crate::output;
+
+/// A recording ready to be diagnosed.
+pub struct Prepared {
+    /// As the user named it.
+    pub name: String,
+    /// On its clock, joints in the arm's order.
+    pub regular: RegularRecording,
+    /// Not to be fitted.
+    pub held_out: bool,
+}
+
+/// Checks where `args` write to, before anything is read.
+///
+/// # Errors
+/// If an output cannot be written, is an input, or is another output.
+pub fn check_outputs(args: &DiagnoseArgs) -> anyhow::Result<()> {
+    if cfg!(not(feature = "viewer")) && !matches!(args.rerun, None | Some(Rerun::Off)) {
+        bail!("this testbed was built without the viewer; build it with `--features viewer`, or leave --rerun out");
+    }
+    let outputs = args.outputs();
+    for path in &outputs {
+        output::check_writable(path)?;
+    }
+    // A model of effects may be read, added to and written in one go.
+    let robot = Path::new(&args.robot);
+    let inputs = args
+        .train
+        .iter()
+        .chain(&args.held_out)
+        .chain(&args.map)
+        .map(PathBuf::as_path)
+        .chain([robot]);
+    for path in inputs {
+        if let Some(output) = outputs.iter().find(|output| is_same(output, path)) {
+            bail!(
+                "{}: is read as {}; write to another file",
+                output.display(),
+                path.display()
+            );
+        }
+    }
+    for (k, path) in outputs.iter().enumerate() {
+        if let Some(other) = outputs[..k]
+            .iter()
+            .find(|other| **other == *path || is_same(other, path))
+        {
+            bail!(
+                "{}: is to be written twice; give each output a file of its own",
+                other.display()
+            );
+        }
+    }
+    Ok(())
+}
+
+/// The effects that `args` say are known.
+///
+/// # Errors
+/// If the file cannot be used, or holds an effect that no torque at one time tells.
+pub fn known(args: &DiagnoseArgs, arm: &Arm) -> anyhow::Result<Vec<Effect>> {
+    let Some(path) = &args.known else { return Ok(Vec::new()) };
+    let effects = EffectFile::load(path, arm)?.effects;
+    let has_memory = |effect: &&Effect| {
+        matches!(
+            effect,
+            Effect::ActuationDelay { .. }
+                | Effect::JointElasticity { .. }
+                | Effect::Backlash { .. }
+                | Effect::TorqueSaturation { .. }
+        )
+    };
+    if let Some(effect) = effects.iter().find(has_memory) {
+        bail!(
+            "{}: {} on \"{}\" cannot be taken as known: it depends on the past of the motion or on the commanded torque; leave it out of the file, and it is named again",
+            path.display(),
+            effect.name(),
+            effect.joint().unwrap_or("the arm")
+        );
+    }
+    Ok(effects)
+}
+
+/// Reads and checks the recordings that `args` name; what is doubtful is printed.
+///
+/// # Errors
+/// If one cannot be read, does not fit the arm, holds no motion or no torque, or is both fitted and held out.
+pub fn read(args: &DiagnoseArgs, arm: &Arm, progress: &ProgressBar) -> anyhow::Result<Vec<Prepared>> {
+    let map = args.map.as_deref().map(ColumnMap::load).transpose()?;
+    let files: Vec<(&PathBuf, bool)> = args
+        .train
+        .iter()
+        .map(|path| (path, false))
+        .chain(args.held_out.iter().map(|path| (path, true)))
+        .collect();
+    refuse_twice(&files)?;
+    let mut list: Vec<Prepared> = Vec::new();
+    for (path, held_out) in files {
+        let prepared = prepare(path, held_out, map.as_ref(), arm, progress)?;
+        // The same samples under another name.
+        let twin = list.iter().find(|known| {
+            let (a, b) = (&known.regular, &prepared.regular);
+            a.q == b.q && a.tau == b.tau
+        });
+        if let Some(twin) = twin {
+            bail!(
+                "{}: holds the same samples as {}; a recording can be used once, to train or held out",
+                prepared.name,
+                twin.name
+            );
+        }
+        list.push(prepared);
+    }
+    if list
+        .iter()
+        .filter(|recording| !recording.held_out)
+        .all(|recording| is_still(&recording.regular))
+    {
+        bail!(
+            "{}: no joint moves in the training recordings; record a motion, or check the position columns",
+            list[0].name
+        );
+    }
+    Ok(list)
+}
+
+/// Whether two paths lead to one file.
+fn is_same(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
+fn refuse_twice(files: &[(&PathBuf, bool)]) -> anyhow::Result<()> {
+    for (k, (path, held_out)) in files.iter().enumerate() {
+        let same = |other: &&(&PathBuf, bool)| is_same(path, other.0);
+        if let Some((_, other)) = files[..k].iter().find(same) {
+            match (other, held_out) {
+                (false, true) | (true, false) => bail!(
+                    "{}: is among the training files and held out; what is fitted cannot be the proof",
+                    path.display()
+                ),
+                _ => bail!("{}: is given twice", path.display()),
+            }
+        }
+    }
+    Ok(())
+}
+
+fn prepare(
+    path: &Path,
+    held_out: bool,
+    map: Option<&ColumnMap>,
+    arm: &Arm,
+    progress: &ProgressBar,
+) -> anyhow::Result<Prepared> {
+    let name = path.display().to_string();
+    progress.set_message(format!("reading {name}"));
+    let recording = Recording::read_csv_with(path, map)?;
+    let order = order(&recording, arm, &name)?;
+    let (regular, warnings) = recording.regular().with_context(|| name.clone())?;
+    let quality = Quality::of(&recording, &regular);
+    progress.suspend(|| {
+        for warning in recording.warnings.iter().chain(&warnings) {
+            eprintln!("note: {name}: {warning}");
+        }
+        for finding in &quality.findings {
+            let weight = match finding.kind {
+                // The diagnosis differentiates the positions itself.
+                FindingKind::VelocityLate | FindingKind::VelocityUnrelated => continue,
+                FindingKind::Saturation | FindingKind::JointAtRest | FindingKind::CoarseEncoder => "note",
+                _ => "warning",
+            };
+            let joint = finding
+                .joint
+                .as_ref()
+                .map_or_else(String::new, |joint| format!("{joint}: "));
+            eprintln!("{weight}: {name}: {joint}{}", finding.text);
+        }
+        for misfit in model_check::check(arm, &regular, &quality) {
+            let joint = misfit.joint.map_or_else(String::new, |joint| format!("{joint}: "));
+            eprintln!("warning: {name}: {joint}{}", misfit.text);
+        }
+    });
+    let regular = reordered(regular, &order);
+    if regular.tau.iter().flatten().all(|&tau| tau == 0.0) {
+        bail!(
+            "{name}: all torques are zero; check the torque columns (tau_<joint>), or name them in a column map (--map)"
+        );
+    }
+    Ok(Prepared {
+        name,
+        regular,
+        held_out,
+    })
+}
+
+/// Where each joint of the arm is in the recording.
+fn order(recording: &Recording, arm: &Arm, name: &str) -> anyhow::Result<Vec<usize>> {
+    let known: Vec<String> = arm.joints().iter().map(|joint| joint.name.clone()).collect();
+    let quoted = |names: &[String]| {
+        names
+            .iter()
+            .map(|name| format!("\"{name}\""))
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let foreign: Vec<String> = recording
+        .joints
+        .iter()
+        .filter(|joint| !known.contains(joint))
+        .cloned()
+        .collect();
+    let lacking: Vec<String> = known
+        .iter()
+        .filter(|joint| !recording.joints.contains(joint))
+        .cloned()
+        .collect();
+    if !foreign.is_empty() && lacking.len() == known.len() {
+        bail!(
+            "{name}: is of another robot: its joints are {}, those of {} are {}; give the URDF of the robot that was recorded, or a column map (--map)",
+            quoted(&recording.joints),
+            arm.name(),
+            quoted(&known)
+        );
+    }
+    if let Some(joint) = lacking.first() {
+        let hint = nearest(joint, &foreign).map_or_else(String::new, |near| {
+            format!("; its column q_{near} has a name that is near")
+        });
+        bail!(
+            "{name}: has no column q_{joint} for {} of {}{hint}; record all joints of the arm, or name their columns in a column map (--map)",
+            quoted(&lacking),
+            arm.name()
+        );
+    }
+    if let Some(joint) = foreign.first() {
+        bail!(
+            "{name}: column q_{joint}: {} is no joint of {}, which has {}; leave the column out with a column map (--map), or give the URDF of the robot that was recorded",
+            quoted(&foreign),
+            arm.name(),
+            quoted(&known)
+        );
+    }
+    Ok(known
+        .iter()
+        .filter_map(|joint| recording.joints.iter().position(|found| found == joint))
+        .collect())
+}
+
+/// The recording with its joints in another order.
+fn reordered(mut recording: RegularRecording, order: &[usize]) -> RegularRecording {
+    let signal = |signal: &Signal| -> Signal { order.iter().map(|&from| signal[from].clone()).collect() };
+    let partial = |signal: &recording::PartialSignal| -> recording::PartialSignal {
+        order.iter().map(|&from| signal.get(from).cloned().flatten()).collect()
+    };
+    recording.joints = order.iter().map(|&from| recording.joints[from].clone()).collect();
+    recording.q = signal(&recording.q);
+    recording.tau = signal(&recording.tau);
+    recording.qd = recording.qd.as_ref().map(signal);
+    recording.qdd = recording.qdd.as_ref().map(signal);
+    recording.q_secondary = partial(&recording.q_secondary);
+    recording.tau_current = partial(&recording.tau_current);
+    recording.current = partial(&recording.current);
+    recording.temperature = partial(&recording.temperature);
+    recording
+}
+
+/// Whether no joint moves: less than a thousandth of a radian or metre.
+fn is_still(recording: &RegularRecording) -> bool {
+    recording.q.iter().all(|q| {
+        let (low, high) = q
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+        high - low < 1e-3
+    })
+}

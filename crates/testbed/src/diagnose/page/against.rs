@@ -1,0 +1,113 @@
+//! Against which state an effect shows: its horizontal axis, and how residuals are turned for it.
+
+use arm::{Arm, JointKind};
+use diagnosis::{Finding, Trace};
+
+/// A quantity of the state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Against {
+    Position,
+    Speed,
+    Acceleration,
+    Time,
+    /// The rigid model's torque.
+    Load,
+    /// Its absolute value; torques count along the motion.
+    LoadAlong,
+    /// Time; torques count along the motion.
+    TimeAlong,
+    /// What the effect predicts, where no one state tells it.
+    Predicted,
+    /// The speed of another joint.
+    OtherSpeed(usize),
+}
+
+impl Against {
+    /// What tells most about `finding`.
+    pub fn of(finding: &Finding, arm: &Arm) -> Self {
+        match finding.effect {
+            "load_dependent_friction" => Self::LoadAlong,
+            "thermal_drift" => Self::TimeAlong,
+            "external_contact" => Self::Time,
+            "rotor_inertia" => Self::Acceleration,
+            "torque_scale" => Self::Load,
+            "transmission_coupling" => {
+                let other = finding.other.as_deref();
+                let other = arm.joints().iter().position(|joint| Some(joint.name.as_str()) == other);
+                other.map_or(Self::Predicted, Self::OtherSpeed)
+            }
+            "spring" | "torque_ripple" | "torque_offset" => Self::Position,
+            "viscous_friction" | "coulomb_friction" | "friction_asymmetry" | "stribeck_friction" | "quadratic_drag" => {
+                Self::Speed
+            }
+            _ => Self::Predicted,
+        }
+    }
+
+    /// What a leftover depends on, where that is one quantity of the state.
+    pub fn of_dependence(code: &str, arm: &Arm) -> Option<Self> {
+        match code {
+            "own_position" => Some(Self::Position),
+            "own_speed" => Some(Self::Speed),
+            "own_acceleration" => Some(Self::Acceleration),
+            "time" => Some(Self::Time),
+            "load" => Some(Self::Load),
+            other => {
+                let name = other.strip_prefix("other_joint:")?;
+                let joint = arm.joints().iter().position(|joint| joint.name == name)?;
+                Some(Self::OtherSpeed(joint))
+            }
+        }
+    }
+
+    /// Whether torques count along the motion.
+    pub fn is_along(self) -> bool {
+        matches!(self, Self::LoadAlong | Self::TimeAlong)
+    }
+
+    /// Words and unit of the axis.
+    pub fn title(self, arm: &Arm, joint: usize) -> (String, &'static str) {
+        let slides = |joint: usize| arm.joints()[joint].kind == JointKind::Prismatic;
+        let unit = |turning, sliding| if slides(joint) { sliding } else { turning };
+        let torque = unit("torque", "force");
+        match self {
+            Self::Position => ("position".into(), unit("rad", "m")),
+            Self::Speed => ("speed".into(), unit("rad/s", "m/s")),
+            Self::Acceleration => ("acceleration".into(), unit("rad/s²", "m/s²")),
+            Self::Time | Self::TimeAlong => ("time".into(), "s"),
+            Self::Load => (format!("the model's {torque}"), unit("N m", "N")),
+            Self::LoadAlong => (format!("the model's |{torque}|"), unit("N m", "N")),
+            Self::Predicted => (format!("{torque} that the effect predicts"), unit("N m", "N")),
+            Self::OtherSpeed(other) => (
+                format!("speed of {}", arm.joints()[other].name),
+                if slides(other) { "m/s" } else { "rad/s" },
+            ),
+        }
+    }
+
+    /// Its value at a row of a recording.
+    pub fn value(self, trace: &Trace, joint: usize, row: usize) -> Option<f64> {
+        let at = |series: &[Vec<f64>], joint: usize| series.get(joint)?.get(row).copied();
+        let load = || Some(at(&trace.tau, joint)? - at(&trace.residual, joint)?);
+        match self {
+            Self::Position => at(&trace.q, joint),
+            Self::Speed => at(&trace.qd, joint),
+            Self::Acceleration => at(&trace.qdd, joint),
+            Self::Time | Self::TimeAlong => trace.time.get(row).copied(),
+            Self::Load => load(),
+            Self::LoadAlong => load().map(f64::abs),
+            Self::OtherSpeed(other) => at(&trace.qd, other),
+            // The caller has the effect.
+            Self::Predicted => None,
+        }
+    }
+
+    /// What torques are multiplied by at a row: the sign of the motion, or one.
+    pub fn turn(self, trace: &Trace, joint: usize, row: usize) -> f64 {
+        if !self.is_along() {
+            return 1.0;
+        }
+        let speed = trace.qd.get(joint).and_then(|series| series.get(row));
+        speed.map_or(1.0, |speed| speed.signum())
+    }
+}

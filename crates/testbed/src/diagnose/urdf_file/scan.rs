@@ -1,0 +1,227 @@
+//! Where in a URDF's text the inertials and the joints' dynamics stand.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use anyhow::{Context, ensure};
+use arm::{Inertia, Matrix3, Pose, Vector3};
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+
+/// Where an element stands, or where it could be put.
+pub(super) enum Place {
+    /// These bytes.
+    At(Range<usize>),
+    /// At the end of its parent: before this byte.
+    Before(usize),
+    /// Its parent is one empty tag: these bytes, that tag without its `/>`.
+    Within(Range<usize>, String),
+}
+
+impl Place {
+    /// The edit that puts `element` there; `parent` is its parent's tag.
+    pub(super) fn place(&self, element: String, parent: &str) -> (Range<usize>, String) {
+        match self {
+            Self::At(range) => (range.clone(), element),
+            Self::Before(at) => (*at..*at, element),
+            Self::Within(range, open) => (range.clone(), format!("{open}>{element}</{parent}>")),
+        }
+    }
+}
+
+/// A link.
+pub(super) struct LinkPlaces {
+    pub(super) inertial: Place,
+    /// What it says, in the link's frame.
+    pub(super) inertia: Inertia,
+}
+
+/// A joint.
+pub(super) struct JointPlaces {
+    pub(super) dynamics: Place,
+}
+
+/// A whole URDF.
+pub(super) struct Places {
+    /// The byte after the robot's opening tag.
+    pub(super) inside_robot: usize,
+    pub(super) links: BTreeMap<String, LinkPlaces>,
+    pub(super) joints: BTreeMap<String, JointPlaces>,
+}
+
+/// The link or joint being read.
+struct Open {
+    is_link: bool,
+    name: String,
+    found: Option<Range<usize>>,
+    /// Where its inertial or dynamics begins, while inside it.
+    begun: Option<usize>,
+    inertial: RawInertial,
+}
+
+#[derive(Default)]
+struct RawInertial {
+    xyz: [f64; 3],
+    rpy: [f64; 3],
+    mass: f64,
+    /// ixx ixy ixz iyy iyz izz.
+    tensor: [f64; 6],
+}
+
+impl RawInertial {
+    fn read(&mut self, tag: &BytesStart<'_>) -> anyhow::Result<()> {
+        match tag.name().as_ref() {
+            b"origin" => {
+                for (name, target) in [("xyz", &mut self.xyz), ("rpy", &mut self.rpy)] {
+                    let text = attribute(tag, name)?.unwrap_or_default();
+                    for (target, word) in target.iter_mut().zip(text.split_whitespace()) {
+                        *target = number(word)?;
+                    }
+                }
+            }
+            b"mass" => self.mass = number(&attribute(tag, "value")?.unwrap_or_default())?,
+            b"inertia" => {
+                for (name, target) in ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"].iter().zip(&mut self.tensor) {
+                    if let Some(text) = attribute(tag, name)? {
+                        *target = number(&text)?;
+                    }
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn inertia(&self) -> Inertia {
+        let [xx, xy, xz, yy, yz, zz] = self.tensor;
+        let centred = Inertia {
+            mass: self.mass,
+            com: Vector3::zeros(),
+            tensor: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+        };
+        centred.transformed(&Pose::from_xyz_rpy(self.xyz, self.rpy))
+    }
+}
+
+fn number(text: &str) -> anyhow::Result<f64> {
+    text.trim()
+        .parse()
+        .with_context(|| format!("\"{text}\" is not a number"))
+}
+
+fn attribute(tag: &BytesStart<'_>, name: &str) -> anyhow::Result<Option<String>> {
+    let found = tag.try_get_attribute(name)?;
+    Ok(found
+        .map(|attribute| attribute.unescape_value().map(std::borrow::Cow::into_owned))
+        .transpose()?)
+}
+
+impl Places {
+    /// The places in `text`.
+    pub(super) fn of(text: &str) -> anyhow::Result<Self> {
+        let mut places = Self {
+            inside_robot: 0,
+            links: BTreeMap::new(),
+            joints: BTreeMap::new(),
+        };
+        let mut reader = Reader::from_str(text);
+        let mut depth = 0;
+        let mut open: Option<Open> = None;
+        loop {
+            let from = reader.buffer_position() as usize;
+            let event = reader.read_event()?;
+            let here = from..reader.buffer_position() as usize;
+            match event {
+                Event::Start(tag) => {
+                    depth += 1;
+                    match depth {
+                        1 => places.inside_robot = here.end,
+                        2 => open = opened(&tag)?,
+                        _ => begin(&mut open, depth, &tag, here)?,
+                    }
+                }
+                Event::Empty(tag) if depth == 1 => {
+                    let tag_text = text[here.clone()]
+                        .trim_end_matches('>')
+                        .trim_end_matches('/')
+                        .trim_end();
+                    if let Some(mut empty) = opened(&tag)? {
+                        let place = Place::Within(here, tag_text.to_owned());
+                        places.close(&mut empty, place);
+                    }
+                }
+                Event::Empty(tag) => {
+                    begin(&mut open, depth + 1, &tag, here.clone())?;
+                    end(&mut open, depth + 1, here.end);
+                }
+                Event::End(_) => {
+                    end(&mut open, depth, here.end);
+                    if depth == 2
+                        && let Some(mut closed) = open.take()
+                    {
+                        let place = closed.found.take().map_or(Place::Before(here.start), Place::At);
+                        places.close(&mut closed, place);
+                    }
+                    depth -= 1;
+                }
+                Event::Eof => break,
+                _ => {}
+            }
+        }
+        ensure!(places.inside_robot > 0, "it has no <robot> element");
+        Ok(places)
+    }
+
+    fn close(&mut self, element: &mut Open, place: Place) {
+        let name = std::mem::take(&mut element.name);
+        if element.is_link {
+            let inertia = element.inertial.inertia();
+            self.links.insert(
+                name,
+                LinkPlaces {
+                    inertial: place,
+                    inertia,
+                },
+            );
+        } else {
+            self.joints.insert(name, JointPlaces { dynamics: place });
+        }
+    }
+}
+
+/// A link or joint of the robot (others' are deeper in the file).
+fn opened(tag: &BytesStart<'_>) -> anyhow::Result<Option<Open>> {
+    let is_link = tag.name().as_ref() == b"link";
+    if !is_link && tag.name().as_ref() != b"joint" {
+        return Ok(None);
+    }
+    Ok(Some(Open {
+        is_link,
+        name: attribute(tag, "name")?.unwrap_or_default(),
+        found: None,
+        begun: None,
+        inertial: RawInertial::default(),
+    }))
+}
+
+/// A tag at `depth` inside a link or joint.
+fn begin(open: &mut Option<Open>, depth: usize, tag: &BytesStart<'_>, here: Range<usize>) -> anyhow::Result<()> {
+    let Some(open) = open else { return Ok(()) };
+    let wanted: &[u8] = if open.is_link { b"inertial" } else { b"dynamics" };
+    if depth == 3 && tag.name().as_ref() == wanted && open.found.is_none() {
+        open.begun = Some(here.start);
+    } else if depth == 4 && open.is_link && open.begun.is_some() {
+        open.inertial.read(tag)?;
+    }
+    Ok(())
+}
+
+/// A tag at `depth` ends.
+fn end(open: &mut Option<Open>, depth: usize, at: usize) {
+    if let Some(open) = open
+        && depth == 3
+        && let Some(begun) = open.begun.take()
+    {
+        open.found = Some(begun..at);
+    }
+}

@@ -1,0 +1,150 @@
+//! The URDF that is written says, read again, what the corrected model says.
+
+use super::*;
+use torque::{Prediction, TorqueModel, Workspace};
+
+/// Welded links, one of them without inertial, comments, odd spacing, a transmission with a joint of the same name.
+const TWO: &str = r#"<?xml version="1.0"?>
+<!-- a <link name="decoy"/> in a comment -->
+<robot name="two"   xmlns:xacro="x">
+  <link name="base"/>
+  <joint name="a" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/>
+    <dynamics friction="0.5" damping='0.25'></dynamics>
+  </joint>
+  <link name="upper"><!-- kept -->
+    <inertial><mass value="2"/><origin xyz=".3 0 .1" rpy="0.1 0.2 0.3"/>
+      <inertia ixx=".1" ixy="0.01" ixz="0" iyy=".2" iyz="0" izz=".15"/></inertial>
+    <visual><origin xyz="1 2 3"/><geometry><box size="1 1 1"/></geometry></visual>
+  </link>
+  <joint name="b" type="revolute"><origin xyz="0.6 0 0" rpy="0.3 0 0"/><parent link="upper"/><child link="fore"/><axis xyz="0 1 1"/><limit lower="-1" upper="1" effort="9" velocity="9"/></joint>
+  <link name="fore"><inertial><mass value="1"/><inertia ixx=".02" ixy="0" ixz="0" iyy=".02" iyz="0" izz=".02"/></inertial></link>
+  <joint name="f" type="fixed"><origin xyz="0.2 0 0.1" rpy="0 0.5 0"/><parent link="fore"/><child link="flange"/></joint>
+  <link name="flange"><inertial><mass value=".5"/><inertia ixx=".01" ixy="0" ixz="0" iyy=".01" iyz="0" izz=".01"/></inertial></link>
+  <joint name="g" type="fixed"><origin xyz="0 0 0.1" rpy="0.7 0 0"/><parent link="flange"/><child link="tool"/></joint>
+  <link name="tool" />
+  <transmission name="t"><joint name="a"><dynamics damping="77"/></joint></transmission>
+</robot>
+"#;
+
+fn effects() -> Vec<Effect> {
+    vec![
+        Effect::ViscousFriction {
+            joint: "a".into(),
+            coefficient: 1.25,
+        },
+        Effect::CoulombFriction {
+            joint: "b".into(),
+            level: 0.75,
+        },
+        Effect::Payload {
+            mass: 1.5,
+            com: [0.1, 0.02, 0.3],
+            inertia: [0.03, 0.001, 0.02, 0.0, 0.002, 0.01],
+        },
+        Effect::LinkInertialError {
+            joint: "b".into(),
+            relative: 0.2,
+        },
+        Effect::InertialScale { factor: 1.1 },
+        Effect::TorqueOffset {
+            joint: "b".into(),
+            offset: 0.3,
+        },
+    ]
+}
+
+fn read(urdf: &str) -> Arm {
+    Arm::from_urdf_text(urdf, "test.urdf").expect("it is an arm")
+}
+
+#[track_caller]
+fn assert_same_dynamics(written: &Arm, corrected: &Corrected) {
+    let dof = written.dof();
+    let mut workspace = Workspace::new(dof);
+    let mut expected = Prediction::new(dof);
+    let mut scratch = arm::Workspace::new(written);
+    let mut found = vec![0.0; dof];
+    for k in 0..20 {
+        let vector = |a: f64| -> Vec<f64> { (0..dof).map(|j| (a + f64::from(k) * (1.0 + j as f64)).sin()).collect() };
+        let (q, qd, qdd) = (vector(0.1), vector(0.5), vector(2.0));
+        corrected.predict(&mut workspace, &q, &qd, &qdd, &mut expected);
+        written.inverse_dynamics(&mut scratch, &q, &qd, &qdd, &mut found);
+        for j in 0..dof {
+            let (found, expected) = (found[j], expected.rigid[j]);
+            assert!(
+                (found - expected).abs() < 1e-9 * (1.0 + expected.abs()),
+                "joint {j}: {found}, {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_urdf_holds_is_put_in() {
+    let arm = read(TWO);
+    let text = corrected_urdf(TWO, &arm, &effects()).expect("it is written");
+    let written = read(&text);
+    assert_same_dynamics(&written, &Corrected::new(&arm, &effects()).expect("they are physical"));
+    let [a, b] = written.joints() else { panic!("two joints") };
+    assert_eq!((a.damping, a.friction), (1.25, 0.5));
+    assert_eq!((b.damping, b.friction), (0.0, 0.75));
+    assert!(text.contains("torque_offset: joint = \"b\", offset = 0.3"), "{text}");
+}
+
+#[test]
+fn all_else_stays_as_it_was() {
+    let arm = read(TWO);
+    let text = corrected_urdf(TWO, &arm, &effects()).expect("it is written");
+    for kept in [
+        "<!-- a <link name=\"decoy\"/> in a comment -->\n<robot name=\"two\"   xmlns:xacro=\"x\">",
+        "<link name=\"base\"/>",
+        "<!-- kept -->",
+        "<visual><origin xyz=\"1 2 3\"/><geometry><box size=\"1 1 1\"/></geometry></visual>",
+        "<transmission name=\"t\"><joint name=\"a\"><dynamics damping=\"77\"/></joint></transmission>\n</robot>\n",
+    ] {
+        assert!(text.contains(kept), "{kept} is not in\n{text}");
+    }
+    // Without effects only the comment is new.
+    let same = corrected_urdf(TWO, &arm, &[]).expect("it is written");
+    let (before, rest) = same.split_once("\n  <!-- Corrected").expect("there is a comment");
+    let (_, after) = rest.split_once("-->").expect("it ends");
+    assert_eq!(format!("{before}{after}"), TWO);
+}
+
+#[test]
+fn the_puma_goes_round() {
+    let urdf = include_str!("../../../../../assets/puma560.urdf");
+    let arm = read(urdf);
+    let joint = |j: usize| arm.joints()[j].name.clone();
+    let effects = [
+        Effect::Payload {
+            mass: 2.0,
+            com: [0.0, 0.0, 0.1],
+            inertia: [0.01, 0.0, 0.01, 0.0, 0.0, 0.01],
+        },
+        Effect::LinkInertialError {
+            joint: joint(1),
+            relative: -0.15,
+        },
+        Effect::ViscousFriction {
+            joint: joint(2),
+            coefficient: 3.5,
+        },
+    ];
+    let written = read(&corrected_urdf(urdf, &arm, &effects).expect("it is written"));
+    assert_same_dynamics(&written, &Corrected::new(&arm, &effects).expect("they are physical"));
+    assert_eq!(written.joints()[2].damping, 3.5);
+}
+
+#[test]
+fn what_does_not_fit_is_refused() {
+    let arm = read(TWO);
+    let unknown = [Effect::CoulombFriction {
+        joint: "z".into(),
+        level: 1.0,
+    }];
+    assert!(corrected_urdf(TWO, &arm, &unknown).is_err());
+    let other = TWO.replace("name=\"upper\"", "name=\"other\"");
+    let error = corrected_urdf(&other, &arm, &effects()).expect_err("it is another robot's");
+    assert!(error.to_string().contains("no link \"upper\""), "{error}");
+}

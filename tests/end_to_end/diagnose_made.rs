@@ -1,0 +1,184 @@
+//! Recordings that the tests of the diagnosis make themselves: a known motion, the rigid torque, and what is concealed.
+
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use arm::{Arm, Workspace};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, Normal};
+use serde_json::Value;
+
+use crate::support::Sandbox;
+
+/// Three joints: a turning column, a shoulder and an elbow.
+pub const URDF: &str = r#"<robot name="trio">
+<link name="floor"/>
+<link name="column"><inertial><origin xyz="0 0 0.2"/><mass value="6"/>
+<inertia ixx="0.08" ixy="0" ixz="0" iyy="0.08" iyz="0" izz="0.05"/></inertial></link>
+<link name="upper"><inertial><origin xyz="0.22 0.01 0.02"/><mass value="5"/>
+<inertia ixx="0.02" ixy="0" ixz="0" iyy="0.11" iyz="0" izz="0.11"/></inertial></link>
+<link name="fore"><inertial><origin xyz="0.15 0 0.03"/><mass value="3"/>
+<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.05" iyz="0" izz="0.05"/></inertial></link>
+<joint name="turn" type="revolute"><parent link="floor"/><child link="column"/><axis xyz="0 0 1"/>
+<limit lower="-3" upper="3" effort="200" velocity="5"/></joint>
+<joint name="shoulder" type="revolute"><origin xyz="0 0 0.4"/><parent link="column"/><child link="upper"/>
+<axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="200" velocity="5"/></joint>
+<joint name="elbow" type="revolute"><origin xyz="0.45 0 0"/><parent link="upper"/><child link="fore"/>
+<axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="200" velocity="5"/></joint>
+</robot>
+"#;
+
+/// The joints of [`URDF`].
+pub const TURN: usize = 0;
+/// The second.
+pub const SHOULDER: usize = 1;
+/// The third.
+pub const ELBOW: usize = 2;
+
+/// The motion at one time.
+pub struct Motion {
+    /// rad.
+    pub q: [f64; 3],
+    /// rad/s.
+    pub qd: [f64; 3],
+    /// rad/s².
+    pub qdd: [f64; 3],
+}
+
+impl Motion {
+    /// Four sines a joint; `variant` chooses frequencies and phases.
+    fn at(time: f64, variant: usize) -> Self {
+        let mut motion = Self {
+            q: [0.0, -0.5, 0.7],
+            qd: [0.0; 3],
+            qdd: [0.0; 3],
+        };
+        for joint in 0..3 {
+            for (k, hertz) in [0.11, 0.23, 0.41, 0.67].into_iter().enumerate() {
+                let turn = (7 * joint + 3 * k + 5 * variant) as f64;
+                let omega = TAU * hertz * (1.0 + 0.08 * (2.4 * turn).sin());
+                let amplitude = 0.34 / (1.0 + 0.6 * k as f64);
+                let (sin, cos) = (omega * time + 1.9 * turn).sin_cos();
+                motion.q[joint] += amplitude * sin;
+                motion.qd[joint] += amplitude * omega * cos;
+                motion.qdd[joint] -= amplitude * omega * omega * sin;
+            }
+        }
+        motion
+    }
+}
+
+/// The arm of [`URDF`].
+pub fn trio() -> Arm {
+    Arm::from_urdf_text(URDF, "trio.urdf").expect("it is an arm")
+}
+
+/// A recording of `seconds` at 250 Hz of the robot that is `arm` and `concealed`: what is added to its torques.
+pub fn recording(arm: &Arm, variant: usize, seconds: f64, concealed: &dyn Fn(&Motion, &mut [f64])) -> String {
+    let mut random = ChaCha8Rng::seed_from_u64(variant as u64);
+    let noise = Normal::new(0.0, 0.02).expect("a spread");
+    let mut workspace = Workspace::new(arm);
+    let mut text = "t,q_turn,q_shoulder,q_elbow,tau_turn,tau_shoulder,tau_elbow\n".to_owned();
+    let mut tau = [0.0; 3];
+    for k in 0..(250.0 * seconds) as usize {
+        let time = k as f64 / 250.0;
+        let motion = Motion::at(time, variant);
+        arm.inverse_dynamics(&mut workspace, &motion.q, &motion.qd, &motion.qdd, &mut tau);
+        concealed(&motion, &mut tau);
+        let _ = write!(text, "{:.4}", time + 40.0 * variant as f64);
+        for q in motion.q {
+            let _ = write!(text, ",{q:.6}");
+        }
+        for tau in tau {
+            let _ = write!(text, ",{:.5}", tau + noise.sample(&mut random));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// A robot of which there are recordings, and its diagnosis.
+pub struct Case {
+    /// Where its files are: `robot.urdf`, `a.csv` and `b.csv` to train, `c.csv` held out.
+    pub sandbox: Sandbox,
+}
+
+impl Case {
+    /// Recordings of `arm` and what is `concealed`, beside the URDF that its user believes.
+    pub fn new(arm: &Arm, concealed: &dyn Fn(&Motion, &mut [f64])) -> Self {
+        let sandbox = Sandbox::new();
+        sandbox.write("robot.urdf", URDF);
+        for (variant, name, seconds) in [(0, "a.csv", 16.0), (1, "b.csv", 16.0), (2, "c.csv", 10.0)] {
+            sandbox.write(name, &recording(arm, variant, seconds, concealed));
+        }
+        Self { sandbox }
+    }
+
+    /// What `testbed diagnose` prints, with further arguments.
+    pub fn diagnose(&self, further: &[&str]) -> String {
+        self.sandbox.succeed(&arguments(further))
+    }
+
+    /// The diagnosis as JSON, with further arguments.
+    pub fn json(&self, further: &[&str]) -> Value {
+        let mut list = vec!["--json", "diagnosis.json"];
+        list.extend(further);
+        self.diagnose(&list);
+        self.sandbox.json("diagnosis.json")
+    }
+
+    /// A file's path.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.sandbox.path(name)
+    }
+
+    /// A file's text.
+    pub fn text(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path(name)).expect("the file is there")
+    }
+}
+
+/// The command on a [`Case`]'s files.
+pub fn arguments<'a>(further: &[&'a str]) -> Vec<&'a str> {
+    let mut list = vec!["diagnose", "--robot", "robot.urdf", "--train", "a.csv", "b.csv"];
+    list.extend(["--held-out", "c.csv"]);
+    list.extend(further);
+    list
+}
+
+/// What was found: effect and joint, sorted.
+pub fn names(diagnosis: &Value) -> Vec<(String, String)> {
+    let text = |value: &Value| value.as_str().unwrap_or("whole arm").to_owned();
+    let findings = diagnosis["findings"].as_array().expect("a list");
+    let mut names: Vec<_> = findings
+        .iter()
+        .map(|finding| (text(&finding["effect"]), text(&finding["joint"])))
+        .collect();
+    names.sort();
+    names
+}
+
+/// The finding of `effect` on `joint`.
+pub fn finding<'a>(diagnosis: &'a Value, effect: &str, joint: &str) -> &'a Value {
+    let findings = diagnosis["findings"].as_array().expect("a list");
+    findings
+        .iter()
+        .find(|finding| finding["effect"] == effect && finding["joint"] == joint)
+        .unwrap_or_else(|| panic!("no {effect} on {joint} in {:?}", names(diagnosis)))
+}
+
+/// Checks that a parameter is within `tolerance` (a part of it) of `truth`, and its interval contains it.
+pub fn is_found(finding: &Value, parameter: &str, truth: f64, tolerance: f64) {
+    let found = &finding["parameters"][parameter];
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let value = number(&found["value"]);
+    assert!(
+        (value / truth - 1.0).abs() <= tolerance,
+        "{parameter} is {value} instead of {truth}"
+    );
+    let (low, high) = (number(&found["ci95"][0]), number(&found["ci95"][1]));
+    assert!(low < truth && truth < high, "{truth} is not in {low} … {high}");
+    assert!(found["unit"].is_string());
+}
