@@ -49,6 +49,8 @@ pub struct Diagnosis {
     pub traces: Traces,
     /// The named effects that correct the torque model.
     pub effects: Vec<Effect>,
+    /// What was left out of the recordings, in sentences.
+    pub remarks: Vec<String>,
 }
 
 /// Diagnoses where and why `inputs` differ from `arm`. `progress` is told what is going on.
@@ -149,6 +151,7 @@ pub fn diagnose(
         report,
         traces,
         effects,
+        remarks: std::mem::take(&mut study.motions.remarks),
     })
 }
 

@@ -14,6 +14,10 @@ const FINE: f64 = 8.0;
 const ROWS: f64 = 2.5;
 /// Longer stretches are cut, so that memory is bounded (s).
 const LONGEST: f64 = 60.0;
+/// Of longer recordings to be fitted, or held out, stretches spread evenly are used (s) …
+const MOST_SECONDS: f64 = 900.0;
+/// … so long, if the recording allows (s).
+const WINDOW: f64 = 20.0;
 /// More rows than this in all are thinned out.
 const MOST_ROWS: f64 = 12_000.0;
 
@@ -120,6 +124,8 @@ pub struct Motions {
     pub tempo: Vec<f64>,
     /// Whether one clock runs through all recordings. If not, each begins where the one before it ended.
     pub one_clock: bool,
+    /// What was left out, in sentences.
+    pub remarks: Vec<String>,
 }
 
 impl Motions {
@@ -144,10 +150,14 @@ impl Motions {
             .map(|input| 1.0 / input.recording.period)
             .fold(f64::INFINITY, f64::min);
         let cutoff = cutoff.min(NARROWEST * slowest);
-        let total: f64 = inputs
-            .iter()
-            .map(|input| input.recording.len() as f64 * input.recording.period)
-            .sum();
+        let seconds = |held_out: bool| -> f64 {
+            let of_role = inputs.iter().filter(|input| input.held_out == held_out);
+            of_role
+                .map(|input| input.recording.len() as f64 * input.recording.period)
+                .sum()
+        };
+        let used = |held_out: bool| (MOST_SECONDS / seconds(held_out)).min(1.0);
+        let total: f64 = [false, true].map(|role| used(role) * seconds(role)).iter().sum();
         let thin = (total * ROWS * cutoff / MOST_ROWS).max(1.0);
         let mut motions = Self {
             dof: inputs.first().map_or(0, |input| input.recording.joints.len()),
@@ -156,6 +166,16 @@ impl Motions {
             cutoff,
             tempo: Vec::new(),
             one_clock: has_one_clock(inputs),
+            remarks: [(false, "to be fitted"), (true, "held out")]
+                .into_iter()
+                .filter(|&(role, _)| used(role) < 1.0)
+                .map(|(role, what)| {
+                    format!(
+                        "{:.0} s are {what}; of these {MOST_SECONDS:.0} s are used, in stretches of {WINDOW:.0} s spread evenly",
+                        seconds(role)
+                    )
+                })
+                .collect(),
         };
         let mut end = 0.0;
         for (index, input) in inputs.iter().enumerate() {
@@ -166,7 +186,7 @@ impl Motions {
                 end - recording.time(0)
             };
             end += recording.len() as f64 * recording.period + BETWEEN;
-            motions.add(index, input, thin, shift);
+            motions.add(index, input, used(input.held_out), thin, shift);
         }
         motions.tempo = motions.tempo();
         motions
@@ -196,7 +216,8 @@ impl Motions {
             .collect()
     }
 
-    fn add(&mut self, index: usize, input: &Input<'_>, thin: f64, shift: f64) {
+    /// Adds the part `used` of a recording.
+    fn add(&mut self, index: usize, input: &Input<'_>, used: f64, thin: f64, shift: f64) {
         let recording = input.recording;
         let rate = 1.0 / recording.period;
         let first = Kernel::new((WIDER * self.cutoff).min(NARROWEST * rate), recording.period);
@@ -205,12 +226,15 @@ impl Motions {
         let kernel = Kernel::new(self.cutoff, period);
         let stride = (thin / (period * ROWS * self.cutoff)).round().max(1.0) as usize;
         for segment in &recording.segments {
-            let most = ((LONGEST / recording.period) as usize).max(1);
+            let longest = if used < 1.0 { WINDOW / used } else { LONGEST };
+            let most = ((longest / recording.period) as usize).max(1);
             let pieces = segment.ticks.len().div_ceil(most).max(1);
             let length = segment.ticks.len().div_ceil(pieces);
             for piece in 0..pieces {
                 let from = segment.ticks.start + piece * length;
                 let to = (from + length).min(segment.ticks.end);
+                let kept = (used * (to - from) as f64).ceil() as usize;
+                let (from, to) = (from + (to - from - kept) / 2, from + (to - from - kept) / 2 + kept);
                 if outputs(outputs(to - from, first.reach(), decimation), kernel.reach(), stride) == 0 {
                     continue;
                 }

@@ -12,7 +12,7 @@ use crate::table::Table;
 /// Frequencies of a sinusoid in time (Hz) from … to.
 const WAVES: (f64, f64) = (0.3, 8.0);
 /// Bins in a period of the highest frequency: samples are put into the nearest.
-const BINS: f64 = 16.0;
+const BINS: f64 = 8.0;
 
 /// The frequencies (rad/s) of a sinusoid in time that explain most of the residual of `joint`: peaks, best first.
 ///
@@ -36,8 +36,8 @@ pub fn waves(
         return Vec::new();
     }
     let bin = TAU / (BINS * high);
-    // Frequencies no further apart than 1.5 rad over the span.
-    let size = (TAU * span / (1.5 * bin)).ceil() as usize;
+    // Frequencies no further apart than 2 rad over the span.
+    let size = (TAU * span / (2.0 * bin)).ceil() as usize;
     let size = size.max((span / bin) as usize + 1).next_power_of_two();
     // Residuals and ones in one transform: both are real.
     let mut bins = vec![Complex::new(0.0, 0.0); size];

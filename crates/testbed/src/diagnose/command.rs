@@ -46,6 +46,9 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
         known,
     };
     let mut diagnosis = diagnosis::diagnose(&arm, &list, &options, &|doing| spinner.set_message(doing.to_owned()))?;
+    for remark in &diagnosis.remarks {
+        spinner.suspend(|| eprintln!("note: {remark}"));
+    }
     // What is known is part of the model that the findings come on top of.
     let mut effects = options.known.clone();
     effects.extend(diagnosis.effects.iter().cloned());
