@@ -269,6 +269,15 @@ fn outputs_that_cannot_be_written_are_refused_before_anything_is_read() {
         &refused(&["--json", "o.json", "--report", "o.json"]),
         &["o.json", "written twice"],
     );
+    says(
+        &refused(&["--json", "new.json", "--report", "./new.json"]),
+        &["new.json", "written twice"],
+    );
+    case.sandbox.write("known.toml", "schema = \"testbed.model/1\"\n");
+    says(
+        &refused(&["--known", "known.toml", "--json", "known.toml"]),
+        &["known.toml: is read as known.toml", "another file"],
+    );
     says(&refused(&["--cutoff", "0"]), &["--cutoff", "0.1 to 1000 Hz"]);
 }
 
@@ -297,13 +306,6 @@ fn known_effects_that_do_not_fit_are_refused_with_their_line() {
     says(
         &refusal("effect = \"viscous_friction\"\njoint = \"elbow\"\n"),
         &["known.toml", "coefficient"],
-    );
-    says(
-        &refusal("effect = \"backlash\"\njoint = \"elbow\"\nhalfgap = 0.01\n"),
-        &[
-            "known.toml: backlash on \"elbow\" cannot be taken as known",
-            "leave it out",
-        ],
     );
     says(
         &refused(&case, &["--known", "gone.toml"]),

@@ -135,6 +135,10 @@ fn unreadable_recordings_are_refused_with_their_place_and_the_others_shown() {
     );
     says(&sandbox.refuse(&["inspect", "gone.csv"]), &["gone.csv: cannot be read"]);
     says(
+        &sandbox.refuse(&["inspect", "good.csv", "--json", "./good.csv"]),
+        &["./good.csv: is read as good.csv", "another file"],
+    );
+    says(
         &sandbox.refuse(&["inspect", "good.csv", "--json", "no/o.json"]),
         &["no/o.json", "cannot be written"],
     );

@@ -271,7 +271,7 @@ fn contact(study: &Study, left: &[Vec<f64>], pushes: &[Push]) -> Option<Finding>
         probability: 0.9,
         share: share_by_joint.values().copied().fold(0.0, f64::max),
         share_by_joint,
-        held_out_gain: 1.0 - (1.0 - explained).max(0.0).sqrt(),
+        held_out_gain: Some(1.0 - (1.0 - explained).max(0.0).sqrt()),
         confusable_with: Vec::new(),
         place: Place {
             time: same,

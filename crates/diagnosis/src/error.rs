@@ -15,14 +15,6 @@ pub enum DiagnosisError {
         /// The arm's.
         expected: Vec<String>,
     },
-    /// A known effect that a torque at one time does not tell.
-    #[error(
-        "{effect} cannot be taken as known: it depends on the past of the motion or on the commanded torque; leave it out of the file"
-    )]
-    KnownWithMemory {
-        /// The effect.
-        effect: &'static str,
-    },
     /// A known effect that does not fit the arm.
     #[error(transparent)]
     Known(#[from] torque::TorqueError),

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use crate::bootstrap::Resampled;
 use crate::candidate::Cause;
 use crate::fit::Products;
@@ -33,6 +35,25 @@ pub fn findings(
                 .collect::<Vec<_>>()
         })
         .collect()
+}
+
+/// The member of `judged` that helps least on recordings it was not fitted to, if it does not help at all.
+pub fn useless(study: &Study, products: &Products, held: &Products, judged: &Judged) -> Option<usize> {
+    let problem = study.problem(products);
+    let gains: Vec<(f64, usize)> = judged
+        .members
+        .par_iter()
+        .filter_map(|member| {
+            Some((
+                held_out_gain(study, &problem, Some(held), judged, member)?,
+                member.candidate,
+            ))
+        })
+        .collect();
+    let least = gains
+        .into_iter()
+        .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
+    (least.0 <= 0.0).then_some(least.1)
 }
 
 fn finding(
@@ -122,15 +143,15 @@ fn rotor_share(study: &Study, judged: &Judged, candidate: usize) -> f64 {
     crate::predict::deviation(&torque, &study.training_rows(joint)) / study.scales.torque[joint].max(1e-300)
 }
 
-/// The relative drop of the NRMSE on recordings it was not fitted to, on the joint where it is largest. A contact is in
-/// one recording alone: its force is fitted to every other piece of its window and tried on the rest.
+/// The relative drop of the NRMSE on recordings it was not fitted to, on the joint where it is largest; `None` if that joint
+/// does not move in them. A contact is in one recording alone: its force is fitted to every other piece of its window and tried on the rest.
 fn held_out_gain(
     study: &Study,
     problem: &Problem<'_>,
     held: Option<&Products>,
     judged: &Judged,
     member: &Member,
-) -> f64 {
+) -> Option<f64> {
     let table = &study.table;
     let set: Vec<usize> = judged
         .named
@@ -141,20 +162,17 @@ fn held_out_gain(
         .collect();
     let without = problem.choose(set, &judged.named.fit.weights);
     if study.candidates[member.candidate].cause == Cause::Contact {
-        return crate::scan::contact_gain(study, &without.fit, &study.candidates[member.candidate].columns);
+        let columns = &study.candidates[member.candidate].columns;
+        return Some(crate::scan::contact_gain(study, &without.fit, columns));
     }
-    let Some(held) = held else { return 0.0 };
+    let held = held?;
     let fit = &judged.named.fit;
     let (with, without) = (
         held.rss(table, &fit.columns, &fit.coefficients),
         held.rss(table, &without.fit.columns, &without.fit.coefficients),
     );
-    let at = (0..with.len())
-        .filter(|&joint| held.count[joint] > 0.0)
-        .max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b]));
-    at.map_or(0.0, |joint| {
-        1.0 - (with[joint].max(0.0) / without[joint].max(1e-300)).sqrt()
-    })
+    let joint = (0..with.len()).max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b]))?;
+    (held.count[joint] > 0.0).then(|| 1.0 - (with[joint].max(0.0) / without[joint].max(1e-300)).sqrt())
 }
 
 fn place(study: &Study, cause: Cause, candidate: usize) -> Place {

@@ -11,36 +11,29 @@ pub struct Known {
     /// The arm, with known payloads, link errors, drives and gravity.
     pub arm: Arm,
     model: Option<Corrected>,
+    /// Known effects that no torque at one time tells: they are found again, and not reported.
+    pub past: Vec<Effect>,
 }
 
 impl Known {
     /// `arm` with `effects`.
     ///
     /// # Errors
-    /// [`DiagnosisError`], if an effect does not fit the arm or is no function of the motion at one time.
+    /// [`DiagnosisError`], if an effect does not fit the arm.
     pub fn new(arm: &Arm, effects: &[Effect]) -> Result<Self, DiagnosisError> {
         if effects.is_empty() {
             return Ok(Self {
                 arm: arm.clone(),
                 model: None,
+                past: Vec::new(),
             });
         }
-        let has_memory = |effect: &&Effect| {
-            matches!(
-                effect,
-                Effect::ActuationDelay { .. }
-                    | Effect::JointElasticity { .. }
-                    | Effect::Backlash { .. }
-                    | Effect::TorqueSaturation { .. }
-            )
-        };
-        if let Some(effect) = effects.iter().find(has_memory) {
-            return Err(DiagnosisError::KnownWithMemory { effect: effect.name() });
-        }
-        let model = Corrected::new(arm, effects)?;
+        let (past, now): (Vec<Effect>, Vec<Effect>) = effects.iter().cloned().partition(has_memory);
+        let model = Corrected::new(arm, &now)?;
         Ok(Self {
             arm: model.arm().clone(),
             model: Some(model),
+            past,
         })
     }
 
@@ -67,4 +60,15 @@ impl Known {
             }
         }
     }
+}
+
+/// Whether an effect depends on the past of the motion or on the commanded torque.
+fn has_memory(effect: &Effect) -> bool {
+    matches!(
+        effect,
+        Effect::ActuationDelay { .. }
+            | Effect::JointElasticity { .. }
+            | Effect::Backlash { .. }
+            | Effect::TorqueSaturation { .. }
+    )
 }

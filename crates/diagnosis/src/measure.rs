@@ -4,13 +4,18 @@ use arm::{Inertia, Matrix3, Vector3};
 
 use crate::candidate::Cause;
 use crate::columns::Scales;
-use crate::motion::Motions;
+use crate::motion::{Chunk, Motions};
 use crate::rigid::Rigid;
 use crate::settings;
 use crate::term::Term;
 
 /// A torque limit is at least this part of what the motion needs, by a model that may be wrong.
 const BELOW_NEED: f64 = 0.7;
+
+/// A torque that varies by less than this part of what the model needs …
+const DEAD: f64 = 0.05;
+/// … and by no more than so many times its noise behind both filters is a dead channel.
+const NOISE_ALONE: f64 = 4.0;
 
 /// The body of ten inertial parameters about a frame's origin; possible or not.
 pub fn inertia(parameters: &[f64; 10]) -> Inertia {
@@ -83,9 +88,46 @@ pub fn drives(
     list
 }
 
-/// Speeds, ranges and torques of all joints.
-pub fn scales(motions: &Motions) -> Scales {
-    let sorted = |pick: &dyn Fn(&crate::motion::Chunk) -> Vec<f64>| -> Vec<f64> {
+/// The standard deviation of each joint's measured torque in the recordings to be fitted (N m or N).
+pub fn deviations(motions: &Motions) -> Vec<f64> {
+    let chunks = || motions.chunks.iter().filter(|chunk| is_fitted(motions, chunk));
+    (0..motions.dof)
+        .map(|joint| deviation(&|| chunks().flat_map(move |chunk| &chunk.tau[joint])))
+        .collect()
+}
+
+/// The joints whose `torque` does not vary as the model's does: a dead channel, whatever noise it has.
+pub fn dead(motions: &Motions, rigid: &[Rigid], torque: &[f64]) -> Vec<usize> {
+    let fitted = || {
+        let chunks = motions.chunks.iter().zip(rigid);
+        chunks.filter(|(chunk, _)| is_fitted(motions, chunk))
+    };
+    let is_dead = |&joint: &usize| {
+        let needed = deviation(&|| fitted().flat_map(move |(_, rigid)| &rigid.tau[joint]));
+        let noise = motions.sources.iter().map(|source| source.torque_noise[joint]);
+        let noise = noise.fold(0.0, f64::max);
+        torque[joint] <= (NOISE_ALONE * noise).max(f64::EPSILON * needed) && torque[joint] <= DEAD * needed
+    };
+    (0..motions.dof).filter(is_dead).collect()
+}
+
+fn is_fitted(motions: &Motions, chunk: &Chunk) -> bool {
+    !motions.sources[chunk.recording].held_out
+}
+
+fn deviation<'a, I: Iterator<Item = &'a f64>>(values: &dyn Fn() -> I) -> f64 {
+    let middle = mean(values());
+    let (mut sum, mut count) = (0.0, 0.0_f64);
+    for value in values() {
+        sum += (value - middle).powi(2);
+        count += 1.0;
+    }
+    (sum / count.max(1.0)).sqrt()
+}
+
+/// Speeds and ranges of all joints, with their torques.
+pub fn scales(motions: &Motions, torque: Vec<f64>) -> Scales {
+    let sorted = |pick: &dyn Fn(&Chunk) -> Vec<f64>| -> Vec<f64> {
         let mut values: Vec<f64> = motions.chunks.iter().flat_map(pick).collect();
         values.sort_by(f64::total_cmp);
         values
@@ -102,7 +144,7 @@ pub fn scales(motions: &Motions) -> Scales {
         rest: Vec::new(),
         middle: Vec::new(),
         range: Vec::new(),
-        torque: Vec::new(),
+        torque,
     };
     for joint in 0..motions.dof {
         let speeds = sorted(&|chunk| chunk.qd[joint].iter().map(|v| v.abs()).collect());
@@ -118,15 +160,6 @@ pub fn scales(motions: &Motions) -> Scales {
         let (low, high) = (quantile(&positions, 0.002), quantile(&positions, 0.998));
         scales.middle.push(0.5 * (low + high));
         scales.range.push((high - low).max(1e-6));
-        let torques: Vec<f64> = motions
-            .chunks
-            .iter()
-            .filter(|chunk| !motions.sources[chunk.recording].held_out)
-            .flat_map(|chunk| chunk.tau[joint].iter().copied())
-            .collect();
-        let mean = torques.iter().sum::<f64>() / torques.len().max(1) as f64;
-        let variance = torques.iter().map(|t| (t - mean).powi(2)).sum::<f64>() / torques.len().max(1) as f64;
-        scales.torque.push(variance.sqrt());
     }
     scales
 }

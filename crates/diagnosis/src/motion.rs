@@ -132,7 +132,13 @@ impl Motions {
     /// Filters `inputs` with the second filter at `cutoff` (Hz), more if the motion is quick, or at what the slowest
     /// recording allows.
     pub fn new(inputs: &[Input<'_>], cutoff: f64) -> Self {
-        let motions = Self::at(inputs, cutoff);
+        let mut motions = Self::at(inputs, cutoff);
+        if motions.cutoff < cutoff {
+            motions.remarks.push(format!(
+                "the slowest recording allows a filter at {:.1} Hz instead of {cutoff:.0} Hz: what is quicker is not seen",
+                motions.cutoff
+            ));
+        }
         let mut moving: Vec<f64> = motions.tempo.iter().copied().filter(|&tempo| tempo > 0.0).collect();
         moving.sort_by(f64::total_cmp);
         let tempo = moving.get(moving.len() / 2).copied().unwrap_or(0.0);
@@ -144,12 +150,12 @@ impl Motions {
         }
     }
 
-    fn at(inputs: &[Input<'_>], cutoff: f64) -> Self {
+    fn at(inputs: &[Input<'_>], wanted: f64) -> Self {
         let slowest = inputs
             .iter()
             .map(|input| 1.0 / input.recording.period)
             .fold(f64::INFINITY, f64::min);
-        let cutoff = cutoff.min(NARROWEST * slowest);
+        let cutoff = wanted.min(NARROWEST * slowest);
         let seconds = |held_out: bool| -> f64 {
             let of_role = inputs.iter().filter(|input| input.held_out == held_out);
             of_role

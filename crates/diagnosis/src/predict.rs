@@ -98,15 +98,18 @@ pub fn errors(study: &Study, joint: usize, augmented: &[f64]) -> JointFit {
     }
     let held = rows_of(study, |r| !study.fitted[r]);
     let train = rows_of(study, |r| study.fitted[r]);
+    // Of a dead channel there is no relative error.
+    let over_spread =
+        |error: f64, spread: f64| (study.scales.torque[joint] > 0.0 && spread > 0.0).then(|| error / spread);
     let over = |rows: &[usize], keep: &[bool], signal: &[f64]| -> Option<f64> {
         let kept: Vec<usize> = rows.iter().copied().filter(|&row| keep[row]).collect();
         let error = rms(kept.iter().map(|&row| signal[row]))?;
-        Some(error / deviation(tau, &kept).max(1e-300))
+        over_spread(error, deviation(tau, &kept))
     };
     // A joint at rest may need one and the same torque all the time: the spread is that of all rows.
     let at_rest = |signal: &[f64]| -> Option<f64> {
         let error = rms(held.iter().filter(|&&row| resting[row]).map(|&row| signal[row]))?;
-        Some(error / deviation(tau, &held).max(1e-300))
+        over_spread(error, deviation(tau, &held))
     };
     // The error is told where the joint moves; at rest friction, a brake or the last move decide what is measured.
     let moves = held.iter().filter(|&&row| moving[row]).count() >= LEAST_ROWS;

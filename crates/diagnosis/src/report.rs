@@ -75,8 +75,8 @@ pub struct Finding {
     pub share: f64,
     /// The same for each joint it acts on.
     pub share_by_joint: BTreeMap<String, f64>,
-    /// Relative drop of the NRMSE, over recordings it was not fitted to.
-    pub held_out_gain: f64,
+    /// Relative drop of the NRMSE, over recordings it was not fitted to; `None` if none of them tries it.
+    pub held_out_gain: Option<f64>,
     /// What explains nearly as much in its place.
     pub confusable_with: Vec<Confusable>,
     /// Where it acts.

@@ -95,8 +95,13 @@ pub fn of(finding: &Finding, fit: &BTreeMap<String, JointFit>) -> String {
         });
     let place = finding.joint.as_deref().unwrap_or("the whole arm");
     if let (false, Some(_), Some(between)) = (finding.corrects, &finding.joint, &finding.place.state) {
-        let smaller = 100.0 * finding.held_out_gain;
-        return format!("{place}, {between}: {what}, with which the difference of the two is {smaller:.0} % smaller");
+        let smaller = finding.held_out_gain.map_or_else(String::new, |gain| {
+            format!(
+                ", with which the difference of the two is {:.0} % smaller on held-out recordings",
+                100.0 * gain
+            )
+        });
+        return format!("{place}, {between}: {what}{smaller}");
     }
     let share = match finding.joint {
         Some(_) => format!("{:.0} % of its torque", 100.0 * finding.share),

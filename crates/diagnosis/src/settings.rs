@@ -4,6 +4,8 @@
 pub const TOLERANCE: f64 = 0.006;
 /// Below this share of its largest speed a joint rests.
 pub const REST: f64 = 0.015;
+/// Below this cut-off (Hz) delays, springs and gaps between drive and link cannot be told from each other.
+pub const LEAST_FOR_DYNAMICS: f64 = 5.0;
 /// A row moves steadily if the joint moves within so many widths of the second filter …
 pub const CORE: f64 = 1.2;
 /// … and through a quick reversal if it moves there and, within them, somewhere so many times as fast as that.

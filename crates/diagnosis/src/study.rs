@@ -7,7 +7,7 @@ use crate::candidate::{Candidate, Cause, catalogue};
 use crate::columns::Scales;
 use crate::fit::{Fit, Products};
 use crate::known::Known;
-use crate::measure::{drives, inertia, mean, noise, scales, seconds, spans};
+use crate::measure::{self, drives, inertia, mean, noise, scales, seconds, spans};
 use crate::motion::{Input, Motions};
 use crate::rigid::Rigid;
 use crate::search::{Chosen, Problem};
@@ -54,6 +54,16 @@ impl Study {
     pub fn new(known: &Known, inputs: &[Input<'_>], cutoff: f64) -> Self {
         let arm = &known.arm;
         let mut motions = Motions::new(inputs, cutoff);
+        let measured: Vec<Vec<f64>> = (0..motions.dof)
+            .map(|joint| {
+                motions
+                    .chunks
+                    .iter()
+                    .flat_map(|chunk| chunk.filter(&chunk.tau[joint]))
+                    .collect()
+            })
+            .collect();
+        let mut torque = measure::deviations(&motions);
         known.take_off(&mut motions);
         let offset = vec![0.0; arm.dof()];
         let nominal = arm.inertial_parameters();
@@ -62,7 +72,13 @@ impl Study {
             .par_iter()
             .map(|chunk| Rigid::new(arm, &nominal, &offset, chunk))
             .collect();
-        let scales = scales(&motions);
+        for joint in measure::dead(&motions, &rigid, &torque) {
+            torque[joint] = 0.0;
+            let name = &arm.joints()[joint].name;
+            let remark = format!("{name}: its torque hardly varies while the model's does; it is left out");
+            motions.remarks.push(remark);
+        }
+        let scales = scales(&motions, torque);
         let fitted: Vec<bool> = motions.sources.iter().map(|source| !source.held_out).collect();
         let seconds = seconds(&motions);
         let noise = noise(&motions, &rigid, &fitted);
@@ -86,6 +102,9 @@ impl Study {
             let mass = mean(rigid.iter().flat_map(|r| &r.mass[joint][joint]));
             list.extend(drives(joint, mass, &scales, &motions, &rigid));
         }
+        if motions.cutoff < settings::LEAST_FOR_DYNAMICS {
+            list.retain(|(cause, ..)| !cause.is_unit());
+        }
         for (cause, joint, columns) in list {
             let columns = columns
                 .into_iter()
@@ -102,15 +121,6 @@ impl Study {
         let force = [0, 1, 2].map(|k| terms.len() + k);
         terms.extend(always);
         let table = Table::new(&motions, &rigid, &scales, terms, &[], Moving::Steadily);
-        let measured = (0..motions.dof)
-            .map(|joint| {
-                motions
-                    .chunks
-                    .iter()
-                    .flat_map(|chunk| chunk.filter(&chunk.tau[joint]))
-                    .collect()
-            })
-            .collect();
         let nominal = table.joints.iter().map(|joint| joint.y.clone()).collect();
         Self {
             arm: arm.clone(),

@@ -103,10 +103,11 @@ impl Table {
                             (low.min(q), high.max(q))
                         });
                     let yields = high - low < settings::YIELDING * scales.range[joint];
+                    let is_dead = scales.torque[joint] == 0.0;
                     moves.extend((0..chunk.rows()).map(|row| {
                         let tick = chunk.tick_of(row);
                         let qd = &chunk.qd[joint];
-                        if yields {
+                        if yields || is_dead {
                             return false;
                         }
                         let window = &qd[tick.saturating_sub(core)..(tick + core + 1).min(qd.len())];

@@ -206,7 +206,7 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
         stiffness: stiffness.value,
         damping: 0.0,
     };
-    let gain = 1.0 - (1.0 - result.held_out.unwrap_or(result.train)).max(0.0).sqrt();
+    let gain = result.held_out.map(|explained| 1.0 - (1.0 - explained).max(0.0).sqrt());
     Some(finding(
         effect,
         &name,
@@ -243,7 +243,7 @@ fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>])
     let revolute = study.arm.joints()[joint].kind == arm::JointKind::Revolute;
     let name = study.arm.joints()[joint].name.clone();
     let torque = study.scales.torque[joint].max(1e-300);
-    let gain = 1.0 - (1.0 - result.held_out.unwrap_or(result.train)).max(0.0).sqrt();
+    let gain = result.held_out.map(|explained| 1.0 - (1.0 - explained).max(0.0).sqrt());
     let place = "between the motor's current and the torque sensor";
     let mut list = Vec::new();
     if result.coefficients[0] > 0.0 && result.is_clear(0) {
@@ -286,7 +286,7 @@ fn finding(
     joint: &str,
     parameters: BTreeMap<&'static str, Parameter>,
     share: f64,
-    gain: f64,
+    gain: Option<f64>,
     place: &str,
 ) -> Finding {
     Finding {

@@ -52,11 +52,19 @@ fn check(
             "{name}: {found:?} instead of {truth}"
         );
     }
-    assert!(finding.held_out_gain > 0.05, "{}", finding.held_out_gain);
+    assert!(
+        finding.held_out_gain.is_some_and(|gain| gain > 0.05),
+        "{:?}",
+        finding.held_out_gain
+    );
     // What is found, taken as known, leaves nothing to find.
-    if !["actuation_delay", "joint_elasticity"].contains(&effect) {
-        let again = diagnosed(&trio(), robot, concealed, diagnosis.effects.clone());
-        assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
+    let again = diagnosed(&trio(), robot, concealed, diagnosis.effects.clone());
+    assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
+    for (joint, fit) in &again.report.fit {
+        assert_eq!(
+            fit.torque_std, report.fit[joint].torque_std,
+            "errors are over the measured torque"
+        );
     }
     for (joint, fit) in &report.fit {
         let (nominal, augmented) = (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented);
@@ -307,4 +315,25 @@ fn plain_friction_on_every_joint_and_nothing_else() {
         assert!(low < truth && truth < high, "{}", finding.sentence);
     }
     assert_eq!(report.verdict, Verdict::Explained);
+}
+
+/// A dead channel is left out, and says nothing of the others.
+#[test]
+fn a_constant_torque_is_no_torque() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        ordinary(motion, tau);
+        tau[ELBOW] = 0.3;
+    };
+    let diagnosis = diagnosed(&trio(), &trio(), &concealed, Vec::new());
+    let report = &diagnosis.report;
+    for finding in &report.findings {
+        assert_ne!(finding.joint.as_deref(), Some("elbow"), "{}", finding.sentence);
+        assert!(finding.share < 1.0, "{}", finding.sentence);
+    }
+    assert_eq!(report.fit["elbow"].held_out_nrmse_augmented, None);
+    assert!(
+        report.fit["turn"]
+            .held_out_nrmse_augmented
+            .is_some_and(|error| error < 0.03)
+    );
 }

@@ -14,6 +14,14 @@ pub fn write_whole(
     write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
 ) -> Result<(), RecordingError> {
     let attempt = || {
+        // A link is followed; a pipe or a device cannot be replaced and is written to.
+        let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        if target.metadata().is_ok_and(|target| !target.is_file()) {
+            let mut file = BufWriter::new(std::fs::File::options().write(true).open(&target)?);
+            write(&mut file)?;
+            return file.flush();
+        }
+        let path = target.as_path();
         let folder = match path.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
@@ -48,6 +56,22 @@ fn set_ordinary_permissions(_: &std::fs::File) -> std::io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_stays_a_link_and_a_device_a_device() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let (target, link) = (folder.path().join("a.txt"), folder.path().join("b.txt"));
+        std::fs::write(&target, "old").expect("it writes");
+        std::os::unix::fs::symlink(&target, &link).expect("it links");
+        write_whole(&link, |w| w.write_all(b"new")).expect("the write succeeds");
+        assert!(link.is_symlink());
+        assert_eq!(std::fs::read(&target).expect("the file is there"), b"new");
+        let device = folder.path().join("null");
+        std::os::unix::fs::symlink("/dev/null", &device).expect("it links");
+        write_whole(&device, |w| w.write_all(b"new")).expect("the write succeeds");
+        assert!(!Path::new("/dev/null").is_file());
+    }
 
     #[test]
     fn a_failed_write_leaves_the_old_file_and_nothing_else() {

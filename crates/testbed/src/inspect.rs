@@ -3,7 +3,8 @@
 pub mod model_check;
 mod smooth;
 
-use std::path::Path;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use arm::Arm;
@@ -49,6 +50,8 @@ struct Told {
 pub fn run(args: &InspectArgs) -> anyhow::Result<()> {
     if let Some(path) = &args.json {
         output::check_writable(path)?;
+        let inputs = args.files.iter().chain(&args.map).map(PathBuf::as_path);
+        output::check_is_no_input(path, inputs.chain(args.robot.as_deref().map(Path::new)))?;
     }
     let arm = args.robot.as_deref().map(load_robot).transpose()?;
     let map = args.map.as_deref().map(ColumnMap::load).transpose()?;
@@ -61,7 +64,7 @@ pub fn run(args: &InspectArgs) -> anyhow::Result<()> {
                 continue;
             }
         };
-        print(&report);
+        output::print(&shown(&report))?;
         files.push(report);
     }
     if files.len() < args.files.len() {
@@ -75,7 +78,7 @@ pub fn run(args: &InspectArgs) -> anyhow::Result<()> {
             files,
         };
         output::write_json(path, &report)?;
-        println!("written: {}", path.display());
+        output::print(&format!("written: {}\n", path.display()))?;
     }
     Ok(())
 }
@@ -115,7 +118,8 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
 /// Longer lists of one kind are shortened on the terminal.
 const MOST_GAPS: usize = 3;
 
-fn print(report: &FileReport<'_>) {
+fn shown(report: &FileReport<'_>) -> String {
+    let mut text = String::new();
     let quality = &report.quality;
     let clock = if !quality.has_clock {
         "no regular clock".into()
@@ -127,7 +131,8 @@ fn print(report: &FileReport<'_>) {
             100.0 * quality.jitter_rms * quality.rate
         )
     };
-    println!(
+    let _ = writeln!(
+        text,
         "{}: {} joints, {} rows, {:.2} s at {} Hz, {clock}",
         report.file.display(),
         quality.joints.len(),
@@ -163,7 +168,7 @@ fn print(report: &FileReport<'_>) {
             })),
         ]);
     }
-    println!("{table}");
+    let _ = writeln!(text, "{table}");
     let mut gaps = 0;
     for told in &report.warnings {
         if matches!(told.warning, Warning::Gap { .. }) {
@@ -172,21 +177,22 @@ fn print(report: &FileReport<'_>) {
                 continue;
             }
         }
-        println!("- {}", told.text);
+        let _ = writeln!(text, "- {}", told.text);
     }
     if gaps > MOST_GAPS {
-        println!("- gaps in all: {gaps} (--json has them)");
+        let _ = writeln!(text, "- gaps in all: {gaps} (--json has them)");
     }
     for finding in &quality.findings {
-        println!("- {}{}", about(finding.joint.as_deref()), finding.text);
+        let _ = writeln!(text, "- {}{}", about(finding.joint.as_deref()), finding.text);
     }
     for misfit in &report.against_robot {
-        println!("- {}{}", about(misfit.joint.as_deref()), misfit.text);
+        let _ = writeln!(text, "- {}{}", about(misfit.joint.as_deref()), misfit.text);
     }
     if report.warnings.is_empty() && quality.findings.is_empty() && report.against_robot.is_empty() {
-        println!("- nothing to remark");
+        let _ = writeln!(text, "- nothing to remark");
     }
-    println!();
+    let _ = writeln!(text);
+    text
 }
 
 fn about(joint: Option<&str>) -> String {

@@ -35,29 +35,16 @@ pub fn check_outputs(args: &DiagnoseArgs) -> anyhow::Result<()> {
     for path in &outputs {
         output::check_writable(path)?;
     }
-    // A model of effects may be read, added to and written in one go.
     let robot = Path::new(&args.robot);
-    let inputs = args
-        .train
-        .iter()
-        .chain(&args.held_out)
-        .chain(&args.map)
-        .map(PathBuf::as_path)
-        .chain([robot]);
-    for path in inputs {
-        if let Some(output) = outputs.iter().find(|output| is_same(output, path)) {
-            bail!(
-                "{}: is read as {}; write to another file",
-                output.display(),
-                path.display()
-            );
-        }
+    for output in &outputs {
+        // A model of effects may be read, added to and written in one go.
+        let known = args.known.iter().filter(|_| args.model.as_deref() != Some(output));
+        let recordings = args.train.iter().chain(&args.held_out).chain(&args.map);
+        let inputs = recordings.chain(known).map(PathBuf::as_path).chain([robot]);
+        output::check_is_no_input(output, inputs)?;
     }
     for (k, path) in outputs.iter().enumerate() {
-        if let Some(other) = outputs[..k]
-            .iter()
-            .find(|other| **other == *path || is_same(other, path))
-        {
+        if let Some(other) = outputs[..k].iter().find(|other| output::is_same(other, path)) {
             bail!(
                 "{}: is to be written twice; give each output a file of its own",
                 other.display()
@@ -70,28 +57,10 @@ pub fn check_outputs(args: &DiagnoseArgs) -> anyhow::Result<()> {
 /// The effects that `args` say are known.
 ///
 /// # Errors
-/// If the file cannot be used, or holds an effect that no torque at one time tells.
+/// If the file cannot be used.
 pub fn known(args: &DiagnoseArgs, arm: &Arm) -> anyhow::Result<Vec<Effect>> {
     let Some(path) = &args.known else { return Ok(Vec::new()) };
-    let effects = EffectFile::load(path, arm)?.effects;
-    let has_memory = |effect: &&Effect| {
-        matches!(
-            effect,
-            Effect::ActuationDelay { .. }
-                | Effect::JointElasticity { .. }
-                | Effect::Backlash { .. }
-                | Effect::TorqueSaturation { .. }
-        )
-    };
-    if let Some(effect) = effects.iter().find(has_memory) {
-        bail!(
-            "{}: {} on \"{}\" cannot be taken as known: it depends on the past of the motion or on the commanded torque; leave it out of the file, and it is named again",
-            path.display(),
-            effect.name(),
-            effect.joint().unwrap_or("the arm")
-        );
-    }
-    Ok(effects)
+    Ok(EffectFile::load(path, arm)?.effects)
 }
 
 /// Reads and checks the recordings that `args` name; what is doubtful is printed.
@@ -137,14 +106,9 @@ pub fn read(args: &DiagnoseArgs, arm: &Arm, progress: &ProgressBar) -> anyhow::R
     Ok(list)
 }
 
-/// Whether two paths lead to one file.
-fn is_same(a: &Path, b: &Path) -> bool {
-    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
-}
-
 fn refuse_twice(files: &[(&PathBuf, bool)]) -> anyhow::Result<()> {
     for (k, (path, held_out)) in files.iter().enumerate() {
-        let same = |other: &&(&PathBuf, bool)| is_same(path, other.0);
+        let same = |other: &&(&PathBuf, bool)| output::is_same(path, other.0);
         if let Some((_, other)) = files[..k].iter().find(same) {
             match (other, held_out) {
                 (false, true) | (true, false) => bail!(

@@ -190,8 +190,10 @@ impl Page<'_> {
                     }
                     span.odds {
                         "probability " (numbers::probability(finding.probability)) " · "
-                        (numbers::percent(finding.share)) " of the torque · held-out error "
-                        (numbers::percent(finding.held_out_gain)) " lower with it"
+                        (numbers::percent(finding.share)) " of the torque"
+                        @if let Some(gain) = finding.held_out_gain {
+                            " · held-out error " (numbers::percent(gain)) " lower with it"
+                        }
                     }
                 }
                 p.sentence { (finding.sentence) }

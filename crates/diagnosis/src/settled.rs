@@ -1,0 +1,154 @@
+//! The last fit: about the arm that the named effects make, and without what does not prove itself.
+
+use crate::bootstrap::{Resampled, resample};
+use crate::found::useless;
+use crate::judge::{self, Judged};
+use crate::naming::name;
+use crate::predict::{augmented, errors};
+use crate::study::Study;
+
+/// Fits the named effects for the last time: about the arm that they make, with the rows near reversals; drops what makes a
+/// joint's held-out error grow, what does not help there, and what might be zero.
+pub fn settled(study: &mut Study, judged: &mut Judged) -> Resampled {
+    settle(study, judged);
+    while guard(study, judged) {
+        settle(study, judged);
+    }
+    loop {
+        prove(study, judged);
+        let before = judged.named.set.len();
+        let resampled = clear_of_zero(study, judged);
+        if judged.named.set.len() == before {
+            return resampled;
+        }
+    }
+}
+
+/// Forms everything about the arm that the named effects make, and no other, with the rows near reversals, and fits anew.
+fn settle(study: &mut Study, judged: &mut Judged) {
+    let kept = study.settle(&judged.named.fit, &judged.candidates());
+    let named = judged.named.set.len();
+    let fitted = study.fitted.clone();
+    let products = study.products(|r| fitted[r]);
+    let problem = study.problem(&products);
+    judged.named = problem.choose(kept[..named].to_vec(), &judged.named.fit.weights);
+    judged.members = judge::describe(study, &problem, &judged.named);
+    for (member, &number) in judged.nameless.iter_mut().zip(&kept[named..]) {
+        member.candidate = number;
+    }
+}
+
+/// Drops names that do not help to predict recordings they were not fitted to, until there are none.
+fn prove(study: &Study, judged: &mut Judged) {
+    let fitted = &study.fitted;
+    if fitted.iter().all(|&fitted| fitted) {
+        return;
+    }
+    let products = study.products(|r| fitted[r]);
+    let held = study.products(|r| !fitted[r]);
+    let problem = study.problem(&products);
+    while let Some(useless) = useless(study, &products, &held, judged) {
+        let set = judged.named.set.iter().copied().filter(|&c| c != useless).collect();
+        judged.named = problem.choose(set, &judged.named.fit.weights);
+        judged.members = judge::describe(study, &problem, &judged.named);
+    }
+}
+
+/// Resamples, and drops names whose size might be zero, until there are none.
+fn clear_of_zero(study: &mut Study, judged: &mut Judged) -> Resampled {
+    loop {
+        let resampled = resample(study, &judged.named);
+        let is_unclear = |member: &&judge::Member| {
+            let named = name(study, &resampled, member.candidate);
+            named.first().is_some_and(|named| {
+                let effect = named.effect.name();
+                // A factor of one changes nothing.
+                let nothing = if effect.ends_with("_scale") { 1.0 } else { 0.0 };
+                let size = named.parameters.get(main_parameter(effect));
+                size.is_some_and(|size| size.ci95[0] <= nothing && nothing <= size.ci95[1])
+            })
+        };
+        let Some(unclear) = judged
+            .members
+            .iter()
+            .filter(is_unclear)
+            .min_by(|a, b| a.evidence.total_cmp(&b.evidence))
+        else {
+            return resampled;
+        };
+        let set = judged
+            .named
+            .set
+            .iter()
+            .copied()
+            .filter(|&c| c != unclear.candidate)
+            .collect();
+        let fitted = study.fitted.clone();
+        let products = study.products(|r| fitted[r]);
+        let problem = study.problem(&products);
+        judged.named = problem.choose(set, &judged.named.fit.weights);
+        judged.members = judge::describe(study, &problem, &judged.named);
+    }
+}
+
+/// The parameter that says how large an effect is.
+fn main_parameter(effect: &str) -> &'static str {
+    match effect {
+        "viscous_friction" | "quadratic_drag" => "coefficient",
+        "coulomb_friction" => "level",
+        "friction_asymmetry" => "positive",
+        "stribeck_friction" => "breakaway",
+        "load_dependent_friction" => "gain",
+        "thermal_drift" | "torque_ripple" => "amplitude",
+        "rotor_inertia" => "inertia",
+        "torque_scale" | "inertial_scale" => "factor",
+        "torque_offset" | "encoder_offset" => "offset",
+        "actuation_delay" => "delay",
+        "backlash" => "halfgap",
+        "payload" => "mass",
+        "link_inertial_error" => "relative",
+        "gravity_misalignment" => "angle",
+        "external_contact" => "force",
+        "joint_elasticity" | "spring" => "stiffness",
+        _ => "",
+    }
+}
+
+/// Drops findings until no joint's held-out error is larger than the nominal model's. Returns whether there were any.
+fn guard(study: &Study, judged: &mut Judged) -> bool {
+    let before = judged.named.set.len();
+    let fitted = study.fitted.clone();
+    let products = study.products(|r| fitted[r]);
+    let problem = study.problem(&products);
+    loop {
+        let nrmse = |chosen: &crate::search::Chosen, joint: usize| {
+            let fit = errors(study, joint, &augmented(study, chosen, joint));
+            (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented)
+        };
+        let worse = (0..study.motions.dof).find(|&joint| match nrmse(&judged.named, joint) {
+            (Some(nominal), Some(augmented)) => judge::harms(nominal, augmented),
+            _ => false,
+        });
+        let Some(joint) = worse else { break };
+        let best = judged
+            .members
+            .iter()
+            .filter(|member| member.shares[joint] > 0.0)
+            .map(|member| {
+                let set = judged
+                    .named
+                    .set
+                    .iter()
+                    .copied()
+                    .filter(|&c| c != member.candidate)
+                    .collect();
+                let next = problem.choose(set, &judged.named.fit.weights);
+                (nrmse(&next, joint).1.unwrap_or(f64::INFINITY), next)
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, next)) = best else { break };
+        judged.members = judge::describe(study, &problem, &next);
+        judged.named = next;
+    }
+    judged.named.set.len() < before
+}
