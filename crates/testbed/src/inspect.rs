@@ -115,8 +115,20 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
     })
 }
 
-/// Longer lists of one kind are shortened on the terminal.
+/// More gaps than this are counted on the terminal, not told.
 const MOST_GAPS: usize = 3;
+
+/// What is told of a list of warnings, and how many gaps are not.
+pub fn shortened<T>(list: impl Iterator<Item = T>, warning: impl Fn(&T) -> &Warning) -> (Vec<T>, usize) {
+    let mut gaps = 0;
+    let told = list.filter(|item| {
+        let is_gap = matches!(warning(item), Warning::Gap { .. });
+        gaps += usize::from(is_gap);
+        !is_gap || gaps <= MOST_GAPS
+    });
+    let told = told.collect();
+    (told, gaps.saturating_sub(MOST_GAPS))
+}
 
 fn shown(report: &FileReport<'_>) -> String {
     let mut text = String::new();
@@ -169,18 +181,12 @@ fn shown(report: &FileReport<'_>) -> String {
         ]);
     }
     let _ = writeln!(text, "{table}");
-    let mut gaps = 0;
-    for told in &report.warnings {
-        if matches!(told.warning, Warning::Gap { .. }) {
-            gaps += 1;
-            if gaps > MOST_GAPS {
-                continue;
-            }
-        }
+    let (told, gaps) = shortened(report.warnings.iter(), |told| &told.warning);
+    for told in told {
         let _ = writeln!(text, "- {}", told.text);
     }
-    if gaps > MOST_GAPS {
-        let _ = writeln!(text, "- gaps in all: {gaps} (--json has them)");
+    if gaps > 0 {
+        let _ = writeln!(text, "- {gaps} more gaps (--json has them)");
     }
     for finding in &quality.findings {
         let _ = writeln!(text, "- {}{}", about(finding.joint.as_deref()), finding.text);

@@ -10,7 +10,7 @@ use torque::Effect;
 
 use super::effect_file::EffectFile;
 use crate::cli::{DiagnoseArgs, Rerun};
-use crate::inspect::model_check;
+use crate::inspect::{model_check, shortened};
 use crate::output;
 
 /// A recording ready to be diagnosed.
@@ -136,8 +136,12 @@ fn prepare(
     let (regular, warnings) = recording.regular().with_context(|| name.clone())?;
     let quality = Quality::of(&recording, &regular);
     progress.suspend(|| {
-        for warning in recording.warnings.iter().chain(&warnings) {
+        let (told, gaps) = shortened(recording.warnings.iter().chain(&warnings), |warning| warning);
+        for warning in told {
             eprintln!("note: {name}: {warning}");
+        }
+        if gaps > 0 {
+            eprintln!("note: {name}: {gaps} more gaps (testbed inspect --json has them)");
         }
         for finding in &quality.findings {
             let weight = match finding.kind {
