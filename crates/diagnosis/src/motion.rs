@@ -18,6 +18,8 @@ const LONGEST: f64 = 60.0;
 const MOST_SECONDS: f64 = 900.0;
 /// … so long, if the recording allows (s).
 const WINDOW: f64 = 20.0;
+/// Multiples of it, less their whole parts, are spread evenly.
+const GOLDEN: f64 = 0.618_033_988_749_895;
 /// More rows than this in all are thinned out.
 const MOST_ROWS: f64 = 12_000.0;
 
@@ -239,8 +241,11 @@ impl Motions {
             for piece in 0..pieces {
                 let from = segment.ticks.start + piece * length;
                 let to = (from + length).min(segment.ticks.end);
+                // Where the stretch lies in its piece varies (by the golden ratio): pieces may be repetitions of one motion.
                 let kept = (used * (to - from) as f64).ceil() as usize;
-                let (from, to) = (from + (to - from - kept) / 2, from + (to - from - kept) / 2 + kept);
+                let place = (GOLDEN * self.chunks.len() as f64).fract();
+                let from = from + (place * (to - from - kept) as f64) as usize;
+                let to = from + kept;
                 if outputs(outputs(to - from, first.reach(), decimation), kernel.reach(), stride) == 0 {
                     continue;
                 }
