@@ -106,7 +106,7 @@ pub fn dead(motions: &Motions, rigid: &[Rigid], torque: &[f64]) -> Vec<usize> {
         let needed = deviation(&|| fitted().flat_map(move |(_, rigid)| &rigid.tau[joint]));
         let noise = motions.sources.iter().map(|source| source.torque_noise[joint]);
         let noise = noise.fold(0.0, f64::max);
-        torque[joint] <= (NOISE_ALONE * noise).max(f64::EPSILON * needed) && torque[joint] <= DEAD * needed
+        torque[joint] <= (NOISE_ALONE * noise).max(1e-9 * needed) && torque[joint] <= DEAD * needed
     };
     (0..motions.dof).filter(is_dead).collect()
 }

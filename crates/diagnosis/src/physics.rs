@@ -11,6 +11,8 @@ use crate::term::Term;
 const UNIT: std::ops::RangeInclusive<f64> = 0.7..=1.4;
 /// A limit cuts off all that is beyond it. Its column is made of the measured torque, which may stand for a scale.
 const CUT_OFF: std::ops::RangeInclusive<f64> = 0.8..=1.25;
+/// A payload is no more than so many times as heavy as the moving links.
+const MOST_PAYLOAD: f64 = 1.5;
 /// A push is no more than so many times the arm's weight: the drives could not hold against it.
 const MOST_CONTACT: f64 = 4.0;
 /// A cause that is so many times larger than what it is to explain cancels another.
@@ -46,7 +48,7 @@ pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -
             let mass = value(0);
             let reach = PAYLOAD_REACH * reach(arm);
             let first: f64 = (1..4).map(|k| value(k).powi(2)).sum::<f64>().sqrt();
-            mass > 0.0 && first < mass * reach
+            mass > 0.0 && first < mass * reach && mass < MOST_PAYLOAD * moving_mass(arm)
         }
         Cause::LinkError => (-0.8..2.0).contains(&value(0)),
         Cause::InertialScale => (-0.6..1.5).contains(&value(0)),
@@ -67,10 +69,15 @@ pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -
     }
 }
 
+/// The mass of the moving links (kg).
+fn moving_mass(arm: &Arm) -> f64 {
+    arm.joints().iter().map(|joint| joint.inertia.mass).sum()
+}
+
 /// What the arm weighs on Earth (N).
 fn weight(arm: &Arm) -> f64 {
     const GRAVITY: f64 = 9.81;
-    GRAVITY * arm.joints().iter().map(|joint| joint.inertia.mass).sum::<f64>()
+    GRAVITY * moving_mass(arm)
 }
 
 /// Whether its time constant is that of a drive that warms, but for what refinement did to it.

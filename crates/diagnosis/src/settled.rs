@@ -16,6 +16,7 @@ pub fn settled(study: &mut Study, judged: &mut Judged) -> Resampled {
     }
     loop {
         prove(study, judged);
+        give_up(study, judged);
         let before = judged.named.set.len();
         let resampled = clear_of_zero(study, judged);
         if judged.named.set.len() == before {
@@ -49,6 +50,25 @@ fn prove(study: &Study, judged: &mut Judged) {
     let problem = study.problem(&products);
     while let Some(useless) = useless(study, &products, &held, judged) {
         let set = judged.named.set.iter().copied().filter(|&c| c != useless).collect();
+        judged.named = problem.choose(set, &judged.named.fit.weights);
+        judged.members = judge::describe(study, &problem, &judged.named);
+    }
+}
+
+/// Drops the names on joints that, for all of them, are still predicted worse than by a constant: what is measured there is
+/// something else.
+fn give_up(study: &Study, judged: &mut Judged) {
+    let is_hopeless = |joint: usize| {
+        let fit = errors(study, joint, &augmented(study, &judged.named, joint));
+        fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented) > 1.0
+    };
+    let hopeless: Vec<bool> = (0..study.motions.dof).map(is_hopeless).collect();
+    let stays = |&candidate: &usize| !study.candidates[candidate].joint.is_some_and(|joint| hopeless[joint]);
+    let set: Vec<usize> = judged.named.set.iter().copied().filter(stays).collect();
+    if set.len() < judged.named.set.len() {
+        let fitted = &study.fitted;
+        let products = study.products(|r| fitted[r]);
+        let problem = study.problem(&products);
         judged.named = problem.choose(set, &judged.named.fit.weights);
         judged.members = judge::describe(study, &problem, &judged.named);
     }

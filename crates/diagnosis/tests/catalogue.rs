@@ -337,3 +337,23 @@ fn a_constant_torque_is_no_torque() {
             .is_some_and(|error| error < 0.03)
     );
 }
+
+/// Torques that have nothing to do with the motion get no names.
+#[test]
+fn unrelated_torques_get_no_names() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        for (joint, tau) in tau.iter_mut().enumerate() {
+            // A hash of the time: neither the model's torque nor anything of the catalogue's.
+            let phase = (motion.time * 1e4 + joint as f64 * 0.37).sin() * 43_758.545_3;
+            *tau = 8.0 * (phase - phase.floor() - 0.5);
+        }
+    };
+    let report = diagnosed(&trio(), &trio(), &concealed, Vec::new()).report;
+    let named: Vec<&str> = report
+        .findings
+        .iter()
+        .map(|finding| finding.sentence.as_str())
+        .collect();
+    assert!(named.is_empty(), "{named:?}");
+    assert_eq!(report.verdict, Verdict::Unexplained);
+}
