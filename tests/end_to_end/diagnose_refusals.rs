@@ -352,3 +352,16 @@ fn a_column_map_reads_anybodys_file_and_is_refused_by_its_line() {
         &["bad.toml:9", "a.csv has no column \"p22\"", "did you mean \"p2\"?"],
     );
 }
+
+#[test]
+fn a_part_of_a_training_recording_is_no_proof() {
+    let case = case();
+    let text = case.text("a.csv");
+    let lines: Vec<&str> = text.lines().collect();
+    let part = [&lines[..1], &lines[500..1700]].concat().join("\n");
+    case.sandbox.write("c.csv", &(part + "\n"));
+    says(
+        &refused(&case, &[]),
+        &["c.csv: holds a stretch of a.csv", "cannot be the proof"],
+    );
+}

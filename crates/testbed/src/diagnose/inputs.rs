@@ -63,6 +63,24 @@ pub fn known(args: &DiagnoseArgs, arm: &Arm) -> anyhow::Result<Vec<Effect>> {
     Ok(EffectFile::load(path, arm)?.effects)
 }
 
+/// Whether a moving stretch of `b` is in `a`, sample for sample: a part of a recording under another name.
+fn overlap(a: &RegularRecording, b: &RegularRecording) -> bool {
+    const STRETCH: usize = 50;
+    let (Some(last), Some(first)) = (a.len().checked_sub(STRETCH), b.len().checked_sub(STRETCH)) else {
+        return false;
+    };
+    [1, 2, 3].into_iter().any(|quarter| {
+        let from = first * quarter / 4;
+        let moves = b.q.iter().any(|q| q[from] != q[from + STRETCH - 1]);
+        let same = |a: &[f64], b: &[f64], at: usize| a[at..at + STRETCH] == b[from..from + STRETCH];
+        moves
+            && (0..=last).any(|at| {
+                let mut pairs = a.q.iter().chain(&a.tau).zip(b.q.iter().chain(&b.tau));
+                pairs.all(|(a, b)| same(a, b, at))
+            })
+    })
+}
+
 /// Reads and checks the recordings that `args` name; what is doubtful is printed.
 ///
 /// # Errors
@@ -89,6 +107,16 @@ pub fn read(args: &DiagnoseArgs, arm: &Arm, progress: &ProgressBar) -> anyhow::R
                 "{}: holds the same samples as {}; a recording can be used once, to train or held out",
                 prepared.name,
                 twin.name
+            );
+        }
+        let source = list
+            .iter()
+            .find(|known| known.held_out != prepared.held_out && overlap(&known.regular, &prepared.regular));
+        if let Some(source) = source {
+            bail!(
+                "{}: holds a stretch of {}, sample for sample; what is fitted cannot be the proof",
+                prepared.name,
+                source.name
             );
         }
         list.push(prepared);
