@@ -5,35 +5,48 @@ use crate::found::useless;
 use crate::judge::{self, Judged};
 use crate::naming::name;
 use crate::predict::{augmented, errors};
+use crate::search::{Chosen, Problem};
 use crate::study::Study;
 
 /// Fits the named effects for the last time: about the arm that they make, with the rows near reversals; drops what makes a
 /// joint's held-out error grow, what does not help there, and what might be zero.
 pub fn settled(study: &mut Study, judged: &mut Judged) -> Resampled {
-    settle(study, judged);
-    while guard(study, judged) {
-        settle(study, judged);
-    }
     loop {
+        settle(study, judged);
+        let before = judged.named.set.len();
+        guard(study, judged);
         prove(study, judged);
         give_up(study, judged);
-        let before = judged.named.set.len();
-        let resampled = clear_of_zero(study, judged);
-        if judged.named.set.len() == before {
-            return resampled;
+        // What is left stands about another arm, and may harm without what went.
+        if judged.named.set.len() < before {
+            continue;
+        }
+        let resampled = resample(study, &judged.named);
+        match unclear(study, judged, &resampled) {
+            Some(unclear) => drop_name(study, judged, unclear),
+            None => return resampled,
         }
     }
+}
+
+/// Takes one name out and fits the others anew.
+fn drop_name(study: &Study, judged: &mut Judged, candidate: usize) {
+    let set = judged.named.set.iter().copied().filter(|&c| c != candidate).collect();
+    let products = study.products(|r| study.fitted[r]);
+    refit(study, &study.problem(&products), judged, set);
+}
+
+fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Judged, set: Vec<usize>) {
+    judged.named = problem.choose(set, &judged.named.fit.weights);
+    judged.members = judge::describe(study, problem, &judged.named);
 }
 
 /// Forms everything about the arm that the named effects make, and no other, with the rows near reversals, and fits anew.
 fn settle(study: &mut Study, judged: &mut Judged) {
     let kept = study.settle(&judged.named.fit, &judged.candidates());
     let named = judged.named.set.len();
-    let fitted = study.fitted.clone();
-    let products = study.products(|r| fitted[r]);
-    let problem = study.problem(&products);
-    judged.named = problem.choose(kept[..named].to_vec(), &judged.named.fit.weights);
-    judged.members = judge::describe(study, &problem, &judged.named);
+    let products = study.products(|r| study.fitted[r]);
+    refit(study, &study.problem(&products), judged, kept[..named].to_vec());
     for (member, &number) in judged.nameless.iter_mut().zip(&kept[named..]) {
         member.candidate = number;
     }
@@ -47,11 +60,8 @@ fn prove(study: &Study, judged: &mut Judged) {
     }
     let products = study.products(|r| fitted[r]);
     let held = study.products(|r| !fitted[r]);
-    let problem = study.problem(&products);
     while let Some(useless) = useless(study, &products, &held, judged) {
-        let set = judged.named.set.iter().copied().filter(|&c| c != useless).collect();
-        judged.named = problem.choose(set, &judged.named.fit.weights);
-        judged.members = judge::describe(study, &problem, &judged.named);
+        drop_name(study, judged, useless);
     }
 }
 
@@ -66,49 +76,26 @@ fn give_up(study: &Study, judged: &mut Judged) {
     let stays = |&candidate: &usize| !study.candidates[candidate].joint.is_some_and(|joint| hopeless[joint]);
     let set: Vec<usize> = judged.named.set.iter().copied().filter(stays).collect();
     if set.len() < judged.named.set.len() {
-        let fitted = &study.fitted;
-        let products = study.products(|r| fitted[r]);
-        let problem = study.problem(&products);
-        judged.named = problem.choose(set, &judged.named.fit.weights);
-        judged.members = judge::describe(study, &problem, &judged.named);
+        let products = study.products(|r| study.fitted[r]);
+        refit(study, &study.problem(&products), judged, set);
     }
 }
 
-/// Resamples, and drops names whose size might be zero, until there are none.
-fn clear_of_zero(study: &mut Study, judged: &mut Judged) -> Resampled {
-    loop {
-        let resampled = resample(study, &judged.named);
-        let is_unclear = |member: &&judge::Member| {
-            let named = name(study, &resampled, member.candidate);
-            named.first().is_some_and(|named| {
-                let effect = named.effect.name();
-                // A factor of one changes nothing.
-                let nothing = if effect.ends_with("_scale") { 1.0 } else { 0.0 };
-                let size = named.parameters.get(main_parameter(effect));
-                size.is_some_and(|size| size.ci95[0] <= nothing && nothing <= size.ci95[1])
-            })
-        };
-        let Some(unclear) = judged
-            .members
-            .iter()
-            .filter(is_unclear)
-            .min_by(|a, b| a.evidence.total_cmp(&b.evidence))
-        else {
-            return resampled;
-        };
-        let set = judged
-            .named
-            .set
-            .iter()
-            .copied()
-            .filter(|&c| c != unclear.candidate)
-            .collect();
-        let fitted = study.fitted.clone();
-        let products = study.products(|r| fitted[r]);
-        let problem = study.problem(&products);
-        judged.named = problem.choose(set, &judged.named.fit.weights);
-        judged.members = judge::describe(study, &problem, &judged.named);
-    }
+/// The weakest of the names whose size might be zero.
+fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<usize> {
+    let is_unclear = |member: &&judge::Member| {
+        let named = name(study, resampled, member.candidate);
+        named.first().is_some_and(|named| {
+            let effect = named.effect.name();
+            // A factor of one changes nothing.
+            let nothing = if effect.ends_with("_scale") { 1.0 } else { 0.0 };
+            let size = named.parameters.get(main_parameter(effect));
+            size.is_some_and(|size| size.ci95[0] <= nothing && nothing <= size.ci95[1])
+        })
+    };
+    let unclear = judged.members.iter().filter(is_unclear);
+    let weakest = unclear.min_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
+    Some(weakest.candidate)
 }
 
 /// The parameter that says how large an effect is.
@@ -134,14 +121,13 @@ fn main_parameter(effect: &str) -> &'static str {
     }
 }
 
-/// Drops findings until no joint's held-out error is larger than the nominal model's. Returns whether there were any.
-fn guard(study: &Study, judged: &mut Judged) -> bool {
-    let before = judged.named.set.len();
+/// Drops findings until no joint's held-out error is larger than the nominal model's.
+fn guard(study: &Study, judged: &mut Judged) {
     let fitted = study.fitted.clone();
     let products = study.products(|r| fitted[r]);
     let problem = study.problem(&products);
     loop {
-        let nrmse = |chosen: &crate::search::Chosen, joint: usize| {
+        let nrmse = |chosen: &Chosen, joint: usize| {
             let fit = errors(study, joint, &augmented(study, chosen, joint));
             (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented)
         };
@@ -170,5 +156,4 @@ fn guard(study: &Study, judged: &mut Judged) -> bool {
         judged.members = judge::describe(study, &problem, &next);
         judged.named = next;
     }
-    judged.named.set.len() < before
 }
