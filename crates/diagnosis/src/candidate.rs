@@ -125,11 +125,12 @@ impl Cause {
         self.is_ordinary() || matches!(self, Self::Asymmetry | Self::TorqueOffset)
     }
 
-    /// The ordinary cause that it is a form of.
+    /// The simpler cause that it is a form of.
     pub fn plain(self) -> Option<Self> {
         match self {
             Self::Asymmetry | Self::Stribeck | Self::LoadDependent | Self::Thermal => Some(Self::Coulomb),
             Self::Elasticity | Self::Backlash => Some(Self::RotorInertia),
+            Self::Spring => Some(Self::TorqueOffset),
             _ => None,
         }
     }
@@ -255,7 +256,9 @@ fn friction(list: &mut List, joint: usize, speed: f64, span: Option<f64>) {
         let term = Term::Warm { joint, time_constant };
         add(Cause::Thermal, vec![sign, term]);
     }
-    add(Cause::Drag, vec![Term::Drag(joint)]);
+    for exponent in [2.0, 1.6, 2.5] {
+        add(Cause::Drag, vec![Term::Drag { joint, exponent }]);
+    }
 }
 
 fn drive(list: &mut List, joint: usize, scales: &Scales) {
@@ -272,7 +275,7 @@ fn drive(list: &mut List, joint: usize, scales: &Scales) {
     for delay in [0.002, 0.004, 0.006, 0.009, 0.013, 0.02, 0.03] {
         add(Cause::Delay, vec![Term::Late { joint, delay }]);
     }
-    for share in [0.004, 0.008, 0.014, 0.022, 0.035, 0.06] {
+    for share in [0.0025, 0.004, 0.008, 0.014, 0.022, 0.035, 0.06] {
         let halfgap = share * scales.range[joint].min(1.5);
         add(
             Cause::Backlash,

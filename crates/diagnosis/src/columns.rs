@@ -48,7 +48,7 @@ pub fn values(term: Term, joint: usize, chunk: &Chunk, rigid: &Rigid, scales: &S
         }
         Term::LoadSign(_) => map(&|k| rigid.tau[joint][k].abs() * sign(k)),
         Term::Warm { time_constant, .. } => map(&|k| (-chunk.time(k) / time_constant).exp() * sign(k)),
-        Term::Drag(_) => map(&|k| qd[k] * qd[k].abs()),
+        Term::Drag { exponent, .. } => map(&|k| qd[k].abs().powf(exponent).copysign(qd[k])),
         Term::Acceleration(_) => Some(chunk.qdd[joint].clone()),
         Term::Rigid(_) => Some(rigid.tau[joint].clone()),
         Term::Position(_, power) => map(&|k| q[k].powi(power)),

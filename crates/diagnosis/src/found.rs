@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::bootstrap::Resampled;
 use crate::candidate::Cause;
-use crate::fit::Products;
+use crate::fit::{Fit, Products};
 use crate::judge::{Judged, Member};
 use crate::naming::name;
 use crate::report::{Confusable, Finding, Place};
@@ -14,6 +14,9 @@ use crate::rivals::{Standing, standing};
 use crate::search::Problem;
 use crate::study::Study;
 use crate::term::Term;
+
+/// Pieces of recordings (s) of which every other is fitted.
+const PIECE: f64 = 2.0;
 
 /// The findings, each with the candidate it was named from.
 pub fn findings(
@@ -165,14 +168,45 @@ fn held_out_gain(
         let columns = &study.candidates[member.candidate].columns;
         return Some(crate::scan::contact_gain(study, &without.fit, columns));
     }
+    let joint = (0..table.dof()).max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b]))?;
     let held = held?;
+    if crate::judge::is_idle(study, &judged.named, member.candidate) {
+        let fit = &judged.named.fit;
+        return Some(gain_in_pieces(study, fit, &without.fit, member.candidate, joint));
+    }
     let fit = &judged.named.fit;
     let (with, without) = (
         held.rss(table, &fit.columns, &fit.coefficients),
         held.rss(table, &without.fit.columns, &without.fit.coefficients),
     );
-    let joint = (0..with.len()).max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b]))?;
     (held.count[joint] > 0.0).then(|| 1.0 - (with[joint].max(0.0) / without[joint].max(1e-300)).sqrt())
+}
+
+/// The relative drop of the error on `joint` where `candidate` was not fitted: its torque is scaled to what `without` leaves in
+/// every other piece of the training recordings, and tried on the rest.
+fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joint: usize) -> f64 {
+    let columns = &study.candidates[candidate].columns;
+    let values: Vec<f64> = columns.iter().map(|&column| fit.coefficient(column)).collect();
+    let torque = study.table.torque(joint, columns, &values);
+    let model = study.table.torque(joint, &without.columns, &without.coefficients);
+    let times = study.motions.row_times();
+    let rows = study.training_rows(joint);
+    let left = |row: usize| study.table.joints[joint].y[row] - model[row];
+    let (mut with, mut bare) = (0.0, 0.0);
+    for parity in [0, 1] {
+        let is_fitted = |row: &&usize| ((times[**row] / PIECE).floor() as i64 - parity) % 2 == 0;
+        let (mut power, mut product) = (0.0, 0.0);
+        for &row in rows.iter().filter(is_fitted) {
+            power += torque[row] * torque[row];
+            product += torque[row] * left(row);
+        }
+        let scale = product / f64::max(power, 1e-300);
+        for &row in rows.iter().filter(|row| !is_fitted(row)) {
+            with += (left(row) - scale * torque[row]).powi(2);
+            bare += left(row).powi(2);
+        }
+    }
+    1.0 - (with / f64::max(bare, 1e-300)).sqrt()
 }
 
 fn place(study: &Study, cause: Cause, candidate: usize) -> Place {

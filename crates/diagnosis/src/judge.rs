@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::candidate::{Candidate, Cause};
+use crate::candidate::Cause;
 use crate::fit::Products;
 use crate::search::{Chosen, Problem};
 use crate::settings;
@@ -27,6 +27,8 @@ const BESIDE_NAMELESS: f64 = 1.5;
 
 /// What varies by less than this part of its mean is nearly constant: an offset, or friction of a joint that never turns back.
 const NEARLY_CONSTANT: f64 = 0.2;
+/// What does less than this part of a joint's torque does nothing.
+const IDLE: f64 = 0.002;
 /// What has no name must keep this part of its gain on held-out recordings.
 const HELD: f64 = 0.2;
 
@@ -71,18 +73,13 @@ impl Judged {
 pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut chosen: Chosen) -> Judged {
     let problem = study.problem(products);
     let mut members;
+    if let Some(held) = held {
+        chosen = predicting(study, &problem, held, chosen);
+    }
     loop {
         members = describe(study, &problem, &chosen);
         let Some(weak) = weakest(study, &members) else { break };
-        chosen = without(&problem, &chosen, members[weak].candidate);
-    }
-    if let Some(held) = held {
-        chosen = predicting(study, &problem, held, chosen);
-        loop {
-            members = describe(study, &problem, &chosen);
-            let Some(weak) = weakest(study, &members) else { break };
-            chosen = without(&problem, &chosen, members[weak].candidate);
-        }
+        chosen = problem.without(&chosen, members[weak].candidate);
     }
     let (nameless, named): (Vec<Member>, Vec<Member>) = members
         .into_iter()
@@ -174,35 +171,13 @@ fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen:
     }
 }
 
-/// `chosen` without one of its members; what is a form of something ordinary gives way to that, if it pays.
-fn without(problem: &Problem<'_>, chosen: &Chosen, member: usize) -> Chosen {
-    let set: Vec<usize> = chosen.set.iter().copied().filter(|&c| c != member).collect();
-    let bare = problem.choose(set.clone(), &chosen.fit.weights);
-    let candidate = &problem.candidates[member];
-    let is_plain = |c: &Candidate| Some(c.cause) == candidate.cause.plain() && c.joint == candidate.joint;
-    let Some(plain) = problem.candidates.iter().position(is_plain) else {
-        return bare;
-    };
-    if set.contains(&plain) {
-        return bare;
-    }
-    let mut with = set;
-    with.push(plain);
-    let ordinary = problem.choose(with, &chosen.fit.weights);
-    if ordinary.score < bare.score && problem.is_possible(plain, &ordinary.fit) {
-        ordinary
-    } else {
-        bare
-    }
-}
-
 /// Shares and evidence of all that is chosen.
 pub fn describe(study: &Study, problem: &Problem<'_>, chosen: &Chosen) -> Vec<Member> {
     (0..chosen.set.len())
         .into_par_iter()
         .map(|k| {
             let candidate = chosen.set[k];
-            let without = without(problem, chosen, candidate);
+            let without = problem.without(chosen, candidate);
             Member {
                 candidate,
                 shares: shares(study, chosen, candidate),
@@ -232,6 +207,23 @@ fn shares(study: &Study, chosen: &Chosen, candidate: usize) -> Vec<f64> {
             size / study.scales.torque[joint].max(1e-300)
         })
         .collect()
+}
+
+/// Whether a candidate does nothing in the held-out recordings, so that they do not say whether it predicts.
+pub fn is_idle(study: &Study, chosen: &Chosen, candidate: usize) -> bool {
+    let columns = &study.candidates[candidate].columns;
+    let values: Vec<f64> = columns.iter().map(|&column| chosen.fit.coefficient(column)).collect();
+    let rows = crate::predict::rows_of(study, |recording| !study.fitted[recording]);
+    (0..study.motions.dof).all(|joint| {
+        let torque = study.table.torque(joint, columns, &values);
+        let moving = &study.table.joints[joint].moving;
+        let (mut power, mut count) = (0.0, 0.0);
+        for &row in rows.iter().filter(|&&row| moving[row]) {
+            power += torque[row] * torque[row];
+            count += 1.0;
+        }
+        (power / f64::max(count, 1.0)).sqrt() < IDLE * study.scales.torque[joint]
+    })
 }
 
 /// The member that deserves its place least, if one does not.
@@ -307,7 +299,9 @@ fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut chos
                 (removed, held.loss(&without) - held.loss(&with), without)
             })
             .collect();
-        let exempt = |candidate: usize| study.candidates[candidate].cause == Cause::Contact;
+        let exempt = |candidate: usize| {
+            study.candidates[candidate].cause == Cause::Contact || is_idle(study, &chosen, candidate)
+        };
         let useless = gains
             .iter()
             .filter(|(candidate, gain, _)| !exempt(*candidate) && *gain < 0.0)

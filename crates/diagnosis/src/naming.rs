@@ -138,10 +138,16 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
                 joint,
             }
         }
-        Cause::Drag => Effect::QuadraticDrag {
-            coefficient: reader.coefficient("coefficient", units.drag, reader.nth(0), 1.0),
-            joint,
-        },
+        Cause::Drag => {
+            let Term::Drag { exponent, .. } = terms[0] else {
+                return Vec::new();
+            };
+            Effect::QuadraticDrag {
+                coefficient: reader.coefficient("coefficient", units.drag, reader.nth(0), 1.0),
+                exponent,
+                joint,
+            }
+        }
         Cause::RotorInertia => Effect::RotorInertia {
             inertia: reader.coefficient("inertia", units.inertia, reader.nth(0), 1.0),
             joint,

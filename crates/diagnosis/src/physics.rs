@@ -19,6 +19,16 @@ const MOST_CONTACT: f64 = 4.0;
 const LARGEST_SHARE: f64 = 3.0;
 /// The largest part of the moving rows that a torque limit may clip.
 const MOST_CLIPPED: f64 = 0.45;
+/// Beside what breaking away takes more, dry friction of a joint in motion is at least this part of it.
+const LEAST_COULOMB: f64 = 0.2;
+/// A point of a curve counts where the joint, in motion, comes so near that its tent is this high.
+const VISITED: f64 = 0.5;
+/// Exponents of what grows faster than the speed.
+const DRAG: std::ops::RangeInclusive<f64> = 1.4..=3.2;
+/// Between its points a spring's curve may fall, for noise, by this part of all its rise …
+const LARGEST_FALL: f64 = 0.05;
+/// … and on the whole by this part.
+const ALL_FALLS: f64 = 0.1;
 /// Loads on a tool, and their centres of mass (m) as a share of the arm's reach.
 const PAYLOAD_REACH: f64 = 0.5;
 
@@ -32,9 +42,10 @@ pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -
         return false;
     }
     match candidate.cause {
-        Cause::Viscous | Cause::Coulomb | Cause::Drag | Cause::RotorInertia => value(0) > 0.0,
+        Cause::Viscous | Cause::Coulomb | Cause::RotorInertia => value(0) > 0.0,
+        Cause::Drag => value(0) > 0.0 && drags(candidate, table),
         Cause::Asymmetry => value(0) > 0.0 && value(1).abs() < value(0),
-        Cause::Stribeck => value(1) > 0.0 && value(0) > -0.1 * value(1),
+        Cause::Stribeck => value(1) > 0.0 && value(0) > LEAST_COULOMB * value(1) && fades(candidate, table),
         // Without load there may be no friction at all, but not less.
         Cause::LoadDependent => value(1) > 0.0 && value(1) < 1.0 && value(0) > -0.1 * value(1) * load(table, candidate),
         Cause::Thermal => {
@@ -80,6 +91,29 @@ fn weight(arm: &Arm) -> f64 {
     GRAVITY * moving_mass(arm)
 }
 
+/// Whether Stribeck's part has faded to less than half on most of the moving rows: it is friction of low speeds.
+fn fades(candidate: &Candidate, table: &Table) -> bool {
+    let Some(joint) = candidate.joint else { return false };
+    let Some(place) = table.place[joint][candidate.columns[1]] else {
+        return false;
+    };
+    let this = &table.joints[joint];
+    let (mut moving, mut slow) = (0, 0);
+    for row in (0..this.y.len()).filter(|&row| this.moving[row]) {
+        moving += 1;
+        slow += usize::from(this.x[place][row].abs() > 0.5);
+    }
+    2 * slow < moving
+}
+
+/// Whether its exponent is one of drag.
+fn drags(candidate: &Candidate, table: &Table) -> bool {
+    candidate.columns.iter().all(|&column| match table.terms[column] {
+        Term::Drag { exponent, .. } => DRAG.contains(&exponent),
+        _ => true,
+    })
+}
+
 /// Whether its time constant is that of a drive that warms, but for what refinement did to it.
 fn warms_slowly(candidate: &Candidate, table: &Table) -> bool {
     candidate.columns.iter().all(|&column| match table.terms[column] {
@@ -114,12 +148,17 @@ fn spring_stiffens(candidate: &Candidate, table: &Table, fit: &Fit) -> bool {
     let tents: Vec<f64> = candidate
         .columns
         .iter()
-        .filter(|&&column| matches!(table.terms[column], Term::Tent { .. }))
+        .filter(|&&column| {
+            matches!(table.terms[column], Term::Tent { .. })
+                && is_visited(table, joint, column)
+                && fit.coefficient(column) != 0.0
+        })
         .map(|&column| fit.coefficient(column))
         .collect();
     if let (Some(first), Some(last)) = (tents.first(), tents.last()) {
-        let slack = 0.03 * (last - first);
-        return last > first && tents.windows(2).all(|pair| pair[1] > pair[0] - slack);
+        let rise = last - first;
+        let falls = || tents.windows(2).map(|pair| (pair[0] - pair[1]).max(0.0));
+        return rise > 0.0 && falls().all(|fall| fall < LARGEST_FALL * rise) && falls().sum::<f64>() < ALL_FALLS * rise;
     }
     let position = candidate
         .columns
@@ -147,6 +186,13 @@ fn spring_stiffens(candidate: &Candidate, table: &Table, fit: &Fit) -> bool {
         .filter(|&k| slope(low + (high - low) * f64::from(k) / f64::from(steps)) > 0.0)
         .count();
     rising >= 17
+}
+
+/// Whether the joint comes near a tent's point in motion.
+fn is_visited(table: &Table, joint: usize, column: usize) -> bool {
+    let this = &table.joints[joint];
+    table.place[joint][column]
+        .is_some_and(|place| (0..this.y.len()).any(|row| this.moving[row] && this.x[place][row] > VISITED))
 }
 
 /// The part of the moving rows on which a candidate's first column is not zero.

@@ -23,9 +23,11 @@ pub enum Size {
     Damping,
     /// The periods of a ripple.
     Periods,
+    /// The exponent of a drag; a form rather than a size, it has no interval.
+    Exponent,
 }
 
-/// The sizes that some terms have.
+/// The sizes that some terms have, of which there are intervals.
 pub fn sizes(terms: &[Term]) -> Vec<Size> {
     [Size::Main, Size::Damping, Size::Periods]
         .into_iter()
@@ -50,16 +52,17 @@ pub fn varied(terms: &[Term], size: Size, factor: f64) -> Vec<Term> {
                 | Term::Gap { halfgap: value, .. },
             )
             | (Size::Damping, Term::Elastic { damping: value, .. })
-            | (Size::Periods, Term::Ripple { periods: value, .. }) => *value *= factor,
+            | (Size::Periods, Term::Ripple { periods: value, .. })
+            | (Size::Exponent, Term::Drag { exponent: value, .. }) => *value *= factor,
             _ => {}
         }
     }
     terms
 }
 
-/// The same terms with their main size times `factor`; empty if they have none.
+/// The same terms with their main size, or exponent, times `factor`; empty if they have none.
 fn resized(terms: &[Term], factor: f64) -> Vec<Term> {
-    let new = varied(terms, Size::Main, factor);
+    let new = varied(&varied(terms, Size::Main, factor), Size::Exponent, factor);
     if new == terms { Vec::new() } else { new }
 }
 

@@ -277,7 +277,7 @@ impl Problem<'_> {
                     let removed = set.remove(k);
                     let must = !self.is_possible(removed, &chosen.fit);
                     let may = must || self.may_go(&set, removed);
-                    may.then(|| (must, self.choose(set, &chosen.fit.weights)))
+                    may.then(|| (must, self.without(&chosen, removed)))
                 })
                 .collect::<Vec<_>>()
                 .into_iter()
@@ -299,6 +299,50 @@ impl Problem<'_> {
             }
         }
         self.prune(chosen)
+    }
+
+    /// `chosen` with one cause that acts on the whole arm, without what that then explains: on several joints at once other
+    /// causes may stand for it, of which none alone gives way.
+    fn arm_wide(&self, chosen: &Chosen, allowed: &[usize]) -> Vec<Chosen> {
+        let is_free = |c: &usize| {
+            let candidate = &self.candidates[*c];
+            candidate.joint.is_none()
+                && candidate.cause != Cause::Contact
+                && !chosen.set.iter().any(|&other| other == *c || self.exclude(*c, other))
+        };
+        let free: Vec<usize> = allowed.iter().copied().filter(is_free).collect();
+        free.par_iter()
+            .filter_map(|&candidate| {
+                let with = self.choose(self.with(&chosen.set, candidate), &chosen.fit.weights);
+                if !self.is_possible(candidate, &with.fit) {
+                    return None;
+                }
+                let pruned = self.prune(with);
+                pruned.set.contains(&candidate).then_some(pruned)
+            })
+            .collect()
+    }
+
+    /// `chosen` without one of its members; what is a form of something simpler gives way to that, if it pays.
+    pub fn without(&self, chosen: &Chosen, member: usize) -> Chosen {
+        let set: Vec<usize> = chosen.set.iter().copied().filter(|&c| c != member).collect();
+        let bare = self.choose(set.clone(), &chosen.fit.weights);
+        let candidate = &self.candidates[member];
+        let is_plain = |c: &Candidate| Some(c.cause) == candidate.cause.plain() && c.joint == candidate.joint;
+        let Some(plain) = self.candidates.iter().position(is_plain) else {
+            return bare;
+        };
+        if set.contains(&plain) {
+            return bare;
+        }
+        let mut with = set;
+        with.push(plain);
+        let simpler = self.choose(with, &chosen.fit.weights);
+        if simpler.score < bare.score && self.is_possible(plain, &simpler.fit) {
+            simpler
+        } else {
+            bare
+        }
     }
 
     /// Replaces single members by better ones, until none is better.
@@ -327,7 +371,8 @@ impl Problem<'_> {
                     self.grow(&without, &others, &mut Vec::new())
                 })
                 .collect();
-            match trials.into_iter().min_by(|a, b| a.score.total_cmp(&b.score)) {
+            let trials = trials.into_iter().chain(self.arm_wide(&chosen, allowed));
+            match trials.min_by(|a, b| a.score.total_cmp(&b.score)) {
                 Some(next) if next.score < chosen.score - 0.5 => chosen = self.prune(next),
                 _ => break,
             }

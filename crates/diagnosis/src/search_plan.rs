@@ -23,12 +23,16 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
     for round in 1..=SUGGESTIONS {
         progress(&format!("looking for causes, round {round}"));
         let before = chosen.set.clone();
-        // What has no name must not hide what the residual suggests.
+        // What has no name must not hide what the residual suggests, nor a ripple of a period that was suggested when little
+        // else was known.
         let products = study.products(|r| fitted[r]);
         let named = before
             .iter()
             .copied()
-            .filter(|&c| study.candidates[c].cause.name().is_some())
+            .filter(|&c| {
+                let cause = study.candidates[c].cause;
+                cause.name().is_some() && cause != Cause::Ripple
+            })
             .collect();
         chosen = study.problem(&products).choose(named, &chosen.fit.weights);
         study.suggest(&chosen);
@@ -62,5 +66,8 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
             break;
         }
     }
-    chosen
+    // With all sizes found, what did not pay before may do so.
+    let products = study.products(|r| fitted[r]);
+    let allowed: Vec<usize> = (0..study.candidates.len()).collect();
+    study.problem(&products).forward(chosen, &allowed)
 }

@@ -13,9 +13,12 @@ use crate::study::Study;
 pub fn settled(study: &mut Study, judged: &mut Judged) -> Resampled {
     loop {
         settle(study, judged);
+        make_possible(study, judged);
         let before = judged.named.set.len();
+
         guard(study, judged);
         prove(study, judged);
+
         give_up(study, judged);
         // What is left stands about another arm, and may harm without what went.
         if judged.named.set.len() < before {
@@ -29,11 +32,12 @@ pub fn settled(study: &mut Study, judged: &mut Judged) -> Resampled {
     }
 }
 
-/// Takes one name out and fits the others anew.
+/// Takes one name out, or puts what it is a form of in its place, and fits the others anew.
 fn drop_name(study: &Study, judged: &mut Judged, candidate: usize) {
-    let set = judged.named.set.iter().copied().filter(|&c| c != candidate).collect();
     let products = study.products(|r| study.fitted[r]);
-    refit(study, &study.problem(&products), judged, set);
+    let problem = study.problem(&products);
+    judged.named = problem.without(&judged.named, candidate);
+    judged.members = judge::describe(study, &problem, &judged.named);
 }
 
 fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Judged, set: Vec<usize>) {
@@ -49,6 +53,16 @@ fn settle(study: &mut Study, judged: &mut Judged) {
     refit(study, &study.problem(&products), judged, kept[..named].to_vec());
     for (member, &number) in judged.nameless.iter_mut().zip(&kept[named..]) {
         member.candidate = number;
+    }
+}
+
+/// Drops names that became impossible, until there are none.
+fn make_possible(study: &Study, judged: &mut Judged) {
+    let products = study.products(|r| study.fitted[r]);
+    let problem = study.problem(&products);
+    let impossible = |named: &Chosen| named.set.iter().copied().find(|&c| !problem.is_possible(c, &named.fit));
+    while let Some(candidate) = impossible(&judged.named) {
+        drop_name(study, judged, candidate);
     }
 }
 

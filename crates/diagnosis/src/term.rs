@@ -29,8 +29,13 @@ pub enum Term {
         /// s.
         time_constant: f64,
     },
-    /// q̇ |q̇|.
-    Drag(usize),
+    /// |q̇|^exponent sgn q̇.
+    Drag {
+        /// The joint.
+        joint: usize,
+        /// About 2.
+        exponent: f64,
+    },
     /// q̈.
     Acceleration(usize),
     /// The rigid torque of joint j.
@@ -177,7 +182,7 @@ impl Term {
             | Self::Stribeck { joint, .. }
             | Self::LoadSign(joint)
             | Self::Warm { joint, .. }
-            | Self::Drag(joint)
+            | Self::Drag { joint, .. }
             | Self::Acceleration(joint)
             | Self::Rigid(joint)
             | Self::Position(joint, _)

@@ -66,12 +66,15 @@ pub enum Effect {
         /// s.
         time_constant: f64,
     },
-    /// τ = coefficient q̇ |q̇|.
+    /// τ = coefficient |q̇|^exponent sgn q̇.
     QuadraticDrag {
         /// The joint.
         joint: String,
-        /// N m s²/rad².
+        /// N m s²/rad², if the exponent is 2.
         coefficient: f64,
+        /// 2 for turbulent drag; other losses that grow faster than the speed lie about it.
+        #[serde(default = "two")]
+        exponent: f64,
     },
     /// τ = inertia q̈: the drive's rotor, seen at the joint.
     RotorInertia {

@@ -92,6 +92,7 @@ pub(super) enum Smooth {
     },
     Drag {
         coefficient: f64,
+        exponent: f64,
     },
     Offset {
         offset: f64,
@@ -122,7 +123,7 @@ impl Smooth {
     pub(super) fn torque(&self, joint: usize, q: &[f64], qd: &[f64], qdd: &[f64]) -> f64 {
         match self {
             Self::Viscous { coefficient } => coefficient * qd[joint],
-            Self::Drag { coefficient } => coefficient * qd[joint] * qd[joint].abs(),
+            Self::Drag { coefficient, exponent } => coefficient * qd[joint].abs().powf(*exponent).copysign(qd[joint]),
             Self::Offset { offset } => *offset,
             Self::Ripple {
                 amplitude,
@@ -187,7 +188,9 @@ pub(super) fn law(effect: &Effect, other: Option<usize>) -> Option<Law> {
             time_constant,
         }),
         Effect::ViscousFriction { coefficient, .. } => Law::Smooth(Smooth::Viscous { coefficient }),
-        Effect::QuadraticDrag { coefficient, .. } => Law::Smooth(Smooth::Drag { coefficient }),
+        Effect::QuadraticDrag {
+            coefficient, exponent, ..
+        } => Law::Smooth(Smooth::Drag { coefficient, exponent }),
         Effect::TorqueOffset { offset, .. } => Law::Smooth(Smooth::Offset { offset }),
         Effect::TorqueRipple {
             amplitude,

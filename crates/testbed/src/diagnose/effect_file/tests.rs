@@ -44,6 +44,7 @@ fn all(joint: &str, other: &str) -> Vec<Effect> {
         Effect::QuadraticDrag {
             joint: joint(),
             coefficient: 0.3,
+            exponent: 2.0,
         },
         Effect::RotorInertia {
             joint: joint(),
