@@ -29,6 +29,12 @@ pub fn settled(study: &mut Study, judged: &mut Judged) -> Resampled {
     }
 }
 
+/// Fits the named effects for the last time, about the arm that they make, whatever comes of them.
+pub fn as_given(study: &mut Study, judged: &mut Judged) -> Resampled {
+    settle(study, judged);
+    resample(study, &judged.named)
+}
+
 /// Takes one name out and fits the others anew.
 fn drop_name(study: &Study, judged: &mut Judged, candidate: usize) {
     let set = judged.named.set.iter().copied().filter(|&c| c != candidate).collect();

@@ -121,6 +121,11 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "FILE")]
     pub known: Option<PathBuf>,
 
+    /// Fit these effects and no others, to try a hypothesis: effect:joint or, of the whole arm, effect; or a file (.toml, as
+    /// --model writes), whose sizes do not matter
+    #[arg(long, value_name = "EFFECT:JOINT,…|FILE", conflicts_with = "known")]
+    pub only: Option<String>,
+
     /// Write the diagnosis to this file as JSON
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
