@@ -21,9 +21,11 @@ pub struct Truth {
     pub background_friction: bool,
     /// Standard deviation of the noise on each torque (N m or N).
     pub torque_noise: Vec<f64>,
-    /// The encoders' step (rad or m).
+    /// The encoders' step (rad or m); zero where the truth does not tell.
+    #[serde(default)]
     pub encoder_quantum: f64,
-    /// The recordings' nominal period (s).
+    /// The recordings' nominal period (s); zero where the truth does not tell.
+    #[serde(default)]
     pub period: f64,
 }
 
@@ -50,6 +52,15 @@ pub struct Concealed {
 }
 
 impl Concealed {
+    /// The catalogue's name, also of truths that were written under another.
+    pub fn name(&self) -> &str {
+        match self.effect.as_str() {
+            "link_mass_error" => "link_inertial_error",
+            "gravity_tilt" => "gravity_misalignment",
+            name => name,
+        }
+    }
+
     /// Whether no name of the catalogue fits it.
     pub fn is_outside_the_catalogue(&self) -> bool {
         self.effect.ends_with("_unknown")
