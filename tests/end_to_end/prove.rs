@@ -133,3 +133,20 @@ fn cases_without_truths_are_refused() {
     ]);
     assert!(refused.contains("--truth"), "{refused}");
 }
+
+#[test]
+fn shares_merged_are_the_whole() {
+    let sandbox = cases();
+    sandbox.succeed(&COMMAND);
+    let share = |number: &'static str| [&COMMAND[..3], &["--out", "shares", "--shard", number]].concat();
+    sandbox.succeed(&share("2/2"));
+    let merge = ["prove", "--merge", "shares", "--out", "merged"];
+    let refused = sandbox.refuse(&merge);
+    assert!(refused.contains("shares 1 of 2 are missing"), "{refused}");
+    sandbox.succeed(&share("1/2"));
+    sandbox.succeed(&merge);
+    for name in ["score.json", "report.html"] {
+        let [whole, merged] = ["proof", "merged"].map(|folder| bytes(&sandbox, &format!("{folder}/{name}")));
+        assert!(whole == merged, "{name} differs");
+    }
+}

@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use torque::{LengthScales, TrainingOptions};
 
 use crate::models::ModelKind;
+use crate::prove::Shard;
 
 /// Tracking testbed and model diagnosis for robot arms
 #[derive(Debug, Parser)]
@@ -183,6 +184,14 @@ pub struct ProveArgs {
     /// Write the report to this file as Markdown as well
     #[arg(long, value_name = "FILE")]
     pub markdown: Option<PathBuf>,
+
+    /// Do the k-th of n shares of the cases and write it to OUT/shard-k-of-n.parquet, for --merge
+    #[arg(long, value_name = "k/n", value_parser = Shard::parse)]
+    pub shard: Option<Shard>,
+
+    /// Score all shares in this folder instead, as one proof
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["cases", "seed", "cases_from", "shard"])]
+    pub merge: Option<PathBuf>,
 
     /// How many processes at once; the result is the same [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]

@@ -10,7 +10,9 @@ mod reasons;
 mod report;
 mod results;
 mod rows;
+mod shards;
 mod vault;
 mod work;
 
 pub use command::run;
+pub use shards::Shard;

@@ -7,11 +7,12 @@ use std::time::Instant;
 
 use anyhow::Context;
 use arm::Arm;
-use proof::{Score, Seal, Target, sha256, true_terms, wrong_term};
+use proof::{Program, Score, Seal, SealedCase, Target, sha256, true_terms, wrong_term};
 use serde::Serialize;
 
 use super::cases::{Files, Place, Source};
 use super::rows::{self, Row};
+use super::shards::{self, Label};
 use super::vault::Vault;
 use super::{markdown, page, work};
 use crate::cli::ProveArgs;
@@ -40,25 +41,58 @@ pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
     if let Some(path) = &args.markdown {
         output::check_writable(path)?;
     }
+    if let Some(folder) = &args.merge {
+        std::fs::create_dir_all(&args.out).with_context(|| args.out.display().to_string())?;
+        let (label, rows) = shards::merge(folder)?;
+        let proof = Proof::new(label.program, label.source, label.command, &rows)?;
+        return write(args, &args.out, &proof);
+    }
+    let out = match args.shard {
+        Some(shard) => args.out.join(shard.name()),
+        None => args.out.clone(),
+    };
     let deferred = interrupt::Deferred::start();
     let source = Source::new(args)?;
-    let vault = Vault::new(&args.out)?;
+    let vault = Vault::new(&out)?;
+    let mut places = source.places(&vault.out)?;
+    if let Some(shard) = args.shard {
+        places.retain(|place| shard.has(place.number));
+    }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = args.jobs.map_or(cores, usize::from);
     let mut times = Times::default();
-    let places = source.places(&vault.out)?;
+    let (seal, rows) = protocol(&source, &vault, &places, jobs, &mut times)?;
+    drop(deferred);
+    times.write(&out.join("times.json"))?;
+    if let Some(shard) = args.shard {
+        let path = args.out.join(format!("{}.parquet", shard.name()));
+        let words = [source.describe(), source.command()];
+        shards::write(&path, &Label::new(shard, seal.program, words, seal.whole), &rows)?;
+        return output::print(&format!("written: {}\n", path.display()));
+    }
+    let proof = Proof::new(seal.program, source.describe(), source.command(), &rows)?;
+    write(args, &out, &proof)
+}
+
+/// Conceals, seals, diagnoses, opens, and tries the controls.
+fn protocol(
+    source: &Source,
+    vault: &Vault,
+    places: &[Place],
+    jobs: usize,
+    times: &mut Times,
+) -> anyhow::Result<(Seal, Vec<Row>)> {
     times.of("conceal", || {
-        work::all("concealing", &places, jobs, |place| source.make(place))
+        work::all("concealing", places, jobs, |place| source.make(place))
     })?;
-    let seal = times.of("seal", || vault.seal(&places, source.describe()))?;
+    let seal = times.of("seal", || vault.seal(places, source.describe()))?;
     let pairs: Vec<_> = places.iter().zip(&seal.cases).collect();
     times.of("diagnose", || {
         work::all("diagnosing", &pairs, jobs, |(place, sealed)| {
             vault.diagnose(place, sealed, &format!("diagnoses/{}", place.name), None)
         })
     })?;
-    let answers = answers(&vault, &places)?;
-    output::write_json(&vault.out.join("answers.json"), &answers)?;
+    output::write_json(&vault.out.join("answers.json"), &answers(vault, places)?)?;
     // Only now.
     let truths: Mutex<BTreeMap<String, String>> = Mutex::default();
     times.of("controls", || {
@@ -67,13 +101,6 @@ pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
             sealed.check_truth(&bytes)?;
             let text = String::from_utf8(bytes).with_context(|| place.truth.display().to_string())?;
             let truth = rows::truth(&place.name, &text)?;
-            let list = |terms: &[proof::Name]| -> String {
-                let words = terms.iter().map(|(effect, joint)| match joint {
-                    Some(joint) => format!("{effect}:{joint}"),
-                    None => effect.clone(),
-                });
-                words.collect::<Vec<_>>().join(",")
-            };
             let name = |control: &str| format!("controls/{}.{control}", place.name);
             vault.diagnose(place, sealed, &name("true"), Some(&list(&true_terms(&truth))))?;
             if let Some(wrong) = wrong_term(&truth, place.number) {
@@ -85,22 +112,35 @@ pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
             Ok(())
         })
     })?;
-    let truths = truths.into_inner().unwrap_or_default();
-    let mut rows = places
+    let mut truths = truths.into_inner().unwrap_or_default();
+    let rows: anyhow::Result<Vec<Row>> = pairs
         .iter()
-        .zip(&seal.cases)
-        .map(|(place, sealed)| row(&vault, place, sealed.inputs(), &truths))
-        .collect::<anyhow::Result<Vec<Row>>>()?;
-    let score = rows::score(&mut rows)?;
-    drop(deferred);
-    let proof = Proof {
-        schema: "testbed.proof/1",
-        command: source.command(),
-        seal,
-        answers,
-        score,
-    };
-    write(args, &vault.out, &proof, &times)
+        .map(|(place, sealed)| row(vault, place, sealed, truths.remove(&place.name).unwrap_or_default()))
+        .collect();
+    Ok((seal, rows?))
+}
+
+/// Effects as `--only` takes them.
+fn list(terms: &[proof::Name]) -> String {
+    let words = terms.iter().map(|(effect, joint)| match joint {
+        Some(joint) => format!("{effect}:{joint}"),
+        None => effect.clone(),
+    });
+    words.collect::<Vec<_>>().join(",")
+}
+
+impl Proof {
+    /// Scores `rows`, which are in the order of their names.
+    fn new(program: Program, source: String, command: String, rows: &[Row]) -> anyhow::Result<Self> {
+        let answer = |row: &Row| row.diagnosis.as_ref().map(|text| sha256(text.as_bytes()));
+        Ok(Self {
+            schema: "testbed.proof/1",
+            command,
+            seal: Seal::new(program, source, rows.iter().map(Row::sealed).collect()),
+            answers: rows.iter().map(|row| (row.case.clone(), answer(row))).collect(),
+            score: rows::score(rows)?,
+        })
+    }
 }
 
 /// The hashes of all diagnoses.
@@ -112,7 +152,7 @@ fn answers(vault: &Vault, places: &[Place]) -> anyhow::Result<BTreeMap<String, O
     places.iter().map(answer).collect()
 }
 
-fn row(vault: &Vault, place: &Place, inputs: String, truths: &BTreeMap<String, String>) -> anyhow::Result<Row> {
+fn row(vault: &Vault, place: &Place, sealed: &SealedCase, truth: String) -> anyhow::Result<Row> {
     let (record, diagnosis) = vault.answer(&format!("diagnoses/{}", place.name))?;
     let control = |name: &str| -> anyhow::Result<Option<String>> {
         Ok(vault.answer(&format!("controls/{}.{name}", place.name))?.1)
@@ -121,8 +161,8 @@ fn row(vault: &Vault, place: &Place, inputs: String, truths: &BTreeMap<String, S
     Ok(Row {
         case: place.name.clone(),
         joints: arm.joints().iter().map(|joint| joint.name.clone()).collect(),
-        inputs,
-        truth: truths.get(&place.name).cloned().unwrap_or_default(),
+        files: sealed.files.clone(),
+        truth,
         diagnosis,
         error: record.and_then(|record| record.error),
         true_terms: control("true")?,
@@ -130,17 +170,16 @@ fn row(vault: &Vault, place: &Place, inputs: String, truths: &BTreeMap<String, S
     })
 }
 
-fn write(args: &ProveArgs, out: &Path, proof: &Proof, times: &Times) -> anyhow::Result<()> {
-    let report = out.join("report.html");
-    output::write_json(&out.join("score.json"), proof)?;
+fn write(args: &ProveArgs, out: &Path, proof: &Proof) -> anyhow::Result<()> {
+    let (report, score) = (out.join("report.html"), out.join("score.json"));
+    output::write_json(&score, proof)?;
     page::write(&report, proof)?;
-    times.write(&out.join("times.json"))?;
     if let Some(path) = &args.markdown {
         let text = markdown::text(proof);
         recording::write_whole(path, |file| file.write_all(text.as_bytes()))?;
     }
     output::print(&summary(proof))?;
-    for path in [&report, &out.join("score.json")].into_iter().chain(&args.markdown) {
+    for path in [&report, &score].into_iter().chain(&args.markdown) {
         output::print(&format!("written: {}\n", path.display()))?;
     }
     Ok(())

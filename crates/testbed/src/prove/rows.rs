@@ -1,7 +1,9 @@
 //! A case after everything was tried on it, as one row: what is scored, and what goes from a share of a campaign to the whole.
 
+use std::collections::BTreeMap;
+
 use anyhow::Context;
-use proof::{Answer, Score, Tried, Truth};
+use proof::{Answer, Score, SealedCase, Tried, Truth, sha256};
 use serde::{Deserialize, Serialize};
 
 /// Everything that is known of a case, as it was read.
@@ -11,8 +13,8 @@ pub struct Row {
     pub case: String,
     /// The joints' names, base to tip.
     pub joints: Vec<String>,
-    /// One number for what was diagnosed.
-    pub inputs: String,
+    /// SHA-256 of its recordings and its URDF, by name.
+    pub files: BTreeMap<String, String>,
     /// The truth's file.
     pub truth: String,
     /// The diagnosis; `None` if the program gave no answer.
@@ -26,6 +28,15 @@ pub struct Row {
 }
 
 impl Row {
+    /// As it was sealed.
+    pub fn sealed(&self) -> SealedCase {
+        SealedCase {
+            case: self.case.clone(),
+            truth: sha256(self.truth.as_bytes()),
+            files: self.files.clone(),
+        }
+    }
+
     /// For scoring.
     ///
     /// # Errors
@@ -53,12 +64,11 @@ pub fn truth(case: &str, text: &str) -> anyhow::Result<Truth> {
     serde_json::from_str(text).with_context(|| format!("{case}: the truth"))
 }
 
-/// Scores `rows`, in the order of their names.
+/// Scores `rows`, which are in the order of their names.
 ///
 /// # Errors
 /// If a text is not what it should be.
-pub fn score(rows: &mut [Row]) -> anyhow::Result<Score> {
-    rows.sort_by(|a, b| a.case.cmp(&b.case));
+pub fn score(rows: &[Row]) -> anyhow::Result<Score> {
     let tried: anyhow::Result<Vec<Tried>> = rows.iter().map(Row::tried).collect();
     Ok(proof::score(&tried?))
 }
