@@ -8,12 +8,12 @@ use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 /// The `schema` line of a seal.
-pub const SCHEMA: &str = "testbed.seal/1";
+const SCHEMA: &str = "testbed.seal/1";
 
 /// What is written before the first diagnosis.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Seal {
-    /// [`SCHEMA`].
+    /// `testbed.seal/1`.
     pub schema: String,
     /// The program that conceals, diagnoses and scores.
     pub program: Program,
