@@ -6,6 +6,7 @@ mod diagnose_made;
 mod diagnose_refusals;
 mod inspect;
 mod paper;
+mod prove;
 mod refusals;
 mod runs;
 mod support;

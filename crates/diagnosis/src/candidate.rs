@@ -69,6 +69,32 @@ pub enum Cause {
 }
 
 impl Cause {
+    /// Those of the catalogue that are on the whole arm.
+    pub const ON_THE_ARM: [Self; 4] = [Self::Payload, Self::InertialScale, Self::Tilt, Self::Contact];
+
+    /// Those of the catalogue that are on a joint; the other joint of a coupling does not matter here.
+    pub const ON_A_JOINT: [Self; 19] = [
+        Self::Viscous,
+        Self::Coulomb,
+        Self::Asymmetry,
+        Self::Stribeck,
+        Self::LoadDependent,
+        Self::Thermal,
+        Self::Drag,
+        Self::RotorInertia,
+        Self::TorqueScale,
+        Self::TorqueOffset,
+        Self::Ripple,
+        Self::Saturation,
+        Self::Delay,
+        Self::Elasticity,
+        Self::Backlash,
+        Self::Coupling(0),
+        Self::LinkError,
+        Self::EncoderOffset,
+        Self::Spring,
+    ];
+
     /// The catalogue's name; `None` for what has none.
     pub fn name(self) -> Option<&'static str> {
         Some(match self {

@@ -9,16 +9,16 @@ use torque::Effect;
 use crate::bursts;
 use crate::error::DiagnosisError;
 use crate::found::findings;
+use crate::given::{self, Wanted};
 use crate::judge;
 use crate::left_over::{leftover, not_enough, unexplained, verdict};
 use crate::locate::locate;
 use crate::motion::Input;
 use crate::predict::{augmented, errors};
 use crate::report::{Finding, RecordingNames, Report, Traces};
-use crate::settled::settled;
 use crate::study::Study;
 use crate::traces::traces;
-use crate::{known, search_plan, sentences, settings, two_sides, unseen};
+use crate::{known, search_plan, sentences, settings, settled, two_sides, unseen};
 
 /// How to diagnose.
 #[derive(Clone, Debug)]
@@ -27,6 +27,9 @@ pub struct Options {
     pub cutoff: f64,
     /// Effects that the user has already: they are taken off, and not reported again.
     pub known: Vec<Effect>,
+    /// Fit these effects and no others, whatever comes of them: nothing is searched for, no name is earned or lost. `None`
+    /// searches the catalogue.
+    pub only: Option<Vec<Wanted>>,
 }
 
 impl Default for Options {
@@ -34,6 +37,7 @@ impl Default for Options {
         Self {
             cutoff: settings::CUTOFF,
             known: Vec::new(),
+            only: None,
         }
     }
 }
@@ -67,14 +71,25 @@ pub fn diagnose(
     progress("filtering, and the model along the motion");
     let arm_and_known = known::Known::new(arm, &options.known)?;
     let mut study = Study::new(&arm_and_known, inputs, options.cutoff);
-    let chosen = search_plan::search(&mut study, progress);
-    progress("judging names");
     let fitted = study.fitted.clone();
-    let products = study.products(|r| fitted[r]);
-    let held = fitted.iter().any(|f| !f).then(|| study.products(|r| !fitted[r]));
-    let mut judged = judge::judge(&study, &products, held.as_ref(), chosen);
-    progress("the last fit, and intervals");
-    let resampled = settled(&mut study, &mut judged);
+    let (judged, resampled) = match &options.only {
+        Some(wanted) => {
+            progress("fitting the effects that were asked for");
+            let mut judged = given::fit(&mut study, wanted)?;
+            let resampled = settled::as_given(&mut study, &mut judged);
+            (judged, resampled)
+        }
+        None => {
+            let chosen = search_plan::search(&mut study, progress);
+            progress("judging names");
+            let products = study.products(|r| fitted[r]);
+            let held = fitted.iter().any(|f| !f).then(|| study.products(|r| !fitted[r]));
+            let mut judged = judge::judge(&study, &products, held.as_ref(), chosen);
+            progress("the last fit, and intervals");
+            let resampled = settled::settled(&mut study, &mut judged);
+            (judged, resampled)
+        }
+    };
     let products = study.products(|r| fitted[r]);
     let held = fitted.iter().any(|f| !f).then(|| study.products(|r| !fitted[r]));
     progress("what else it could be");
@@ -83,14 +98,18 @@ pub fn diagnose(
         let same = |known: &Effect| known.name() == finding.effect && known.joint() == finding.joint.as_deref();
         !arm_and_known.past.iter().any(same)
     });
-    let two_sided = two_sides::findings(&study, &judged.named, inputs);
-    findings.extend(two_sided.into_iter().map(|finding| (finding, None)));
+    if options.only.is_none() {
+        let two_sided = two_sides::findings(&study, &judged.named, inputs);
+        findings.extend(two_sided.into_iter().map(|finding| (finding, None)));
+    }
     let left: Vec<Vec<f64>> = (0..arm.dof())
         .into_par_iter()
         .map(|joint| augmented(&study, &judged.named, joint))
         .collect();
     let bursts = bursts::bursts(&study, &judged, &left);
-    findings.extend(bursts.contact.clone().map(|finding| (finding, None)));
+    if options.only.is_none() {
+        findings.extend(bursts.contact.clone().map(|finding| (finding, None)));
+    }
     let located = locate(&study, &left);
     let not_enough_data = not_enough(&study, &products);
     if !not_enough_data.is_empty() {

@@ -18,6 +18,16 @@ pub enum DiagnosisError {
     /// A known effect that does not fit the arm.
     #[error(transparent)]
     Known(#[from] torque::TorqueError),
+    /// An effect to be fitted that the catalogue or the arm has not.
+    #[error("{effect}{}: {reason}", joint.as_ref().map(|joint| format!(" on {joint}")).unwrap_or_default())]
+    Wanted {
+        /// Its name.
+        effect: String,
+        /// Its joint.
+        joint: Option<String>,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
     /// Nothing to fit.
     #[error("no recording to train on")]
     NoTraining,

@@ -9,6 +9,7 @@ mod diagnose;
 mod error;
 mod fit;
 mod found;
+mod given;
 mod judge;
 mod known;
 mod left_over;
@@ -39,6 +40,7 @@ mod unseen;
 
 pub use diagnose::{Diagnosis, Options, diagnose};
 pub use error::DiagnosisError;
+pub use given::Wanted;
 pub use motion::Input;
 pub use predict::LEAST_ROWS;
 pub use report::*;

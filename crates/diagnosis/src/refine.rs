@@ -127,8 +127,15 @@ fn variants(terms: &[Term], round: usize) -> Vec<Vec<Term>> {
     list
 }
 
-/// Finds the sizes of what is in `chosen`; coarsely first if they were not refined before.
-pub fn refine(study: &mut Study, mut chosen: Chosen, again: bool) -> Chosen {
+/// Finds the sizes of what is in `chosen`, coarsely first if they were not refined before, and takes out what then does not pay.
+pub fn refine(study: &mut Study, chosen: Chosen, again: bool) -> Chosen {
+    let chosen = resize(study, chosen, again);
+    let products = study.products(|r| study.fitted[r]);
+    study.problem(&products).prune(chosen)
+}
+
+/// Finds the sizes of what is in `chosen`, all of which stays, in its order.
+pub fn resize(study: &mut Study, mut chosen: Chosen, again: bool) -> Chosen {
     let fitted = study.fitted.clone();
     for round in (if again { 2 } else { 0 })..ROUNDS.len() {
         let mut options: Vec<(usize, Vec<Vec<Term>>)> = Vec::new();
@@ -191,7 +198,5 @@ pub fn refine(study: &mut Study, mut chosen: Chosen, again: bool) -> Chosen {
             }
         }
     }
-    let products = study.products(|r| fitted[r]);
-    let problem = study.problem(&products);
-    problem.prune(chosen)
+    chosen
 }

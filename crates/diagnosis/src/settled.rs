@@ -32,6 +32,12 @@ pub fn settled(study: &mut Study, judged: &mut Judged) -> Resampled {
     }
 }
 
+/// Fits the named effects for the last time, about the arm that they make, whatever comes of them.
+pub fn as_given(study: &mut Study, judged: &mut Judged) -> Resampled {
+    settle(study, judged);
+    resample(study, &judged.named)
+}
+
 /// Takes one name out, or puts what it is a form of in its place, and fits the others anew.
 fn drop_name(study: &Study, judged: &mut Judged, candidate: usize) {
     let products = study.products(|r| study.fitted[r]);

@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use torque::{LengthScales, TrainingOptions};
 
 use crate::models::ModelKind;
+use crate::prove::Shard;
 
 /// Tracking testbed and model diagnosis for robot arms
 #[derive(Debug, Parser)]
@@ -30,6 +31,8 @@ pub enum Command {
     Diagnose(DiagnoseArgs),
     /// Say what recordings are worth, before anything is fitted to them
     Inspect(InspectArgs),
+    /// Conceal physics in recordings, seal it, diagnose, open the seal and score
+    Prove(ProveArgs),
 }
 
 /// Close the loop on one scenario.
@@ -121,6 +124,11 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "FILE")]
     pub known: Option<PathBuf>,
 
+    /// Fit these effects and no others, to try a hypothesis: effect:joint or, of the whole arm, effect; or a file (.toml, as
+    /// --model writes), whose sizes do not matter
+    #[arg(long, value_name = "EFFECT:JOINT,…|FILE", conflicts_with = "known")]
+    pub only: Option<String>,
+
     /// Write the diagnosis to this file as JSON
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
@@ -149,6 +157,45 @@ pub struct DiagnoseArgs {
     /// Half-power frequency of the low-pass filter (Hz)
     #[arg(long, value_name = "HZ", value_parser = parse_frequency)]
     pub cutoff: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub struct ProveArgs {
+    /// How many cases to draw
+    #[arg(long, value_name = "N", default_value_t = 200)]
+    pub cases: usize,
+
+    /// The seed that they are drawn from
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+
+    /// Where everything is kept; the same command goes on where an interrupted one stopped
+    #[arg(long, value_name = "DIR", default_value = "proof")]
+    pub out: PathBuf,
+
+    /// Take these cases instead: folders case_*, each with a .urdf, train*.csv and held_out*.csv
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["cases", "seed"])]
+    pub cases_from: Option<PathBuf>,
+
+    /// Where the truths of --cases-from are (case_*.json) [default: truth/ beside the cases]
+    #[arg(long, value_name = "DIR", requires = "cases_from")]
+    pub truth: Option<PathBuf>,
+
+    /// Write the report to this file as Markdown as well
+    #[arg(long, value_name = "FILE")]
+    pub markdown: Option<PathBuf>,
+
+    /// Do the k-th of n shares of the cases and write it to OUT/shard-k-of-n.parquet, for --merge
+    #[arg(long, value_name = "k/n", value_parser = Shard::parse)]
+    pub shard: Option<Shard>,
+
+    /// Score all shares in this folder instead, as one proof
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["cases", "seed", "cases_from", "shard"])]
+    pub merge: Option<PathBuf>,
+
+    /// How many processes at once; the result is the same [default: one a core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub jobs: Option<u16>,
 }
 
 impl DiagnoseArgs {

@@ -5,7 +5,7 @@ mod effect_file;
 mod inputs;
 mod learned;
 mod numbers;
-mod page;
+pub mod page;
 #[cfg(feature = "viewer")]
 mod rerun;
 mod rollout;

@@ -8,6 +8,7 @@ mod library;
 mod models;
 mod output;
 mod paper;
+mod prove;
 mod reference;
 mod run;
 mod scenario;
@@ -45,6 +46,7 @@ fn main() -> ExitCode {
         }
         (Some(cli::Command::Inspect(args)), _) => inspect::run(args),
         (Some(cli::Command::Diagnose(args)), _) => diagnose::run(args),
+        (Some(cli::Command::Prove(args)), _) => prove::run(args),
         (None, Some(args)) => run::run(args),
         (None, None) => {
             let mut command = cli::Cli::command();

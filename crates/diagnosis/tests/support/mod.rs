@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 
 use arm::{Arm, Workspace};
-use diagnosis::{Diagnosis, Input, Options, diagnose};
+use diagnosis::{Diagnosis, DiagnosisError, Input, Options, diagnose};
 use recording::{Recording, RegularRecording};
 use torque::Effect;
 
@@ -127,6 +127,20 @@ pub fn regular(recording: &Recording) -> RegularRecording {
 
 /// Diagnoses `believed` and what is `known` on two recordings of 16 s and one of 10 s, held out, of `robot` with what is `concealed`.
 pub fn diagnosed(believed: &Arm, robot: &Arm, concealed: Concealed<'_>, known: Vec<Effect>) -> Diagnosis {
+    let options = Options {
+        known,
+        ..Options::default()
+    };
+    diagnosed_with(believed, robot, concealed, &options).expect("it can be diagnosed")
+}
+
+/// The same with any options.
+pub fn diagnosed_with(
+    believed: &Arm,
+    robot: &Arm,
+    concealed: Concealed<'_>,
+    options: &Options,
+) -> Result<Diagnosis, DiagnosisError> {
     let recordings = [16.0, 16.0, 10.0];
     let recordings: Vec<RegularRecording> = recordings
         .into_iter()
@@ -142,9 +156,5 @@ pub fn diagnosed(believed: &Arm, robot: &Arm, concealed: Concealed<'_>, known: V
             held_out: name == "c",
         })
         .collect();
-    let options = Options {
-        known,
-        ..Options::default()
-    };
-    diagnose(believed, &inputs, &options, &|_| {}).expect("it can be diagnosed")
+    diagnose(believed, &inputs, options, &|_| {})
 }

@@ -31,6 +31,7 @@ pub fn run(args: &DiagnoseArgs) -> anyhow::Result<()> {
 fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
     let (arm, urdf_path) = load_robot(&args.robot)?;
     let known = inputs::known(args, &arm)?;
+    let only = inputs::only(args, &arm)?;
     let spinner = output::spinner("reading");
     let recordings = inputs::read(args, &arm, &spinner)?;
     let list: Vec<Input<'_>> = recordings
@@ -44,6 +45,7 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
     let options = Options {
         cutoff: args.cutoff.unwrap_or(Options::default().cutoff),
         known,
+        only,
     };
     let mut diagnosis = diagnosis::diagnose(&arm, &list, &options, &|doing| spinner.set_message(doing.to_owned()))?;
     for remark in &diagnosis.remarks {

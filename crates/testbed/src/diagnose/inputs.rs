@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use arm::Arm;
+use diagnosis::Wanted;
 use indicatif::ProgressBar;
 use recording::{ColumnMap, FindingKind, Quality, Recording, RegularRecording, Signal, nearest};
 use torque::Effect;
@@ -61,6 +62,32 @@ pub fn check_outputs(args: &DiagnoseArgs) -> anyhow::Result<()> {
 pub fn known(args: &DiagnoseArgs, arm: &Arm) -> anyhow::Result<Vec<Effect>> {
     let Some(path) = &args.known else { return Ok(Vec::new()) };
     Ok(EffectFile::load(path, arm)?.effects)
+}
+
+/// The effects that `args` ask for, if they ask for some and no others.
+///
+/// # Errors
+/// If the file cannot be used; whether the catalogue has the effects is seen when they are fitted.
+pub fn only(args: &DiagnoseArgs, arm: &Arm) -> anyhow::Result<Option<Vec<Wanted>>> {
+    let Some(only) = &args.only else { return Ok(None) };
+    let path = Path::new(only);
+    if path.extension().is_some_and(|extension| extension == "toml") {
+        let effects = EffectFile::load(path, arm)?.effects;
+        let wanted = effects.iter().map(|effect| Wanted {
+            effect: effect.name().to_owned(),
+            joint: effect.joint().map(str::to_owned),
+        });
+        return Ok(Some(wanted.collect()));
+    }
+    let wanted = only.split(',').filter(|word| !word.is_empty()).map(|word| {
+        let (effect, joint) = match word.split_once(':') {
+            Some((effect, joint)) => (effect, Some(joint.to_owned())),
+            None => (word, None),
+        };
+        let effect = effect.to_owned();
+        Wanted { effect, joint }
+    });
+    Ok(Some(wanted.collect()))
 }
 
 /// Whether a moving stretch of `b` is in `a`, sample for sample: a part of a recording under another name.

@@ -2,7 +2,7 @@
 
 mod against;
 mod arm_view;
-mod chart;
+pub mod chart;
 mod clouds;
 mod errors;
 mod figures;

@@ -1,0 +1,118 @@
+//! Effects that were asked for are fitted as they are, the right ones well and the wrong ones badly, and nothing else is named.
+
+mod support;
+
+use diagnosis::{Diagnosis, DiagnosisError, Options, Wanted};
+use support::{ELBOW, Motion, SHOULDER, diagnosed_with, trio};
+
+/// Friction on the shoulder, a stiction curve on the elbow, and a ripple there.
+fn concealed(motion: &mut Motion, tau: &mut [f64]) {
+    let speed = motion.qd[SHOULDER];
+    tau[SHOULDER] += 2.5 * speed.signum() + 1.8 * speed;
+    let speed = motion.qd[ELBOW];
+    tau[ELBOW] += (1.0 + 1.5 * (-(speed / 0.15).powi(2)).exp()) * speed.signum();
+    tau[ELBOW] += 0.8 * (23.0 * motion.q[ELBOW] + 0.4).sin();
+}
+
+fn wanted(list: &[(&str, Option<&str>)]) -> Vec<Wanted> {
+    list.iter()
+        .map(|(effect, joint)| Wanted {
+            effect: (*effect).to_owned(),
+            joint: joint.map(str::to_owned),
+        })
+        .collect()
+}
+
+fn tried(list: &[(&str, Option<&str>)]) -> Result<Diagnosis, DiagnosisError> {
+    let options = Options {
+        only: Some(wanted(list)),
+        ..Options::default()
+    };
+    diagnosed_with(&trio(), &trio(), &concealed, &options)
+}
+
+fn error(diagnosis: &Diagnosis, joint: &str) -> [f64; 2] {
+    let fit = &diagnosis.report.fit[joint];
+    [fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented].map(|error| error.expect("a recording is held out"))
+}
+
+#[test]
+fn the_right_effects_explain_the_recordings_with_their_sizes() {
+    let right = [
+        ("torque_ripple", Some("elbow")),
+        ("coulomb_friction", Some("shoulder")),
+        ("viscous_friction", Some("shoulder")),
+        ("stribeck_friction", Some("elbow")),
+    ];
+    let diagnosis = tried(&right).expect("it can be fitted");
+    let mut found: Vec<_> = diagnosis
+        .report
+        .findings
+        .iter()
+        .map(|f| (f.effect, f.joint.as_deref()))
+        .collect();
+    let mut right = right;
+    found.sort_unstable();
+    right.sort_unstable();
+    assert_eq!(found, right);
+    for (effect, parameter, truth) in [
+        ("coulomb_friction", "level", 2.5),
+        ("viscous_friction", "coefficient", 1.8),
+        ("stribeck_friction", "breakaway", 2.5),
+        ("torque_ripple", "amplitude", 0.8),
+        ("torque_ripple", "periods", 23.0),
+    ] {
+        let finding = diagnosis
+            .report
+            .findings
+            .iter()
+            .find(|f| f.effect == effect)
+            .expect("it is there");
+        let value = finding.parameters[parameter].value;
+        assert!(
+            (value / truth - 1.0).abs() < 0.05,
+            "{effect} {parameter}: {value} instead of {truth}"
+        );
+    }
+    for joint in ["shoulder", "elbow"] {
+        let [nominal, augmented] = error(&diagnosis, joint);
+        assert!(augmented < 0.1 * nominal, "{joint}: {nominal} → {augmented}");
+    }
+}
+
+#[test]
+fn wrong_effects_are_fitted_too_and_explain_little() {
+    let wrong = [("quadratic_drag", Some("shoulder")), ("payload", None)];
+    let diagnosis = tried(&wrong).expect("it can be fitted");
+    assert_eq!(diagnosis.report.findings.len(), 2);
+    let [nominal, augmented] = error(&diagnosis, "shoulder");
+    assert!(augmented > 0.3 * nominal, "{nominal} → {augmented}");
+}
+
+#[test]
+fn nothing_asked_for_is_the_nominal_model() {
+    let diagnosis = tried(&[]).expect("it can be fitted");
+    assert!(diagnosis.report.findings.is_empty());
+    let [nominal, augmented] = error(&diagnosis, "shoulder");
+    assert!((nominal / augmented - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn what_is_not_in_the_catalogue_or_on_the_arm_is_refused() {
+    for (list, part) in [
+        (
+            vec![("stiction", Some("elbow"))],
+            "stiction on elbow: no such effect is in the catalogue",
+        ),
+        (vec![("spring", Some("wrist"))], "no such joint"),
+        (vec![("spring", None)], "is on a joint"),
+        (vec![("payload", Some("elbow"))], "is on the whole arm"),
+        (
+            vec![("spring", Some("elbow")), ("spring", Some("elbow"))],
+            "given twice",
+        ),
+    ] {
+        let error = tried(&list).expect_err("it is refused").to_string();
+        assert!(error.contains(part), "{error}");
+    }
+}

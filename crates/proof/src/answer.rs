@@ -1,0 +1,105 @@
+//! A diagnosis as others read it: the fields of `testbed.diagnosis/1` that are scored.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+/// A diagnosis; what is not scored is not read.
+#[derive(Clone, Debug, Default, Deserialize)]
+pub struct Answer {
+    /// In one word.
+    #[serde(default)]
+    pub verdict: String,
+    /// The effects named.
+    pub findings: Vec<Named>,
+    /// The joints with structure that was given no name.
+    #[serde(default)]
+    pub unexplained: Vec<Refused>,
+    /// What the recordings could not show.
+    #[serde(default)]
+    pub not_observable: Vec<Unseen>,
+    /// Errors of prediction, by joint.
+    #[serde(default)]
+    pub fit: BTreeMap<String, Fit>,
+}
+
+/// An effect named.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Named {
+    /// The catalogue's name.
+    pub effect: String,
+    /// The joint; `None` for the whole arm.
+    pub joint: Option<String>,
+    /// Its numbers.
+    #[serde(default)]
+    pub parameters: BTreeMap<String, Number>,
+    /// How likely it is said to be right.
+    #[serde(default)]
+    pub probability: Option<f64>,
+    /// Its part of the joint's torque.
+    #[serde(default)]
+    pub share: f64,
+    /// What it could be instead.
+    #[serde(default)]
+    pub confusable_with: Vec<Other>,
+    /// In words.
+    #[serde(default)]
+    pub sentence: String,
+}
+
+/// What a finding could be instead.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Other {
+    /// The catalogue's name.
+    pub effect: String,
+    /// The joint; `None` for the whole arm.
+    pub joint: Option<String>,
+}
+
+/// A number with its interval; JSON has no infinite numbers.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub struct Number {
+    /// The estimate.
+    pub value: Option<f64>,
+    /// Its 95 % interval.
+    pub ci95: [Option<f64>; 2],
+}
+
+/// Structure that was given no name.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Refused {
+    /// The joint.
+    pub joint: String,
+}
+
+/// An effect that is said not to show.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Unseen {
+    /// The catalogue's name.
+    pub effect: String,
+    /// The joint; `None` for the whole arm.
+    pub joint: Option<String>,
+    /// The size from which it would have been seen; none at all if this and the other are empty.
+    #[serde(default)]
+    pub would_be_seen_above: BTreeMap<String, Option<f64>>,
+    /// The size below which it would have been seen.
+    #[serde(default)]
+    pub would_be_seen_below: BTreeMap<String, Option<f64>>,
+}
+
+/// Errors of prediction of a joint (NRMSE).
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+pub struct Fit {
+    /// Standard deviation of the measured torque (N m or N).
+    #[serde(default)]
+    pub torque_std: f64,
+    /// Of the model as it was given, on the recording held out.
+    #[serde(default)]
+    pub held_out_nrmse_nominal: Option<f64>,
+    /// With the effects named.
+    #[serde(default)]
+    pub held_out_nrmse_augmented: Option<f64>,
+    /// With a learned correction instead.
+    #[serde(default)]
+    pub held_out_nrmse_learned: Option<f64>,
+}

@@ -1,0 +1,18 @@
+//! `testbed prove`: physics concealed and sealed, diagnosed by processes that know nothing of it, opened and scored.
+
+mod cases;
+mod child;
+mod command;
+mod figures;
+mod markdown;
+mod page;
+mod reasons;
+mod report;
+mod results;
+mod rows;
+mod shards;
+mod vault;
+mod work;
+
+pub use command::run;
+pub use shards::Shard;

@@ -1,0 +1,260 @@
+//! The protocol: conceal, seal, diagnose, open, try the controls, score, report.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Mutex;
+use std::time::Instant;
+
+use anyhow::Context;
+use arm::Arm;
+use proof::{Program, Score, Seal, SealedCase, Target, sha256, true_terms, wrong_term};
+use serde::Serialize;
+
+use super::cases::{Files, Place, Source};
+use super::rows::{self, Row};
+use super::shards::{self, Label};
+use super::vault::Vault;
+use super::{markdown, page, work};
+use crate::cli::ProveArgs;
+use crate::{interrupt, output};
+
+/// What a proof leaves for programs: `score.json`.
+#[derive(Serialize)]
+pub struct Proof {
+    /// `testbed.proof/1`.
+    pub schema: &'static str,
+    /// The command that makes it again.
+    pub command: String,
+    /// What was fixed before the first diagnosis.
+    pub seal: Seal,
+    /// What was fixed before the truth was opened: SHA-256 of each diagnosis, by case.
+    pub answers: BTreeMap<String, Option<String>>,
+    /// The score.
+    pub score: Score,
+}
+
+/// Runs the protocol as `args` say; what is finished already is not done again.
+///
+/// # Errors
+/// If cases cannot be made or read, a seal is broken, a process cannot be started, or the user interrupts.
+pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
+    if let Some(path) = &args.markdown {
+        output::check_writable(path)?;
+    }
+    if let Some(folder) = &args.merge {
+        std::fs::create_dir_all(&args.out).with_context(|| args.out.display().to_string())?;
+        let (label, rows) = shards::merge(folder)?;
+        let proof = Proof::new(label.program, label.source, label.command, &rows)?;
+        return write(args, &args.out, &proof);
+    }
+    let out = match args.shard {
+        Some(shard) => args.out.join(shard.name()),
+        None => args.out.clone(),
+    };
+    let deferred = interrupt::Deferred::start();
+    let source = Source::new(args)?;
+    let vault = Vault::new(&out)?;
+    let mut places = source.places(&vault.out)?;
+    if let Some(shard) = args.shard {
+        places.retain(|place| shard.has(place.number));
+    }
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let jobs = args.jobs.map_or(cores, usize::from);
+    let mut times = Times::default();
+    let (seal, rows) = protocol(&source, &vault, &places, jobs, &mut times)?;
+    drop(deferred);
+    times.write(&out.join("times.json"))?;
+    if let Some(shard) = args.shard {
+        let path = args.out.join(format!("{}.parquet", shard.name()));
+        let words = [source.describe(), source.command()];
+        shards::write(&path, &Label::new(shard, seal.program, words, seal.whole), &rows)?;
+        return output::print(&format!("written: {}\n", path.display()));
+    }
+    let proof = Proof::new(seal.program, source.describe(), source.command(), &rows)?;
+    write(args, &out, &proof)
+}
+
+/// Conceals, seals, diagnoses, opens, and tries the controls.
+fn protocol(
+    source: &Source,
+    vault: &Vault,
+    places: &[Place],
+    jobs: usize,
+    times: &mut Times,
+) -> anyhow::Result<(Seal, Vec<Row>)> {
+    times.of("conceal", || {
+        work::all("concealing", places, jobs, |place| source.make(place))
+    })?;
+    let seal = times.of("seal", || vault.seal(places, source.describe()))?;
+    let pairs: Vec<_> = places.iter().zip(&seal.cases).collect();
+    times.of("diagnose", || {
+        work::all("diagnosing", &pairs, jobs, |(place, sealed)| {
+            vault.diagnose(place, sealed, &format!("diagnoses/{}", place.name), None)
+        })
+    })?;
+    output::write_json(&vault.out.join("answers.json"), &answers(vault, places)?)?;
+    // Only now.
+    let truths: Mutex<BTreeMap<String, String>> = Mutex::default();
+    times.of("controls", || {
+        work::all("trying the controls", &pairs, jobs, |(place, sealed)| {
+            let bytes = std::fs::read(&place.truth).with_context(|| place.truth.display().to_string())?;
+            sealed.check_truth(&bytes)?;
+            let text = String::from_utf8(bytes).with_context(|| place.truth.display().to_string())?;
+            let truth = rows::truth(&place.name, &text)?;
+            let name = |control: &str| format!("controls/{}.{control}", place.name);
+            vault.diagnose(place, sealed, &name("true"), Some(&list(&true_terms(&truth))))?;
+            if let Some(wrong) = wrong_term(&truth, place.number) {
+                vault.diagnose(place, sealed, &name("wrong"), Some(&list(&wrong.terms)))?;
+            }
+            if let Ok(mut truths) = truths.lock() {
+                truths.insert(place.name.clone(), text);
+            }
+            Ok(())
+        })
+    })?;
+    let mut truths = truths.into_inner().unwrap_or_default();
+    let rows: anyhow::Result<Vec<Row>> = pairs
+        .iter()
+        .map(|(place, sealed)| row(vault, place, sealed, truths.remove(&place.name).unwrap_or_default()))
+        .collect();
+    Ok((seal, rows?))
+}
+
+/// Effects as `--only` takes them.
+fn list(terms: &[proof::Name]) -> String {
+    let words = terms.iter().map(|(effect, joint)| match joint {
+        Some(joint) => format!("{effect}:{joint}"),
+        None => effect.clone(),
+    });
+    words.collect::<Vec<_>>().join(",")
+}
+
+impl Proof {
+    /// Scores `rows`, which are in the order of their names.
+    fn new(program: Program, source: String, command: String, rows: &[Row]) -> anyhow::Result<Self> {
+        let answer = |row: &Row| row.diagnosis.as_ref().map(|text| sha256(text.as_bytes()));
+        Ok(Self {
+            schema: "testbed.proof/1",
+            command,
+            seal: Seal::new(program, source, rows.iter().map(Row::sealed).collect()),
+            answers: rows.iter().map(|row| (row.case.clone(), answer(row))).collect(),
+            score: rows::score(rows)?,
+        })
+    }
+}
+
+/// The hashes of all diagnoses.
+fn answers(vault: &Vault, places: &[Place]) -> anyhow::Result<BTreeMap<String, Option<String>>> {
+    let answer = |place: &Place| {
+        let (_, text) = vault.answer(&format!("diagnoses/{}", place.name))?;
+        Ok((place.name.clone(), text.map(|text| sha256(text.as_bytes()))))
+    };
+    places.iter().map(answer).collect()
+}
+
+fn row(vault: &Vault, place: &Place, sealed: &SealedCase, truth: String) -> anyhow::Result<Row> {
+    let (record, diagnosis) = vault.answer(&format!("diagnoses/{}", place.name))?;
+    let control = |name: &str| -> anyhow::Result<Option<String>> {
+        Ok(vault.answer(&format!("controls/{}.{name}", place.name))?.1)
+    };
+    let arm = Arm::from_urdf(place.folder.join(Files::of(&place.folder)?.robot))?;
+    Ok(Row {
+        case: place.name.clone(),
+        joints: arm.joints().iter().map(|joint| joint.name.clone()).collect(),
+        files: sealed.files.clone(),
+        truth,
+        diagnosis,
+        error: record.and_then(|record| record.error),
+        true_terms: control("true")?,
+        wrong_term: control("wrong")?,
+    })
+}
+
+fn write(args: &ProveArgs, out: &Path, proof: &Proof) -> anyhow::Result<()> {
+    let (report, score) = (out.join("report.html"), out.join("score.json"));
+    output::write_json(&score, proof)?;
+    page::write(&report, proof)?;
+    if let Some(path) = &args.markdown {
+        let text = markdown::text(proof);
+        recording::write_whole(path, |file| file.write_all(text.as_bytes()))?;
+    }
+    output::print(&summary(proof))?;
+    for path in [&report, &score].into_iter().chain(&args.markdown) {
+        output::print(&format!("written: {}\n", path.display()))?;
+    }
+    Ok(())
+}
+
+/// The targets as a table.
+fn summary(proof: &Proof) -> String {
+    let header = ["figure", "", "wanted", "of", ""].map(str::to_owned);
+    let mut table = output::table(header);
+    for target in &proof.score.targets {
+        let reached = match target.reached {
+            Some(true) => "reached",
+            Some(false) => "missed",
+            None => "–",
+        };
+        table.add_row([
+            target.what.clone(),
+            figure(target),
+            wanted(target),
+            target.of.to_string(),
+            reached.to_owned(),
+        ]);
+    }
+    format!("{}; sealed as {}\n{table}\n", proof.seal.source, proof.seal.whole)
+}
+
+/// A target's figure in words.
+pub fn figure(target: &Target) -> String {
+    match (target.figure, &target.counted) {
+        (None, _) => "–".to_owned(),
+        (Some(share), Some(_)) => percent(share),
+        (Some(figure), None) if target.what.contains("relative error") => percent(figure),
+        (Some(figure), None) => format!("{figure:.3}"),
+    }
+}
+
+/// What a target wants in words.
+pub fn wanted(target: &Target) -> String {
+    let is_share = target.counted.is_some() || target.what.contains("relative error");
+    let show = |value: f64| if is_share { percent(value) } else { format!("{value}") };
+    match (target.at_least, target.at_most) {
+        (Some(low), Some(high)) => format!("{} to {}", show(low), show(high)),
+        (Some(low), None) => format!("≥ {}", show(low)),
+        (None, Some(high)) => format!("≤ {}", show(high)),
+        (None, None) => String::new(),
+    }
+}
+
+/// A share as a percentage.
+pub fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if (percent - percent.round()).abs() < 0.05 {
+        format!("{percent:.0} %")
+    } else {
+        format!("{percent:.1} %")
+    }
+}
+
+/// How long each phase took: the only thing that differs between two runs, and so in a file of its own.
+#[derive(Default, Serialize)]
+struct Times {
+    /// s, by phase; of what was finished before an interruption nothing is counted.
+    seconds: Vec<(&'static str, f64)>,
+}
+
+impl Times {
+    fn of<T>(&mut self, phase: &'static str, work: impl FnOnce() -> anyhow::Result<T>) -> anyhow::Result<T> {
+        let start = Instant::now();
+        let result = work()?;
+        self.seconds.push((phase, start.elapsed().as_secs_f64()));
+        Ok(result)
+    }
+
+    fn write(&self, path: &Path) -> anyhow::Result<()> {
+        let seconds: BTreeMap<_, _> = self.seconds.iter().copied().collect();
+        output::write_json(path, &seconds)
+    }
+}

@@ -1,0 +1,40 @@
+//! The report as Markdown.
+
+use super::command::Proof;
+use super::report::{Block, blocks};
+
+/// The whole of it; drawings are left out, their tables stay.
+pub fn text(proof: &Proof) -> String {
+    let mut text = String::new();
+    for block in blocks(proof) {
+        match block {
+            Block::Title(title) => text.push_str(&format!("# {title}\n\n")),
+            Block::Heading(heading) => text.push_str(&format!("## {heading}\n\n")),
+            Block::Text(paragraph) => text.push_str(&format!("{paragraph}\n\n")),
+            Block::Code(code) => text.push_str(&format!("```sh\n{code}\n```\n\n")),
+            Block::Figure { .. } => {}
+            Block::Table { head, rows, words } => {
+                if rows.is_empty() {
+                    text.push_str("(none)\n\n");
+                    continue;
+                }
+                text.push_str(&line(&head));
+                let rule: Vec<String> = (0..head.len())
+                    .map(|column| if column < words { "---" } else { "--:" }.to_owned())
+                    .collect();
+                text.push_str(&line(&rule));
+                for row in &rows {
+                    text.push_str(&line(row));
+                }
+                text.push('\n');
+            }
+        }
+    }
+    text.push_str("Made by `testbed prove`; the same seed and program give the same bytes.\n");
+    text
+}
+
+fn line(cells: &[String]) -> String {
+    let cells: Vec<String> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
+    format!("| {} |\n", cells.join(" | "))
+}

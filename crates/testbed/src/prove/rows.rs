@@ -1,0 +1,74 @@
+//! A case after everything was tried on it, as one row: what is scored, and what goes from a share of a campaign to the whole.
+
+use std::collections::BTreeMap;
+
+use anyhow::Context;
+use proof::{Answer, Score, SealedCase, Tried, Truth, sha256};
+use serde::{Deserialize, Serialize};
+
+/// Everything that is known of a case, as it was read.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// The case.
+    pub case: String,
+    /// The joints' names, base to tip.
+    pub joints: Vec<String>,
+    /// SHA-256 of its recordings and its URDF, by name.
+    pub files: BTreeMap<String, String>,
+    /// The truth's file.
+    pub truth: String,
+    /// The diagnosis; `None` if the program gave no answer.
+    pub diagnosis: Option<String>,
+    /// What it said instead.
+    pub error: Option<String>,
+    /// The true terms fitted by name.
+    pub true_terms: Option<String>,
+    /// A wrong term in place of a true one.
+    pub wrong_term: Option<String>,
+}
+
+impl Row {
+    /// As it was sealed.
+    pub fn sealed(&self) -> SealedCase {
+        SealedCase {
+            case: self.case.clone(),
+            truth: sha256(self.truth.as_bytes()),
+            files: self.files.clone(),
+        }
+    }
+
+    /// For scoring.
+    ///
+    /// # Errors
+    /// If a text is not what it should be.
+    pub fn tried(&self) -> anyhow::Result<Tried> {
+        let answer = |text: &Option<String>, what: &str| -> anyhow::Result<Option<Answer>> {
+            let parse = |text: &String| serde_json::from_str(text).with_context(|| format!("{}: {what}", self.case));
+            text.as_ref().map(parse).transpose()
+        };
+        Ok(Tried {
+            truth: truth(&self.case, &self.truth)?,
+            joints: self.joints.clone(),
+            answer: answer(&self.diagnosis, "the diagnosis")?,
+            true_terms: answer(&self.true_terms, "the true terms")?,
+            wrong_term: answer(&self.wrong_term, "the wrong term")?,
+        })
+    }
+}
+
+/// Reads a truth.
+///
+/// # Errors
+/// If it is none.
+pub fn truth(case: &str, text: &str) -> anyhow::Result<Truth> {
+    serde_json::from_str(text).with_context(|| format!("{case}: the truth"))
+}
+
+/// Scores `rows`, which are in the order of their names.
+///
+/// # Errors
+/// If a text is not what it should be.
+pub fn score(rows: &[Row]) -> anyhow::Result<Score> {
+    let tried: anyhow::Result<Vec<Tried>> = rows.iter().map(Row::tried).collect();
+    Ok(proof::score(&tried?))
+}

@@ -1,0 +1,177 @@
+//! The files of a proof on disk: the seal, what was diagnosed under it, and what is finished.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, ensure};
+use proof::{Program, Seal, SealedCase, sha256, sha256_of};
+use serde::{Deserialize, Serialize};
+
+use super::cases::{Files, Place};
+use super::child::{self, Ended};
+use crate::output;
+
+/// What a finished process left: enough to see that it need not run again, and to run it again.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Record {
+    /// SHA-256 of the program.
+    pub program: String,
+    /// One number for the recordings and the URDF ([`SealedCase::inputs`]).
+    pub inputs: String,
+    /// What alone was to be fitted; `None` in a diagnosis.
+    pub only: Option<String>,
+    /// SHA-256 of the JSON it wrote.
+    pub answer: Option<String>,
+    /// What it said instead.
+    pub error: Option<String>,
+}
+
+/// The folder of a proof.
+pub struct Vault {
+    /// Where.
+    pub out: PathBuf,
+    /// The program that diagnoses, which is this one.
+    pub executable: PathBuf,
+    /// Its version and hash.
+    pub program: Program,
+}
+
+impl Vault {
+    /// Opens or makes the folder.
+    ///
+    /// # Errors
+    /// If it cannot be made, or the program cannot read itself.
+    pub fn new(out: &Path) -> anyhow::Result<Self> {
+        for folder in ["", "cases", "truth", "diagnoses", "controls"] {
+            let folder = out.join(folder);
+            std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+        }
+        let executable = std::env::current_exe().context("finding this program")?;
+        let program = Program {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            sha256: sha256_of(&executable)?,
+        };
+        Ok(Self {
+            out: out.to_owned(),
+            executable,
+            program,
+        })
+    }
+
+    /// Seals `places`, or checks that what is sealed already is this.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or another program or other cases are sealed here.
+    pub fn seal(&self, places: &[Place], source: String) -> anyhow::Result<Seal> {
+        let sealed: anyhow::Result<Vec<SealedCase>> = places
+            .iter()
+            .map(|place| {
+                let hash = |name: &String| Ok((name.clone(), sha256_of(&place.folder.join(name))?));
+                let files: anyhow::Result<_> = Files::of(&place.folder)?.all().map(hash).collect();
+                Ok(SealedCase {
+                    case: place.name.clone(),
+                    truth: sha256_of(&place.truth)?,
+                    files: files?,
+                })
+            })
+            .collect();
+        let seal = Seal::new(self.program.clone(), source, sealed?);
+        let path = self.out.join("seal.json");
+        if path.is_file() {
+            let there = read_seal(&path)?;
+            let folder = self.out.display();
+            ensure!(
+                there.program == seal.program,
+                "{folder}: was sealed by testbed {} ({}…), and this is {} ({}…); give another --out",
+                there.program.version,
+                &there.program.sha256.get(..12).unwrap_or_default(),
+                seal.program.version,
+                &seal.program.sha256[..12],
+            );
+            ensure!(
+                there == seal,
+                "{folder}: other cases are sealed there, or a file under seal was changed; give another --out"
+            );
+        } else {
+            output::write_json(&path, &seal)?;
+            let lines = seal.lines();
+            recording::write_whole(&self.out.join("SHA256SUMS"), |file| file.write_all(lines.as_bytes()))?;
+        }
+        Ok(seal)
+    }
+
+    /// Diagnoses a sealed case, or with `only` fits some effects alone, into `name`.json, unless that is done.
+    ///
+    /// # Errors
+    /// If the seal is broken, the process cannot be started, or the user interrupts.
+    pub fn diagnose(&self, place: &Place, sealed: &SealedCase, name: &str, only: Option<&str>) -> anyhow::Result<()> {
+        let (answer, record) = self.paths(name);
+        let inputs = sealed.inputs();
+        let is_same = |record: &Record| {
+            record.program == self.program.sha256 && record.inputs == inputs && record.only.as_deref() == only
+        };
+        if let Some(record) = read_record(&record).filter(is_same)
+            && record
+                .answer
+                .as_ref()
+                .is_none_or(|hash| sha256_of(&answer).is_ok_and(|is| is == *hash))
+        {
+            return Ok(());
+        }
+        sealed.check_files(&place.folder)?;
+        let files = Files::of(&place.folder)?;
+        let (text, error) = match child::diagnose(&self.executable, &place.folder, &files, only)? {
+            Ended::Answer(text) => (Some(text), None),
+            Ended::Failed(reason) => (None, Some(reason)),
+        };
+        if let Some(text) = &text {
+            recording::write_whole(&answer, |file| file.write_all(text.as_bytes()))?;
+        }
+        let done = Record {
+            program: self.program.sha256.clone(),
+            inputs,
+            only: only.map(str::to_owned),
+            answer: text.map(|text| sha256(text.as_bytes())),
+            error,
+        };
+        output::write_json(&record, &done)
+    }
+
+    /// What a process left: its record, and the JSON it wrote.
+    ///
+    /// # Errors
+    /// If that is not what its record says.
+    pub fn answer(&self, name: &str) -> anyhow::Result<(Option<Record>, Option<String>)> {
+        let (answer, record) = self.paths(name);
+        let Some(record) = read_record(&record) else {
+            return Ok((None, None));
+        };
+        let Some(hash) = &record.answer else {
+            return Ok((Some(record), None));
+        };
+        let text = std::fs::read_to_string(&answer).with_context(|| answer.display().to_string())?;
+        ensure!(
+            sha256(text.as_bytes()) == *hash,
+            "{}: was changed after it was written",
+            answer.display()
+        );
+        Ok((Some(record), Some(text)))
+    }
+
+    fn paths(&self, name: &str) -> (PathBuf, PathBuf) {
+        (
+            self.out.join(format!("{name}.json")),
+            self.out.join(format!("{name}.done.json")),
+        )
+    }
+}
+
+fn read_record(path: &Path) -> Option<Record> {
+    serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()
+}
+
+fn read_seal(path: &Path) -> anyhow::Result<Seal> {
+    let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
+    let seal: Seal = serde_json::from_str(&text).with_context(|| path.display().to_string())?;
+    seal.check().with_context(|| path.display().to_string())?;
+    Ok(seal)
+}
