@@ -1,25 +1,51 @@
 //! Physics concealed in recordings, the sealed truth about it, and what a diagnosis of them is worth.
+//!
+//! A [`Robot`] is what its user believes. A [`Campaign`] decides which cases there are; [`conceal_case`] draws one, [`conceal_effects`]
+//! takes what it is given: either drives the plant in a 1 kHz position loop with physics in it that the URDF leaves out, records what
+//! encoders and drives report, and keeps the [`Truth`]. [`write_case`] puts the two in different places.
 
 mod answer;
 mod calibration;
+mod campaign;
+mod case;
+mod conceal;
 mod controls;
+mod draw;
+mod error;
 mod intervals;
+mod law;
+mod machine;
+mod motion;
 mod outcome;
+mod physics;
 mod plain;
+mod robot;
 mod rules;
 mod score;
 mod seal;
+mod sensor;
+mod share;
 mod sizes;
 mod summary;
 mod targets;
+#[cfg(test)]
+mod test_robots;
 mod truth;
 
 pub use answer::{Answer, Fit, Named, Number, Other, Refused, Unseen};
 pub use calibration::{Bin, Calibration};
+pub use campaign::{Campaign, CasePlan};
+pub use case::write_case;
+pub use conceal::{Concealment, RATES, Settings, conceal_case, conceal_effects};
 pub use controls::{HeldOut, WrongTerm, true_terms, wrong_term};
+pub use draw::FAMILIES;
+pub use error::ProofError;
 pub use intervals::{Counted, quantile, wilson};
+pub use motion::{DURATION, PAUSE};
 pub use outcome::{FalseName, Fate, Outcome, OutsideOutcome};
+pub use physics::{EFFECTS, UNKNOWN, form_parameters, forms};
 pub use plain::Plain;
+pub use robot::Robot;
 pub use rules::{LEAST_SHARE, Name};
 pub use score::{Family, Score, Tried, score};
 pub use seal::{Program, Seal, SealError, SealedCase, sha256, sha256_of};

@@ -33,6 +33,8 @@ pub enum Command {
     Inspect(InspectArgs),
     /// Conceal physics in recordings, seal it, diagnose, open the seal and score
     Prove(ProveArgs),
+    /// Make recordings of a simulated robot with physics concealed in them, and the truth in a file apart
+    Conceal(ConcealArgs),
 }
 
 /// Close the loop on one scenario.
@@ -161,6 +163,10 @@ pub struct DiagnoseArgs {
 
 #[derive(Debug, Args)]
 pub struct ProveArgs {
+    /// Robots that come with testbed, or URDF files; drawn cases take turns [default: puma560 seven_axis]
+    #[arg(long, num_args = 1.., value_name = "NAME|URDF")]
+    pub robot: Vec<String>,
+
     /// How many cases to draw
     #[arg(long, value_name = "N", default_value_t = 200)]
     pub cases: usize,
@@ -174,7 +180,7 @@ pub struct ProveArgs {
     pub out: PathBuf,
 
     /// Take these cases instead: folders case_*, each with a .urdf, train*.csv and held_out*.csv
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["cases", "seed"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["robot", "cases", "seed"])]
     pub cases_from: Option<PathBuf>,
 
     /// Where the truths of --cases-from are (case_*.json) [default: truth/ beside the cases]
@@ -190,10 +196,57 @@ pub struct ProveArgs {
     pub shard: Option<Shard>,
 
     /// Score all shares in this folder instead, as one proof
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["cases", "seed", "cases_from", "shard"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["robot", "cases", "seed", "cases_from", "shard"])]
     pub merge: Option<PathBuf>,
 
     /// How many processes at once; the result is the same [default: one a core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub jobs: Option<u16>,
+}
+
+#[derive(Debug, Args)]
+pub struct ConcealArgs {
+    /// Robots that come with testbed, or URDF files; cases take turns [default: puma560 seven_axis]
+    #[arg(long, num_args = 1.., value_name = "NAME|URDF")]
+    pub robot: Vec<String>,
+
+    /// What to conceal (.toml, as diagnose --model writes it; an effect may have an onset and a form), sizes as given
+    #[arg(long, value_name = "FILE", required_unless_present = "seed")]
+    pub effects: Option<PathBuf>,
+
+    /// What everything is drawn from; with --effects motions and noise only
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+
+    /// How many cases are drawn
+    #[arg(long, value_name = "K", default_value_t = 1, conflicts_with = "effects", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub cases: u32,
+
+    /// The folder: case_000 … in it hold recordings, truth/ the truth
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+
+    /// Rows a second of recordings with --effects (Hz)
+    #[arg(long, value_name = "HZ", default_value_t = 250, requires = "effects")]
+    pub rate: u32,
+
+    /// With --effects: stamps jitter by a tenth of the period
+    #[arg(long, requires = "effects")]
+    pub jitter: bool,
+
+    /// With --effects: a hundredth of the rows is lost
+    #[arg(long, requires = "effects")]
+    pub lost: bool,
+
+    /// With --effects: ordinary Coulomb and viscous friction on every joint, drawn from the seed
+    #[arg(long, requires = "effects")]
+    pub friction: bool,
+
+    /// How many training recordings there are with --effects
+    #[arg(long, value_name = "N", default_value_t = 3, requires = "effects", value_parser = clap::value_parser!(u8).range(1..=20))]
+    pub training: u8,
+
+    /// How many threads; the result is the same [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,
 }

@@ -1,7 +1,7 @@
 //! `testbed diagnose`: which physics the model leaves out, as a table, a page, a timeline, and a corrected model.
 
 mod command;
-mod effect_file;
+pub mod effect_file;
 mod inputs;
 mod learned;
 mod numbers;

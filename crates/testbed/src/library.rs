@@ -15,7 +15,20 @@ const SCENARIOS: [(&str, &str); 4] = [
     ("taskD", include_str!("../../../scenarios/taskD.toml")),
 ];
 
-const ROBOTS: [(&str, &str); 1] = [("puma560", include_str!("../../../assets/puma560.urdf"))];
+const ROBOTS: [(&str, &str); 2] = [
+    ("puma560", include_str!("../../../assets/puma560.urdf")),
+    ("seven_axis", include_str!("../../../assets/seven_axis.urdf")),
+];
+
+/// Motor inertias (kg m²) and gear ratios of the PUMA 560 (Corke and Armstrong-Hélouvry 1994), which its URDF leaves out.
+const PUMA_DRIVES: [(f64, f64); 6] = [
+    (200e-6, 62.6111),
+    (200e-6, 107.815),
+    (200e-6, 53.7063),
+    (33e-6, 76.0364),
+    (33e-6, 71.923),
+    (33e-6, 76.686),
+];
 
 /// The text of a scenario and where it came from.
 pub struct Source {
@@ -99,6 +112,17 @@ fn local_scenarios() -> Vec<String> {
         .collect();
     names.sort();
     names
+}
+
+/// The names of the robots that come with testbed.
+pub fn built_in() -> impl Iterator<Item = &'static str> {
+    ROBOTS.iter().map(|(name, _)| *name)
+}
+
+/// The inertias of a robot's drives, seen at its joints (kg m²), as far as they are known beside its URDF.
+pub fn rotor_inertias(robot: &str) -> Option<Vec<f64>> {
+    let inertia = |(motor, gear): (f64, f64)| motor * gear * gear;
+    (robot == "puma560").then(|| PUMA_DRIVES.map(inertia).to_vec())
 }
 
 /// Whether `robot` is the name of a robot that comes with testbed.

@@ -1,6 +1,7 @@
 //! testbed: tracking testbed and model diagnosis for robot arms.
 
 mod cli;
+mod conceal;
 mod diagnose;
 mod inspect;
 mod interrupt;
@@ -47,6 +48,7 @@ fn main() -> ExitCode {
         (Some(cli::Command::Inspect(args)), _) => inspect::run(args),
         (Some(cli::Command::Diagnose(args)), _) => diagnose::run(args),
         (Some(cli::Command::Prove(args)), _) => prove::run(args),
+        (Some(cli::Command::Conceal(args)), _) => conceal::run(args),
         (None, Some(args)) => run::run(args),
         (None, None) => {
             let mut command = cli::Cli::command();

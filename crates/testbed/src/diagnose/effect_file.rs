@@ -55,49 +55,9 @@ impl EffectFile {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let path = path.to_owned();
         let source = Source { name, path, text };
-        let fail = |span: Range<usize>, reason: String| anyhow!("{}: {reason}", source.place(span));
-        let raw: RawFile = toml::from_str(&source.text)
-            .map_err(|error| fail(error.span().unwrap_or(0..0), reason(error.message(), arm)))?;
-        let schema = raw.schema.get_ref();
-        ensure!(
-            schema == SCHEMA,
-            fail(
-                raw.schema.span(),
-                format!("the schema is \"{schema}\"; this program reads \"{SCHEMA}\"")
-            )
-        );
-        if let Some(robot) = &raw.robot {
-            let (found, wanted) = (robot.get_ref(), arm.name());
-            ensure!(
-                found == wanted,
-                fail(
-                    robot.span(),
-                    format!(
-                        "the effects are of robot \"{found}\", not of \"{wanted}\"; give its file, or leave the line out"
-                    )
-                )
-            );
-        }
-        let mut effects = Vec::new();
-        for table in raw.effects {
-            let span = table.span();
-            let effect = Effect::deserialize(toml::Value::Table(table.into_inner())).map_err(|error| {
-                let message = error.message();
-                // The key that serde quotes first is the one in question.
-                let key = if message.starts_with("unknown variant") {
-                    Some("effect")
-                } else {
-                    message.split('`').nth(1)
-                };
-                fail(key_span(&source.text, &span, key), reason(message, arm))
-            })?;
-            if let Err(error) = Corrected::new(arm, std::slice::from_ref(&effect)) {
-                let (key, reason) = refusal(&error);
-                return Err(fail(key_span(&source.text, &span, key.as_deref()), reason));
-            }
-            effects.push(effect);
-        }
-        let robot = raw.robot.map(Spanned::into_inner);
+        let (robot, tables) = tables(&source, arm)?;
+        let read = |table: Spanned<toml::Table>| effect(&source, table.span(), table.into_inner(), arm);
+        let effects = tables.into_iter().map(read).collect::<anyhow::Result<_>>()?;
         Ok(Self { robot, effects })
     }
 
@@ -137,6 +97,64 @@ impl EffectFile {
         let text = self.to_text()?;
         Ok(recording::write_whole(path, |file| file.write_all(text.as_bytes()))?)
     }
+}
+
+fn fail(source: &Source, span: Range<usize>, reason: &str) -> anyhow::Error {
+    anyhow!("{}: {reason}", source.place(span))
+}
+
+/// The robot and the tables of effects of a file whose schema, and whose robot, are right.
+///
+/// # Errors
+/// With file, line, reason and remedy.
+pub fn tables(source: &Source, arm: &Arm) -> anyhow::Result<(Option<String>, Vec<Spanned<toml::Table>>)> {
+    let raw: RawFile = toml::from_str(&source.text)
+        .map_err(|error| fail(source, error.span().unwrap_or(0..0), &reason(error.message(), arm)))?;
+    let schema = raw.schema.get_ref();
+    ensure!(
+        schema == SCHEMA,
+        fail(
+            source,
+            raw.schema.span(),
+            &format!("the schema is \"{schema}\"; this program reads \"{SCHEMA}\"")
+        )
+    );
+    if let Some(robot) = &raw.robot {
+        let (found, wanted) = (robot.get_ref(), arm.name());
+        ensure!(
+            found == wanted,
+            fail(
+                source,
+                robot.span(),
+                &format!(
+                    "the effects are of robot \"{found}\", not of \"{wanted}\"; give its file, or leave the line out"
+                )
+            )
+        );
+    }
+    Ok((raw.robot.map(Spanned::into_inner), raw.effects))
+}
+
+/// The effect of a table that stands at `span` in the file, which must fit `arm`.
+///
+/// # Errors
+/// With file, line, reason and remedy.
+pub fn effect(source: &Source, span: Range<usize>, table: toml::Table, arm: &Arm) -> anyhow::Result<Effect> {
+    let effect = Effect::deserialize(toml::Value::Table(table)).map_err(|error| {
+        let message = error.message();
+        // The key that serde quotes first is the one in question.
+        let key = if message.starts_with("unknown variant") {
+            Some("effect")
+        } else {
+            message.split('`').nth(1)
+        };
+        fail(source, key_span(&source.text, &span, key), &reason(message, arm))
+    })?;
+    if let Err(error) = Corrected::new(arm, std::slice::from_ref(&effect)) {
+        let (key, reason) = refusal(&error);
+        return Err(fail(source, key_span(&source.text, &span, key.as_deref()), &reason));
+    }
+    Ok(effect)
 }
 
 /// What TOML's or serde's message means to the one who wrote the file.

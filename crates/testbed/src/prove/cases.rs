@@ -3,9 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail, ensure};
-use proof::Truth;
+use proof::{Campaign, CasePlan, ProofError, Robot, conceal_case, write_case};
 
 use crate::cli::ProveArgs;
+use crate::conceal;
+
+/// So many seeds are tried for a case.
+const SEEDS: usize = 4;
 
 /// A case: where it is, and where its truth is.
 #[derive(Clone, Debug)]
@@ -21,14 +25,15 @@ pub struct Place {
 }
 
 /// Where the cases of a proof come from.
-#[derive(Clone, Debug)]
 pub enum Source {
     /// So many, drawn from a seed.
     Drawn {
         /// The seed.
         seed: u64,
-        /// How many.
-        count: usize,
+        /// Robots, in turn.
+        robots: Vec<Robot>,
+        /// What each case is to be.
+        plans: Vec<CasePlan>,
     },
     /// Folders of cases, and the folder of their truths.
     Given {
@@ -43,7 +48,7 @@ impl Source {
     /// What `args` ask for.
     ///
     /// # Errors
-    /// If folders of cases are given without a truth.
+    /// If a robot cannot be used.
     pub fn new(args: &ProveArgs) -> anyhow::Result<Self> {
         Ok(match (&args.cases_from, &args.truth) {
             (Some(cases), truth) => Self::Given {
@@ -52,7 +57,12 @@ impl Source {
             },
             (None, _) => Self::Drawn {
                 seed: args.seed,
-                count: args.cases,
+                robots: conceal::robots(&args.robot)?,
+                plans: Campaign {
+                    seed: args.seed,
+                    cases: args.cases,
+                }
+                .plans(),
             },
         })
     }
@@ -60,7 +70,10 @@ impl Source {
     /// In words, without paths: it is sealed.
     pub fn describe(&self) -> String {
         match self {
-            Self::Drawn { seed, count } => format!("{count} cases drawn from seed {seed}"),
+            Self::Drawn { seed, robots, plans } => {
+                let names: Vec<&str> = robots.iter().map(Robot::name).collect();
+                format!("{} cases drawn from seed {seed} on {}", plans.len(), names.join(", "))
+            }
             Self::Given { .. } => "cases that were given".to_owned(),
         }
     }
@@ -68,7 +81,9 @@ impl Source {
     /// The command that makes the proof again, without paths.
     pub fn command(&self) -> String {
         match self {
-            Self::Drawn { seed, count } => format!("testbed prove --cases {count} --seed {seed} --out proof/"),
+            Self::Drawn { seed, plans, .. } => {
+                format!("testbed prove --cases {} --seed {seed} --out proof/", plans.len())
+            }
             Self::Given { .. } => "testbed prove --cases-from CASES --truth TRUTHS --out proof/".to_owned(),
         }
     }
@@ -79,17 +94,15 @@ impl Source {
     /// If a folder cannot be read, or has no case.
     pub fn places(&self, out: &Path) -> anyhow::Result<Vec<Place>> {
         match self {
-            Self::Drawn { count, .. } => Ok((0..*count)
-                .map(|number| {
-                    let name = format!("case_{number:03}");
-                    Place {
-                        number,
-                        folder: out.join("cases").join(&name),
-                        truth: out.join("truth").join(format!("{name}.json")),
-                        name,
-                    }
-                })
-                .collect()),
+            Self::Drawn { plans, .. } => {
+                let place = |plan: &CasePlan| Place {
+                    number: plan.index,
+                    name: plan.name.clone(),
+                    folder: out.join("cases").join(&plan.name),
+                    truth: out.join("truth").join(format!("{}.json", plan.name)),
+                };
+                Ok(plans.iter().map(place).collect())
+            }
             Self::Given { cases, truth } => given(cases, truth),
         }
     }
@@ -102,27 +115,31 @@ impl Source {
         if place.truth.is_file() && place.folder.is_dir() {
             return Ok(());
         }
-        let Self::Drawn { seed, .. } = self else {
+        let Self::Drawn { robots, plans, .. } = self else {
             bail!("{}: is not there", place.truth.display());
         };
-        let parent = place.folder.parent().unwrap_or(Path::new("."));
-        let partial = tempfile::Builder::new().prefix(".partial-").tempdir_in(parent)?;
-        let truth = conceal(*seed, place.number, &place.name, partial.path())?;
-        if place.folder.exists() {
-            std::fs::remove_dir_all(&place.folder)?;
+        // Half of a case is what an interruption left.
+        if place.truth.exists() {
+            std::fs::remove_file(&place.truth).with_context(|| place.truth.display().to_string())?;
         }
-        std::fs::rename(partial.keep(), &place.folder).with_context(|| place.folder.display().to_string())?;
-        crate::output::write_json(&place.truth, &truth)
+        if place.folder.exists() {
+            std::fs::remove_dir_all(&place.folder).with_context(|| place.folder.display().to_string())?;
+        }
+        let parent = |path: &Path| path.parent().unwrap_or(Path::new(".")).to_owned();
+        let mut plan = plans[place.number].clone();
+        for attempt in 1.. {
+            match conceal_case(plan.robot(robots), &plan) {
+                Ok(concealment) => {
+                    write_case(&concealment, &parent(&place.folder), &parent(&place.truth))?;
+                    break;
+                }
+                // What a robot cannot show from one seed it may from another.
+                Err(ProofError::NotExpressed { .. }) if attempt < SEEDS => plan.seed = plan.seed.wrapping_add(1),
+                Err(error) => return Err(error.into()),
+            }
+        }
+        Ok(())
     }
-}
-
-/// Draws case `number` of `seed`, writes `robot.urdf`, `train_1.csv` … and `held_out.csv` into `folder`, and returns what is
-/// concealed in them. The bytes depend on seed and number alone.
-///
-/// # Errors
-/// If it cannot be simulated or written.
-fn conceal(_seed: u64, _number: usize, _name: &str, _folder: &Path) -> anyhow::Result<Truth> {
-    bail!("this testbed has no generator of cases; give some with --cases-from DIR --truth DIR")
 }
 
 fn given(cases: &Path, truth: &Path) -> anyhow::Result<Vec<Place>> {

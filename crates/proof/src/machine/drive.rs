@@ -1,0 +1,162 @@
+//! A joint's drive: encoder, position loop, what becomes of its command, and a rotor that moves by itself.
+
+use super::parts::DriveNow;
+use super::{TICK, VELOCITY_FILTER};
+use crate::physics::Connection;
+
+/// How many commands a drive remembers: the longest delay, in ticks.
+const MEMORY: usize = 128;
+/// Parts of a tick in which a rotor moves.
+const ROTOR_STEPS: usize = 10;
+/// The ends of a gap swing at this against the lighter side (rad/s): stiff, and resolved by the plant's step.
+const GAP_FREQUENCY: f64 = 160.0;
+
+/// The longest delay (s) that a drive can have.
+pub(crate) const LONGEST_DELAY: f64 = (MEMORY - 2) as f64 * TICK;
+
+/// Encoder, position loop and command of a joint.
+pub(super) struct Drive {
+    /// What the encoder says (rad or m).
+    pub(super) position: f64,
+    /// The same, differentiated and filtered.
+    pub(super) velocity: f64,
+    gains: (f64, f64),
+    commands: [f64; MEMORY],
+    /// Where the next command goes.
+    next: usize,
+    lagging: f64,
+}
+
+impl Drive {
+    /// At rest at `position` under the torque `holding`.
+    pub(super) fn new(position: f64, holding: f64, gains: (f64, f64)) -> Self {
+        Self {
+            position,
+            velocity: 0.0,
+            gains,
+            commands: [holding; MEMORY],
+            next: 0,
+            lagging: holding,
+        }
+    }
+
+    pub(super) fn sense(&mut self, position: f64, quantum: f64) {
+        let read = if quantum > 0.0 {
+            (position / quantum).round() * quantum
+        } else {
+            position
+        };
+        let weight = 1.0 - (-std::f64::consts::TAU * VELOCITY_FILTER * TICK).exp();
+        self.velocity += weight * ((read - self.position) / TICK - self.velocity);
+        self.position = read;
+    }
+
+    /// The torque for a wanted position, velocity and feed-forward torque.
+    pub(super) fn command(&mut self, (q, qd, ff): (f64, f64, f64)) -> f64 {
+        let command = ff + self.gains.0 * (q - self.position) + self.gains.1 * (qd - self.velocity);
+        self.commands[self.next] = command;
+        self.next = (self.next + 1) % MEMORY;
+        command
+    }
+
+    /// The mean over the coming tick of what the drive applies (N m or N, true): late, limited, and reported with a factor.
+    pub(super) fn applied(&mut self, now: &DriveNow) -> f64 {
+        let ago = |ticks: usize| self.commands[(self.next + MEMORY - 1 - ticks.min(MEMORY - 1)) % MEMORY];
+        let command = if now.delay == 0.0 {
+            self.lagging = ago(0);
+            self.lagging
+        } else if now.lags {
+            self.lagging += (1.0 - (-TICK / now.delay).exp()) * (ago(0) - self.lagging);
+            self.lagging
+        } else {
+            // Commands are held for a tick: a delay between ticks passes on a part of either.
+            let ticks = now.delay / TICK;
+            let (whole, part) = (ticks.floor(), ticks.fract());
+            (1.0 - part) * ago(whole as usize) + part * ago(whole as usize + 1)
+        };
+        let limit = now.limit;
+        let limited = if now.soft && command.abs() > 0.9 * limit {
+            command.signum() * limit * (0.9 + 0.1 * ((command.abs() / limit - 0.9) / 0.1).tanh())
+        } else {
+            command.clamp(-limit, limit)
+        };
+        limited / now.factor
+    }
+}
+
+/// A rotor on a spring, in a gap or both; the encoder is on it.
+pub(super) struct Rotor {
+    pub(super) position: f64,
+    pub(super) velocity: f64,
+    inertia: f64,
+    stiffness: f64,
+    damping: f64,
+    connection: Connection,
+}
+
+impl Rotor {
+    /// A rotor of `inertia` that moves with its link, of inertia `link` (kg m²).
+    pub(super) fn new(connection: Connection, inertia: f64, link: f64, position: f64, velocity: f64) -> Self {
+        let stiffness = connection
+            .stiffness
+            .unwrap_or_else(|| inertia.min(link) * GAP_FREQUENCY * GAP_FREQUENCY);
+        let damping = connection.damping.unwrap_or_else(|| 0.5 * (stiffness * inertia).sqrt());
+        Self {
+            position,
+            velocity,
+            inertia,
+            stiffness,
+            damping,
+            connection,
+        }
+    }
+
+    /// How far the rotor is ahead of its link under `torque`, spring and gap taken as straight.
+    pub(super) fn deflection(&self, torque: f64) -> f64 {
+        let gap = if torque == 0.0 {
+            0.0
+        } else {
+            self.connection.halfgap.copysign(torque)
+        };
+        gap + torque / self.stiffness
+    }
+
+    /// The torque on the link at a deflection and its rate.
+    fn torque(&self, deflection: f64, rate: f64) -> f64 {
+        let gap = self.connection.halfgap;
+        let (stretched, touching) = if gap == 0.0 {
+            (deflection, 1.0)
+        } else if self.connection.round {
+            // log(1 + e^x) without overflow.
+            let soft = |x: f64| x.max(0.0) + (-x.abs()).exp().ln_1p();
+            let width = 0.25 * gap;
+            let stretched = width * (soft((deflection - gap) / width) - soft((-deflection - gap) / width));
+            (stretched, 1.0 - (-stretched.abs() / (0.2 * gap)).exp())
+        } else {
+            let stretched = deflection - deflection.clamp(-gap, gap);
+            (stretched, if stretched == 0.0 { 0.0 } else { 1.0 })
+        };
+        let straight = self.stiffness * stretched;
+        straight * (1.0 + (straight / self.connection.hardening).powi(2)) + touching * self.damping * rate
+    }
+
+    /// Moves for `time` under `net` and dry friction of `level` while the link goes from `q` at `v`: the mean torque on the link.
+    pub(super) fn advance(&mut self, net: f64, level: f64, q: f64, v: f64, time: f64) -> f64 {
+        let step = time / ROTOR_STEPS as f64;
+        let mut sum = 0.0;
+        for k in 0..ROTOR_STEPS {
+            let through = self.torque(self.position - (q + v * step * k as f64), self.velocity - v);
+            let free = self.velocity + step / self.inertia * (net - through);
+            // Friction takes what it can, and no more than stops the rotor.
+            let most = step / self.inertia * level;
+            self.velocity = if free.abs() <= most {
+                0.0
+            } else {
+                free - most.copysign(free)
+            };
+            self.position += step * self.velocity;
+            sum += through;
+        }
+        sum / ROTOR_STEPS as f64
+    }
+}

@@ -1,0 +1,242 @@
+//! The motions that are asked of a machine: excitation for training, pick and place to hold out.
+
+use std::f64::consts::TAU;
+
+use arm::{Arm, JointKind, Workspace};
+use rand::Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use crate::machine::TICK;
+use crate::robot::Robot;
+
+/// How long a recording is, and how long passes between two (s).
+pub const DURATION: f64 = 25.0;
+/// See [`DURATION`].
+pub const PAUSE: f64 = 5.0;
+/// How many ticks the loop runs before a recording begins.
+pub(crate) const LEAD: usize = 500;
+/// Parts of a joint's velocity and effort limits that a motion may take.
+const WITHIN: f64 = 0.8;
+/// The fastest excitation where a joint has no limit (rad/s or m/s).
+const FASTEST: f64 = 2.2;
+
+/// A motion at every tick, and the nominal torque for it; `[tick × dof + joint]`.
+#[derive(Clone, Debug)]
+pub(crate) struct Reference {
+    dof: usize,
+    /// s, on the recordings' clock, of the first row recorded.
+    pub start: f64,
+    pub q: Vec<f64>,
+    pub qd: Vec<f64>,
+    pub qdd: Vec<f64>,
+    /// Feed-forward of the user's model (N m or N).
+    pub ff: Vec<f64>,
+}
+
+impl Reference {
+    /// How many ticks it has, those before the recording too.
+    pub(crate) fn ticks(&self) -> usize {
+        self.q.len() / self.dof
+    }
+
+    /// The time of a tick (s, on the recordings' clock).
+    pub(crate) fn time(&self, tick: usize) -> f64 {
+        self.start + (tick as f64 - LEAD as f64) * TICK
+    }
+
+    pub(crate) fn new(arm: &Arm, start: f64, q: Vec<f64>) -> Self {
+        let n = arm.dof();
+        let qd = rates(&q, n);
+        let qdd = rates(&qd, n);
+        let mut workspace = Workspace::new(arm);
+        let mut ff = vec![0.0; q.len()];
+        for (((ff, q), qd), qdd) in ff.chunks_mut(n).zip(q.chunks(n)).zip(qd.chunks(n)).zip(qdd.chunks(n)) {
+            arm.inverse_dynamics(&mut workspace, q, qd, qdd, ff);
+        }
+        Self {
+            dof: n,
+            start,
+            q,
+            qd,
+            qdd,
+            ff,
+        }
+    }
+
+    /// Whether no drive would have to give more than a part of its limit.
+    fn is_feasible(&self, robot: &Robot) -> bool {
+        let joints = robot.arm().joints();
+        let torques = self.ff.iter().zip(&self.qdd).enumerate();
+        torques.into_iter().all(|(k, (ff, qdd))| {
+            let j = k % self.dof;
+            (ff + robot.rotor_inertias()[j] * qdd).abs() <= WITHIN * joints[j].limits.effort
+        })
+    }
+}
+
+/// When recording `number` of a case begins (s).
+pub(crate) fn start(number: usize) -> f64 {
+    number as f64 * (DURATION + PAUSE)
+}
+
+/// Central differences over ticks.
+fn rates(values: &[f64], n: usize) -> Vec<f64> {
+    let last = values.len() / n - 1;
+    let mut rates = vec![0.0; values.len()];
+    for tick in 0..=last {
+        let (before, after) = (tick.saturating_sub(1), (tick + 1).min(last));
+        for j in 0..n {
+            rates[tick * n + j] = (values[after * n + j] - values[before * n + j]) / ((after - before) as f64 * TICK);
+        }
+    }
+    rates
+}
+
+/// x³ (10 − 15 x + 6 x²): from 0 to 1 at rest on both sides.
+fn ease(x: f64) -> f64 {
+    let x = x.clamp(0.0, 1.0);
+    x * x * x * (10.0 + x * (6.0 * x - 15.0))
+}
+
+/// The range that a joint's motion may fill, about its home (rad or m): half of what its limits leave, within `most`.
+fn reach(robot: &Robot, j: usize, most: f64) -> f64 {
+    let joint = &robot.arm().joints()[j];
+    let room = (joint.limits.upper - robot.home()[j]).min(robot.home()[j] - joint.limits.lower);
+    let unlimited = match joint.kind {
+        JointKind::Revolute => most,
+        JointKind::Prismatic => 0.4 * most,
+    };
+    unlimited.min(0.9 * room)
+}
+
+fn ticks() -> usize {
+    LEAD + (DURATION / TICK).round() as usize + 1
+}
+
+/// Five harmonics of .08 to .13 Hz on every joint at once, faded in, within the joints' limits.
+pub(crate) fn excitation(robot: &Robot, start: f64, random: &mut impl Rng) -> Reference {
+    let n = robot.arm().dof();
+    let base: f64 = random.random_range(0.08..0.13);
+    let mut waves = vec![0.0; ticks() * n];
+    let mut centers = vec![0.0; n];
+    for j in 0..n {
+        let mut wave = vec![0.0; ticks()];
+        for harmonic in 1..=5_u8 {
+            let h = f64::from(harmonic);
+            let normal: f64 = StandardNormal.sample(random);
+            let amplitude = normal / h.powf(random.random_range(0.1..0.6));
+            let phase = random.random_range(0.0..TAU);
+            for (tick, value) in wave.iter_mut().enumerate() {
+                let time = (tick as f64 - LEAD as f64) * TICK;
+                *value += amplitude * (TAU * base * h * time + phase).sin();
+            }
+        }
+        let (least, most) = wave
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &value| {
+                (least.min(value), most.max(value))
+            });
+        let reach = reach(robot, j, 1.075);
+        // Peak to peak .85 to 1.45 and a centre within ± .35 where there is room.
+        let span = random.random_range(0.79..1.35) * reach / (most - least);
+        centers[j] = robot.home()[j] + random.random_range(-0.32..0.32) * reach;
+        let speed = wave
+            .windows(2)
+            .map(|pair| (pair[1] - pair[0]).abs() / TICK)
+            .fold(0.0, f64::max);
+        let fastest = FASTEST.min(WITHIN * robot.arm().joints()[j].limits.velocity);
+        let scale = span.min(fastest / speed);
+        for (tick, value) in wave.iter().enumerate() {
+            let ramp = ease((tick as f64 - LEAD as f64) * TICK / 2.0);
+            waves[tick * n + j] = ramp * scale * (value - 0.5 * (least + most));
+        }
+    }
+    shrunk(robot, start, &centers, &waves)
+}
+
+/// The motion `waves` about `centers`, made smaller until the drives can follow it (what they cannot even hold stays).
+fn shrunk(robot: &Robot, start: f64, centers: &[f64], waves: &[f64]) -> Reference {
+    let mut size = 1.0;
+    loop {
+        let place = |(k, wave): (usize, &f64)| centers[k % centers.len()] + size * wave;
+        let q = waves.iter().enumerate().map(place).collect();
+        let reference = Reference::new(robot.arm(), start, q);
+        if size < 0.3 || reference.is_feasible(robot) {
+            return reference;
+        }
+        size *= 0.8;
+    }
+}
+
+/// Moves of 1.1 to 2.3 s between random poses, with rests of .3 to 1 s.
+pub(crate) fn pick_and_place(robot: &Robot, start: f64, random: &mut impl Rng) -> Reference {
+    let n = robot.arm().dof();
+    let reaches: Vec<f64> = (0..n).map(|j| reach(robot, j, 0.8)).collect();
+    let mut at: Vec<f64> = reaches
+        .iter()
+        .map(|reach| random.random_range(-0.5..0.5) * reach)
+        .collect();
+    let mut waves = Vec::with_capacity(ticks() * n);
+    let rest = |waves: &mut Vec<f64>, at: &[f64], length: usize| {
+        for _ in 0..length {
+            waves.extend_from_slice(at);
+        }
+    };
+    rest(&mut waves, &at, LEAD + random.random_range(0..200));
+    while waves.len() < ticks() * n {
+        let next: Vec<f64> = reaches
+            .iter()
+            .map(|reach| random.random_range(-1.0..1.0) * reach)
+            .collect();
+        let mut time: f64 = random.random_range(1.1..2.3);
+        for j in 0..n {
+            // The peak of either profile is below twice the mean.
+            let fastest = WITHIN * robot.arm().joints()[j].limits.velocity;
+            time = time.max(2.0 * (next[j] - at[j]).abs() / fastest);
+        }
+        let length = (time / TICK).round() as usize;
+        let edge = random.random_range(0.25..0.4);
+        let trapezoid = random.random_bool(0.5);
+        for k in 1..=length {
+            let x = k as f64 / length as f64;
+            let part = if trapezoid { rounded_trapezoid(x, edge) } else { ease(x) };
+            waves.extend(at.iter().zip(&next).map(|(at, next)| at + part * (next - at)));
+        }
+        at = next;
+        rest(&mut waves, &at, random.random_range(300..1000));
+    }
+    waves.truncate(ticks() * n);
+    shrunk(robot, start, robot.home(), &waves)
+}
+
+/// From 0 to 1 with a constant speed in the middle; it takes `edge` of the time to speed up, and as much to slow down.
+fn rounded_trapezoid(x: f64, edge: f64) -> f64 {
+    // The integral of an eased ramp of speed: ∫ ease = x⁴ (2.5 − 3 x + x²).
+    let rise = |x: f64| edge * x.powi(4) * (2.5 + x * (x - 3.0));
+    let total = 1.0 - edge;
+    let at = if x < edge {
+        rise(x / edge)
+    } else if x <= 1.0 - edge {
+        0.5 * edge + (x - edge)
+    } else {
+        total - rise((1.0 - x) / edge)
+    };
+    at / total
+}
+
+#[cfg(test)]
+impl Reference {
+    /// The rigid torque along encoder positions.
+    pub(crate) fn along(arm: &Arm, q: &[f64]) -> Vec<f64> {
+        Self::new(arm, 0.0, q.to_vec()).ff
+    }
+
+    /// The first `seconds` of it.
+    pub(crate) fn cut(mut self, seconds: f64) -> Self {
+        let length = (LEAD + (seconds / TICK) as usize) * self.dof;
+        for values in [&mut self.q, &mut self.qd, &mut self.qdd, &mut self.ff] {
+            values.truncate(length);
+        }
+        self
+    }
+}

@@ -1,0 +1,131 @@
+//! `testbed conceal`: recordings of a simulated robot with physics concealed in them, and the truth in a file apart.
+
+mod effects;
+
+use std::path::Path;
+
+use anyhow::{Context, ensure};
+use proof::{Campaign, Concealment, ProofError, Robot, Settings, conceal_case, conceal_effects, write_case};
+use rayon::prelude::*;
+
+use crate::cli::ConcealArgs;
+use crate::library::{self, Source};
+use crate::output;
+
+/// Conceals what `args` ask for.
+///
+/// # Errors
+/// If a robot or an effect cannot be used, a case is there already, or none comes out.
+pub fn run(args: &ConcealArgs) -> anyhow::Result<()> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(args.jobs.map_or(0, usize::from))
+        .build()
+        .context("starting threads")?;
+    pool.install(|| conceal(args))
+}
+
+fn conceal(args: &ConcealArgs) -> anyhow::Result<()> {
+    let robots = robots(&args.robot)?;
+    let truths = args.out.join("truth");
+    match &args.effects {
+        Some(file) => given(args, file, &robots, &truths),
+        None => drawn(args, &robots, &truths),
+    }
+}
+
+/// The robots of the names or files; those that come with testbed, if there are none.
+///
+/// # Errors
+/// If one is not there or cannot be simulated.
+pub fn robots(names: &[String]) -> anyhow::Result<Vec<Robot>> {
+    let all: Vec<String> = library::built_in().map(str::to_owned).collect();
+    let names = if names.is_empty() { &all } else { names };
+    names.iter().map(|name| robot(name)).collect()
+}
+
+fn robot(name: &str) -> anyhow::Result<Robot> {
+    let doing = || format!("--robot {name}");
+    let here = Source {
+        name: String::new(),
+        path: "".into(),
+        text: String::new(),
+    };
+    let (_, path) = library::load_arm(name, &here).with_context(doing)?;
+    let text = library::urdf_text(name, &path).with_context(doing)?;
+    let robot = Robot::new(text, &path).with_context(doing)?;
+    match library::rotor_inertias(name) {
+        Some(rotors) => robot.with_rotor_inertias(&rotors).with_context(doing),
+        None => Ok(robot),
+    }
+}
+
+/// One case with the effects of a file.
+fn given(args: &ConcealArgs, file: &Path, robots: &[Robot], truths: &Path) -> anyhow::Result<()> {
+    let [robot] = robots else {
+        anyhow::bail!("--effects are those of one robot; name it with --robot");
+    };
+    let effects = effects::load(file, robot.arm())?;
+    let settings = Settings {
+        seed: args.seed.unwrap_or(0),
+        rate: args.rate,
+        jitter: args.jitter,
+        lost: args.lost,
+        training: usize::from(args.training),
+        background_friction: args.friction,
+    };
+    refuse_existing(&args.out.join("case_000"))?;
+    let concealment = conceal_effects(robot, "case_000", &effects, &settings)
+        .with_context(|| format!("{} on {}", file.display(), robot.name()))?;
+    write(&concealment, args, truths)
+}
+
+/// Cases drawn from the seed.
+fn drawn(args: &ConcealArgs, robots: &[Robot], truths: &Path) -> anyhow::Result<()> {
+    let campaign = Campaign {
+        seed: args.seed.unwrap_or(0),
+        cases: args.cases as usize,
+    };
+    let plans = campaign.plans();
+    for plan in &plans {
+        refuse_existing(&args.out.join(&plan.name))?;
+    }
+    let bar = output::spinner("concealing");
+    let made: Vec<anyhow::Result<String>> = plans
+        .par_iter()
+        .map(|plan| {
+            let concealment = conceal_case(plan.robot(robots), plan)?;
+            bar.set_message(format!("{} is concealed", plan.name));
+            let folder = write_case(&concealment, &args.out, truths)?;
+            Ok(format!("written: {}\n", folder.display()))
+        })
+        .collect();
+    bar.finish_and_clear();
+    let mut failed = Vec::new();
+    for made in made {
+        match made {
+            Ok(line) => output::print(&line)?,
+            Err(error) => failed.push(error),
+        }
+    }
+    output::print(&format!("the truth: {}\n", truths.display()))?;
+    let count = failed.len();
+    match failed.into_iter().next() {
+        None => Ok(()),
+        Some(error) if count == 1 => Err(error),
+        Some(error) => Err(error.context(format!("{count} cases are missing; the first"))),
+    }
+}
+
+fn refuse_existing(folder: &Path) -> anyhow::Result<()> {
+    let is_empty = std::fs::read_dir(folder).map_or(!folder.exists(), |mut inside| inside.next().is_none());
+    let path = folder.to_owned();
+    ensure!(is_empty, ProofError::Exists { path });
+    Ok(())
+}
+
+fn write(concealment: &Concealment, args: &ConcealArgs, truths: &Path) -> anyhow::Result<()> {
+    let folder = write_case(concealment, &args.out, truths)?;
+    output::print(&format!("written: {}\n", folder.display()))?;
+    let truth = truths.join(format!("{}.json", concealment.truth.case));
+    output::print(&format!("the truth: {}\n", truth.display()))
+}

@@ -1,0 +1,53 @@
+//! Effects to conceal as a TOML file: that of a diagnosis, where an effect may have an onset and a form, too.
+
+use std::path::Path;
+
+use anyhow::{Context, anyhow};
+use arm::Arm;
+use proof::{Concealed, EFFECTS, form_parameters};
+
+use crate::diagnose::effect_file;
+use crate::library::Source;
+
+/// Reads the effects at `path`, which must fit `arm`.
+///
+/// # Errors
+/// With file, line, reason and remedy.
+pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Vec<Concealed>> {
+    let text = std::fs::read_to_string(path).with_context(|| {
+        format!(
+            "{}: the effects cannot be read; give a .toml file of effects",
+            path.display()
+        )
+    })?;
+    let source = Source {
+        name: String::new(),
+        path: path.to_owned(),
+        text,
+    };
+    let (_, tables) = effect_file::tables(&source, arm)?;
+    let mut effects = Vec::new();
+    for table in tables {
+        let span = table.span();
+        let fail = |reason: String| anyhow!("{}: {reason}", source.place(span.clone()));
+        let mut table = table.into_inner();
+        let json = serde_json::to_value(&table).map_err(|error| fail(error.to_string()))?;
+        let effect: Concealed = serde_json::from_value(json).map_err(|error| fail(error.to_string()))?;
+        if !effect.effect.ends_with("_unknown") {
+            // What the catalogue has not is this command's; the rest is checked as any effect is.
+            let own = form_parameters(&effect.effect);
+            for key in ["onset", "form"].iter().chain(own) {
+                table.remove(*key);
+            }
+            effect_file::effect(&source, span.clone(), table, arm)?;
+        }
+        effect.check(arm).map_err(|error| fail(error.to_string()))?;
+        effects.push(effect);
+    }
+    debug_assert!(
+        effects
+            .iter()
+            .all(|e| e.effect.ends_with("_unknown") || EFFECTS.contains(&e.effect.as_str()))
+    );
+    Ok(effects)
+}
