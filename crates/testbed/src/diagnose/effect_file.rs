@@ -15,6 +15,9 @@ use crate::library::Source;
 /// What the `schema` line says.
 const SCHEMA: &str = "testbed.model/1";
 
+/// No parameter is larger (SI).
+const MOST: f64 = 1e12;
+
 /// Effects, and whose they are.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EffectFile {
@@ -78,9 +81,20 @@ impl EffectFile {
                 )
             );
         }
-        let mut effects = Vec::new();
+        let mut effects: Vec<Effect> = Vec::new();
+        let mut places: Vec<Range<usize>> = Vec::new();
         for table in raw.effects {
             let span = table.span();
+            let huge = |value: &toml::Value| {
+                value
+                    .as_float()
+                    .is_some_and(|value| value.is_finite() && value.abs() > MOST)
+            };
+            if let Some((key, value)) = table.get_ref().iter().find(|(_, value)| huge(value)) {
+                let value = value.as_float().unwrap_or_default();
+                let reason = format!("{key} is {value:e}, beyond what any arm has; check its unit");
+                return Err(fail(key_span(&source.text, &span, Some(key)), reason));
+            }
             let effect = Effect::deserialize(toml::Value::Table(table.into_inner())).map_err(|error| {
                 let message = error.message();
                 // The key that serde quotes first is the one in question.
@@ -95,7 +109,17 @@ impl EffectFile {
                 let (key, reason) = refusal(&error);
                 return Err(fail(key_span(&source.text, &span, key.as_deref()), reason));
             }
+            if let Some(first) = effects.iter().position(|other| is_twin(other, &effect)) {
+                let joint = effect.joint().map_or_else(String::new, |joint| format!(" on {joint}"));
+                let first = source.place(places[first].clone());
+                let reason = format!(
+                    "{}{joint} is given twice, first at {first}; keep one of the two",
+                    effect.name()
+                );
+                return Err(fail(span, reason));
+            }
             effects.push(effect);
+            places.push(span);
         }
         let robot = raw.robot.map(Spanned::into_inner);
         Ok(Self { robot, effects })
@@ -137,6 +161,22 @@ impl EffectFile {
         let text = self.to_text()?;
         Ok(recording::write_whole(path, |file| file.write_all(text.as_bytes()))?)
     }
+}
+
+/// Whether two effects are one and the same, said twice (perhaps with other sizes).
+fn is_twin(a: &Effect, b: &Effect) -> bool {
+    let same = match (a, b) {
+        // A joint has as many ripples as it has parts that turn at other ratios; of contacts, each is another.
+        (Effect::TorqueRipple { periods, .. }, Effect::TorqueRipple { periods: other, .. }) => periods == other,
+        (Effect::TransmissionCoupling { other, .. }, Effect::TransmissionCoupling { other: another, .. }) => {
+            other == another
+        }
+        (Effect::ExternalContact { .. }, Effect::ExternalContact { .. }) => a == b,
+        // A straight spring may stand beside a curve.
+        (Effect::Spring { curve, .. }, Effect::Spring { curve: other, .. }) => curve.is_empty() == other.is_empty(),
+        _ => true,
+    };
+    same && a.name() == b.name() && a.joint() == b.joint()
 }
 
 /// What TOML's or serde's message means to the one who wrote the file.
