@@ -4,7 +4,7 @@ use crate::diagnose_made::{Case, SHOULDER, arguments, recording, trio};
 use crate::support::Sandbox;
 
 /// A robot with a little friction; files as in [`Case`], shorter.
-fn case() -> Case {
+pub fn case() -> Case {
     let sandbox = Sandbox::new();
     sandbox.write("robot.urdf", crate::diagnose_made::URDF);
     for (variant, name) in ["a.csv", "b.csv", "c.csv"].into_iter().enumerate() {
@@ -21,18 +21,18 @@ const OUTPUTS: [&str; 8] = [
 ];
 
 /// Checks that every part stands in the message, which is one line.
-fn says(message: &str, parts: &[&str]) {
+pub fn says(message: &str, parts: &[&str]) {
     for part in parts {
         assert!(message.contains(part), "\"{part}\" is missing from: {message}");
     }
 }
 
 /// The refusal with further arguments; nothing must be written.
-fn refused(case: &Case, further: &[&str]) -> String {
+pub fn refused(case: &Case, further: &[&str]) -> String {
     refused_command(case, &arguments(further))
 }
 
-fn refused_command(case: &Case, command: &[&str]) -> String {
+pub fn refused_command(case: &Case, command: &[&str]) -> String {
     let mut list = command.to_vec();
     list.extend(OUTPUTS);
     let before = case.sandbox.list("");
@@ -43,14 +43,14 @@ fn refused_command(case: &Case, command: &[&str]) -> String {
 }
 
 /// The refusal where `a.csv` is another text.
-fn refused_with(text: &str) -> String {
+pub fn refused_with(text: &str) -> String {
     let case = case();
     case.sandbox.write("a.csv", text);
     refused(&case, &[])
 }
 
 /// `a.csv` with every row's cells changed.
-fn changed(change: impl Fn(&mut Vec<String>)) -> String {
+pub fn changed(change: impl Fn(&mut Vec<String>)) -> String {
     let text = case().text("a.csv");
     let mut lines = text.lines();
     let mut out = lines.next().expect("a header").to_owned() + "\n";
@@ -162,7 +162,7 @@ fn time_that_runs_back_and_too_few_rows_are_refused() {
     says(&refused_with(header), &["a.csv:1", "there are no rows"]);
     let row = format!("{header}0,1,2,3,4,5,6\n");
     says(&refused_with(&row), &["a.csv:1", "there is one row", "at least two"]);
-    says(&refused_with(""), &["a.csv:1", "column \"t\""]);
+    says(&refused_with(""), &["a.csv:1", "the file is empty"]);
     let few: Vec<String> = with_line(1, str::to_owned)
         .lines()
         .take(50)

@@ -351,13 +351,12 @@ impl Problem<'_> {
             let trials: Vec<Chosen> = (0..chosen.set.len())
                 .into_par_iter()
                 .filter_map(|k| {
-                    let mut set = chosen.set.clone();
-                    let removed = set.remove(k);
+                    let removed = chosen.set[k];
                     let out = &self.candidates[removed];
                     if out.cause.is_friction() {
                         return None;
                     }
-                    let without = self.choose(set, &chosen.fit.weights);
+                    let without = self.without(&chosen, removed);
                     // What takes its place acts where it did.
                     let others: Vec<usize> = allowed
                         .iter()

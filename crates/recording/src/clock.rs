@@ -3,7 +3,10 @@
 //! Stamps scatter about the clock (a logger stamps late), rows are lost, and the logger's own clock
 //! drifts. The period comes from differences over ever longer spans, the phase from blocks of rows,
 //! and the rows go to their ticks by the likeliest strictly increasing sequence where rounding leaves
-//! a doubt.
+//! a doubt. Where stamps scatter over most of the period, none tells a phase, and the ticks come from
+//! the rows' order alone (`track`).
+
+mod track;
 
 /// A gap of more than this many periods may end on another phase.
 pub const PHASE_GAP: f64 = 6.5;
@@ -11,6 +14,10 @@ pub const PHASE_GAP: f64 = 6.5;
 const BLOCK: usize = 128;
 /// Stamps that scatter by more than this share of the period (root mean square) have no clock.
 const NO_CLOCK: f64 = 0.25;
+/// Stamps that scatter by more are put on their ticks by the rows' order, not by their phase.
+const WIDE: f64 = 0.12;
+/// Steps that scatter by more about whole periods tell no phase at all (evenly spread, they do by 0.37).
+const BLURRED: f64 = 0.25;
 /// How many differences an estimate of the period uses at most.
 const SAMPLES: usize = 20_000;
 /// Steps that scatter by more about whole periods have another period (evenly spread, they scatter by 0.29).
@@ -50,6 +57,24 @@ pub struct Clock {
 pub fn find(time: &[f64], breaks: &[usize]) -> Clock {
     let period = estimate_period(time, breaks);
     let near = scatter(time, breaks, period, 1);
+    // What scatters as widely as this is not worth a try by phase, which takes as long again.
+    let wide = if near > BLURRED {
+        track::by_order(time, breaks, period)
+    } else {
+        None
+    };
+    wide.unwrap_or_else(|| {
+        let clock = by_phase(time, breaks, period, near);
+        if near > BLURRED || clock.regular && clock.jitter.0 < WIDE * clock.period {
+            return clock;
+        }
+        track::by_order(time, breaks, period).unwrap_or(clock)
+    })
+}
+
+/// The clock by the phase of the stamps, which scatter (from one row to the next by `near` periods) by less than half a
+/// period.
+fn by_phase(time: &[f64], breaks: &[usize], period: f64, near: f64) -> Clock {
     let pieces = split(time, breaks, period, near < STEADY);
     let mut clock = Clock {
         period,

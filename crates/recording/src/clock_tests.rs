@@ -168,3 +168,47 @@ fn few_rows_make_a_clock_too() {
         assert_eq!(clock.ticks, (0..i64::from(rows)).collect::<Vec<_>>());
     }
 }
+
+#[test]
+fn stamps_that_scatter_over_almost_a_period_do_not_bend_the_clock() {
+    // Evenly, normally, or late by a queue's chance; all keep their order.
+    for kind in 0..3 {
+        for (rate, rows) in [(100.0, 3000), (250.0, 5000), (1000.0, 20_000)] {
+            for (jitter, lost) in [(0.5, 0.05), (0.8, 0.0), (0.9, 0.02), (0.95, 0.0), (0.95, 0.05)] {
+                let mut random = Random(kind + 17);
+                let mut truth = ticks(&mut random, rows, lost);
+                // A gap, too.
+                truth.retain(|tick| !(rows / 3..rows / 3 + 40).contains(tick));
+                let period = 1.0 / rate;
+                let mut stamps: Vec<f64> = truth
+                    .iter()
+                    .map(|tick| {
+                        let off = match kind {
+                            0 => random.uniform(),
+                            1 => 0.25 * random.normal(),
+                            _ => -0.25 * random.uniform().max(1e-9).ln(),
+                        };
+                        period * (*tick as f64 + jitter * off)
+                    })
+                    .collect();
+                for row in 1..stamps.len() {
+                    stamps[row] = stamps[row].max(stamps[row - 1] + 1e-7 * period);
+                }
+                let clock = find(&stamps, &[]);
+                let what = format!("kind {kind}, {rate} Hz, jitter {jitter}, lost {lost}");
+                let off = (clock.period / period - 1.0).abs();
+                assert!(clock.regular && off < 1e-4, "{what}: the period is off by {off:e}");
+                assert_eq!(clock.pieces.len(), 2, "{what}");
+                // A piece's own first row may be late: most of its rows tell where it begins.
+                let mut wrong = 0;
+                for piece in &clock.pieces {
+                    let mut off: Vec<i64> = piece.rows.clone().map(|row| clock.ticks[row] - truth[row]).collect();
+                    let middle = off.len() / 2;
+                    let usual = *off.select_nth_unstable(middle).1;
+                    wrong += off.iter().filter(|off| **off != usual).count();
+                }
+                assert!(wrong * 50 < stamps.len(), "{what}: {wrong} rows on another tick");
+            }
+        }
+    }
+}

@@ -141,6 +141,7 @@ impl ColumnMap {
         for (joint, (_, raw)) in joints.iter().enumerate() {
             joint_entries(&source, joint, raw.get_ref(), &mut entries)?;
         }
+        refuse_shared(&source, &raw.time.column, &entries)?;
         for (quantity, key) in [(Quantity::Velocity, "qd"), (Quantity::Acceleration, "qdd")] {
             let has = |joint: usize| {
                 entries
@@ -214,6 +215,30 @@ impl ColumnMap {
             others,
         })
     }
+}
+
+/// Refuses a column that is to be two things; a current may be the torque, too.
+fn refuse_shared(source: &Source<'_>, time: &Spanned<String>, entries: &[Entry]) -> Result<(), RecordingError> {
+    let drives = |entry: &Entry| ["tau_", "tau_current_", "current_"].contains(&entry.quantity.prefix());
+    for (k, entry) in entries.iter().enumerate() {
+        let taken = |other: &&Entry| {
+            other.header == entry.header && !(other.joint == entry.joint && drives(other) && drives(entry))
+        };
+        let line = match entries[..k].iter().find(taken) {
+            Some(other) => other.line,
+            None if *time.get_ref() == entry.header => source.line(time.span()),
+            None => continue,
+        };
+        return Err(RecordingError::Map {
+            path: source.path.to_owned(),
+            line: entry.line,
+            reason: format!(
+                "column \"{}\" is taken in line {line} already; name another in one of the two",
+                entry.header
+            ),
+        });
+    }
+    Ok(())
 }
 
 fn unknown_unit(source: &Source<'_>, unit: &Spanned<String>, known: &str) -> RecordingError {

@@ -73,3 +73,30 @@ fn the_example_of_the_documentation_is_good() {
     let map = parse(example.expect("the page has an example")).expect("it is good");
     assert_eq!(map.joints, ["shoulder", "elbow"]);
 }
+
+#[test]
+fn a_column_is_one_thing() {
+    let parse = |text: &str| ColumnMap::parse(text, Path::new("m.toml")).map_err(|error| error.to_string());
+    let map = |a: &str, b: &str| {
+        format!("[time]\ncolumn = \"t\"\n[joints.a]\nq = \"x\"\ntau = \"{a}\"\n[joints.b]\nq = \"{b}\"\ntau = \"w\"\n")
+    };
+    assert!(parse(&map("y", "z")).is_ok());
+    for (text, line, other) in [
+        (map("y", "x"), 7, 4),
+        (map("x", "z"), 5, 4),
+        (map("y", "t"), 7, 2),
+        (map("w", "z"), 8, 5),
+    ] {
+        let found = parse(&text).expect_err("it is refused");
+        let said = format!("m.toml:{line}: column");
+        assert!(
+            found.starts_with(&said) && found.contains(&format!("taken in line {other} already")),
+            "{found}"
+        );
+    }
+    let current = map("y", "z").replace(
+        "tau = \"y\"",
+        "tau = \"y\"\ntau_unit = \"A\"\ntau_scale = 2.0\ncurrent = \"y\"",
+    );
+    assert!(parse(&current).is_ok());
+}

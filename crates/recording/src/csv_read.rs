@@ -41,6 +41,10 @@ impl Recording {
         let mut file = File::open(path).map_err(unreadable)?;
         let ends_whole = ends_with_newline(&mut file).map_err(unreadable)?;
         let start = read_start(&mut file).map_err(unreadable)?;
+        if let Some((line, reason)) = no_table(&start) {
+            let path = path.to_owned();
+            return Err(RecordingError::Row { path, line, reason });
+        }
         let delimiter = map
             .and_then(ColumnMap::delimiter)
             .unwrap_or_else(|| find_delimiter(&start));
@@ -57,6 +61,9 @@ impl Recording {
             Ok(headers) => headers.iter().map(|header| header.trim().to_owned()).collect(),
             Err(error) => return Err(csv_error(path, error)),
         };
+        if let Some(reason) = header::numbers(&headers) {
+            return Err(header_error(reason));
+        }
         if let Some(header) = header::doubled(&headers) {
             return Err(header_error(format!("there are two columns \"{header}\"; rename one")));
         }
@@ -99,7 +106,13 @@ fn csv_error(path: &Path, error: csv::Error) -> RecordingError {
         kind => RecordingError::Row {
             path: path.to_owned(),
             line,
-            reason: format!("not CSV: {kind:?}; write it as UTF-8 text with one row a line"),
+            reason: match kind {
+                csv::ErrorKind::Utf8 { err, .. } => format!(
+                    "cell {} is not UTF-8 (Latin-1?); save the file as UTF-8 (in spreadsheets \"CSV UTF-8\")",
+                    err.field() + 1
+                ),
+                kind => format!("not CSV: {kind:?}; write it as UTF-8 text with one row a line"),
+            },
         },
     }
 }
@@ -125,11 +138,36 @@ fn read_start(file: &mut File) -> std::io::Result<Vec<u8>> {
     Ok(start)
 }
 
+/// Why a file that begins so is no table of text, with the line.
+fn no_table(start: &[u8]) -> Option<(u64, String)> {
+    let text = start.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(start);
+    let said = |reason: &str| Some((1, reason.to_owned()));
+    if text.trim_ascii().is_empty() {
+        return said("the file is empty; a recording has a header (t, q_<joint>, tau_<joint>, ...) and a row a sample");
+    }
+    if text.starts_with(b"\xFF\xFE") || text.starts_with(b"\xFE\xFF") {
+        return said(
+            "the text is UTF-16; save it as UTF-8 (in spreadsheets \"CSV UTF-8\"; or iconv -f UTF-16 -t UTF-8)",
+        );
+    }
+    if let Some(at) = text.iter().position(|&byte| byte == 0) {
+        let line = 1 + text[..at].iter().filter(|&&byte| byte == b'\n').count() as u64;
+        let reason = "there is a zero byte: this is a binary file, or UTF-16; give a CSV file in UTF-8".to_owned();
+        return Some((line, reason));
+    }
+    if text.trim_ascii().starts_with(b"<") {
+        return said("this is XML (a URDF?), no CSV; give a recording here, and the robot's URDF with --robot");
+    }
+    None
+}
+
 /// The separator of the cells: a semicolon or a tab where the header has no comma.
 fn find_delimiter(start: &[u8]) -> u8 {
     let header = start.split(|&byte| byte == b'\n').next().unwrap_or_default();
     let has = |byte: u8| header.contains(&byte);
     match (has(b','), has(b';'), has(b'\t')) {
+        // Commas in numbers, too.
+        (true, true, _) if header.first().is_some_and(u8::is_ascii_digit) => b';',
         (false, true, _) => b';',
         (false, false, true) => b'\t',
         _ => b',',

@@ -10,7 +10,7 @@ fn recording() -> Recording {
         joints: vec!["shoulder".into(), "elbow".into()],
         time: vec![0.0, 0.1, 0.2],
         q: vec![vec![0.1, 1.0 / 3.0, -1e-17], vec![1.0, 2.0, 3.0]],
-        qd: Some(vec![vec![0.0; 3], vec![5e300; 3]]),
+        qd: Some(vec![vec![0.0; 3], vec![5e8; 3]]),
         tau: vec![vec![1.0, -2.0, 3.5], vec![0.0; 3]],
         q_secondary: vec![None, Some(vec![1.0, 2.5, 3.0])],
         temperature: vec![Some(vec![20.0, 20.5, 21.0]); 2],
@@ -69,6 +69,94 @@ fn a_bad_file_is_refused_with_its_place() {
         .expect_err("it is not there")
         .to_string();
     assert!(gone.contains("/nowhere/r.csv: cannot be read"), "{gone}");
+}
+
+#[test]
+fn what_spreadsheets_and_mistakes_make_of_a_file_is_refused_with_the_remedy() {
+    let says = |text: &str, parts: &[&str]| {
+        let found = refusal(text);
+        assert!(!found.contains('\n') && found.len() < 400, "{found}");
+        for part in parts {
+            assert!(found.contains(part), "\"{part}\" is missing from: {found}");
+        }
+    };
+    let comma = [
+        "r.csv:2: column \"t\" is \"0,5\", a number with a decimal comma",
+        "decimal point",
+    ];
+    says("t;q_a;tau_a\n0,5;1,5;2,3\n1,5;1,5;2,3\n", &comma);
+    says(
+        "t,q_a,tau_a\n\"0,5\",\"1,5\",\"2,3\"\n\"1,5\",\"1,5\",\"2,3\"\n",
+        &comma,
+    );
+    says(
+        "t,q_a,tau_a\n0,5,1,5,2,3\n1,5,1,5,2,3\n",
+        &["r.csv:2", "6 cells", "decimal commas?"],
+    );
+    says(
+        "0,0.1,0.2\n1,0.1,0.2\n2,0.1,0.2\n",
+        &["r.csv:1: the first line holds numbers", "put a header above it"],
+    );
+    says("0,0;0,1;0,2\n", &["r.csv:1: the first line holds numbers"]);
+    says("", &["r.csv:1: the file is empty", "q_<joint>"]);
+    says("\u{FEFF}\r\n", &["r.csv:1: the file is empty"]);
+    says(
+        "<?xml version=\"1.0\"?>\n<robot/>",
+        &["r.csv:1: this is XML (a URDF?)", "--robot"],
+    );
+    says("t,q_a,tau_a\n0,1,2\n\0\n", &["r.csv:3: there is a zero byte", "UTF-8"]);
+    says(
+        "t,q_a,tau_a\n0,1,2\n1,\"1,2\n2,1,2\n3,1,2\n",
+        &["r.csv:3: a quotation mark is not closed"],
+    );
+    for far in ["1e308", "-1e308", "2e12"] {
+        says(
+            &format!("t,q_a,tau_a\n0,1,2\n1,{far},2\n2,1,2\n"),
+            &["r.csv:3: column \"q_a\" is", "far beyond"],
+        );
+        says(
+            &format!("t,q_a,tau_a\n0,1,2\n{far}000,1,2\n"),
+            &["r.csv:3: column \"t\""],
+        );
+    }
+    says(
+        "t,q_a,tau_a\n1e-300,1,2\n0,1,2\n1,1,2\n",
+        &["r.csv:3: time runs back, from 1e-300 s"],
+    );
+    let folder = folder();
+    let latin = write(&folder, "");
+    std::fs::write(&latin, b"t,q_\xE9,tau_\xE9\n0,1,2\n1,1,2\n").expect("it writes");
+    let found = Recording::read_csv(&latin).expect_err("it is refused").to_string();
+    assert!(found.contains("r.csv:1: cell 2 is not UTF-8"), "{found}");
+    for order in [u16::to_le_bytes, u16::to_be_bytes] {
+        let text = "\u{FEFF}t,q_a,tau_a\n0,1,2\n1,1,2\n";
+        let bytes: Vec<u8> = text.encode_utf16().flat_map(order).collect();
+        let path = write(&folder, "");
+        std::fs::write(&path, bytes).expect("it writes");
+        let found = Recording::read_csv(&path).expect_err("it is refused").to_string();
+        assert!(
+            found.contains("r.csv:1: the text is UTF-16; save it as UTF-8"),
+            "{found}"
+        );
+    }
+    let found = Recording::read_csv(folder.path())
+        .expect_err("it is refused")
+        .to_string();
+    assert!(found.contains("it is a folder"), "{found}");
+}
+
+#[test]
+fn line_ends_marks_and_spaces_of_other_systems_just_work() {
+    let plain = read("t,q_a,tau_a\n0,1,2\n1,1.5,2.5\n").expect("it reads");
+    for other in [
+        "t,q_a,tau_a\r\n0,1,2\r\n1,1.5,2.5\r\n",
+        "\u{FEFF}t,q_a,tau_a\n0,1,2\n1,1.5,2.5\n",
+        "\u{FEFF}\"t\";\"q_a\";\"tau_a\"\r\n0;1;2\r\n1;1.5;2.5\r\n",
+        " t , q_a,tau_a \n 0, 1 ,2\n1,1.5 , 2.5\n",
+        "t\tq_a\ttau_a\n0\t1\t2\n1\t1.5\t2.5\n",
+    ] {
+        assert_eq!(read(other).expect("it reads"), plain, "{other:?}");
+    }
 }
 
 #[test]

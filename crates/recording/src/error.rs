@@ -39,8 +39,8 @@ pub enum RecordingError {
         /// What was found, and the remedy.
         reason: String,
     },
-    /// A cell does not hold a finite number.
-    #[error("{path}:{line}: column \"{column}\" is \"{found}\", not a finite number; {remedy}")]
+    /// A cell does not hold a number that can be used.
+    #[error("{path}:{line}: column \"{column}\" is \"{found}\", {what}; {remedy}")]
     Value {
         /// The file.
         path: PathBuf,
@@ -50,6 +50,8 @@ pub enum RecordingError {
         column: String,
         /// What the cell holds.
         found: String,
+        /// What that is.
+        what: &'static str,
         /// How to mend it.
         remedy: &'static str,
     },

@@ -36,6 +36,19 @@ pub struct Plan {
     pub others: Vec<(usize, String)>,
 }
 
+/// Why headers that are numbers are none.
+pub fn numbers(headers: &[String]) -> Option<String> {
+    let is_number = |header: &String| header.replacen(',', ".", 1).parse::<f64>().is_ok();
+    let numbers = headers.iter().filter(|header| is_number(header)).count();
+    (numbers > 0 && 2 * numbers > headers.len()).then(|| {
+        format!(
+            "the first line holds numbers (\"{}\", ...), not the columns' names; put a header above it: t, q_<joint>, \
+             tau_<joint>, ...",
+            headers[0].chars().take(20).collect::<String>()
+        )
+    })
+}
+
 /// The first header that is there twice.
 pub fn doubled(headers: &[String]) -> Option<&str> {
     let mut seen = std::collections::HashSet::new();
@@ -156,6 +169,14 @@ mod tests {
         assert_eq!(plan.channels.len(), 4);
         let others: Vec<&str> = plan.others.iter().map(|(_, name)| name.as_str()).collect();
         assert_eq!(others, ["q_desired_a", "mode"]);
+    }
+
+    #[test]
+    fn numbers_are_no_header() {
+        let of = |header: &str| numbers(&header.split(';').map(str::to_owned).collect::<Vec<_>>());
+        assert!(of("0;0.5;1e-3").is_some_and(|reason| reason.contains("\"0\"")));
+        assert!(of("0,1;0,5;-1,0").is_some());
+        assert!(of("t;q_a;1").is_none() && of("").is_none());
     }
 
     #[test]

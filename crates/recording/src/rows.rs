@@ -17,6 +17,11 @@ const RUN_PAUSE: f64 = 1.0;
 /// Rows with the stamp of the row before but other values may be this share of all.
 const DIFFERING_SHARE: f64 = 0.01;
 
+/// No position, speed, torque, current or temperature is larger (SI).
+const LARGEST: f64 = 1e9;
+/// No stamp is later (s).
+const LATEST: f64 = 1e15;
+
 /// The rows read so far, by the plan.
 pub struct Rows<'a> {
     path: &'a Path,
@@ -69,6 +74,11 @@ impl<'a> Rows<'a> {
 
     /// The last row, which is left out if the file is cut in it.
     pub fn take_last(&mut self, row: &ByteRecord, ends_whole: bool) -> Result<(), RecordingError> {
+        // All that follows an open quotation mark is one cell.
+        if row.iter().any(|cell| cell.contains(&b'\n')) {
+            let reason = "a quotation mark is not closed in this row; close it or take it out".to_owned();
+            return Err(self.row_error(row, reason));
+        }
         let cell = |row: &ByteRecord| row.iter().next_back().map_or(0, <[u8]>::len);
         // Without a newline at the end, the last number may have lost digits.
         let may_be_cut = !ends_whole && cell(row) < cell(&self.before);
@@ -90,13 +100,24 @@ impl<'a> Rows<'a> {
             return Err(self.row_error(
                 row,
                 format!(
-                    "the row has {} cells, the header {}; mend or delete the row",
+                    "the row has {} cells, the header {}; {}",
                     row.len(),
-                    self.width
+                    self.width,
+                    if row.len() + 1 >= 2 * self.width {
+                        "are there decimal commas? Write numbers with a decimal point"
+                    } else {
+                        "mend or delete the row"
+                    }
                 ),
             ));
         }
-        let stamp = self.value(row, self.plan.time, &self.plan.time_header)? * self.plan.time_factor;
+        let stamp = self.value(
+            row,
+            self.plan.time,
+            &self.plan.time_header,
+            (self.plan.time_factor, 0.0),
+            LATEST,
+        )?;
         let mut begins = false;
         if self.in_run > 0 && stamp <= self.stamp {
             if stamp == self.stamp {
@@ -112,8 +133,9 @@ impl<'a> Rows<'a> {
         self.row.push(stamp + self.shift);
         for index in 0..self.plan.channels.len() {
             let channel = &self.plan.channels[index];
-            let value = self.value(row, channel.index, &channel.header)?;
-            self.row.push(channel.factor * value + channel.offset);
+            let conversion = (channel.factor, channel.offset);
+            let value = self.value(row, channel.index, &channel.header, conversion, LARGEST)?;
+            self.row.push(value);
         }
         for (numeric, (index, header)) in self.numeric.iter_mut().zip(&self.plan.others) {
             let value = row.get(*index).and_then(number);
@@ -134,13 +156,44 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    fn value(&self, row: &ByteRecord, index: usize, column: &str) -> Result<f64, RecordingError> {
-        row.get(index).and_then(number).ok_or_else(|| RecordingError::Value {
+    /// The cell's value in SI, which is finite and at most `largest`.
+    fn value(
+        &self,
+        row: &ByteRecord,
+        index: usize,
+        column: &str,
+        (factor, offset): (f64, f64),
+        largest: f64,
+    ) -> Result<f64, RecordingError> {
+        let cell = row.get(index);
+        let found = cell.and_then(number).map(|value| factor * value + offset);
+        if let Some(value) = found.filter(|value| value.abs() <= largest) {
+            return Ok(value);
+        }
+        let comma = |cell: &[u8]| {
+            let text = String::from_utf8_lossy(cell);
+            text.contains(',') && number(text.replacen(',', ".", 1).as_bytes()).is_some()
+        };
+        let (what, remedy) = if found.is_some() {
+            (
+                "far beyond what is measured",
+                "check its unit, or delete the row: gaps are dealt with",
+            )
+        } else if cell.is_some_and(comma) {
+            ("a number with a decimal comma", "write numbers with a decimal point")
+        } else {
+            (
+                "not a finite number",
+                "delete the row: a row that is missing is a gap, and gaps are dealt with",
+            )
+        };
+        Err(RecordingError::Value {
             path: self.path.to_owned(),
             line: line_of(row),
             column: column.to_owned(),
-            found: text(row.get(index)),
-            remedy: "delete the row: a row that is missing is a gap, and gaps are dealt with",
+            found: text(cell),
+            what,
+            remedy,
         })
     }
 
@@ -173,8 +226,9 @@ impl<'a> Rows<'a> {
             return Err(self.row_error(
                 row,
                 format!(
-                    "time runs back, from {} s to {stamp} s; sort the rows by time, or keep each run in a file of its own",
-                    self.stamp
+                    "time runs back, from {} s to {} s; sort the rows by time, or keep each run in a file of its own",
+                    short(self.stamp),
+                    short(stamp)
                 ),
             ));
         }
@@ -288,6 +342,15 @@ fn text(cell: Option<&[u8]>) -> String {
         format!("{short}…")
     } else {
         short
+    }
+}
+
+/// A number without hundreds of zeros.
+fn short(value: f64) -> String {
+    if value != 0.0 && value.abs() < 1e-9 {
+        format!("{value:e}")
+    } else {
+        value.to_string()
     }
 }
 

@@ -10,7 +10,15 @@ pub fn toml_reason(message: &str) -> String {
             };
             format!("unknown key `{unknown}`; {hint}known here: {}", known.join(", "))
         }
-        None => message.replace('\n', " "),
+        None => {
+            let remedy = match message {
+                _ if message.starts_with("missing field") => "; add it",
+                _ if message.starts_with("duplicate key") => "; keep one of the two",
+                _ if message.contains("expected `=`") => "; this is no TOML (key = value)",
+                _ => "",
+            };
+            message.replace('\n', " ") + remedy
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 pub mod model_check;
 mod smooth;
+mod torque_unit;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

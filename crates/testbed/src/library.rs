@@ -151,8 +151,13 @@ pub fn load_arm(robot: &str, scenario: &Source) -> anyhow::Result<(Arm, PathBuf)
         let path = PathBuf::from(format!("assets/{name}.urdf"));
         return Ok((Arm::from_urdf_text(text, &path)?, path));
     }
+    let path = scenario.path.parent().unwrap_or(Path::new("")).join(robot);
     let is_path = Path::new(robot).extension().is_some_and(|e| e == "urdf" || e == "xml");
-    if !is_path {
+    if path.is_file() {
+        refuse_no_xml(&path)?;
+    } else if path.is_dir() {
+        bail!("{}: is a folder; give the path of a .urdf file in it", path.display());
+    } else if !is_path {
         let known: Vec<String> = ROBOTS.iter().map(|(name, _)| (*name).to_owned()).collect();
         let hint = nearest(robot, &known).map_or(String::new(), |nearest| format!("did you mean \"{nearest}\"? "));
         bail!(
@@ -160,6 +165,36 @@ pub fn load_arm(robot: &str, scenario: &Source) -> anyhow::Result<(Arm, PathBuf)
             known.join(", ")
         );
     }
-    let path = scenario.path.parent().unwrap_or(Path::new("")).join(robot);
     Ok((Arm::from_urdf(&path)?, path))
+}
+
+/// Refuses a file that does not begin as XML does: a recording, say.
+fn refuse_no_xml(path: &Path) -> anyhow::Result<()> {
+    use std::io::Read;
+    let mut start = Vec::new();
+    let unread = || {
+        format!(
+            "{}:1: cannot be read; give a .urdf file that you may read",
+            path.display()
+        )
+    };
+    let file = std::fs::File::open(path).with_context(unread)?;
+    file.take(4096).read_to_end(&mut start).with_context(unread)?;
+    if start.starts_with(b"\xFF\xFE") || start.starts_with(b"\xFE\xFF") {
+        bail!("{}:1: the text is UTF-16; save it as UTF-8", path.display());
+    }
+    let text = String::from_utf8_lossy(&start);
+    let text = text.trim_start_matches('\u{FEFF}').trim_start();
+    if text.is_empty() {
+        bail!("{}:1: the file is empty; give the robot's URDF", path.display());
+    }
+    if !text.starts_with('<') {
+        let line: String = text.lines().next().unwrap_or_default().chars().take(40).collect();
+        bail!(
+            "{}:1: is no URDF, which is XML: it begins with \"{line}\"; give the robot's URDF here, recordings after \
+             --train or --held-out",
+            path.display()
+        );
+    }
+    Ok(())
 }

@@ -86,8 +86,13 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
             .is_some_and(|ratio| near(ratio.abs(), 1.0 / DEGREES));
         if reach > 4.0 * std::f64::consts::PI && !in_degrees {
             let text = format!(
-                "positions reach {reach:.1}: degrees taken for radians, or millimetres for metres? Give q_unit in a column \
-                 map; for a joint that turns without end this is as it should be"
+                "positions reach {}: degrees taken for radians, or millimetres for metres? Give q_unit in a column \
+                 map; for a joint that turns without end this is as it should be",
+                if reach < 1e4 {
+                    format!("{reach:.1}")
+                } else {
+                    format!("{reach:.1e}")
+                }
             );
             add(FindingKind::Degrees, Some(joint), text);
         }

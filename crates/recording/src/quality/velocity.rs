@@ -58,6 +58,12 @@ fn correlate(first: &[f64], second: &[f64], ticks: &[usize], lag: isize) -> (f64
     }
 }
 
+/// The largest correlation at any lag up to `limit` either way.
+fn likeness(first: &[f64], second: &[f64], ticks: &[usize], limit: isize) -> f64 {
+    let at = |lag: isize| correlate(first, second, ticks, lag).0.abs();
+    (-limit..=limit).map(at).fold(0.0, f64::max)
+}
+
 /// Compares recorded velocities with the positions' slopes, into `joints`; the pairs of joints
 /// (position, velocity) whose velocities are swapped.
 pub fn compare(regular: &RegularRecording, motions: &[Motion], joints: &mut [JointQuality]) -> Vec<(usize, usize)> {
@@ -96,7 +102,7 @@ pub fn compare(regular: &RegularRecording, motions: &[Motion], joints: &mut [Joi
         if correlation.abs() < 0.9 {
             let other = (0..qd.len())
                 .filter(|&other| other != joint)
-                .map(|other| (other, correlate(&motion.speed, &qd[other], &ticks, 0).0.abs()))
+                .map(|other| (other, likeness(&motion.speed, &qd[other], &ticks, limit)))
                 .max_by(|a, b| a.1.total_cmp(&b.1));
             if let Some((other, found)) = other
                 && found > 0.95

@@ -15,6 +15,9 @@ use crate::library::Source;
 /// What the `schema` line says.
 const SCHEMA: &str = "testbed.model/1";
 
+/// No parameter is larger (SI).
+const MOST: f64 = 1e12;
+
 /// Effects, and whose they are.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EffectFile {
@@ -56,8 +59,23 @@ impl EffectFile {
         let path = path.to_owned();
         let source = Source { name, path, text };
         let (robot, tables) = tables(&source, arm)?;
-        let read = |table: Spanned<toml::Table>| effect(&source, table.span(), table.into_inner(), arm);
-        let effects = tables.into_iter().map(read).collect::<anyhow::Result<_>>()?;
+        let mut effects: Vec<Effect> = Vec::new();
+        let mut places: Vec<Range<usize>> = Vec::new();
+        for table in tables {
+            let span = table.span();
+            let effect = effect(&source, span.clone(), table.into_inner(), arm)?;
+            if let Some(first) = effects.iter().position(|other| is_twin(other, &effect)) {
+                let joint = effect.joint().map_or_else(String::new, |joint| format!(" on {joint}"));
+                let first = source.place(places[first].clone());
+                let reason = format!(
+                    "{}{joint} is given twice, first at {first}; keep one of the two",
+                    effect.name()
+                );
+                return Err(fail(&source, span, &reason));
+            }
+            effects.push(effect);
+            places.push(span);
+        }
         Ok(Self { robot, effects })
     }
 
@@ -140,6 +158,16 @@ pub fn tables(source: &Source, arm: &Arm) -> anyhow::Result<(Option<String>, Vec
 /// # Errors
 /// With file, line, reason and remedy.
 pub fn effect(source: &Source, span: Range<usize>, table: toml::Table, arm: &Arm) -> anyhow::Result<Effect> {
+    let huge = |value: &toml::Value| {
+        value
+            .as_float()
+            .is_some_and(|value| value.is_finite() && value.abs() > MOST)
+    };
+    if let Some((key, value)) = table.iter().find(|(_, value)| huge(value)) {
+        let value = value.as_float().unwrap_or_default();
+        let reason = format!("{key} is {value:e}, beyond what any arm has; check its unit");
+        return Err(fail(source, key_span(&source.text, &span, Some(key)), &reason));
+    }
     let effect = Effect::deserialize(toml::Value::Table(table)).map_err(|error| {
         let message = error.message();
         // The key that serde quotes first is the one in question.
@@ -155,6 +183,22 @@ pub fn effect(source: &Source, span: Range<usize>, table: toml::Table, arm: &Arm
         return Err(fail(source, key_span(&source.text, &span, key.as_deref()), &reason));
     }
     Ok(effect)
+}
+
+/// Whether two effects are one and the same, said twice (perhaps with other sizes).
+fn is_twin(a: &Effect, b: &Effect) -> bool {
+    let same = match (a, b) {
+        // A joint has as many ripples as it has parts that turn at other ratios; of contacts, each is another.
+        (Effect::TorqueRipple { periods, .. }, Effect::TorqueRipple { periods: other, .. }) => periods == other,
+        (Effect::TransmissionCoupling { other, .. }, Effect::TransmissionCoupling { other: another, .. }) => {
+            other == another
+        }
+        (Effect::ExternalContact { .. }, Effect::ExternalContact { .. }) => a == b,
+        // A straight spring may stand beside a curve.
+        (Effect::Spring { curve, .. }, Effect::Spring { curve: other, .. }) => curve.is_empty() == other.is_empty(),
+        _ => true,
+    };
+    same && a.name() == b.name() && a.joint() == b.joint()
 }
 
 /// What TOML's or serde's message means to the one who wrote the file.

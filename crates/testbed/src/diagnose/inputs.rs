@@ -113,7 +113,8 @@ fn overlap(a: &RegularRecording, b: &RegularRecording) -> bool {
 /// # Errors
 /// If one cannot be read, does not fit the arm, holds no motion or no torque, or is both fitted and held out.
 pub fn read(args: &DiagnoseArgs, arm: &Arm, progress: &ProgressBar) -> anyhow::Result<Vec<Prepared>> {
-    let map = args.map.as_deref().map(ColumnMap::load).transpose()?;
+    let load = |path| anyhow::Ok((path, ColumnMap::load(path)?));
+    let map = args.map.as_deref().map(load).transpose()?;
     let files: Vec<(&PathBuf, bool)> = args
         .train
         .iter()
@@ -180,16 +181,17 @@ fn refuse_twice(files: &[(&PathBuf, bool)]) -> anyhow::Result<()> {
 fn prepare(
     path: &Path,
     held_out: bool,
-    map: Option<&ColumnMap>,
+    map: Option<&(&Path, ColumnMap)>,
     arm: &Arm,
     progress: &ProgressBar,
 ) -> anyhow::Result<Prepared> {
     let name = path.display().to_string();
     progress.set_message(format!("reading {name}"));
-    let recording = Recording::read_csv_with(path, map)?;
-    let order = order(&recording, arm, &name)?;
+    let recording = Recording::read_csv_with(path, map.map(|(_, map)| map))?;
+    let order = order(&recording, arm, &name, map.map(|(path, _)| *path))?;
     let (regular, warnings) = recording.regular().with_context(|| name.clone())?;
     let quality = Quality::of(&recording, &regular);
+    let misfits = model_check::check(arm, &regular, &quality);
     progress.suspend(|| {
         let (told, gaps) = shortened(recording.warnings.iter().chain(&warnings), |warning| warning);
         for warning in told {
@@ -211,16 +213,20 @@ fn prepare(
                 .map_or_else(String::new, |joint| format!("{joint}: "));
             eprintln!("{weight}: {name}: {joint}{}", finding.text);
         }
-        for misfit in model_check::check(arm, &regular, &quality) {
-            let joint = misfit.joint.map_or_else(String::new, |joint| format!("{joint}: "));
+        for misfit in misfits.iter().filter(|misfit| !misfit.spoils) {
+            let joint = misfit
+                .joint
+                .as_ref()
+                .map_or_else(String::new, |joint| format!("{joint}: "));
             eprintln!("warning: {name}: {joint}{}", misfit.text);
         }
     });
+    if let Some(misfit) = misfits.iter().find(|misfit| misfit.spoils) {
+        bail!("{name}: {}", misfit.text);
+    }
     let regular = reordered(regular, &order);
-    if regular.tau.iter().flatten().all(|&tau| tau == 0.0) {
-        bail!(
-            "{name}: all torques are zero; check the torque columns (tau_<joint>), or name them in a column map (--map)"
-        );
+    if let Some(reason) = unusable(&regular, &quality) {
+        bail!("{name}: {reason}");
     }
     Ok(Prepared {
         name,
@@ -229,8 +235,42 @@ fn prepare(
     })
 }
 
+/// A drive is not sampled more slowly (Hz).
+const SLOWEST: f64 = 10.0;
+
+/// Why nothing can be told from a recording, whatever the arm, and the remedy.
+fn unusable(regular: &RegularRecording, quality: &Quality) -> Option<String> {
+    if quality.rate < SLOWEST {
+        return Some(format!(
+            "its rows are {:.3} s apart; are its stamps in ms? Give the unit in a column map (--map: unit = \"ms\" under \
+             [time]), or record at 100 Hz or more",
+            regular.period
+        ));
+    }
+    if regular.tau.iter().all(|tau| tau.iter().all(|value| *value == tau[0])) {
+        let what = if regular.tau.iter().flatten().all(|&tau| tau == 0.0) {
+            "zero"
+        } else {
+            "constant"
+        };
+        return Some(format!(
+            "all torques are {what}; check the torque columns (tau_<joint>), or name them in a column map (--map)"
+        ));
+    }
+    let mut moving = quality.joints.iter().filter(|joint| joint.moves).peekable();
+    let degrees = |ratio: f64| (ratio.to_degrees() - 1.0).abs() < 0.04;
+    if moving.peek().is_some() && moving.all(|joint| joint.velocity_ratio.is_some_and(|ratio| degrees(ratio.abs()))) {
+        return Some(
+            "the positions of all joints that move are in degrees (their slopes are 57.3 times the recorded velocities); \
+             say so for each joint in a column map (--map): q_unit = \"deg\""
+                .to_owned(),
+        );
+    }
+    None
+}
+
 /// Where each joint of the arm is in the recording.
-fn order(recording: &Recording, arm: &Arm, name: &str) -> anyhow::Result<Vec<usize>> {
+fn order(recording: &Recording, arm: &Arm, name: &str, map: Option<&Path>) -> anyhow::Result<Vec<usize>> {
     let known: Vec<String> = arm.joints().iter().map(|joint| joint.name.clone()).collect();
     let quoted = |names: &[String]| {
         names
@@ -256,6 +296,17 @@ fn order(recording: &Recording, arm: &Arm, name: &str) -> anyhow::Result<Vec<usi
             quoted(&recording.joints),
             arm.name(),
             quoted(&known)
+        );
+    }
+    if let (Some(joint), Some(map)) = (lacking.first(), map) {
+        let hint = foreign
+            .first()
+            .map_or_else(String::new, |other| format!(" (is [joints.{other}] meant?)"));
+        bail!(
+            "{}: has no [joints.{joint}] for {} of {}{hint}; add a table for each joint of the arm",
+            map.display(),
+            quoted(&lacking),
+            arm.name()
         );
     }
     if let Some(joint) = lacking.first() {

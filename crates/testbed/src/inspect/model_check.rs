@@ -5,7 +5,9 @@ use recording::{FindingKind, Quality, RegularRecording};
 use serde::Serialize;
 
 use super::smooth::Smooth;
+use super::torque_unit::{self, MOTOR_SIDE, deviation};
 use crate::library::nearest;
+use crate::output::number;
 
 /// A joint's torque is explained where this share of its variance is left at most.
 const EXPLAINED: f64 = 0.2;
@@ -13,11 +15,8 @@ const EXPLAINED: f64 = 0.2;
 const GAIN: f64 = 2.0;
 /// …and be better than the next by this much.
 const LEAD: f64 = 1.0;
-/// A torque less than this times the model's is on the motor's side; a payload only makes it larger.
-const MOTOR_SIDE: f64 = 0.05;
 /// A torque more than this times the model's is in another unit.
 const OTHER_UNIT: f64 = 100.0;
-
 /// Something that does not fit.
 #[derive(Debug, Serialize)]
 pub struct Misfit {
@@ -25,6 +24,9 @@ pub struct Misfit {
     pub joint: Option<String>,
     /// What was found, and the remedy.
     pub text: String,
+    /// Whether nothing can be told of the robot before it is mended.
+    #[serde(skip)]
+    pub spoils: bool,
 }
 
 /// What in `regular` does not fit `arm`.
@@ -38,14 +40,18 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
             misfits.push(Misfit {
                 joint: Some(joint.name.clone()),
                 text,
+                spoils: false,
             });
         };
         let limits = joint.limits;
         let (low, high) = measured.q_range;
         if low < limits.lower - 1e-2 || high > limits.upper + 1e-2 {
             add(format!(
-                "positions {low:.3} … {high:.3} leave the URDF's limits {:.3} … {:.3}; check unit, zero and sign, or the limits",
-                limits.lower, limits.upper
+                "positions {} … {} leave the URDF's limits {:.3} … {:.3}; check unit, zero and sign, or the limits",
+                number(low),
+                number(high),
+                limits.lower,
+                limits.upper
             ));
         }
         let torque = measured.tau_range.0.abs().max(measured.tau_range.1.abs());
@@ -88,6 +94,7 @@ fn names(arm: &Arm, regular: &RegularRecording) -> Vec<Misfit> {
             Misfit {
                 joint: Some(name.clone()),
                 text: format!("{what}{hint} Name the columns as the URDF does, or give a column map (--map)"),
+                spoils: false,
             }
         })
         .collect()
@@ -117,6 +124,8 @@ enum Supposition {
     Swapped(usize, usize),
     /// The torques alone are.
     TorquesSwapped(usize, usize),
+    /// The positions alone are.
+    PositionsSwapped(usize, usize),
 }
 
 impl Supposition {
@@ -131,16 +140,23 @@ impl Supposition {
 }
 
 /// The fit of measured torques by the model's, with dry and viscous friction and an offset.
-struct Fit {
+pub(super) struct Fit {
     /// What is left of each joint's variance, as a share.
     left: Vec<f64>,
     /// The factor of the model's torque.
-    factor: Vec<f64>,
+    pub(super) factor: Vec<f64>,
     /// What is left without the model's torque.
     without: Vec<f64>,
+    /// The measured torque's standard deviation over the model's.
+    pub(super) size: Vec<f64>,
 }
 
 impl Fit {
+    /// Whether the model's torque is needed to explain the joint's.
+    pub(super) fn told_by_model(&self, joint: usize) -> bool {
+        self.left[joint] < EXPLAINED && self.without[joint] > 3.0 * self.left[joint]
+    }
+
     fn score(&self) -> f64 {
         self.left.iter().map(|left| left.max(0.01).ln()).sum()
     }
@@ -158,6 +174,7 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
         for second in (first + 1..dof).filter(|&second| moves[first] && moves[second]) {
             suppositions.push(Supposition::Swapped(first, second));
             suppositions.push(Supposition::TorquesSwapped(first, second));
+            suppositions.push(Supposition::PositionsSwapped(first, second));
         }
     }
     let as_it_is = fit(arm, smooth, Supposition::AsItIs);
@@ -172,7 +189,15 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
     let told = |joint: Option<usize>, text: String| Misfit {
         joint: joint.map(|joint| names[joint].to_owned()),
         text,
+        spoils: false,
     };
+    if let Some(text) = torque_unit::of(moves, &as_it_is) {
+        return vec![Misfit {
+            joint: None,
+            text,
+            spoils: true,
+        }];
+    }
     let remedy = "mend the header, or map the columns (--map)";
     if let Some((gain, best, fit)) = scored.first() {
         let next = scored[1..].iter().find(|(_, other, _)| !best.same_joint(*other));
@@ -204,14 +229,17 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
                 }
                 Supposition::Swapped(a, b) if good(&a) && good(&b) => return swapped("columns", a, b),
                 Supposition::TorquesSwapped(a, b) if good(&a) && good(&b) => return swapped("torques", a, b),
+                // All joints' torques depend on the positions: that one of the two is explained is enough.
+                Supposition::PositionsSwapped(a, b) if good(&a) || good(&b) => {
+                    return swapped("positions", a, b);
+                }
                 _ => {}
             }
         }
     }
     let mut misfits = Vec::new();
     for (joint, &factor) in as_it_is.factor.iter().enumerate() {
-        let matters =
-            moves[joint] && as_it_is.left[joint] < EXPLAINED && as_it_is.without[joint] > 3.0 * as_it_is.left[joint];
+        let matters = moves[joint] && as_it_is.told_by_model(joint);
         let size = factor.abs();
         if matters && factor > 0.0 && !(MOTOR_SIDE..OTHER_UNIT).contains(&size) {
             let what = if size < 1.0 {
@@ -243,7 +271,9 @@ fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
             torque_source.swap(a, b);
         }
         Supposition::TorquesSwapped(a, b) => torque_source.swap(a, b),
+        Supposition::PositionsSwapped(a, b) => source.swap(a, b),
     }
+    // The model by the motion as supposed.
     let mut workspace = Workspace::new(arm);
     let mut model = vec![vec![0.0; count]; dof];
     let mut tau = vec![0.0; dof];
@@ -259,6 +289,7 @@ fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
         left: Vec::new(),
         factor: Vec::new(),
         without: Vec::new(),
+        size: Vec::new(),
     };
     for joint in 0..dof {
         let speed = &smooth.qd[source[joint]];
@@ -277,6 +308,8 @@ fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
         fit.left.push(if explains { left } else { without });
         fit.factor.push(factor);
         fit.without.push(without);
+        fit.size
+            .push(deviation(measured) / deviation(&model[joint]).max(f64::MIN_POSITIVE));
     }
     fit
 }

@@ -212,3 +212,40 @@ fn what_is_wrong_has_its_line_and_a_remedy() {
         assert!(error.to_string().contains(expected), "{error}");
     }
 }
+
+#[test]
+fn an_effect_said_twice_is_refused_with_both_places() {
+    let friction = |joint: &str, size: &str| {
+        format!("[[effects]]\neffect = \"viscous_friction\"\njoint = \"{joint}\"\ncoefficient = {size}\n")
+    };
+    let ripple = |periods: &str| {
+        format!(
+            "[[effects]]\neffect = \"torque_ripple\"\njoint = \"joint1\"\namplitude = 1.0\nperiods = {periods}\nphase = 0.0\n"
+        )
+    };
+    let parse = |effects: &[String]| {
+        let text = format!("schema = \"testbed.model/1\"\n{}", effects.concat());
+        EffectFile::parse(text, Path::new("k.toml"), &arm()).map_err(|error| error.to_string())
+    };
+    let twice = [
+        friction("joint1", "1.0"),
+        friction("joint2", "1.0"),
+        friction("joint1", "2.0"),
+    ];
+    let found = parse(&twice).expect_err("it is refused");
+    for part in [
+        "k.toml:10: viscous_friction on joint1 is given twice",
+        "first at k.toml:2",
+        "keep one",
+    ] {
+        assert!(found.contains(part), "\"{part}\" is missing from: {found}");
+    }
+    assert!(parse(&twice[..2]).is_ok());
+    assert!(parse(&[ripple("10.0"), ripple("20.0")]).is_ok());
+    assert!(parse(&[ripple("10.0"), ripple("10.0")]).is_err());
+    let found = parse(&[friction("joint1", "1e308")]).expect_err("it is refused");
+    assert!(
+        found.contains("k.toml:5: coefficient is 1e308") && found.len() < 200,
+        "{found}"
+    );
+}
