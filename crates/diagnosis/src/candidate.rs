@@ -161,6 +161,20 @@ impl Cause {
         }
     }
 
+    /// Whether there is but one form that it can have: it follows from rigid-body dynamics.
+    pub fn is_certain_in_form(self) -> bool {
+        matches!(
+            self,
+            Self::TorqueScale
+                | Self::TorqueOffset
+                | Self::Payload
+                | Self::LinkError
+                | Self::InertialScale
+                | Self::Tilt
+                | Self::EncoderOffset
+        )
+    }
+
     /// Whether it may be there in one recording alone.
     pub fn is_passing(self) -> bool {
         matches!(self, Self::Contact | Self::Thermal | Self::Time | Self::Periodic)

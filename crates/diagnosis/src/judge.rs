@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use crate::candidate::Cause;
 use crate::fit::Products;
+use crate::physics::is_at_its_size;
 use crate::search::{Chosen, Problem};
 use crate::settings;
 use crate::study::Study;
@@ -14,8 +15,10 @@ pub const LEAST_SHARE: f64 = 0.012;
 pub const LEAST_EVIDENCE: f64 = 25.0;
 /// … or, over the ordinary cause that it is a form of, this much.
 const LEAST_BEYOND: f64 = 15.0;
-/// On the joint of a larger effect, it must be larger than this part of that effect: what is smaller may be its form's error.
+/// On the joint of a larger effect, it must be larger than this part of that effect: what is smaller may be its form's error …
 const BESIDE_A_LARGER: f64 = 0.1;
+/// … or, where that effect's form is certain, than this part.
+const BESIDE_A_CERTAIN: f64 = 0.05;
 /// Structure without a name must explain this much of a joint's torque spread …
 const LEAST_NAMELESS_SHARE: f64 = 0.012;
 /// … and this much of what the model as it was given misses …
@@ -72,6 +75,13 @@ impl Judged {
 /// Judges `chosen`; `held` are the products of the held-out recordings, if there are any.
 pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut chosen: Chosen) -> Judged {
     let problem = study.problem(products);
+    let off = |chosen: &Chosen| -> Option<usize> {
+        let is_off = |&c: &usize| !is_at_its_size(&study.candidates[c], &chosen.fit);
+        chosen.set.iter().copied().find(is_off)
+    };
+    while let Some(off) = off(&chosen) {
+        chosen = problem.without(&chosen, off);
+    }
     let mut members;
     if let Some(held) = held {
         chosen = predicting(study, &problem, held, chosen);
@@ -253,10 +263,14 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
         if cause(member).is_ordinary() {
             return false;
         }
-        let others = largest(
-            &|m| m.candidate != member.candidate && is_named(m) && !cause(m).is_ordinary(),
-            at,
-        );
+        let others = |certain: bool| {
+            let is_other = |m: &Member| {
+                let cause = cause(m);
+                let is_known = is_named(m) && !cause.is_ordinary() && cause.is_certain_in_form() == certain;
+                m.candidate != member.candidate && is_known
+            };
+            largest(&is_other, at)
+        };
         let nameless = largest(&|m| !is_named(m), at);
         share < LEAST_SHARE
             || member.evidence
@@ -265,7 +279,8 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
                 } else {
                     LEAST_EVIDENCE
                 }
-            || share < BESIDE_A_LARGER * others
+            || share < BESIDE_A_LARGER * others(false)
+            || share < BESIDE_A_CERTAIN * others(true)
             || share < BESIDE_NAMELESS * nameless
     };
     (0..members.len())
