@@ -1,5 +1,6 @@
 //! Tests of the whole, through the built program in a temporary folder.
 
+mod conceal;
 mod diagnose;
 mod diagnose_blind;
 mod diagnose_made;

@@ -187,13 +187,19 @@ impl<'a> Stage<'a> {
         Ok((runs, torques))
     }
 
-    /// The expressed share of effect `which`: all training recordings, with and without it.
-    pub(crate) fn share(&self, effects: &[Concealed], which: usize, with: &[Torques]) -> Result<f64, ProofError> {
-        let without: Vec<Torques> = self
-            .training
-            .iter()
-            .map(|reference| Ok(self.torques(&self.run(effects, Some(which), reference)?).0))
-            .collect::<Result<_, ProofError>>()?;
+    /// The expressed share of effect `which`: all training recordings, with and without it; `first` is the first without it, where it
+    /// is known.
+    pub(crate) fn share(
+        &self,
+        effects: &[Concealed],
+        which: usize,
+        with: &[Torques],
+        first: Option<&Torques>,
+    ) -> Result<f64, ProofError> {
+        let mut without: Vec<Torques> = first.into_iter().cloned().collect();
+        for reference in &self.training[without.len()..] {
+            without.push(self.torques(&self.run(effects, Some(which), reference)?).0);
+        }
         Ok(share(with, &without, effects[which].effect == "torque_offset"))
     }
 
@@ -278,7 +284,7 @@ pub fn conceal_effects(
     }
     let (runs, torques) = stage.run_all(&effects)?;
     for which in 0..effects.len() {
-        effects[which].expressed_share = Some(stage.share(&effects, which, &torques)?);
+        effects[which].expressed_share = Some(stage.share(&effects, which, &torques, None)?);
     }
     Ok(stage.finish(name, seed, effects, &runs))
 }

@@ -10,10 +10,12 @@ use crate::robot::Robot;
 use crate::truth::Concealed;
 
 mod drive;
+mod friction;
 mod parts;
 
 pub(crate) use drive::LONGEST_DELAY;
 use drive::{Drive, Rotor};
+use friction::Friction;
 use parts::Parts;
 
 /// The loop's period, and the plant's step (s).
@@ -109,6 +111,7 @@ struct Simulation<'a> {
     /// Torque on each link's side.
     net: Vec<f64>,
     levels: Vec<f64>,
+    friction: Friction,
     rigid: Vec<f64>,
     contact: Matrix6xX<f64>,
     run: Run,
@@ -137,6 +140,7 @@ impl<'a> Simulation<'a> {
             loads: vec![[0.0; 2]; n],
             net: vec![0.0; n],
             levels: vec![0.0; n],
+            friction: Friction::new(n),
             rigid: vec![0.0; n],
             contact: Matrix6xX::zeros(n),
             run: Run {
@@ -197,6 +201,7 @@ impl<'a> Simulation<'a> {
         self.plant = Plant::new(&arm, &options())?;
         self.plant.set_state(&q, &qd)?;
         self.arm = arm;
+        self.friction.forget();
         self.next_change = self.parts.next_change(time);
         Ok(())
     }
@@ -228,9 +233,7 @@ impl<'a> Simulation<'a> {
         self.add_link_side(time);
         self.add_contacts(time);
         self.couple(time)?;
-        if self.levels.iter().any(|&level| level > 0.0) || self.parts.has_dry() {
-            self.plant.set_dry_friction(&self.levels)?;
-        }
+        self.rub();
         self.plant.step(&self.net)?;
         for j in 0..n {
             self.qdd[j] = (self.plant.qd()[j] - self.qd_before[j]) / TICK;
@@ -326,11 +329,31 @@ impl<'a> Simulation<'a> {
             coupled
         };
         let first = couple(&self.net, &self.qdd);
+        // With the dry friction of the last tick, that of this one is not known yet.
+        let rubbed: Vec<f64> = first
+            .iter()
+            .zip(&self.friction.torques)
+            .map(|(net, f)| net + f)
+            .collect();
         let mut qdd = self.qdd.clone();
-        self.plant.set_dry_friction(&self.levels)?;
-        self.plant.accelerations(&first, &mut qdd)?;
+        self.plant.accelerations(&rubbed, &mut qdd)?;
         self.net = couple(&self.net, &qdd);
         Ok(())
+    }
+}
+
+impl Simulation<'_> {
+    /// Adds the dry friction of joints whose rotor turns with their link.
+    fn rub(&mut self) {
+        if self.levels.iter().all(|&level| level == 0.0) {
+            return;
+        }
+        let state = [self.plant.q(), self.plant.qd()];
+        self.friction
+            .find(&self.arm, &mut self.workspace, state, &self.net, &self.levels);
+        for (net, torque) in self.net.iter_mut().zip(&self.friction.torques) {
+            *net += torque;
+        }
     }
 }
 

@@ -63,6 +63,15 @@ impl Reference {
         }
     }
 
+    /// The first `seconds` of it.
+    pub(crate) fn cut(mut self, seconds: f64) -> Self {
+        let length = (LEAD + (seconds / TICK) as usize) * self.dof;
+        for values in [&mut self.q, &mut self.qd, &mut self.qdd, &mut self.ff] {
+            values.truncate(length);
+        }
+        self
+    }
+
     /// Whether no drive would have to give more than a part of its limit.
     fn is_feasible(&self, robot: &Robot) -> bool {
         let joints = robot.arm().joints();
@@ -229,14 +238,5 @@ impl Reference {
     /// The rigid torque along encoder positions.
     pub(crate) fn along(arm: &Arm, q: &[f64]) -> Vec<f64> {
         Self::new(arm, 0.0, q.to_vec()).ff
-    }
-
-    /// The first `seconds` of it.
-    pub(crate) fn cut(mut self, seconds: f64) -> Self {
-        let length = (LEAD + (seconds / TICK) as usize) * self.dof;
-        for values in [&mut self.q, &mut self.qd, &mut self.qdd, &mut self.ff] {
-            values.truncate(length);
-        }
-        self
     }
 }

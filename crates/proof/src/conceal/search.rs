@@ -8,7 +8,7 @@ use crate::campaign::CasePlan;
 use crate::draw::{FAMILIES, Scales, is_sized, resize};
 use crate::error::ProofError;
 use crate::machine::Run;
-use crate::motion::{DURATION, start};
+use crate::motion::{DURATION, LEAD, Reference, start};
 use crate::physics::UNKNOWN;
 use crate::share::{Torques, share};
 use crate::truth::Concealed;
@@ -21,9 +21,16 @@ const OSCILLATION: (f64, f64) = (0.2, 0.5);
 /// The expressed shares that a case may have.
 const SHARES: (f64, f64) = (0.015, 1.2);
 
+/// How much of a recording tells sizes (s); shares are those of whole recordings.
+const TRIAL: f64 = 12.0;
+
 /// What effects are measured against: the machine with its ordinary friction.
 struct Base {
+    /// The beginning of the first recording.
+    trial: Reference,
     torques: Torques,
+    /// All of the first recording.
+    whole: Torques,
     above: f64,
     sorted: Vec<Vec<f64>>,
 }
@@ -62,8 +69,9 @@ pub(super) fn search(
             continue;
         }
         let mut shows = true;
+        let is_base = effects.len() == 1 && !leaves_more_than_the_base(&effects[0]);
         for which in 0..effects.len() {
-            match stage.share(&effects, which, &torques) {
+            match stage.share(&effects, which, &torques, is_base.then_some(&base.whole)) {
                 Ok(share) => {
                     shows &= (SHARES.0..=SHARES.1).contains(&share);
                     effects[which].expressed_share = Some(share);
@@ -89,6 +97,7 @@ pub(super) fn search(
 fn base(stage: &Stage<'_>) -> Result<Base, ProofError> {
     let run = stage.run(&[], None, &stage.training[0])?;
     let (torques, above) = stage.torques(&run);
+    let trial = stage.training[0].clone().cut(TRIAL);
     let sorted = torques
         .iter()
         .map(|torque| {
@@ -97,7 +106,14 @@ fn base(stage: &Stage<'_>) -> Result<Base, ProofError> {
             sizes
         })
         .collect();
-    Ok(Base { torques, above, sorted })
+    let begin = trial.ticks() - LEAD;
+    Ok(Base {
+        torques: torques.iter().map(|torque| torque[..begin].to_vec()).collect(),
+        whole: torques,
+        above,
+        sorted,
+        trial,
+    })
 }
 
 /// One of each effect, on joints of their own; `None` if one does not show by itself.
@@ -162,9 +178,10 @@ fn fit(stage: &Stage<'_>, effect: &mut Concealed, target: f64, base: &Base) -> R
         Some(time) => stage.training.iter().rfind(|reference| reference.start <= time),
         None => None,
     };
-    let reference = reference.unwrap_or(&stage.training[0]);
+    let is_whole = reference.is_some();
+    let reference = reference.unwrap_or(&base.trial);
     let run = |effect: &Concealed, without| stage.run(std::slice::from_ref(effect), without, reference);
-    let without = if leaves_more_than_the_base(effect) || reference.start > 0.0 {
+    let without = if leaves_more_than_the_base(effect) || is_whole {
         match run(effect, Some(0)) {
             Ok(run) => stage.torques(&run).0,
             Err(error) if is_unsound(&error) => return Ok(false),

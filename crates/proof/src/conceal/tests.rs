@@ -81,7 +81,7 @@ fn the_truth_says_what_was_given() {
 fn what_cannot_be_is_refused() {
     let robot = seven_axis();
     let refuse = |effect: Concealed| {
-        let error = conceal_effects(&robot, "no", &[effect], &Settings::default()).unwrap_err();
+        let error = conceal_effects(&robot, "no", &[effect], &Settings::default()).expect_err("it is refused");
         error.to_string()
     };
     let has = |text: String, part: &str| assert!(text.contains(part), "{text}");
@@ -113,7 +113,9 @@ fn what_cannot_be_is_refused() {
         ..Settings::default()
     };
     has(
-        conceal_effects(&robot, "no", &[], &rate).unwrap_err().to_string(),
+        conceal_effects(&robot, "no", &[], &rate)
+            .expect_err("it is refused")
+            .to_string(),
         "500",
     );
 }
@@ -142,7 +144,7 @@ fn cases_are_written_once() {
     );
     assert!(truths.join("case_000.json").is_file());
     let error = crate::write_case(&made, folder.path(), &truths)
-        .unwrap_err()
+        .expect_err("it is refused")
         .to_string();
     assert!(error.contains("nothing is overwritten"), "{error}");
 }

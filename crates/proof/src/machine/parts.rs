@@ -161,10 +161,6 @@ impl Parts {
         smooth.filter(move |(_, onset)| time >= *onset).map(|(law, _)| law)
     }
 
-    pub(super) fn has_dry(&self) -> bool {
-        self.joints.iter().any(|joint| !joint.dry.is_empty())
-    }
-
     pub(super) fn feels_rigid_load(&self) -> bool {
         let rigid = |(law, _): &(Dry, f64)| matches!(law, Dry::Loaded { of: Load::Rigid, .. });
         self.joints.iter().any(|joint| joint.dry.iter().any(rigid))

@@ -46,13 +46,12 @@ fn robust(effect: &str) -> Concealed {
     };
     let whole = Concealed::new(effect, None);
     match effect {
-        "viscous_friction" => on_joint(&[("coefficient", 3.0)]),
+        "viscous_friction" | "quadratic_drag" => on_joint(&[("coefficient", 3.0)]),
         "coulomb_friction" => on_joint(&[("level", 2.0)]),
         "friction_asymmetry" => on_joint(&[("positive", 2.0), ("negative", 1.0)]),
         "stribeck_friction" => on_joint(&[("coulomb", 1.0), ("breakaway", 3.0), ("velocity", 0.2)]),
         "load_dependent_friction" => on_joint(&[("coulomb", 1.0), ("gain", 0.15)]),
         "thermal_drift" => on_joint(&[("coulomb", 1.0), ("amplitude", 1.0), ("time_constant", 30.0)]),
-        "quadratic_drag" => on_joint(&[("coefficient", 3.0)]),
         "rotor_inertia" => on_joint(&[("inertia", 0.2)]),
         "torque_scale" => on_joint(&[("factor", 1.2)]),
         "torque_offset" => on_joint(&[("offset", 2.0)]),
@@ -203,10 +202,16 @@ fn what_cannot_follow_is_refused() {
     let robot = seven_axis();
     let weak = Concealed::new("torque_saturation", Some("axis2")).with("limit", 1.0);
     let machine = Machine::new(&robot, &[&weak], None).expect("it fits");
-    let error = machine.run(&reference(&robot).cut(4.0), 0.0).map(|_| ()).unwrap_err();
+    let error = machine
+        .run(&reference(&robot).cut(4.0), 0.0)
+        .map(|_| ())
+        .expect_err("it is refused");
     assert!(error.to_string().contains("axis"), "{error}");
     let gap = Concealed::new("backlash", Some("axis2")).with("halfgap", 0.01);
     let machine = Machine::new(&robot, &[&gap], None).expect("it fits");
-    let error = machine.run(&reference(&robot).cut(1.0), 0.0).map(|_| ()).unwrap_err();
+    let error = machine
+        .run(&reference(&robot).cut(1.0), 0.0)
+        .map(|_| ())
+        .expect_err("it is refused");
     assert!(error.to_string().contains("rotor"), "{error}");
 }

@@ -1,0 +1,154 @@
+//! `testbed conceal` through the program: cases that a diagnosis reads, and what is refused.
+
+use crate::support::Sandbox;
+
+/// A spring that is no straight line, on an arm that the user brings.
+const EFFECTS: &str = r#"schema = "testbed.model/1"
+
+[[effects]]
+effect = "spring"
+joint = "elbow"
+stiffness = 4.0
+rest = 0.1
+form = "hardening"
+
+[[effects]]
+effect = "payload"
+mass = 1.0
+com = [0.0, 0.0, 0.1]
+onset = 12.0
+"#;
+
+#[test]
+fn what_is_concealed_is_found() {
+    let sandbox = Sandbox::new();
+    sandbox.write("trio.urdf", crate::diagnose_made::URDF);
+    let text = EFFECTS
+        .split("\n[[effects]]\neffect = \"payload\"")
+        .next()
+        .unwrap_or(EFFECTS);
+    sandbox.write("spring.toml", text);
+    let arguments = [
+        "conceal",
+        "--robot",
+        "trio.urdf",
+        "--effects",
+        "spring.toml",
+        "--out",
+        "cases",
+    ];
+    let printed = sandbox.succeed(&arguments);
+    assert!(printed.contains("cases/truth/case_000.json"), "{printed}");
+    assert_eq!(
+        sandbox.list("cases/case_000"),
+        [
+            "held_out.csv",
+            "robot.urdf",
+            "train_1.csv",
+            "train_2.csv",
+            "train_3.csv"
+        ]
+    );
+    let truth = sandbox.json("cases/truth/case_000.json");
+    let spring = &truth["concealed"][0];
+    assert_eq!(
+        (&spring["effect"], &spring["form"]),
+        (&"spring".into(), &"hardening".into())
+    );
+    assert!(
+        spring["expressed_share"].as_f64().is_some_and(|share| share > 0.03),
+        "{spring}"
+    );
+
+    // A second time nothing is touched.
+    let refused = sandbox.refuse(&arguments);
+    assert!(refused.contains("nothing is overwritten"), "{refused}");
+
+    let folder = |file: &str| format!("cases/case_000/{file}");
+    let (robot, held_out) = (folder("robot.urdf"), folder("held_out.csv"));
+    let train: Vec<String> = (1..=3).map(|k| folder(&format!("train_{k}.csv"))).collect();
+    sandbox.succeed(&[
+        "diagnose",
+        "--robot",
+        &robot,
+        "--train",
+        &train[0],
+        &train[1],
+        &train[2],
+        "--held-out",
+        &held_out,
+        "--json",
+        "out.json",
+    ]);
+    let found = sandbox.json("out.json");
+    let findings = found["findings"].as_array().expect("there is a list");
+    let named: Vec<String> = findings
+        .iter()
+        .map(|finding| format!("{} {}", finding["effect"], finding["joint"]))
+        .collect();
+    assert_eq!(named, ["\"spring\" \"elbow\""], "{found}");
+}
+
+#[test]
+fn the_same_seed_makes_the_same_bytes() {
+    let sandbox = Sandbox::new();
+    sandbox.write("trio.urdf", crate::diagnose_made::URDF);
+    for (out, jobs) in [("one", "1"), ("two", "2")] {
+        sandbox.succeed(&[
+            "conceal",
+            "--robot",
+            "trio.urdf",
+            "--seed",
+            "2",
+            "--cases",
+            "2",
+            "--jobs",
+            jobs,
+            "--out",
+            out,
+        ]);
+    }
+    let read = |path: &str| std::fs::read(sandbox.path(path)).expect("the file is there");
+    for case in sandbox.list("one/truth") {
+        assert_eq!(read(&format!("one/truth/{case}")), read(&format!("two/truth/{case}")));
+        let name = case.trim_end_matches(".json");
+        for file in sandbox.list(&format!("one/{name}")) {
+            assert_eq!(
+                read(&format!("one/{name}/{file}")),
+                read(&format!("two/{name}/{file}")),
+                "{name}/{file}"
+            );
+        }
+    }
+    assert_eq!(sandbox.list("one").len(), 3);
+}
+
+#[test]
+fn what_cannot_be_concealed_is_refused_with_its_line() {
+    let sandbox = Sandbox::new();
+    let refuse = |text: &str, part: &str| {
+        sandbox.write("effects.toml", text);
+        let error = sandbox.refuse(&[
+            "conceal",
+            "--robot",
+            "seven_axis",
+            "--effects",
+            "effects.toml",
+            "--out",
+            "cases",
+        ]);
+        assert!(error.contains(part), "{error}");
+    };
+    refuse(&EFFECTS.replace("elbow", "axis9"), "effects.toml:5");
+    refuse(
+        &EFFECTS.replace("elbow", "axis4").replace("hardening", "air spring"),
+        "gas spring, hardening, knee",
+    );
+    refuse(&EFFECTS.replace("elbow", "axis4").replace("mass = 1.0\n", ""), "mass");
+    refuse(&EFFECTS.replace("stiffness", "stifness"), "effects.toml:6");
+    let error = sandbox.refuse(&["conceal", "--out", "cases"]);
+    assert!(error.contains("--seed") || error.contains("--effects"), "{error}");
+    let error = sandbox.refuse(&["conceal", "--robot", "puma650", "--seed", "1", "--out", "cases"]);
+    assert!(error.contains("did you mean \"puma560\""), "{error}");
+    assert!(sandbox.list("cases").is_empty());
+}
