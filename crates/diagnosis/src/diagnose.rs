@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use torque::Effect;
 
 use crate::bursts;
+use crate::candidate::Cause;
 use crate::error::DiagnosisError;
 use crate::found::findings;
 use crate::given::{self, Wanted};
@@ -70,7 +71,14 @@ pub fn diagnose(
     check(arm, inputs, options.cutoff)?;
     progress("filtering, and the model along the motion");
     let arm_and_known = known::Known::new(arm, &options.known)?;
-    let mut study = Study::new(&arm_and_known, inputs, options.cutoff);
+    let may_be = |cause: Cause, joint: Option<usize>| {
+        options.only.as_ref().is_none_or(|wanted| {
+            let joint = joint.map(|joint| &arm.joints()[joint].name);
+            let is_wanted = |one: &Wanted| cause.name() == Some(&one.effect) && joint == one.joint.as_ref();
+            wanted.iter().any(is_wanted)
+        })
+    };
+    let mut study = Study::new(&arm_and_known, inputs, options.cutoff, &may_be);
     let fitted = study.fitted.clone();
     let (judged, resampled) = match &options.only {
         Some(wanted) => {

@@ -24,8 +24,6 @@ const MOST_CLIPPED: f64 = 0.45;
 const LEAST_COULOMB: f64 = 0.2;
 /// A point of a curve counts where the joint, in motion, comes so near that its tent is this high.
 const VISITED: f64 = 0.5;
-/// A gap whose torque is so nearly that of an encoder's offset (the cosine between them) is not crossed.
-const NOT_CROSSED: f64 = 0.95;
 /// Exponents of what grows faster than the speed.
 const DRAG: std::ops::RangeInclusive<f64> = 1.4..=3.2;
 /// Between its points a spring's curve may fall, for noise, by this part of all its rise …
@@ -57,11 +55,10 @@ pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -
         Cause::TorqueScale => (-0.7..2.0).contains(&value(0)),
         // A drive spends no more than part of its time at its limit.
         Cause::Saturation => CUT_OFF.contains(&value(0)) && acting(candidate, table) < MOST_CLIPPED,
-        Cause::Delay => UNIT.contains(&value(0)),
+        Cause::Delay | Cause::Backlash => UNIT.contains(&value(0)),
         // Beside a resonance the coefficient is soon small: until its size is refined, it says little.
         Cause::Elasticity if !candidate.is_trial => COARSE_UNIT.contains(&value(0)),
         Cause::Elasticity => UNIT.contains(&value(0)),
-        Cause::Backlash => UNIT.contains(&value(0)) && is_crossed(candidate, table),
         Cause::Payload => {
             let mass = value(0);
             let reach = PAYLOAD_REACH * reach(arm);
@@ -116,24 +113,6 @@ fn fades(candidate: &Candidate, table: &Table) -> bool {
         slow += usize::from(this.x[place][row].abs() > 0.5);
     }
     2 * slow < moving
-}
-
-/// Whether the load turns so that the gap is crossed. One that is not shifts the encoder's zero, and is an offset of it.
-fn is_crossed(candidate: &Candidate, table: &Table) -> bool {
-    let Some(joint) = candidate.joint else { return false };
-    let offset = table.terms.iter().position(|term| *term == Term::EncoderOffset(joint));
-    let this = &table.joints[joint];
-    let column = |column: usize| table.place[joint][column].map(|place| &this.x[place]);
-    let (Some(gap), Some(offset)) = (column(candidate.columns[0]), offset.and_then(column)) else {
-        return true;
-    };
-    let (mut gg, mut go, mut oo) = (0.0, 0.0, 0.0);
-    for row in (0..this.y.len()).filter(|&row| this.moving[row]) {
-        gg += gap[row] * gap[row];
-        go += gap[row] * offset[row];
-        oo += offset[row] * offset[row];
-    }
-    go.abs() < NOT_CROSSED * (gg * oo).sqrt()
 }
 
 /// Whether its exponent is one of drag.

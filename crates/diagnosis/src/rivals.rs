@@ -42,10 +42,10 @@ const MARGIN_SCALE: f64 = 8.0;
 pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: usize) -> Standing {
     let finding = &study.candidates[member];
     let mut set: Vec<usize> = chosen.set.iter().copied().filter(|&c| c != member).collect();
-    // A form of dry friction stands against plain dry friction with something else.
+    // A form of something simpler stands against that with something else.
     let plain = (0..study.candidates.len()).find(|&c| {
         let plain = &study.candidates[c];
-        plain.cause == Cause::Coulomb
+        Some(plain.cause) == finding.cause.plain()
             && plain.joint == finding.joint
             && finding.columns.len() > 1
             && finding.columns.contains(&plain.columns[0])

@@ -3,7 +3,7 @@
 use arm::{Arm, Vector3};
 use rayon::prelude::*;
 
-use crate::candidate::{Candidate, Cause, catalogue};
+use crate::candidate::{Candidate, Cause, MayBe, catalogue};
 use crate::columns::Scales;
 use crate::fit::{Fit, Products};
 use crate::known::Known;
@@ -50,8 +50,8 @@ pub struct Study {
 }
 
 impl Study {
-    /// Prepares `inputs` for the arm and effects in `known`, filtered at `cutoff` (Hz).
-    pub fn new(known: &Known, inputs: &[Input<'_>], cutoff: f64) -> Self {
+    /// Prepares `inputs` for the arm and effects in `known`, filtered at `cutoff` (Hz), with the candidates that `may_be`.
+    pub fn new(known: &Known, inputs: &[Input<'_>], cutoff: f64, may_be: &MayBe<'_>) -> Self {
         let arm = &known.arm;
         let mut motions = Motions::new(inputs, cutoff);
         let measured: Vec<Vec<f64>> = (0..motions.dof)
@@ -105,6 +105,7 @@ impl Study {
         if motions.cutoff < settings::LEAST_FOR_DYNAMICS {
             list.retain(|(cause, ..)| !cause.is_unit());
         }
+        list.retain(|(cause, joint, _)| may_be(*cause, *joint));
         for (cause, joint, columns) in list {
             let columns = columns
                 .into_iter()

@@ -114,7 +114,7 @@ impl Scales<'_> {
         let inner = match effect {
             // The base may carry no load, and the last link may be next to nothing.
             "load_dependent_friction" | "encoder_offset" | "torque_saturation" => 1..n.saturating_sub(1),
-            "link_inertial_error" => 1..n,
+            "link_inertial_error" | "transmission_coupling" => 1..n,
             _ => 0..n,
         };
         if joints.iter().any(|j| inner.contains(j)) {
@@ -143,10 +143,10 @@ impl Scales<'_> {
         drawn
     }
 
-    /// Another joint, one next to `j` where `near`.
-    fn other(&self, j: usize, near: bool, random: &mut impl Rng) -> &str {
+    /// Another joint than `j`.
+    fn other(&self, j: usize, random: &mut impl Rng) -> &str {
         let n = self.robot.arm().dof();
-        let others: Vec<usize> = (0..n).filter(|&o| o != j && (!near || o.abs_diff(j) == 1)).collect();
+        let others: Vec<usize> = (0..n).filter(|&o| o != j).collect();
         let o = others.choose(random).copied().unwrap_or(j);
         &self.robot.arm().joints()[o].name
     }
@@ -321,10 +321,10 @@ impl Scales<'_> {
                 .with("rotor", rotor)
             }
             "transmission_coupling" => {
-                let other = self.other(j, true, random);
-                let o = self.robot.arm().joints().iter().position(|joint| joint.name == other);
-                let both = (self.robot.inertia(j) * self.robot.inertia(o.unwrap_or(j))).sqrt();
-                bare.with("other", other)
+                // The law is the same for both joints; it is told of the outer one, as the catalogue does.
+                let o = j.saturating_sub(1);
+                let both = (self.robot.inertia(j) * self.robot.inertia(o)).sqrt();
+                bare.with("other", self.robot.arm().joints()[o].name.as_str())
                     .with("viscous", s * random.random_range(0.05..0.35))
                     .with("inertia", both * random.random_range(0.15..0.55))
             }

@@ -100,11 +100,25 @@ fn shares_a_level(truth: &Truth, concealed: &Concealed) -> bool {
     dry(concealed.name()) && truth.concealed.iter().filter(same).count() > 1
 }
 
+/// Whether the numbers mean something else than the catalogue's: the effect, or another part of the joint's friction curve, has
+/// another form than the textbook's.
+fn is_of_another_form(truth: &Truth, concealed: &Concealed) -> bool {
+    let curve =
+        |effect: &str| effect.ends_with("_friction") || matches!(effect, "friction_asymmetry" | "quadratic_drag");
+    let bends = |other: &Concealed| {
+        other.form.is_some() && other.joint == concealed.joint && curve(other.name()) && curve(concealed.name())
+    };
+    concealed.form.is_some() || truth.concealed.iter().any(bends)
+}
+
 /// The numbers of a finding of `concealed`.
 pub fn sized(truth: &Truth, concealed: &Concealed, finding: &Named) -> Vec<Sized> {
     let is_level = |key: &str| matches!(key, "level" | "coulomb" | "breakaway" | "positive" | "negative");
     let shared = shares_a_level(truth, concealed);
     let mut list = Vec::new();
+    if is_of_another_form(truth, concealed) {
+        return list;
+    }
     for (k, key) in parameters(concealed.name()).iter().enumerate() {
         if shared && (is_level(key) || *key == "amplitude") {
             continue;

@@ -12,7 +12,7 @@ impl Scales<'_> {
     pub(super) fn outside(&self, bare: Concealed, j: usize, random: &mut impl Rng) -> Concealed {
         let s = self.spreads[j];
         let home = self.robot.home()[j];
-        let other = self.other(j, false, random);
+        let other = self.other(j, random);
         let form = |bare: Concealed, random: &mut _, often: f64, form: &str| {
             if Rng::random_bool(random, often) {
                 bare.formed(form)
