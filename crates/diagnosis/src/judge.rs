@@ -260,28 +260,33 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
                 || member.evidence < LEAST_NAMELESS_EVIDENCE
                 || share < BESIDE_A_LARGER * named;
         }
-        if cause(member).is_ordinary() {
-            return false;
-        }
-        let others = |certain: bool| {
-            let is_other = |m: &Member| {
-                let cause = cause(m);
-                let is_known = is_named(m) && !cause.is_ordinary() && cause.is_certain_in_form() == certain;
-                m.candidate != member.candidate && is_known
-            };
-            largest(&is_other, at)
-        };
         let nameless = largest(&|m| !is_named(m), at);
-        share < LEAST_SHARE
-            || member.evidence
-                < if cause(member).plain().is_some() {
-                    LEAST_BEYOND
-                } else {
-                    LEAST_EVIDENCE
-                }
-            || share < BESIDE_A_LARGER * others(false)
-            || share < BESIDE_A_CERTAIN * others(true)
-            || share < BESIDE_NAMELESS * nameless
+        if cause(member).is_ordinary() {
+            // Beside larger structure without a name a drive's inertia may be a part of that.
+            return cause(member) == Cause::RotorInertia && share < nameless;
+        }
+        let needed = if cause(member).plain().is_some() {
+            LEAST_BEYOND
+        } else {
+            LEAST_EVIDENCE
+        };
+        // What acts on several joints need not stand out on all of them.
+        let stands_out = |joint: usize| {
+            let others = |certain: bool| {
+                let is_other = |m: &Member| {
+                    let cause = cause(m);
+                    let is_known = is_named(m) && !cause.is_ordinary() && cause.is_certain_in_form() == certain;
+                    m.candidate != member.candidate && is_known
+                };
+                largest(&is_other, joint)
+            };
+            let share = member.shares[joint];
+            share >= LEAST_SHARE
+                && share >= BESIDE_A_LARGER * others(false)
+                && share >= BESIDE_A_CERTAIN * others(true)
+                && share >= BESIDE_NAMELESS * largest(&|m| !is_named(m), joint)
+        };
+        member.evidence < needed || !(0..dof).any(stands_out)
     };
     (0..members.len())
         .filter(|&k| fails(&members[k]))

@@ -81,7 +81,10 @@ pub fn drives(
     } else {
         *needed.select_nth_unstable_by(at, f64::total_cmp).1
     };
-    for share in [0.2, 0.27, 0.36, 0.45, 0.55, 0.65, 0.73, 0.8, 0.86, 0.91, 0.95] {
+    // A position loop may ask for many times what the drive can give.
+    let wound_up = [0.027, 0.036, 0.048, 0.064, 0.085, 0.11, 0.15];
+    let usual = [0.2, 0.27, 0.36, 0.45, 0.55, 0.65, 0.73, 0.8, 0.86, 0.91, 0.95];
+    for share in wound_up.into_iter().chain(usual) {
         let limit = share * largest;
         if limit < BELOW_NEED * needed {
             continue;

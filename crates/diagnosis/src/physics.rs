@@ -55,10 +55,9 @@ pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -
         Cause::TorqueScale => (-0.7..2.0).contains(&value(0)),
         // A drive spends no more than part of its time at its limit.
         Cause::Saturation => CUT_OFF.contains(&value(0)) && acting(candidate, table) < MOST_CLIPPED,
-        Cause::Delay | Cause::Backlash => UNIT.contains(&value(0)),
         // Beside a resonance the coefficient is soon small: until its size is refined, it says little.
         Cause::Elasticity if !candidate.is_trial => COARSE_UNIT.contains(&value(0)),
-        Cause::Elasticity => UNIT.contains(&value(0)),
+        Cause::Delay | Cause::Elasticity | Cause::Backlash => UNIT.contains(&value(0)),
         Cause::Payload => {
             let mass = value(0);
             let reach = PAYLOAD_REACH * reach(arm);
