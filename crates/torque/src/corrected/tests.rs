@@ -57,7 +57,6 @@ fn friction_follows_the_sign_of_the_velocity() {
             Effect::ViscousFriction {
                 joint: a(),
                 coefficient: 4.0,
-                exponent: 2.0,
             },
             0.0,
             -0.5,
@@ -69,6 +68,7 @@ fn friction_follows_the_sign_of_the_velocity() {
             Effect::QuadraticDrag {
                 joint: a(),
                 coefficient: 4.0,
+                exponent: 2.0,
             },
             0.0,
             -0.5,
