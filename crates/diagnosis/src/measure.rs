@@ -52,10 +52,7 @@ pub fn drives(
         return list;
     }
     if mass > 0.0 {
-        // As close as a lightly damped resonance needs, or none fits well enough to be refined.
-        for hertz in [
-            2.5, 3.0, 3.5, 4.2, 5.0, 6.0, 7.0, 8.4, 10.0, 12.0, 14.0, 17.0, 20.0, 24.0, 28.0,
-        ] {
+        for hertz in [2.5, 3.5, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0] {
             let omega = 2.0 * std::f64::consts::PI * hertz;
             let elastic = Term::Elastic {
                 joint,

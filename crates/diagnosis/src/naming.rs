@@ -61,6 +61,17 @@ impl Reader<'_> {
         at.map_or(0.0, |at| self.note(key, unit, |draw| factor * draw[at]))
     }
 
+    /// What is simulated at its size: where its torque is in proportion to that, its coefficient and the size's correction
+    /// mean the same, and only together are they determined. `value` takes both.
+    fn simulated(&mut self, key: &'static str, unit: &'static str, value: impl Fn(f64, f64) -> f64) -> f64 {
+        let (first, size) = (self.nth(0), self.resampled.size(self.candidate, Size::Main));
+        self.note(key, unit, |draw| {
+            let drawn = first.map_or(1.0, |at| draw[at]);
+            let size = size.map_or(0.0, |at| draw[at]);
+            value(drawn, size.clamp(-0.5 * drawn.abs(), 0.5 * drawn.abs()))
+        })
+    }
+
     /// Notes a size at its corrected value.
     fn size(&mut self, key: &'static str, unit: &'static str, size: Size, value: f64) -> f64 {
         match self.resampled.size(self.candidate, size) {
@@ -188,17 +199,11 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
             }
         }
         Cause::Delay => {
-            let Some(a) = reader.nth(0) else { return Vec::new() };
             let Term::Late { delay, .. } = terms[0] else {
                 return Vec::new();
             };
-            // The coefficient and the delay tell much the same: what is seen is their product.
-            let correction = resampled.size(candidate, Size::Main);
             Effect::ActuationDelay {
-                delay: reader.note("delay", "s", |draw| {
-                    let size = correction.map_or(0.0, |at| draw[at]);
-                    delay * (draw[a] + size)
-                }),
+                delay: reader.simulated("delay", "s", |drawn, size| delay * (drawn + size)),
                 joint,
             }
         }
@@ -207,7 +212,7 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
                 return Vec::new();
             };
             Effect::JointElasticity {
-                stiffness: reader.size("stiffness", units.stiffness, Size::Main, stiffness),
+                stiffness: reader.simulated("stiffness", units.stiffness, |drawn, size| stiffness / (drawn - size)),
                 damping: reader.size("damping", units.damping, Size::Damping, damping),
                 joint,
             }
@@ -217,7 +222,7 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
                 return Vec::new();
             };
             Effect::Backlash {
-                halfgap: reader.size("halfgap", units.position, Size::Main, halfgap),
+                halfgap: reader.simulated("halfgap", units.position, |drawn, size| halfgap * (drawn + size)),
                 joint,
             }
         }

@@ -21,7 +21,7 @@ const LARGEST_SHARE: f64 = 3.0;
 /// The largest part of the moving rows that a torque limit may clip.
 const MOST_CLIPPED: f64 = 0.45;
 /// Beside what breaking away takes more, dry friction of a joint in motion is at least this part of it.
-const LEAST_COULOMB: f64 = 0.2;
+const LEAST_COULOMB: f64 = 0.1;
 /// A point of a curve counts where the joint, in motion, comes so near that its tent is this high.
 const VISITED: f64 = 0.5;
 /// Exponents of what grows faster than the speed.

@@ -70,6 +70,14 @@ fn resized(terms: &[Term], factor: f64) -> Vec<Term> {
 fn variants(terms: &[Term], round: usize) -> Vec<Vec<Term>> {
     let mut list: Vec<Vec<Term>> = ROUNDS[round].iter().map(|&factor| resized(terms, factor)).collect();
     list.retain(|terms| !terms.is_empty());
+    // A spring's stiffness and its damping hang together: each size of the one with each of the other.
+    if sizes(terms).contains(&Size::Damping) {
+        let steps = [-1.0, -0.4, 0.4, 1.0].map(|step: f64| (1.2 * step * 0.25_f64.powi(round as i32)).exp());
+        let stiffer = list.clone();
+        for terms in stiffer.into_iter().chain([terms.to_vec()]) {
+            list.extend(steps.map(|factor| varied(&terms, Size::Damping, factor)));
+        }
+    }
     // A finer step about a ripple's period, relative to one period over the range.
     let nudges = [-1.0, -0.4, 0.4, 1.0].map(|step| step * 0.25_f64.powi(round as i32));
     let mut nudged = |change: &dyn Fn(&mut Term, f64) -> bool| {
@@ -91,10 +99,6 @@ fn variants(terms: &[Term], round: usize) -> Vec<Vec<Term>> {
         }
         Term::Wave { omega, .. } => {
             *omega *= 1.0 + 0.01 * step;
-            true
-        }
-        Term::Elastic { damping, .. } => {
-            *damping *= (1.2 * step).exp();
             true
         }
         Term::Force { from, to, .. } => {

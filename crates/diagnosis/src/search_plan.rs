@@ -69,5 +69,11 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
     // With all sizes found, what did not pay before may do so.
     let products = study.products(|r| fitted[r]);
     let allowed: Vec<usize> = (0..study.candidates.len()).collect();
-    study.problem(&products).forward(chosen, &allowed)
+    let before = chosen.set.clone();
+    chosen = study.problem(&products).forward(chosen, &allowed);
+    if chosen.set == before {
+        chosen
+    } else {
+        refine(study, chosen, false)
+    }
 }
