@@ -9,6 +9,7 @@ mod diagnose_refusals;
 mod inspect;
 mod paper;
 mod prove;
+mod prove_paper;
 mod refusals;
 mod runs;
 mod support;

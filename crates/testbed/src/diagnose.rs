@@ -12,7 +12,7 @@ mod rollout;
 #[cfg(test)]
 mod sample;
 mod terminal;
-mod urdf_file;
+pub mod urdf_file;
 mod words;
 
 pub use command::run;

@@ -71,12 +71,8 @@ pub fn find_scenario(name: &str) -> anyhow::Result<Source> {
         given.to_owned()
     } else if local.is_file() {
         local
-    } else if let Some((name, text)) = SCENARIOS.iter().find(|(known, _)| *known == name) {
-        return Ok(Source {
-            name: (*name).into(),
-            path: local,
-            text: (*text).into(),
-        });
+    } else if let Some(source) = built_in_scenario(name) {
+        return Ok(source);
     } else {
         let mut known: Vec<String> = SCENARIOS.iter().map(|(name, _)| (*name).to_owned()).collect();
         known.extend(
@@ -100,6 +96,16 @@ pub fn find_scenario(name: &str) -> anyhow::Result<Source> {
         .file_stem()
         .map_or(name.to_owned(), |stem| stem.to_string_lossy().into_owned());
     Ok(Source { name, path, text })
+}
+
+/// The scenario `name` that comes with testbed, whatever is below the current folder.
+pub fn built_in_scenario(name: &str) -> Option<Source> {
+    let (name, text) = SCENARIOS.iter().find(|(known, _)| *known == name)?;
+    Some(Source {
+        name: (*name).into(),
+        path: Path::new("scenarios").join(format!("{name}.toml")),
+        text: (*text).into(),
+    })
 }
 
 /// The names of the scenarios below the current folder, sorted.

@@ -3,6 +3,7 @@
 mod cases;
 mod child;
 mod command;
+mod disturbance;
 mod figures;
 mod markdown;
 mod page;

@@ -5,6 +5,7 @@ mod validate;
 
 use std::path::PathBuf;
 
+use anyhow::Context;
 use arm::Arm;
 use torque::Feedback;
 
@@ -54,9 +55,21 @@ impl Scenario {
     /// # Errors
     /// One line that names file, line and key, what was found and how to mend it.
     pub fn load(name: &str) -> anyhow::Result<Self> {
-        let source = crate::library::find_scenario(name)?;
-        let raw = raw::parse(&source)?;
-        validate::scenario(&source, raw)
+        Self::read(&crate::library::find_scenario(name)?)
+    }
+
+    /// Reads the scenario `name` that comes with testbed, whatever is below the current folder.
+    ///
+    /// # Errors
+    /// If none of that name does.
+    pub fn built_in(name: &str) -> anyhow::Result<Self> {
+        let source = crate::library::built_in_scenario(name);
+        Self::read(&source.with_context(|| format!("no scenario \"{name}\" comes with testbed"))?)
+    }
+
+    fn read(source: &crate::library::Source) -> anyhow::Result<Self> {
+        let raw = raw::parse(source)?;
+        validate::scenario(source, raw)
     }
 
     /// The arm as the controller believes it to be: masses and inertia tensors off by the named factor.

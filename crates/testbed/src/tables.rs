@@ -42,12 +42,47 @@ struct Table {
 
 /// Torque errors of one model.
 #[derive(Serialize)]
-struct Row {
-    model: ModelKind,
+pub struct Row {
+    /// Which.
+    pub model: ModelKind,
     /// (N m)², one a joint.
-    mse: Vec<f64>,
-    mean: f64,
-    paper: Option<[f64; 6]>,
+    pub mse: Vec<f64>,
+    /// Over the joints.
+    pub mean: f64,
+    /// The paper's, where it has one.
+    pub paper: Option<[f64; 6]>,
+}
+
+impl Row {
+    /// The errors of `model` on `samples`, beside those of the paper's table `number`.
+    fn new(kind: ModelKind, model: &dyn TorqueModel, samples: &Samples, number: usize) -> Self {
+        let mse = model.mean_squared_error(samples);
+        Self {
+            model: kind,
+            mean: mean(&mse),
+            mse,
+            paper: paper::row(number, kind),
+        }
+    }
+}
+
+/// The mean over the joints.
+pub fn mean(mse: &[f64]) -> f64 {
+    mse.iter().sum::<f64>() / mse.len() as f64
+}
+
+/// The rows of table I alone: trained on task `train`, tested on task `test`.
+///
+/// # Errors
+/// If training fails.
+pub fn table_1(train: &Scenario, test: &Scenario, options: &TrainingOptions) -> anyhow::Result<Vec<Row>> {
+    let nominal = test.nominal_arm();
+    let (samples, test_samples) = (training::own_samples(train)?, training::own_samples(test)?);
+    let row = |&kind: &ModelKind| -> anyhow::Result<Row> {
+        let model = kind.build(&test.arm, &nominal, &samples, options)?;
+        Ok(Row::new(kind, model.as_ref(), &test_samples, 1))
+    };
+    ROWS.par_iter().map(row).collect()
 }
 
 /// Computes the tables, prints them, and writes them to `json` if it is given.
@@ -87,16 +122,7 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions) -> anyhow::Result<()>
     progress.set_message("predicting task D");
     let mut tables = Vec::new();
     for (set, tasks) in TRAINING.iter().enumerate() {
-        let row = |&kind: &ModelKind| {
-            let mse = model_of(set, kind)?.mean_squared_error(&test_samples);
-            let mean = mse.iter().sum::<f64>() / mse.len() as f64;
-            Some(Row {
-                model: kind,
-                mse,
-                mean,
-                paper: paper::row(set + 1, kind),
-            })
-        };
+        let row = |&kind: &ModelKind| Some(Row::new(kind, model_of(set, kind)?, &test_samples, set + 1));
         tables.push(Table {
             train: tasks.iter().map(|task| short(task)).collect(),
             test: short(&test.name),

@@ -19,6 +19,18 @@ use self::scan::{JointPlaces, LinkPlaces, Places};
 /// # Errors
 /// If an effect does not fit the arm or the text is not the arm's.
 pub fn corrected_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Result<String> {
+    edited(urdf, arm, effects, remark(effects)?)
+}
+
+/// As [`corrected_urdf`], but without a word about what was done to it: the URDF of an arm that is believed to be so.
+///
+/// # Errors
+/// As [`corrected_urdf`].
+pub fn changed_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Result<String> {
+    edited(urdf, arm, effects, String::new())
+}
+
+fn edited(urdf: &str, arm: &Arm, effects: &[Effect], remark: String) -> anyhow::Result<String> {
     Corrected::new(arm, effects)?;
     let places = Places::of(urdf).context("the URDF cannot be edited")?;
     let mut edits: Vec<(Range<usize>, String)> = Vec::new();
@@ -56,7 +68,7 @@ pub fn corrected_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Resu
             .with_context(|| format!("the URDF has no joint \"{name}\""))?;
         edits.push(found.edit(damping.unwrap_or(joint.damping), friction.unwrap_or(joint.friction)));
     }
-    edits.push((places.inside_robot..places.inside_robot, remark(effects)?));
+    edits.push((places.inside_robot..places.inside_robot, remark));
     edits.sort_by_key(|(range, _)| range.start);
     let mut text = String::with_capacity(urdf.len() + 1000);
     let mut at = 0;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail, ensure};
 use proof::{Campaign, CasePlan, ProofError, Robot, conceal_case, write_case};
 
+use super::disturbance;
 use crate::cli::ProveArgs;
 use crate::conceal;
 
@@ -88,20 +89,21 @@ impl Source {
         }
     }
 
-    /// The places of all cases; those drawn are under `out`.
+    /// The places of all cases; those drawn are under `out`, and after them the paper's.
     ///
     /// # Errors
     /// If a folder cannot be read, or has no case.
     pub fn places(&self, out: &Path) -> anyhow::Result<Vec<Place>> {
         match self {
             Self::Drawn { plans, .. } => {
-                let place = |plan: &CasePlan| Place {
-                    number: plan.index,
-                    name: plan.name.clone(),
-                    folder: out.join("cases").join(&plan.name),
-                    truth: out.join("truth").join(format!("{}.json", plan.name)),
+                let place = |number: usize, name: &str| Place {
+                    number,
+                    name: name.to_owned(),
+                    folder: out.join("cases").join(name),
+                    truth: out.join("truth").join(format!("{name}.json")),
                 };
-                Ok(plans.iter().map(place).collect())
+                let drawn = plans.iter().map(|plan| place(plan.index, &plan.name));
+                Ok(drawn.chain([place(plans.len(), disturbance::CASE)]).collect())
             }
             Self::Given { cases, truth } => given(cases, truth),
         }
@@ -126,11 +128,15 @@ impl Source {
             std::fs::remove_dir_all(&place.folder).with_context(|| place.folder.display().to_string())?;
         }
         let parent = |path: &Path| path.parent().unwrap_or(Path::new(".")).to_owned();
-        let mut plan = plans[place.number].clone();
+        let (folder, truths) = (parent(&place.folder), parent(&place.truth));
+        let Some(mut plan) = plans.get(place.number).cloned() else {
+            // The last one is not drawn.
+            return disturbance::write(&folder, &truths);
+        };
         for attempt in 1.. {
             match conceal_case(plan.robot(robots), &plan) {
                 Ok(concealment) => {
-                    write_case(&concealment, &parent(&place.folder), &parent(&place.truth))?;
+                    write_case(&concealment, &folder, &truths)?;
                     break;
                 }
                 // What a robot cannot show from one seed it may from another.

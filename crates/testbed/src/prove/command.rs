@@ -11,6 +11,7 @@ use proof::{Program, Score, Seal, SealedCase, Target, sha256, true_terms, wrong_
 use serde::Serialize;
 
 use super::cases::{Files, Place, Source};
+use super::disturbance::{self, Disturbance};
 use super::rows::{self, Row};
 use super::shards::{self, Label};
 use super::vault::Vault;
@@ -31,6 +32,9 @@ pub struct Proof {
     pub answers: BTreeMap<String, Option<String>>,
     /// The score.
     pub score: Score,
+    /// What came of the paper's own disturbance, which the score leaves out; drawn campaigns have it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub paper: Option<Disturbance>,
 }
 
 /// Runs the protocol as `args` say; what is finished already is not done again.
@@ -132,13 +136,15 @@ fn list(terms: &[proof::Name]) -> String {
 impl Proof {
     /// Scores `rows`, which are in the order of their names.
     fn new(program: Program, source: String, command: String, rows: &[Row]) -> anyhow::Result<Self> {
+        let is_paper = |row: &&Row| row.case == disturbance::CASE;
         let answer = |row: &Row| row.diagnosis.as_ref().map(|text| sha256(text.as_bytes()));
         Ok(Self {
             schema: "testbed.proof/1",
             command,
             seal: Seal::new(program, source, rows.iter().map(Row::sealed).collect()),
             answers: rows.iter().map(|row| (row.case.clone(), answer(row))).collect(),
-            score: rows::score(rows)?,
+            score: rows::score(rows.iter().filter(|row| !is_paper(row)))?,
+            paper: rows.iter().find(is_paper).map(disturbance::assess).transpose()?,
         })
     }
 }
@@ -203,7 +209,11 @@ fn summary(proof: &Proof) -> String {
             reached.to_owned(),
         ]);
     }
-    format!("{}; sealed as {}\n{table}\n", proof.seal.source, proof.seal.whole)
+    let paper = proof.paper.as_ref().map_or_else(String::new, disturbance::words::line);
+    format!(
+        "{}; sealed as {}\n{table}\n{paper}",
+        proof.seal.source, proof.seal.whole
+    )
 }
 
 /// A target's figure in words.

@@ -3,7 +3,7 @@
 use proof::{Counted, Fate, Name, Score};
 
 use super::command::{Proof, figure, percent, wanted};
-use super::{reasons, results};
+use super::{disturbance, reasons, results};
 
 /// A piece of a report. Text may hold `code` between backticks.
 pub enum Block {
@@ -89,6 +89,7 @@ pub fn blocks(proof: &Proof) -> Vec<Block> {
     list.extend(results::numbers(score));
     list.extend(results::controls(score));
     list.extend(results::calibration(score));
+    list.extend(proof.paper.iter().flat_map(disturbance::words::blocks));
     list.extend(failures(score));
     list.extend(hashes(proof));
     list

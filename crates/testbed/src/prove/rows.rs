@@ -64,11 +64,11 @@ pub fn truth(case: &str, text: &str) -> anyhow::Result<Truth> {
     serde_json::from_str(text).with_context(|| format!("{case}: the truth"))
 }
 
-/// Scores `rows`, which are in the order of their names.
+/// Scores `rows`, which come in the order of their names.
 ///
 /// # Errors
 /// If a text is not what it should be.
-pub fn score(rows: &[Row]) -> anyhow::Result<Score> {
-    let tried: anyhow::Result<Vec<Tried>> = rows.iter().map(Row::tried).collect();
+pub fn score<'a>(rows: impl Iterator<Item = &'a Row>) -> anyhow::Result<Score> {
+    let tried: anyhow::Result<Vec<Tried>> = rows.map(Row::tried).collect();
     Ok(proof::score(&tried?))
 }

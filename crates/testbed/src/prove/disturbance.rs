@@ -1,0 +1,275 @@
+//! The paper's own disturbance as a case: a PUMA 560 whose URDF is 20 % too heavy, seen on task A, tried on task D.
+
+pub mod words;
+
+use std::path::Path;
+
+use anyhow::Context;
+use proof::{Answer, Concealed, Concealment, Named, Number, Truth};
+use recording::Recording;
+use serde::Serialize;
+use torque::{Corrected, Effect, RigidBody, TorqueModel, TrainingOptions};
+
+use super::rows::Row;
+use crate::diagnose::urdf_file::changed_urdf;
+use crate::models::ModelKind;
+use crate::scenario::Scenario;
+use crate::{library, paper, simulation, tables, training};
+
+/// The case's name; those drawn begin with `case_`.
+pub const CASE: &str = "paper";
+/// What is recorded to fit, as in the paper's table I.
+const TRAIN: &str = "taskA";
+/// What is held out, and where torque errors are told.
+const TEST: &str = "taskD";
+/// What the URDF says of a correct arm's torques.
+const EFFECT: &str = "inertial_scale";
+/// What it cannot be told from without a known load: every joint's torque measured by the same factor too small.
+const ALIAS: &str = "torque_scale";
+/// A mean squared torque error below this is rounding beside torques of tens of N m ((N m)²).
+const ROUNDING: f64 = 1e-6;
+
+/// What came of the case: `paper` in `score.json`.
+#[derive(Serialize)]
+pub struct Disturbance {
+    /// The URDF's masses and inertia tensors over the true ones.
+    pub inertia_scale: f64,
+    /// What the diagnosis named; empty without an answer.
+    pub findings: Vec<Cause>,
+    /// Whether that is the scale of all inertias and nothing else.
+    pub is_one_finding: bool,
+    /// What it could be instead, as it was said.
+    pub aliases: Vec<Cause>,
+    /// Whether these are the scales of all joints' torques and nothing else.
+    pub aliases_are_all_torque_scales: bool,
+    /// The size that was found.
+    pub factor: Option<Factor>,
+    /// Torque error on task D of the URDF with what was named put in.
+    pub diagnosed: Option<Errors>,
+    /// Whether its mean is below 1e-6 (N m)².
+    pub is_rounding: bool,
+    /// The torque models of table I, which learned from the same task.
+    pub others: Vec<Other>,
+}
+
+/// An effect and its joint.
+#[derive(Serialize)]
+pub struct Cause {
+    /// The catalogue's name.
+    pub effect: String,
+    /// The joint; `None` for the whole arm.
+    pub joint: Option<String>,
+}
+
+/// The factor that takes the URDF's inertias to the true ones.
+#[derive(Serialize)]
+pub struct Factor {
+    /// As it was found.
+    pub value: f64,
+    /// Its 95 % interval.
+    pub ci95: [Option<f64>; 2],
+    /// One over [`Disturbance::inertia_scale`].
+    pub truth: f64,
+    /// The value less the truth.
+    pub off: f64,
+    /// Whether the interval holds the truth.
+    pub is_covered: bool,
+}
+
+/// Mean squared torque errors on the reference samples of task D, (N m)².
+#[derive(Serialize)]
+pub struct Errors {
+    /// One a joint.
+    pub mse: Vec<f64>,
+    /// Over the joints.
+    pub mean: f64,
+}
+
+/// A torque model's errors, ours and the paper's.
+#[derive(Serialize)]
+pub struct Other {
+    /// Trained on task A; `paper` is the paper's table I.
+    #[serde(flatten)]
+    pub row: tables::Row,
+    /// The paper's table II: trained on tasks A, B and C.
+    pub paper_table_2: Option<[f64; 6]>,
+}
+
+/// The recordings of the exact model's closed loop on both tasks, the heavy URDF, and the truth.
+///
+/// # Errors
+/// If the user interrupts; simulating the paper's tasks does not fail.
+pub fn conceal() -> anyhow::Result<Concealment> {
+    let (train, held_out) = (Scenario::built_in(TRAIN)?, Scenario::built_in(TEST)?);
+    let factor = 1.0 / train.inertia_scale;
+    Ok(Concealment {
+        truth: Truth {
+            case: CASE.to_owned(),
+            robot: train.arm.name().to_owned(),
+            seed: 0,
+            concealed: vec![Concealed {
+                effect: EFFECT.to_owned(),
+                joint: None,
+                parameters: [("factor".to_owned(), factor.into())].into(),
+                form: None,
+                onset: None,
+                // All torques scale with all inertias: so much of each vanishes with the error.
+                expressed_share: Some(train.inertia_scale - 1.0),
+            }],
+            background_friction: false,
+            torque_noise: vec![0.0; train.arm.dof()],
+            encoder_quantum: 0.0,
+            period: 1.0 / train.control_rate,
+        },
+        urdf: heavy_urdf(&train)?,
+        train: vec![recorded(&train)?],
+        held_out: recorded(&held_out)?,
+    })
+}
+
+/// The URDF as the paper's controller believes it: [`Scenario::nominal_arm`], in the words of the robot's own file.
+fn heavy_urdf(scenario: &Scenario) -> anyhow::Result<String> {
+    let urdf = library::urdf_text(scenario.arm.name(), &scenario.urdf)?;
+    let heavier = Effect::InertialScale {
+        factor: scenario.inertia_scale,
+    };
+    changed_urdf(&urdf, &scenario.arm, &[heavier])
+}
+
+/// A run under the exact model, as a robot's logger has it: the torque's parts would give the truth away.
+fn recorded(scenario: &Scenario) -> anyhow::Result<Recording> {
+    let exact = RigidBody::new(scenario.arm.clone());
+    let run = simulation::run(scenario, ModelKind::True, &exact, 0, &mut [])?.recording;
+    Ok(Recording {
+        joints: run.joints,
+        time: run.time,
+        q: run.q,
+        qd: run.qd,
+        tau: run.tau,
+        ..Recording::default()
+    })
+}
+
+/// What the case's diagnosis is worth, beside the models of table I, which are trained here.
+///
+/// # Errors
+/// If the diagnosis is not what it should be, or names what does not fit the arm.
+pub fn assess(row: &Row) -> anyhow::Result<Disturbance> {
+    let (train, test) = (Scenario::built_in(TRAIN)?, Scenario::built_in(TEST)?);
+    let answer = row.tried()?.answer.unwrap_or_default();
+    let cause = |effect: &String, joint: &Option<String>| Cause {
+        effect: effect.clone(),
+        joint: joint.clone(),
+    };
+    let main = answer.findings.iter().find(|named| named.effect == EFFECT);
+    let aliases: Vec<Cause> = main
+        .iter()
+        .flat_map(|named| &named.confusable_with)
+        .map(|other| cause(&other.effect, &other.joint))
+        .collect();
+    let diagnosed = diagnosed(&answer, &test)?;
+    let factor = main.and_then(|named| factor(named.parameters.get("factor")?, 1.0 / train.inertia_scale));
+    let other = |row: tables::Row| Other {
+        paper_table_2: paper::row(2, row.model),
+        row,
+    };
+    let table = tables::table_1(&train, &test, &TrainingOptions::default()).context("training the paper's models")?;
+    Ok(Disturbance {
+        inertia_scale: train.inertia_scale,
+        is_one_finding: main.is_some() && answer.findings.len() == 1 && answer.unexplained.is_empty(),
+        findings: answer.findings.iter().map(|f| cause(&f.effect, &f.joint)).collect(),
+        aliases_are_all_torque_scales: are_all_scales(&aliases, &row.joints),
+        aliases,
+        factor,
+        is_rounding: diagnosed.as_ref().is_some_and(|errors| errors.mean < ROUNDING),
+        diagnosed,
+        others: table.into_iter().map(other).collect(),
+    })
+}
+
+/// Whether the aliases are the torque's scale on each of `joints`, once.
+fn are_all_scales(aliases: &[Cause], joints: &[String]) -> bool {
+    let has = |joint: &String| aliases.iter().any(|alias| alias.joint.as_ref() == Some(joint));
+    aliases.len() == joints.len() && joints.iter().all(has) && aliases.iter().all(|alias| alias.effect == ALIAS)
+}
+
+fn factor(found: &Number, truth: f64) -> Option<Factor> {
+    let value = found.value?;
+    let [low, high] = found.ci95;
+    Some(Factor {
+        value,
+        ci95: found.ci95,
+        truth,
+        off: value - truth,
+        is_covered: low.is_some_and(|low| low <= truth) && high.is_some_and(|high| truth <= high),
+    })
+}
+
+/// The errors of the heavy arm with all that was named; `None` if nothing was, or in numbers that make no torque.
+fn diagnosed(answer: &Answer, test: &Scenario) -> anyhow::Result<Option<Errors>> {
+    let effects: Option<Vec<Effect>> = answer.findings.iter().map(effect).collect();
+    let Some(effects) = effects.filter(|effects| !effects.is_empty()) else {
+        return Ok(None);
+    };
+    let model = Corrected::new(&test.nominal_arm(), &effects)?;
+    let mse = model.mean_squared_error(&training::own_samples(test)?);
+    Ok(Some(Errors {
+        mean: tables::mean(&mse),
+        mse,
+    }))
+}
+
+/// A finding as an effect; those whose parameters are no plain numbers there are not read back.
+fn effect(named: &Named) -> Option<Effect> {
+    let mut fields = serde_json::Map::new();
+    fields.insert("effect".to_owned(), named.effect.clone().into());
+    if let Some(joint) = &named.joint {
+        fields.insert("joint".to_owned(), joint.clone().into());
+    }
+    for (parameter, number) in &named.parameters {
+        fields.insert(parameter.clone(), number.value?.into());
+    }
+    serde_json::from_value(fields.into()).ok()
+}
+
+/// Writes the case beside the drawn ones.
+///
+/// # Errors
+/// If it cannot be made or written.
+pub fn write(cases: &Path, truths: &Path) -> anyhow::Result<()> {
+    proof::write_case(&conceal()?, cases, truths)?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use arm::Arm;
+
+    #[test]
+    fn the_heavy_urdf_is_the_papers_controller() {
+        let scenario = Scenario::built_in(TRAIN).expect("it comes with the program");
+        let urdf = heavy_urdf(&scenario).expect("it can be written");
+        assert!(!urdf.contains("Corrected"), "the URDF tells what was done to it");
+        let arm = Arm::from_urdf_text(&urdf, "heavy.urdf").expect("it is an arm");
+        let samples = training::own_samples(&scenario).expect("the reference fits");
+        let [read, meant, exact] = [arm, scenario.nominal_arm(), scenario.arm.clone()]
+            .map(|arm| RigidBody::new(arm).mean_squared_error(&samples));
+        for (read, meant) in read.iter().zip(&meant) {
+            assert!((read / meant - 1.0).abs() < 1e-9, "{read} is not {meant}");
+        }
+        assert!(exact.iter().all(|mse| *mse == 0.0));
+    }
+
+    #[test]
+    fn aliases_are_each_joints_scale_and_nothing_else() {
+        let joints = ["a".to_owned(), "b".to_owned()];
+        let alias = |effect: &str, joint: &str| Cause {
+            effect: effect.to_owned(),
+            joint: Some(joint.to_owned()),
+        };
+        assert!(are_all_scales(&[alias(ALIAS, "b"), alias(ALIAS, "a")], &joints));
+        assert!(!are_all_scales(&[alias(ALIAS, "a")], &joints));
+        assert!(!are_all_scales(&[alias(ALIAS, "a"), alias("payload", "b")], &joints));
+    }
+}
