@@ -69,6 +69,12 @@ pub fn unexplained(study: &Study, judged: &Judged, bursts: &Bursts, left: &[Vec<
 const POOR: f64 = 0.35;
 /// … if it is more than so many times the noise.
 const ABOVE_NOISE: f64 = 3.0;
+/// Nor is an error above this, where the recordings were fitted and where they were held out …
+const STRUCTURED: f64 = 0.06;
+/// … if it is more than so many times the noise …
+const STRUCTURED_ABOVE_NOISE: f64 = 4.0;
+/// … and its autocorrelation from row to row is more than this: neither noise nor what filters leave has so long a memory.
+const REMEMBERS: f64 = 0.6;
 
 /// Adds the joints that the findings leave poorly predicted.
 pub fn leftover(study: &Study, fit: &BTreeMap<String, JointFit>, unexplained: &mut Vec<Unexplained>) {
@@ -76,7 +82,12 @@ pub fn leftover(study: &Study, fit: &BTreeMap<String, JointFit>, unexplained: &m
         let Some(this) = fit.get(name) else { continue };
         let error = this.held_out_nrmse_augmented.unwrap_or(this.train_nrmse_augmented);
         let is_known = unexplained.iter().any(|left| left.joint == *name);
-        if is_known || error < POOR || error * this.torque_std < ABOVE_NOISE * this.noise {
+        let is_poor = error >= POOR && error * this.torque_std >= ABOVE_NOISE * this.noise;
+        let least = error.min(this.train_nrmse_augmented);
+        let is_structured = least >= STRUCTURED
+            && least * this.torque_std >= STRUCTURED_ABOVE_NOISE * this.noise
+            && this.residual_autocorrelation > REMEMBERS;
+        if is_known || !(is_poor || is_structured) {
             continue;
         }
         let was_fitted = !study.training_rows(joint).is_empty();
