@@ -68,7 +68,7 @@ impl Reader<'_> {
         self.note(key, unit, |draw| {
             let drawn = first.map_or(1.0, |at| draw[at]);
             let size = size.map_or(0.0, |at| draw[at]);
-            value(drawn, size.clamp(-0.5 * drawn.abs(), 0.5 * drawn.abs()))
+            value(drawn, size)
         })
     }
 
@@ -212,7 +212,9 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
                 return Vec::new();
             };
             Effect::JointElasticity {
-                stiffness: reader.simulated("stiffness", units.stiffness, |drawn, size| stiffness / (drawn - size)),
+                stiffness: reader.simulated("stiffness", units.stiffness, |drawn, size| {
+                    stiffness / (drawn - size).clamp(0.4, 2.5)
+                }),
                 damping: reader.size("damping", units.damping, Size::Damping, damping),
                 joint,
             }
