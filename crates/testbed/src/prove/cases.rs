@@ -52,10 +52,20 @@ impl Source {
     /// If a robot cannot be used.
     pub fn new(args: &ProveArgs) -> anyhow::Result<Self> {
         Ok(match (&args.cases_from, &args.truth) {
-            (Some(cases), truth) => Self::Given {
-                cases: cases.clone(),
-                truth: truth.clone().unwrap_or_else(|| cases.join("truth")),
-            },
+            (Some(cases), truth) => {
+                let truth = truth.clone().unwrap_or_else(|| cases.join("truth"));
+                for folder in [cases, &truth] {
+                    ensure!(
+                        folder.is_dir(),
+                        "{}: is no folder; --cases-from takes one with folders case_*, --truth one with case_*.json",
+                        folder.display()
+                    );
+                }
+                Self::Given {
+                    cases: cases.clone(),
+                    truth,
+                }
+            }
             (None, _) => Self::Drawn {
                 seed: args.seed,
                 robots: conceal::robots(&args.robot)?,

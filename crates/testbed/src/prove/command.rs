@@ -46,9 +46,9 @@ pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
         output::check_writable(path)?;
     }
     if let Some(folder) = &args.merge {
-        std::fs::create_dir_all(&args.out).with_context(|| args.out.display().to_string())?;
         let (label, rows) = shards::merge(folder)?;
         let proof = Proof::new(label.program, label.source, label.command, &rows)?;
+        std::fs::create_dir_all(&args.out).with_context(|| args.out.display().to_string())?;
         return write(args, &args.out, &proof);
     }
     let out = match args.shard {
