@@ -156,14 +156,7 @@ fn held_out_gain(
     member: &Member,
 ) -> Option<f64> {
     let table = &study.table;
-    let set: Vec<usize> = judged
-        .named
-        .set
-        .iter()
-        .copied()
-        .filter(|&c| c != member.candidate)
-        .collect();
-    let without = problem.choose(set, &judged.named.fit.weights);
+    let without = problem.choose(judged.named.others(member.candidate), &judged.named.fit.weights);
     if study.candidates[member.candidate].cause == Cause::Contact {
         let columns = &study.candidates[member.candidate].columns;
         return Some(crate::scan::contact_gain(study, &without.fit, columns));

@@ -114,7 +114,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
     }
     // Without the nameless and the refused the rest may have become impossible.
     while let Some(&bad) = kept.set.iter().find(|&&c| !problem.is_possible(c, &kept.fit)) {
-        let set = kept.set.iter().copied().filter(|&c| c != bad).collect();
+        let set = kept.others(bad);
         kept = problem.choose(set, &kept.fit.weights);
     }
     let members = describe(study, &problem, &kept);
@@ -164,7 +164,7 @@ fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen:
             .par_iter()
             .filter(|&&c| cause(c).name().is_none() && !cause(c).is_passing())
             .map(|&c| {
-                let set: Vec<usize> = chosen.set.iter().copied().filter(|&other| other != c).collect();
+                let set: Vec<usize> = chosen.others(c);
                 let rest = problem.forward(problem.choose(set, &chosen.fit.weights), &simple);
                 let (outside, inside) = (loss(&rest) - with, rest.fit.loss - chosen.fit.loss);
                 let joint = study.candidates[c].joint.unwrap_or(0);
@@ -341,7 +341,7 @@ fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut chos
         let Some(&(bad, ..)) = useless.or_else(harmful) else {
             return chosen;
         };
-        let set = chosen.set.iter().copied().filter(|&c| c != bad).collect();
+        let set = chosen.others(bad);
         chosen = problem.choose(set, &chosen.fit.weights);
     }
 }

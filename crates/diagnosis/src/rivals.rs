@@ -41,7 +41,7 @@ const MARGIN_SCALE: f64 = 8.0;
 /// Tries everything else in the place of `member`.
 pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: usize) -> Standing {
     let finding = &study.candidates[member];
-    let mut set: Vec<usize> = chosen.set.iter().copied().filter(|&c| c != member).collect();
+    let mut set: Vec<usize> = chosen.others(member);
     // A form of something simpler stands against that with something else.
     let plain = (0..study.candidates.len()).find(|&c| {
         let plain = &study.candidates[c];

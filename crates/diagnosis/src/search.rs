@@ -38,6 +38,13 @@ pub struct Chosen {
     pub score: f64,
 }
 
+impl Chosen {
+    /// Its set without one member.
+    pub fn others(&self, member: usize) -> Vec<usize> {
+        self.set.iter().copied().filter(|&c| c != member).collect()
+    }
+}
+
 /// What the search needs to know.
 #[derive(Clone, Copy)]
 pub struct Problem<'a> {
@@ -335,7 +342,7 @@ impl Problem<'_> {
 
     /// `chosen` without one of its members; what is a form of something simpler gives way to that, if it pays.
     pub fn without(&self, chosen: &Chosen, member: usize) -> Chosen {
-        let set: Vec<usize> = chosen.set.iter().copied().filter(|&c| c != member).collect();
+        let set = chosen.others(member);
         let bare = self.choose(set.clone(), &chosen.fit.weights);
         let candidate = &self.candidates[member];
         let is_plain = |c: &Candidate| Some(c.cause) == candidate.cause.plain() && c.joint == candidate.joint;

@@ -161,14 +161,7 @@ fn guard(study: &Study, judged: &mut Judged) {
             .iter()
             .filter(|member| member.shares[joint] > 0.0)
             .map(|member| {
-                let set = judged
-                    .named
-                    .set
-                    .iter()
-                    .copied()
-                    .filter(|&c| c != member.candidate)
-                    .collect();
-                let next = problem.choose(set, &judged.named.fit.weights);
+                let next = problem.choose(judged.named.others(member.candidate), &judged.named.fit.weights);
                 (nrmse(&next, joint).1.unwrap_or(f64::INFINITY), next)
             })
             .min_by(|a, b| a.0.total_cmp(&b.0));

@@ -52,7 +52,7 @@ impl Campaign {
         let count = |part: f64| (self.cases as f64 * part).round() as usize;
         let (ordinary, outside) = (count(1.0 / 3.0), count(0.1));
         let mut unknown = Deck::new(&UNKNOWN);
-        let mut families = Deck::new(&FAMILIES);
+        let mut families = Deck::new(FAMILIES);
         let mut effects: Vec<Vec<String>> = vec![Vec::new(); ordinary];
         effects.extend((0..outside).map(|_| vec![unknown.next(&mut random).to_owned()]));
         while effects.len() < self.cases {
@@ -169,7 +169,7 @@ mod tests {
             let counts: Vec<usize> = names.iter().map(|name| families[name]).collect();
             counts.iter().max().unwrap_or(&0) - counts.iter().min().unwrap_or(&0)
         };
-        assert!(of(&UNKNOWN) <= 1 && of(&FAMILIES) <= 3, "{families:?}");
+        assert!(of(&UNKNOWN) <= 1 && of(FAMILIES) <= 3, "{families:?}");
     }
 
     #[test]

@@ -7,7 +7,7 @@ use rand::seq::IndexedRandom;
 use rand_distr::{Distribution, StandardNormal};
 use serde_json::json;
 
-use crate::physics::UNKNOWN;
+use crate::physics::{EFFECTS, UNKNOWN};
 use crate::robot::Robot;
 use crate::truth::Concealed;
 
@@ -16,30 +16,8 @@ mod size;
 
 pub(crate) use size::{is_sized, resize};
 
-/// The catalogue's families that are drawn; plain Coulomb and viscous friction are ordinary.
-pub const FAMILIES: [&str; 21] = [
-    "friction_asymmetry",
-    "stribeck_friction",
-    "load_dependent_friction",
-    "thermal_drift",
-    "quadratic_drag",
-    "rotor_inertia",
-    "torque_scale",
-    "torque_offset",
-    "torque_ripple",
-    "torque_saturation",
-    "actuation_delay",
-    "joint_elasticity",
-    "backlash",
-    "transmission_coupling",
-    "payload",
-    "link_inertial_error",
-    "inertial_scale",
-    "gravity_misalignment",
-    "encoder_offset",
-    "spring",
-    "external_contact",
-];
+/// The catalogue's families that are drawn: all but the first two, plain viscous and Coulomb friction, which are ordinary.
+pub const FAMILIES: &[&str] = EFFECTS.split_at(2).1;
 
 /// Effects that may set in at an onset when they are drawn.
 const SETS_IN: [&str; 6] = [

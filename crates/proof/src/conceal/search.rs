@@ -47,11 +47,7 @@ pub(super) fn search(
         if attempt >= CASES / 2 {
             // What this robot cannot show gives way to what it can.
             for name in &mut names {
-                let known: &[&str] = if name.ends_with("_unknown") {
-                    &UNKNOWN
-                } else {
-                    &FAMILIES
-                };
+                let known: &[&str] = if name.ends_with("_unknown") { &UNKNOWN } else { FAMILIES };
                 *name = known.choose(random).copied().unwrap_or("torque_offset").to_owned();
             }
             names.sort_unstable();

@@ -12,7 +12,7 @@ pub const UNKNOWN: [&str; 8] = [
     "multiplicative_unknown",
 ];
 
-/// The catalogue's names.
+/// The catalogue's names, what is ordinary first.
 pub const EFFECTS: [&str; 23] = [
     "viscous_friction",
     "coulomb_friction",
