@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::answer::{Answer, Named};
+use crate::answer::{Answer, Named, Other};
 use crate::intervals::quantile;
-use crate::rules::{Key, LEAST_SHARE, Name, found, found_or_confusable, is_declared_unseen, is_ordinary};
+use crate::rules::{Key, LEAST_SHARE, Name, found, found_or_confusable, is_declared_unseen, is_ordinary, same_machine};
 use crate::score::Tried;
 use crate::sizes::{Sized, sized};
 use crate::truth::Concealed;
@@ -15,6 +15,8 @@ use crate::truth::Concealed;
 pub enum Fate {
     /// Named, on its joint.
     Found,
+    /// Named by another name of the same machine, with this one as what it could be instead.
+    SameMachine,
     /// In the confusable set of a finding.
     Covered,
     /// Not named, and said not to show at its size.
@@ -46,8 +48,23 @@ pub struct Outcome {
     pub counts: bool,
     /// What came of it.
     pub fate: Fate,
+    /// The name it was found by, where that is another of the same machine.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub found_as: Option<Name>,
     /// False names on its joint or on the whole arm, the largest first.
     pub instead: Vec<Name>,
+}
+
+impl Fate {
+    /// Whether the diagnosis is right about it.
+    pub fn is_found(self) -> bool {
+        matches!(self, Self::Found | Self::SameMachine)
+    }
+
+    /// Whether it is right, or says that it could be that.
+    pub fn is_covered(self) -> bool {
+        self.is_found() || self == Self::Covered
+    }
 }
 
 impl Outcome {
@@ -136,10 +153,28 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
     let named = found(answer);
     let covered = found_or_confusable(answer);
     let ordinary = |name: &Name| is_ordinary(truth, &name.0);
+    // What is concealed by the name that it was given, where that is another of the same machine.
+    let other_names: Vec<(Name, Name)> = truth
+        .concealed
+        .iter()
+        .filter_map(|concealed| {
+            let (given, meant) = (
+                same_machine(truth, concealed)?,
+                (concealed.name().to_owned(), concealed.joint.clone()),
+            );
+            let finding = answer.findings.iter().find(|finding| name_of(finding) == given)?;
+            let admits = |other: &Other| (&other.effect, &other.joint) == (&meant.0, &meant.1);
+            (!named.contains(&meant) && finding.confusable_with.iter().any(admits)).then_some((meant, given))
+        })
+        .collect();
+    let is_other_name = |name: &Name| other_names.iter().any(|(_, given)| given == name);
     let mut false_names: Vec<&Named> = answer
         .findings
         .iter()
-        .filter(|f| !key.allows(&name_of(f)) && !is_ordinary(truth, &f.effect))
+        .filter(|f| {
+            let name = name_of(f);
+            !key.allows(&name) && !is_other_name(&name) && !is_ordinary(truth, &f.effect)
+        })
         .collect();
     false_names.sort_by(|a, b| b.share.total_cmp(&a.share));
     let unexplained: Vec<String> = answer.unexplained.iter().map(|left| left.joint.clone()).collect();
@@ -165,8 +200,12 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
             continue;
         };
         let near = |other: &&&Named| other.joint == name.1 || other.joint.is_none() || name.1.is_none();
+        let found_as = other_names.iter().find(|(meant, _)| meant == name);
+        let found_as = found_as.map(|(_, given)| given.clone());
         let fate = if named.contains(name) {
             Fate::Found
+        } else if found_as.is_some() {
+            Fate::SameMachine
         } else if covered.contains(name) {
             Fate::Covered
         } else if is_declared_unseen(answer, concealed) {
@@ -185,6 +224,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
             over_noise: over_noise(case, answer, concealed),
             counts: concealed.expressed_share.is_none_or(|share| share > LEAST_SHARE),
             fate,
+            found_as,
             instead: false_names.iter().filter(near).map(|f| name_of(f)).collect(),
         });
     }
@@ -193,7 +233,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
             let name = (c.name().to_owned(), c.joint.clone());
             !ordinary(&name) && (c.joint == finding.joint || c.joint.is_none() || finding.joint.is_none())
         });
-        let admits = |other: &crate::answer::Other| key.known.contains(&(other.effect.clone(), other.joint.clone()));
+        let admits = |other: &Other| key.known.contains(&(other.effect.clone(), other.joint.clone()));
         result.false_names.push(FalseName {
             case: truth.case.clone(),
             effect: finding.effect.clone(),
@@ -230,7 +270,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
         if key.brought.contains(&name) {
             continue;
         }
-        let right = key.known.contains(&name);
+        let right = key.known.contains(&name) || is_other_name(&name);
         if let Some(probability) = finding.probability {
             result.said_of_all.push((probability, right));
             if !ordinary(&name) {

@@ -28,6 +28,36 @@ pub fn is_ordinary(truth: &Truth, effect: &str) -> bool {
     matches!(effect, "coulomb_friction" | "viscous_friction") || (effect == "rotor_inertia" && truth.robot == "puma560")
 }
 
+/// Another name for the very machine that `concealed` makes: no recording tells the two apart. Dry friction that differs by
+/// direction is a level and a constant, ½ (F₊ + F₋) sgn q̇ + ½ (F₊ − F₋), in motion and, as its two limits, at rest.
+pub fn same_machine(truth: &Truth, concealed: &Concealed) -> Option<Name> {
+    let other = match concealed.name() {
+        "torque_offset" => "friction_asymmetry",
+        "friction_asymmetry" => "torque_offset",
+        _ => return None,
+    };
+    let number = |of: &Concealed, key: &str| of.parameters.get(key).and_then(serde_json::Value::as_f64);
+    // What sets in later, or friction of another kind beside it, is told by that.
+    let beside: Vec<&Concealed> = truth
+        .concealed
+        .iter()
+        .filter(|c| {
+            c.joint == concealed.joint && crate::sizes::is_dry_friction(c.name()) && c.name() != concealed.name()
+        })
+        .collect();
+    let is_plain = concealed.onset.is_none() && concealed.form.is_none();
+    let same = match (concealed.name(), beside.as_slice()) {
+        ("friction_asymmetry", []) => is_plain,
+        // A constant beyond the level of friction would push by itself.
+        ("torque_offset", [friction]) => {
+            let (offset, level) = (number(concealed, "offset")?, number(friction, "level")?);
+            is_plain && friction.name() == "coulomb_friction" && friction.form.is_none() && offset.abs() < level
+        }
+        _ => false,
+    };
+    same.then(|| (other.to_owned(), concealed.joint.clone()))
+}
+
 /// What is true of a case.
 #[derive(Clone, Debug, Default)]
 pub struct Key {

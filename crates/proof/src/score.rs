@@ -10,6 +10,7 @@ use crate::controls::{HeldOut, held_out};
 use crate::intervals::Counted;
 use crate::outcome::{FalseName, Fate, Outcome, OutsideOutcome, outcomes};
 use crate::plain::{Plain, plain};
+use crate::rules::brings;
 use crate::sizes::Sized;
 use crate::summary::{Curve, Errors, ParameterScore, curves, errors, parameter_scores};
 use crate::targets::{Target, targets};
@@ -43,7 +44,7 @@ pub struct Score {
     pub families: BTreeMap<String, Family>,
     /// F1 of each family, averaged over the families concealed.
     pub macro_f1: Option<f64>,
-    /// The same if what was declared not observable counts as missed.
+    /// The same if what was declared not observable counts as missed, and another name of the same machine as false.
     pub macro_f1_strict: Option<f64>,
     /// Ordinary friction and drive inertia: found.
     pub ordinary: Counted,
@@ -98,8 +99,10 @@ pub struct Score {
 pub struct Family {
     /// Concealed with an expressed share that asks for them.
     pub concealed: usize,
-    /// Of these found.
+    /// Of these found, by this name or another of the same machine.
     pub found: usize,
+    /// Of these by another name of the same machine.
+    pub same_machine: usize,
     /// Of these found or in the confusable set of a finding.
     pub covered: usize,
     /// Of these not found, and declared not observable at their size.
@@ -114,7 +117,7 @@ pub struct Family {
     pub false_names: usize,
     /// 2 found over (asked for + found + false); what was declared not observable is not asked for.
     pub f1: Option<f64>,
-    /// The same if that is asked for, too.
+    /// The same if that is asked for, too, and another name of the same machine is false.
     pub f1_strict: Option<f64>,
 }
 
@@ -179,7 +182,7 @@ pub fn score(cases: &[Tried]) -> Score {
         outside_refused: Counted::of(outside.iter().map(|case| case.refused)),
         outside_with_a_wrong_name: Counted::of(outside.iter().map(|case| !case.named.is_empty())),
         refused_without_cause: Counted::new(refusals.len(), cases.len() - outside.len()),
-        covered: Counted::of(asked.iter().map(|o| matches!(o.fate, Fate::Found | Fate::Covered))),
+        covered: Counted::of(asked.iter().map(|o| o.fate.is_covered())),
         detection: curves(&concealed),
         parameters: parameter_scores(&sizes),
         main_parameters: errors(special.iter().filter(|s| s.main).map(|s| s.error)),
@@ -211,24 +214,34 @@ fn families(concealed: &[Outcome], false_names: &[FalseName]) -> BTreeMap<String
         let family = families.entry(outcome.effect.clone()).or_default();
         if !outcome.counts {
             family.too_small += 1;
-            family.too_small_found += usize::from(outcome.fate == Fate::Found);
+            family.too_small_found += usize::from(outcome.fate.is_found());
             continue;
         }
         family.concealed += 1;
-        family.found += usize::from(outcome.fate == Fate::Found);
-        family.covered += usize::from(matches!(outcome.fate, Fate::Found | Fate::Covered));
+        family.found += usize::from(outcome.fate.is_found());
+        family.same_machine += usize::from(outcome.fate == Fate::SameMachine);
+        family.covered += usize::from(outcome.fate.is_covered());
         family.not_observable += usize::from(outcome.fate == Fate::NotObservable);
         family.refused += usize::from(outcome.fate == Fate::Refused);
     }
     for false_name in false_names {
         families.entry(false_name.effect.clone()).or_default().false_names += 1;
     }
-    for family in families.values_mut() {
-        let f1 = |asked: usize| {
-            let all = asked + family.found + family.false_names;
-            (asked > 0).then(|| 2.0 * family.found as f64 / all as f64)
+    // By how many names of the same machine a family's name was given that the truth does not bring.
+    let mut given: BTreeMap<&str, usize> = BTreeMap::new();
+    for outcome in concealed {
+        let name = outcome.found_as.as_ref();
+        if let Some((name, _)) = name.filter(|(name, _)| !brings(&outcome.effect).contains(&name.as_str())) {
+            *given.entry(name).or_default() += 1;
+        }
+    }
+    for (name, family) in &mut families {
+        let f1 = |asked: usize, found: usize, false_names: usize| {
+            (asked > 0).then(|| 2.0 * found as f64 / (asked + found + false_names) as f64)
         };
-        (family.f1, family.f1_strict) = (f1(family.asked()), f1(family.concealed));
+        family.f1 = f1(family.asked(), family.found, family.false_names);
+        let strictly_false = family.false_names + given.get(name.as_str()).copied().unwrap_or(0);
+        family.f1_strict = f1(family.concealed, family.found - family.same_machine, strictly_false);
     }
     families
 }
@@ -267,13 +280,13 @@ fn confusion(
     for outcome in concealed.iter().filter(|outcome| outcome.counts) {
         let instead = outcome.instead.first();
         let column = match (outcome.fate, instead) {
-            (Fate::Found, _) => outcome.effect.as_str(),
+            (Fate::Found | Fate::SameMachine, _) => outcome.effect.as_str(),
             (_, Some(name)) => name.0.as_str(),
             (Fate::NotObservable, None) => "not observable",
             (Fate::Refused, None) => "refused",
             (Fate::Covered | Fate::Missed, None) => "not named",
         };
-        if let (false, Some(name)) = (outcome.fate == Fate::Found, instead) {
+        if let (false, Some(name)) = (outcome.fate.is_found(), instead) {
             explained.insert((&outcome.case, &name.0, name.1.as_deref()));
         }
         add(&outcome.effect, column);

@@ -84,20 +84,18 @@ fn scale(concealed: &Concealed, parameter: &str, truth: f64) -> f64 {
     truth.abs()
 }
 
+/// Whether an effect is dry friction in some form.
+pub fn is_dry_friction(effect: &str) -> bool {
+    matches!(
+        effect,
+        "coulomb_friction" | "friction_asymmetry" | "stribeck_friction" | "load_dependent_friction" | "thermal_drift"
+    )
+}
+
 /// Whether several forms of dry friction are on the joint: how much of the level is whose is then a matter of words.
 fn shares_a_level(truth: &Truth, concealed: &Concealed) -> bool {
-    let dry = |effect: &str| {
-        matches!(
-            effect,
-            "coulomb_friction"
-                | "friction_asymmetry"
-                | "stribeck_friction"
-                | "load_dependent_friction"
-                | "thermal_drift"
-        )
-    };
-    let same = |other: &&Concealed| other.joint == concealed.joint && dry(other.name());
-    dry(concealed.name()) && truth.concealed.iter().filter(same).count() > 1
+    let same = |other: &&Concealed| other.joint == concealed.joint && is_dry_friction(other.name());
+    is_dry_friction(concealed.name()) && truth.concealed.iter().filter(same).count() > 1
 }
 
 /// Whether the numbers mean something else than the catalogue's: the effect, or another part of the joint's friction curve, has

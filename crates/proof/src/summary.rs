@@ -86,8 +86,8 @@ fn curve(measure: &str, bounds: &[f64], concealed: &[Outcome], size: &dyn Fn(&Ou
         (!mine.is_empty()).then(|| SizeBin {
             from,
             to,
-            found: Counted::of(mine.iter().map(|o| o.fate == Fate::Found)),
-            covered: Counted::of(mine.iter().map(|o| matches!(o.fate, Fate::Found | Fate::Covered))),
+            found: Counted::of(mine.iter().map(|o| o.fate.is_found())),
+            covered: Counted::of(mine.iter().map(|o| o.fate.is_covered())),
             not_observable: mine.iter().filter(|o| o.fate == Fate::NotObservable).count(),
         })
     };

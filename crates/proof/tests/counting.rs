@@ -70,6 +70,32 @@ fn an_effect_is_found_covered_declared_unseen_refused_or_missed() {
     }
 }
 
+/// An offset beside dry friction and friction that differs by direction are one machine: either name is right if it admits the other.
+#[test]
+fn another_name_of_the_same_machine_is_right() {
+    let truth = |offset: f64| {
+        json!([{"effect": "coulomb_friction", "joint": "a", "level": 1.0},
+            {"effect": "torque_offset", "joint": "a", "offset": offset, "expressed_share": 0.05}])
+    };
+    let rival = json!([{"effect": "torque_offset", "joint": "a"}]);
+    let named = |rivals: Value| {
+        answer(
+            json!([finding("friction_asymmetry", "a", rivals)]),
+            json!([]),
+            json!([]),
+        )
+    };
+    let score = scored(truth(0.5), named(rival.clone()));
+    assert_eq!(score.concealed[0].fate, Fate::SameMachine);
+    assert_eq!((score.macro_f1, score.macro_f1_strict), (Some(1.0), Some(0.0)));
+    assert!(score.false_names.is_empty());
+    // One that is not admitted, or would push by itself, is another machine.
+    for score in [scored(truth(0.5), named(json!([]))), scored(truth(1.5), named(rival))] {
+        assert!(score.concealed[0].fate != Fate::SameMachine);
+        assert_eq!((score.macro_f1, score.false_names.len()), (Some(0.0), 1));
+    }
+}
+
 #[test]
 fn small_effects_are_not_asked_for_and_not_false() {
     let small = json!([{"effect": "spring", "joint": "a", "stiffness": 1.0, "expressed_share": 0.01}]);

@@ -196,6 +196,33 @@ fn what_is_reported_is_what_the_catalogue_says() {
     }
 }
 
+/// Dry friction that differs by direction is an offset beside dry friction, in motion and at rest: one machine.
+#[test]
+fn asymmetry_and_offset_give_one_recording() {
+    let robot = seven_axis();
+    let joint = Some(robot.arm().joints()[3].name.as_str());
+    let uneven = Concealed::new("friction_asymmetry", joint)
+        .with("positive", 2.0)
+        .with("negative", 1.0);
+    let level = Concealed::new("coulomb_friction", joint).with("level", 1.5);
+    let offset = Concealed::new("torque_offset", joint).with("offset", 0.5);
+    // Moving, and then held.
+    let mut reference = reference(&robot).cut(4.0);
+    let (n, half) = (robot.arm().dof(), reference.q.len() / 2);
+    let held: Vec<f64> = reference.q[half - n..half].to_vec();
+    reference.q[half..]
+        .iter_mut()
+        .enumerate()
+        .for_each(|(k, q)| *q = held[k % n]);
+    let reference = Reference::new(robot.arm(), 0.0, reference.q);
+    let (a, b) = (
+        run(&robot, &[uneven], &reference),
+        run(&robot, &[level, offset], &reference),
+    );
+    let apart = a.tau.iter().zip(&b.tau).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(apart < 1e-6, "{apart}");
+}
+
 /// A machine that cannot follow says so.
 #[test]
 fn what_cannot_follow_is_refused() {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use proof::{Fate, Score, Target};
+use proof::{Score, Target};
 
 use super::command::percent;
 
@@ -30,7 +30,7 @@ pub fn reason(target: &Target, score: &Score) -> String {
         parameters(score, what.starts_with("95 %"))
     } else if what.starts_with("truth in") {
         let missed = score.concealed.iter().filter(|o| o.is_asked());
-        let missed = missed.filter(|o| !matches!(o.fate, Fate::Found | Fate::Covered));
+        let missed = missed.filter(|o| !o.fate.is_covered());
         format!("neither: {}.", tally(missed.map(|o| o.effect.as_str())))
     } else {
         held_out(score)
@@ -73,9 +73,9 @@ fn families(score: &Score) -> String {
         .iter()
         .filter(|o| o.is_asked() && o.share.is_some_and(|share| share >= 0.06));
     let (found, all) = large.fold((0, 0), |(found, all), o| {
-        (found + usize::from(o.fate == Fate::Found), all + 1)
+        (found + usize::from(o.fate.is_found()), all + 1)
     });
-    let small = score.concealed.iter().filter(|o| o.is_asked() && o.fate != Fate::Found);
+    let small = score.concealed.iter().filter(|o| o.is_asked() && !o.fate.is_found());
     let small: Vec<_> = small.collect();
     let below = small
         .iter()

@@ -168,12 +168,12 @@ fn concealed(proof: &Proof) -> Vec<Block> {
 
 fn failures(score: &Score) -> Vec<Block> {
     let mut rows = Vec::new();
-    for outcome in score.concealed.iter().filter(|o| o.counts && o.fate != Fate::Found) {
+    for outcome in score.concealed.iter().filter(|o| o.counts && !o.fate.is_found()) {
         let fate = match outcome.fate {
             Fate::Covered => "in a confusable set only",
             Fate::NotObservable => "declared not observable",
             Fate::Refused => "joint refused",
-            Fate::Found | Fate::Missed => "missed",
+            Fate::Found | Fate::SameMachine | Fate::Missed => "missed",
         };
         let mut said: Vec<String> = outcome.instead.iter().map(name).collect();
         said.insert(0, fate.to_owned());

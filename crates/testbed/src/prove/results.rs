@@ -15,6 +15,7 @@ pub fn found(score: &Score) -> Vec<Block> {
             format!("`{name}`"),
             f.concealed.to_string(),
             f.found.to_string(),
+            f.same_machine.to_string(),
             (f.covered - f.found).to_string(),
             f.refused.to_string(),
             f.not_observable.to_string(),
@@ -28,6 +29,7 @@ pub fn found(score: &Score) -> Vec<Block> {
         "effect",
         "concealed",
         "found",
+        "of these by another name of the same machine",
         "in a confusable set",
         "joint refused",
         "declared not observable",
@@ -41,7 +43,9 @@ pub fn found(score: &Score) -> Vec<Block> {
         text(format!(
             "An effect is found if its name and its joint are named. What comes with it (plain friction under a friction curve, the drive's inertia behind a \
              spring) is neither right nor wrong. Ordinary friction, and the drives' inertia of the PUMA, are counted apart: found {}, {} false. F1 does \
-             not ask for what a diagnosis declared not observable at its size; if that is counted as missed, macro F1 is {} instead of {}.",
+             not ask for what a diagnosis declared not observable at its size, and takes dry friction that differs by direction and an offset beside \
+             dry friction for one, if each is said to be what the other could be: simulated, they give the same recording. If the former is counted \
+             as missed and the latter as false, macro F1 is {} instead of {}.",
             counted(&score.ordinary),
             score.ordinary_false,
             number(score.macro_f1_strict),
