@@ -2,13 +2,54 @@
 
 use crate::motion::Chunk;
 use crate::rigid::Rigid;
+use crate::term::Term;
 
-/// What the link's motion δ (link less drive) behind joint `at` adds to the torque of `joint`:
-/// M δ̈ + ∂τ/∂q̇ δ̇ + ∂τ/∂q δ, where δ follows
+/// The motion δ (link less drive) of the link behind a joint that gives, tick by tick.
+#[derive(Clone, Debug)]
+pub struct Behind {
+    at: usize,
+    /// δ, δ̇, δ̈ (rad or m, and so on).
+    ticks: Vec<[f64; 3]>,
+}
+
+impl Behind {
+    /// What a term says lies between drive and link, along a chunk; `None` if it says nothing of that.
+    pub fn new(term: Term, chunk: &Chunk, rigid: &Rigid) -> Option<Self> {
+        let (at, ticks) = match term {
+            Term::Elastic {
+                joint,
+                stiffness,
+                damping,
+            } => (joint, elastic(joint, stiffness, damping, chunk, rigid)),
+            Term::Gap { joint, halfgap, stop } if stop.is_finite() => {
+                (joint, sprung_gap(joint, halfgap, stop, chunk, rigid))
+            }
+            Term::Gap { joint, halfgap, .. } => (joint, gap(joint, halfgap, chunk, rigid)),
+            _ => return None,
+        };
+        Some(Self { at, ticks })
+    }
+
+    /// What it adds to the torque of `joint`: M δ̈ + ∂τ/∂q̇ δ̇ + ∂τ/∂q δ.
+    pub fn torque(&self, joint: usize, rigid: &Rigid) -> Vec<f64> {
+        let (mass, drag, slope) = (
+            &rigid.mass[joint][self.at],
+            &rigid.by_velocity[joint][self.at],
+            &rigid.by_position[joint][self.at],
+        );
+        self.ticks
+            .iter()
+            .enumerate()
+            .map(|(k, [delta, speed, acceleration])| mass[k] * acceleration + drag[k] * speed + slope[k] * delta)
+            .collect()
+    }
+}
+
+/// δ behind a spring at joint `at`:
 /// M δ̈ + (D + ∂τ/∂q̇) δ̇ + (K + ∂τ/∂q) δ = −τ, driven by the drive's measured motion.
 ///
 /// Integrated by the trapezoidal rule (Newmark, β = 1/4), from the quasi-static δ = −τ/K.
-pub fn elastic(at: usize, joint: usize, stiffness: f64, damping: f64, chunk: &Chunk, rigid: &Rigid) -> Vec<f64> {
+fn elastic(at: usize, stiffness: f64, damping: f64, chunk: &Chunk, rigid: &Rigid) -> Vec<[f64; 3]> {
     let h = chunk.period;
     let (mass, drag, slope) = (
         &rigid.mass[at][at],
@@ -29,18 +70,14 @@ pub fn elastic(at: usize, joint: usize, stiffness: f64, damping: f64, chunk: &Ch
             delta = place + 0.25 * h * h * acceleration;
             speed = pace + 0.5 * h * acceleration;
         }
-        out.push(
-            rigid.mass[joint][at][k] * acceleration
-                + rigid.by_velocity[joint][at][k] * speed
-                + rigid.by_position[joint][at][k] * delta,
-        );
+        out.push([delta, speed, acceleration]);
     }
     out
 }
 
 /// The same behind a gap of ± `halfgap`: the link lies against one side while its torque presses it there, and
-/// moves freely from one to the other when the torque turns; impacts are inelastic.
-pub fn gap(at: usize, joint: usize, halfgap: f64, chunk: &Chunk, rigid: &Rigid) -> Vec<f64> {
+/// moves freely from one to the other when the torque turns; impacts are inelastic, and the ends rigid.
+fn gap(at: usize, halfgap: f64, chunk: &Chunk, rigid: &Rigid) -> Vec<[f64; 3]> {
     let h = chunk.period;
     let tau = &rigid.tau[at];
     let ticks = chunk.ticks();
@@ -68,11 +105,48 @@ pub fn gap(at: usize, joint: usize, halfgap: f64, chunk: &Chunk, rigid: &Rigid) 
                 acceleration = -before / h;
             }
         }
-        out.push(
-            rigid.mass[joint][at][k] * acceleration
-                + rigid.by_velocity[joint][at][k] * speed
-                + rigid.by_position[joint][at][k] * delta,
-        );
+        out.push([delta, speed, acceleration]);
+    }
+    out
+}
+
+/// Damping ratio of the ends of a gap: an impact is inelastic.
+const STOP_DAMPING: f64 = 1.0;
+
+/// The same where the ends of the gap are springs of `stop` (N m/rad or N/m), well damped: what gears give under load.
+fn sprung_gap(at: usize, halfgap: f64, stop: f64, chunk: &Chunk, rigid: &Rigid) -> Vec<[f64; 3]> {
+    let h = chunk.period;
+    let (mass, drag, slope) = (
+        &rigid.mass[at][at],
+        &rigid.by_velocity[at][at],
+        &rigid.by_position[at][at],
+    );
+    let tau = &rigid.tau[at];
+    let ticks = chunk.ticks();
+    let mut out = Vec::with_capacity(ticks);
+    // Positive torque: the drive pushes the link in the positive direction, so the link lags behind.
+    let mut delta = -halfgap.copysign(tau[0]) - tau[0] / stop;
+    let (mut speed, mut acceleration) = (0.0, 0.0);
+    for k in 0..ticks {
+        if k > 0 {
+            // Newmark's β = 1/4, on whichever side of the gap the link then is.
+            let place: f64 = delta + h * speed + 0.25 * h * h * acceleration;
+            let pace = speed + 0.5 * h * acceleration;
+            let solve = |damping: f64, spring: f64, rest: f64| {
+                let (d, s) = (drag[k] + damping, slope[k] + spring);
+                -(tau[k] + d * pace + s * place - spring * rest) / (mass[k] + 0.5 * h * d + 0.25 * h * h * s).max(1e-9)
+            };
+            let free = solve(0.0, 0.0, 0.0);
+            let end = (place + 0.25 * h * h * free).clamp(-halfgap, halfgap);
+            acceleration = if end.abs() < halfgap {
+                free
+            } else {
+                solve(2.0 * STOP_DAMPING * (stop * mass[k].max(0.0)).sqrt(), stop, end)
+            };
+            delta = place + 0.25 * h * h * acceleration;
+            speed = pace + 0.5 * h * acceleration;
+        }
+        out.push([delta, speed, acceleration]);
     }
     out
 }

@@ -237,6 +237,9 @@ impl Candidate {
 /// The shortest time constant of a drive that warms (s).
 pub const FASTEST_WARMING: f64 = 8.0;
 
+/// Gaps to begin with, as shares of the range of the motion.
+pub const GAPS: [f64; 7] = [0.0025, 0.004, 0.008, 0.014, 0.022, 0.035, 0.06];
+
 /// The candidates known from the outset, with the terms of their columns; `span` is the time from the first recording
 /// to the last (s), where one clock runs through them.
 pub fn catalogue(scales: &Scales, span: Option<f64>, times: &[(f64, f64)]) -> Vec<(Cause, Option<usize>, Vec<Term>)> {
@@ -318,12 +321,13 @@ fn drive(list: &mut List, joint: usize, scales: &Scales) {
     for delay in [0.002, 0.004, 0.006, 0.009, 0.013, 0.02, 0.03] {
         add(Cause::Delay, vec![Term::Late { joint, delay }]);
     }
-    for share in [0.0025, 0.004, 0.008, 0.014, 0.022, 0.035, 0.06] {
-        let halfgap = share * scales.range[joint].min(1.5);
-        add(
-            Cause::Backlash,
-            vec![Term::Gap { joint, halfgap }, Term::Acceleration(joint)],
-        );
+    for share in GAPS {
+        let gap = Term::Gap {
+            joint,
+            halfgap: share * scales.range[joint].min(1.5),
+            stop: f64::INFINITY,
+        };
+        add(Cause::Backlash, vec![gap, Term::Acceleration(joint)]);
     }
 }
 

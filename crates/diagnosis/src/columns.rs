@@ -1,6 +1,6 @@
 //! Columns of the joint fit, evaluated on the ticks of a chunk.
 
-use crate::behind;
+use crate::behind::Behind;
 use crate::motion::Chunk;
 use crate::rigid::Rigid;
 use crate::term::Term;
@@ -58,12 +58,9 @@ pub fn values(term: Term, joint: usize, chunk: &Chunk, rigid: &Rigid, scales: &S
             tau - tau.clamp(-limit, limit)
         }),
         Term::Late { delay, .. } => Some(late(&chunk.tau[joint], delay / chunk.period)),
-        Term::Elastic {
-            joint: at,
-            stiffness,
-            damping,
-        } => Some(behind::elastic(at, joint, stiffness, damping, chunk, rigid)),
-        Term::Gap { joint: at, halfgap } => Some(behind::gap(at, joint, halfgap, chunk, rigid)),
+        Term::Elastic { .. } | Term::Gap { .. } => {
+            Behind::new(term, chunk, rigid).map(|behind| behind.torque(joint, rigid))
+        }
         Term::PairVelocity(a, b) => partner(joint, a, b).map(|other| chunk.qd[other].clone()),
         Term::PairAcceleration(a, b) => partner(joint, a, b).map(|other| chunk.qdd[other].clone()),
         Term::PairSign {
@@ -117,6 +114,12 @@ pub fn values(term: Term, joint: usize, chunk: &Chunk, rigid: &Rigid, scales: &S
                 _ => place * place * qd[k],
             }
         }),
+        Term::Since { what, from, .. } => {
+            let mut always = values(what.always(joint), joint, chunk, rigid, scales)?;
+            let before = |tick: &usize| chunk.time(*tick) < from;
+            (0..ticks).take_while(before).for_each(|tick| always[tick] = 0.0);
+            Some(always)
+        }
         Term::Wave { omega, cosine, .. } => map(&|k| wave(omega * chunk.time(k), cosine)),
         Term::Moment { centre, width, .. } => map(&|k| tent(chunk.time(k), centre, width)),
     }

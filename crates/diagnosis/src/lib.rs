@@ -31,6 +31,7 @@ mod settings;
 mod settled;
 mod signal;
 mod study;
+mod suggest;
 mod table;
 mod term;
 mod traces;

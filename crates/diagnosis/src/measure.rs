@@ -2,7 +2,7 @@
 
 use arm::{Inertia, Matrix3, Vector3};
 
-use crate::candidate::Cause;
+use crate::candidate::{Cause, GAPS};
 use crate::columns::Scales;
 use crate::motion::{Chunk, Motions};
 use crate::rigid::Rigid;
@@ -11,6 +11,9 @@ use crate::term::Term;
 
 /// A torque limit is at least this part of what the motion needs, by a model that may be wrong.
 const BELOW_NEED: f64 = 0.7;
+
+/// Where the ends of a gap may swing against the link, before they are refined (Hz).
+const STOP_FREQUENCY: f64 = 20.0;
 
 /// A torque that varies by less than this part of what the model needs …
 const DEAD: f64 = 0.05;
@@ -39,7 +42,7 @@ pub fn mean<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
     if count > 0.0 { sum / count } else { 0.0 }
 }
 
-/// Elasticities by their resonance, and torque limits by the largest torque.
+/// Elasticities by their resonance, gaps with sprung ends, and torque limits by the largest torque.
 pub fn drives(
     joint: usize,
     mass: f64,
@@ -60,6 +63,14 @@ pub fn drives(
                 damping: 2.0 * settings::DAMPING_RATIO * mass * omega,
             };
             list.push((Cause::Elasticity, Some(joint), vec![elastic, Term::Acceleration(joint)]));
+        }
+        for share in GAPS {
+            let gap = Term::Gap {
+                joint,
+                halfgap: share * scales.range[joint].min(1.5),
+                stop: mass * (2.0 * std::f64::consts::PI * STOP_FREQUENCY).powi(2),
+            };
+            list.push((Cause::Backlash, Some(joint), vec![gap, Term::Acceleration(joint)]));
         }
     }
     let largest = motions

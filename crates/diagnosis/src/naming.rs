@@ -72,6 +72,13 @@ impl Reader<'_> {
         })
     }
 
+    /// Notes when the candidate sets in, if it does not always act.
+    fn onset(&mut self) -> Option<f64> {
+        let onset = self.study.terms(self.candidate).first()?.onset()?;
+        self.note("onset", "s", |_| onset);
+        Some(onset)
+    }
+
     /// Notes a size at its corrected value.
     fn size(&mut self, key: &'static str, unit: &'static str, size: Size, value: f64) -> f64 {
         match self.resampled.size(self.candidate, size) {
@@ -150,12 +157,13 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
             }
         }
         Cause::Drag => {
-            let Term::Drag { exponent, .. } = terms[0] else {
+            let Term::Drag { exponent, .. } = terms[0].always() else {
                 return Vec::new();
             };
             Effect::QuadraticDrag {
                 coefficient: reader.coefficient("coefficient", units.drag, reader.nth(0), 1.0),
                 exponent,
+                onset: reader.onset(),
                 joint,
             }
         }
@@ -167,11 +175,13 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
             let Some(a) = reader.nth(0) else { return Vec::new() };
             Effect::TorqueScale {
                 factor: reader.note("factor", "1", |draw| 1.0 + draw[a]),
+                onset: reader.onset(),
                 joint,
             }
         }
         Cause::TorqueOffset => Effect::TorqueOffset {
             offset: reader.coefficient("offset", units.torque, reader.nth(0), 1.0),
+            onset: reader.onset(),
             joint,
         },
         Cause::Ripple => {
@@ -299,7 +309,7 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
                 (draw[x].powi(2) + draw[y].powi(2) + draw[z].powi(2)).sqrt()
             });
             reader.note("start", "s", |_| from);
-            reader.note("duration", "s", |_| to - from);
+            reader.size("duration", "s", Size::Duration, to - from);
             Effect::ExternalContact {
                 start: from,
                 duration: to - from,

@@ -171,7 +171,7 @@ fn spring_stiffens(candidate: &Candidate, table: &Table, fit: &Fit) -> bool {
     let position = candidate
         .columns
         .iter()
-        .find(|&&c| matches!(table.terms[c], Term::Position(_, 1)));
+        .find(|&&c| matches!(table.terms[c].always(), Term::Position(_, 1)));
     let Some(x) = position.and_then(|&column| table.place[joint][column]) else {
         return false;
     };
@@ -183,7 +183,7 @@ fn spring_stiffens(candidate: &Candidate, table: &Table, fit: &Fit) -> bool {
         candidate
             .columns
             .iter()
-            .map(|&column| match table.terms[column] {
+            .map(|&column| match table.terms[column].always() {
                 Term::Position(_, power) => f64::from(power) * q.powi(power - 1) * fit.coefficient(column),
                 _ => 0.0,
             })

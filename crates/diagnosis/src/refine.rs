@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use crate::measure::mean;
 use crate::search::Chosen;
 use crate::study::Study;
 use crate::term::Term;
@@ -14,6 +15,9 @@ const ROUNDS: [[f64; 4]; 4] = [
     [0.988, 0.994, 1.006, 1.012],
 ];
 
+/// The first step about an onset (s).
+const ONSET_STEP: f64 = 0.4;
+
 /// A size that a column is not linear in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Size {
@@ -21,6 +25,10 @@ pub enum Size {
     Main,
     /// The damping beside a stiffness.
     Damping,
+    /// What the ends of a gap give.
+    Stop,
+    /// How long a contact lasts.
+    Duration,
     /// The periods of a ripple.
     Periods,
     /// The exponent of a drag; a form rather than a size, it has no interval.
@@ -29,7 +37,7 @@ pub enum Size {
 
 /// The sizes that some terms have, of which there are intervals.
 pub fn sizes(terms: &[Term]) -> Vec<Size> {
-    [Size::Main, Size::Damping, Size::Periods]
+    [Size::Main, Size::Damping, Size::Stop, Size::Periods, Size::Duration]
         .into_iter()
         .filter(|&size| varied(terms, size, 1.01) != terms)
         .collect()
@@ -52,8 +60,10 @@ pub fn varied(terms: &[Term], size: Size, factor: f64) -> Vec<Term> {
                 | Term::Gap { halfgap: value, .. },
             )
             | (Size::Damping, Term::Elastic { damping: value, .. })
+            | (Size::Stop, Term::Gap { stop: value, .. })
             | (Size::Periods, Term::Ripple { periods: value, .. })
             | (Size::Exponent, Term::Drag { exponent: value, .. }) => *value *= factor,
+            (Size::Duration, Term::Force { from, to, .. }) => *to = *from + factor * (*to - *from),
             _ => {}
         }
     }
@@ -66,18 +76,74 @@ fn resized(terms: &[Term], factor: f64) -> Vec<Term> {
     if new == terms { Vec::new() } else { new }
 }
 
-/// Variants of a candidate's terms in a round of refinement.
-fn variants(terms: &[Term], round: usize) -> Vec<Vec<Term>> {
+/// The rounds in which other forms are tried.
+const FORMS: usize = 2;
+
+/// The other form that terms may have, at the sizes at which it is most like theirs.
+fn forms(terms: &[Term]) -> Vec<Vec<Term>> {
+    let mut list = Vec::new();
+    for factor in [0.7, 1.0, 1.4] {
+        let mut other = terms.to_vec();
+        let mut changed = false;
+        for term in &mut other {
+            match term {
+                Term::Stribeck { exponent, velocity, .. } => {
+                    *exponent = 3.0 - *exponent;
+                    *velocity *= factor;
+                    changed = true;
+                }
+                Term::Force { from, to, round, .. } => {
+                    *round = !*round;
+                    let (middle, half) = (0.5 * (*from + *to), 0.5 * factor * (*to - *from));
+                    (*from, *to) = (middle - half, middle + half);
+                    changed = true;
+                }
+                _ => {}
+            }
+        }
+        if changed {
+            list.push(other);
+        }
+    }
+    list
+}
+
+/// Where the ends of a gap that were rigid may swing against the link, first (Hz).
+const FIRST_STOPS: [f64; 3] = [12.0, 20.0, 32.0];
+
+/// The same terms with each of the first stiffnesses of a gap's ends, if they are rigid; `mass` is of the link (kg m²).
+fn softened(terms: &[Term], mass: f64) -> Vec<Vec<Term>> {
+    let soften = |hertz: f64| -> Option<Vec<Term>> {
+        let mut terms = terms.to_vec();
+        let stop = terms.iter_mut().find_map(|term| match term {
+            Term::Gap { stop, .. } if stop.is_infinite() => Some(stop),
+            _ => None,
+        })?;
+        *stop = mass * (2.0 * std::f64::consts::PI * hertz).powi(2);
+        Some(terms)
+    };
+    FIRST_STOPS.into_iter().filter_map(soften).collect()
+}
+
+/// Variants of a candidate's terms in a round of refinement; `mass` is the inertia of its link (kg m² or kg).
+fn variants(terms: &[Term], round: usize, mass: f64) -> Vec<Vec<Term>> {
     let mut list: Vec<Vec<Term>> = ROUNDS[round].iter().map(|&factor| resized(terms, factor)).collect();
     list.retain(|terms| !terms.is_empty());
-    // A spring's stiffness and its damping hang together: each size of the one with each of the other.
-    if sizes(terms).contains(&Size::Damping) {
+    // A spring's stiffness and its damping hang together, as a gap and what its ends give: each size of the one with each of
+    // the other.
+    let second = [Size::Damping, Size::Stop]
+        .into_iter()
+        .find(|second| sizes(terms).contains(second));
+    if let Some(second) = second {
         let steps = [-1.0, -0.4, 0.4, 1.0].map(|step: f64| (1.2 * step * 0.25_f64.powi(round as i32)).exp());
         let stiffer = list.clone();
         for terms in stiffer.into_iter().chain([terms.to_vec()]) {
-            list.extend(steps.map(|factor| varied(&terms, Size::Damping, factor)));
+            list.extend(steps.map(|factor| varied(&terms, second, factor)));
         }
     }
+    let sized: Vec<Vec<Term>> = list.iter().cloned().chain([terms.to_vec()]).collect();
+    list.extend(sized.iter().flat_map(|terms| softened(terms, mass)));
+    list.extend(if round < FORMS { forms(terms) } else { Vec::new() });
     // A finer step about a ripple's period, relative to one period over the range.
     let nudges = [-1.0, -0.4, 0.4, 1.0].map(|step| step * 0.25_f64.powi(round as i32));
     let mut nudged = |change: &dyn Fn(&mut Term, f64) -> bool| {
@@ -99,6 +165,10 @@ fn variants(terms: &[Term], round: usize) -> Vec<Vec<Term>> {
         }
         Term::Wave { omega, .. } => {
             *omega *= 1.0 + 0.01 * step;
+            true
+        }
+        Term::Since { from, .. } => {
+            *from += ONSET_STEP * step;
             true
         }
         Term::Force { from, to, .. } => {
@@ -151,7 +221,10 @@ pub fn resize(study: &mut Study, mut chosen: Chosen, again: bool) -> Chosen {
                 .iter()
                 .map(|&column| study.table.terms[column])
                 .collect();
-            let list = variants(&terms, round);
+            let mass = candidate.joint.map_or(0.0, |joint| {
+                mean(study.rigid.iter().flat_map(|rigid| &rigid.mass[joint][joint]))
+            });
+            let list = variants(&terms, round, mass);
             for &term in list.iter().flatten() {
                 if !study.table.terms.contains(&term) && !missing.contains(&term) {
                     missing.push(term);

@@ -61,10 +61,12 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         let same_name = other.cause.name() == finding.cause.name() && other.joint == finding.joint;
         // What holds all of the finding's columns and more is a finer form of it, not another cause.
         let finer = finding.columns.iter().all(|column| other.columns.contains(column));
+        // A body's inertia is felt by all joints before it: what one link has too much, its neighbour may have.
+        let are_links = finding.cause == Cause::LinkError && other.cause == Cause::LinkError;
         !same_name
             && !finer
             && other.cause.name().is_some()
-            && (other.joint == finding.joint || other.joint.is_none() || finding.joint.is_none())
+            && (other.joint == finding.joint || other.joint.is_none() || finding.joint.is_none() || are_links)
             && !set.iter().any(|&known| {
                 let known = &study.candidates[known];
                 known.cause == other.cause && known.joint == other.joint

@@ -9,8 +9,10 @@ use crate::study::Study;
 use crate::table::Table;
 use crate::term::Term;
 
+mod onsets;
 mod waves;
 
+pub use onsets::onsets;
 pub use waves::waves;
 
 /// Durations of contact that are tried (s).

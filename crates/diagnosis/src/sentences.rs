@@ -83,6 +83,10 @@ pub fn of(finding: &Finding, fit: &BTreeMap<String, JointFit>) -> String {
         ),
         other => other.replace('_', " "),
     };
+    let what = match finding.parameters.get("onset") {
+        Some(onset) => format!("{what} from {} s on", number(onset.value)),
+        None => what,
+    };
     let at = finding.joint.clone().or_else(|| {
         let largest = finding.share_by_joint.iter().max_by(|a, b| a.1.total_cmp(b.1));
         largest.map(|(joint, _)| joint.clone())

@@ -10,10 +10,13 @@ use crate::known::Known;
 use crate::measure::{self, drives, inertia, mean, noise, scales, seconds, spans};
 use crate::motion::{Input, Motions};
 use crate::rigid::Rigid;
-use crate::search::{Chosen, Problem};
+use crate::search::Problem;
 use crate::table::{Moving, Table};
 use crate::term::Term;
 use crate::{scan, settings};
+
+/// The evidence that an onset must bring: it was looked for at some hundred times (nats).
+const ONSET: f64 = 6.0;
 
 /// The recordings, the model along them, and the candidates.
 pub struct Study {
@@ -338,61 +341,11 @@ impl Study {
         if let Some(known) = self.candidates.iter().position(same) {
             return known;
         }
-        self.candidates.push(Candidate::new(cause, joint, columns));
+        let mut candidate = Candidate::new(cause, joint, columns);
+        if terms.iter().any(|term| term.onset().is_some()) {
+            candidate.cost += ONSET;
+        }
+        self.candidates.push(candidate);
         self.candidates.len() - 1
-    }
-
-    /// Adds what the residual of `chosen` suggests.
-    pub fn suggest(&mut self, chosen: &Chosen) {
-        let residual = scan::residuals(&self.table, &chosen.fit);
-        let times = self.motions.row_times();
-        let dof = self.motions.dof;
-        let windows = scan::contacts(
-            &self.table,
-            &times,
-            &residual,
-            &chosen.fit.weights,
-            self.force,
-            &self.fitted,
-            4,
-        );
-        let found: Vec<(Vec<f64>, Vec<f64>)> = (0..dof)
-            .into_par_iter()
-            .map(|joint| {
-                if self.scales.speed[joint] <= self.scales.rest[joint] {
-                    return (Vec::new(), Vec::new());
-                }
-                let (table, motions) = (&self.table, &self.motions);
-                (
-                    scan::ripples(table, motions, &self.scales, joint, &residual[joint], &self.fitted, 3),
-                    scan::waves(table, motions, joint, &residual[joint], &self.fitted, 2),
-                )
-            })
-            .collect();
-        let mut new = Vec::new();
-        for (from, to) in windows {
-            for round in [false, true] {
-                new.push((Cause::Contact, None, scan::contact_terms(from, to, round)));
-            }
-        }
-        for (joint, (ripples, waves)) in found.into_iter().enumerate() {
-            for periods in ripples {
-                let term = |cosine| Term::Ripple { joint, periods, cosine };
-                new.push((Cause::Ripple, Some(joint), vec![term(false), term(true)]));
-            }
-            for omega in waves {
-                let term = |cosine| Term::Wave { joint, omega, cosine };
-                new.push((Cause::Periodic, Some(joint), vec![term(false), term(true)]));
-            }
-        }
-        let missing: Vec<Term> = new
-            .iter()
-            .flat_map(|(_, _, terms)| terms.iter().copied())
-            .filter(|term| !self.table.terms.contains(term))
-            .collect();
-        self.table.add(&self.motions, &self.rigid, &self.scales, missing, None);
-        for (cause, joint, terms) in new {
-            self.add(cause, joint, terms);
-        }
     }
 }

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use crate::behind::Behind;
 use crate::columns::{Scales, values};
 use crate::motion::Motions;
 use crate::rigid::Rigid;
@@ -13,6 +14,9 @@ use crate::term::Term;
 mod gram;
 
 pub use gram::{Gram, Stretch};
+
+/// Terms that are evaluated at a time: what is simulated for them is kept for so long.
+const BATCH: usize = 12;
 
 /// Which rows of a joint are fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -174,45 +178,63 @@ impl Table {
                 known.terms.iter().position(|&other| other == term)
             })
             .collect();
-        let places: Vec<Vec<Option<usize>>> = self
-            .joints
-            .par_iter_mut()
-            .enumerate()
-            .map(|(joint, table)| {
-                let mut places = Vec::with_capacity(terms.len());
-                for (&term, &copy) in terms.iter().zip(&copies) {
-                    if let (Some(copy), Some(known)) = (copy, known) {
-                        places.push(known.place[joint][copy].map(|place| {
-                            table.x.push(known.joints[joint].x[place].clone());
+        for (terms, copies) in terms.chunks(BATCH).zip(copies.chunks(BATCH)) {
+            // What lies behind a joint that gives is simulated once, for all joints that feel it.
+            let behind: Vec<Vec<Behind>> = terms
+                .par_iter()
+                .map(|&term| {
+                    let along = motions.chunks.iter().zip(rigid);
+                    along
+                        .filter_map(|(chunk, rigid)| Behind::new(term, chunk, rigid))
+                        .collect()
+                })
+                .collect();
+            let places: Vec<Vec<Option<usize>>> = self
+                .joints
+                .par_iter_mut()
+                .enumerate()
+                .map(|(joint, table)| {
+                    let mut places = Vec::with_capacity(terms.len());
+                    for ((&term, &copy), behind) in terms.iter().zip(copies).zip(&behind) {
+                        if let (Some(copy), Some(known)) = (copy, known) {
+                            places.push(known.place[joint][copy].map(|place| {
+                                table.x.push(known.joints[joint].x[place].clone());
+                                table.x.len() - 1
+                            }));
+                            continue;
+                        }
+                        let mut column = Vec::new();
+                        for (c, (chunk, rigid)) in motions.chunks.iter().zip(rigid).enumerate() {
+                            let values = match behind.get(c) {
+                                Some(behind) => Some(behind.torque(joint, rigid)),
+                                None => values(term, joint, chunk, rigid, scales),
+                            };
+                            match values {
+                                Some(values) if values.iter().all(|&v| v == 0.0) => {
+                                    column.resize(column.len() + chunk.rows(), 0.0);
+                                }
+                                Some(values) => column.extend(chunk.filter(&values)),
+                                None => break,
+                            }
+                        }
+                        let acts = column.len() == table.y.len() && column.iter().any(|&v| v != 0.0);
+                        places.push(acts.then(|| {
+                            table.x.push(column);
                             table.x.len() - 1
                         }));
-                        continue;
                     }
-                    let mut column = Vec::new();
-                    for (chunk, rigid) in motions.chunks.iter().zip(rigid) {
-                        match values(term, joint, chunk, rigid, scales) {
-                            Some(values) if values.iter().all(|&v| v == 0.0) => {
-                                column.resize(column.len() + chunk.rows(), 0.0);
-                            }
-                            Some(values) => column.extend(chunk.filter(&values)),
-                            None => break,
-                        }
-                    }
-                    let acts = column.len() == table.y.len() && column.iter().any(|&v| v != 0.0);
-                    places.push(acts.then(|| {
-                        table.x.push(column);
-                        table.x.len() - 1
-                    }));
-                }
-                for stretch in &mut table.stretches {
-                    stretch.refresh(&table.x, &table.y);
-                }
-                places
-            })
-            .collect();
-        for (place, more) in self.place.iter_mut().zip(places) {
-            place.extend(more);
+                    places
+                })
+                .collect();
+            for (place, more) in self.place.iter_mut().zip(places) {
+                place.extend(more);
+            }
         }
+        self.joints.par_iter_mut().for_each(|table| {
+            for stretch in &mut table.stretches {
+                stretch.refresh(&table.x, &table.y);
+            }
+        });
         self.terms.extend(terms);
     }
 

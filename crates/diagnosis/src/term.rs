@@ -1,5 +1,18 @@
 //! The columns of the joint fit: what each candidate adds to the torques, as functions of the motion.
 
+/// What can set in halfway.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Onset {
+    /// A constant.
+    One,
+    /// The position.
+    Position,
+    /// The rigid torque.
+    Rigid,
+    /// q̇ |q̇|.
+    Drag,
+}
+
 /// One column: the torque on one joint or several, for a coefficient of one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Term {
@@ -80,6 +93,8 @@ pub enum Term {
         joint: usize,
         /// rad.
         halfgap: f64,
+        /// The stiffness of its ends, N m/rad; infinite: they stop the link at once.
+        stop: f64,
     },
     /// Each of two joints feels the other's q̇: a drive that both turn, and its reaction.
     PairVelocity(usize, usize),
@@ -143,6 +158,15 @@ pub enum Term {
         /// cos instead of sin.
         cosine: bool,
     },
+    /// A column that is nothing before a time.
+    Since {
+        /// The joint.
+        joint: usize,
+        /// The column.
+        what: Onset,
+        /// s, on the recordings' own clock.
+        from: f64,
+    },
     /// A tent on time.
     Moment {
         /// The joint.
@@ -154,13 +178,42 @@ pub enum Term {
     },
 }
 
+impl Onset {
+    /// The same on `joint`, always acting.
+    pub fn always(self, joint: usize) -> Term {
+        match self {
+            Self::One => Term::One(joint),
+            Self::Position => Term::Position(joint, 1),
+            Self::Rigid => Term::Rigid(joint),
+            Self::Drag => Term::Drag { joint, exponent: 2.0 },
+        }
+    }
+}
+
 impl Term {
+    /// When it sets in (s); `None` if it always acts.
+    pub fn onset(self) -> Option<f64> {
+        match self {
+            Self::Since { from, .. } => Some(from),
+            _ => None,
+        }
+    }
+
+    /// The same term, always acting.
+    pub fn always(self) -> Self {
+        match self {
+            Self::Since { joint, what, .. } => what.always(joint),
+            _ => self,
+        }
+    }
+
     /// Whether it depends on the model along the motion, not on the motion and the torque alone.
     pub fn is_dynamic(self) -> bool {
         matches!(
             self,
             Self::LoadSign(_)
                 | Self::Rigid(_)
+                | Self::Since { what: Onset::Rigid, .. }
                 | Self::Elastic { .. }
                 | Self::Gap { .. }
                 | Self::Payload(_)
@@ -195,6 +248,7 @@ impl Term {
             | Self::Play(joint, _)
             | Self::Product(joint, _)
             | Self::Wave { joint, .. }
+            | Self::Since { joint, .. }
             | Self::Moment { joint, .. } => Some(joint),
             Self::PairVelocity(..)
             | Self::PairAcceleration(..)

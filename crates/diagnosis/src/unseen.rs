@@ -148,7 +148,11 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
         };
         let own = products.drop_of(&study.table, &chosen.fit, column);
         let least = least_coefficient(study, products, candidate, joint, own, column);
-        let share = least * spread(study, joint, column) / study.scales.torque[joint].max(1e-300);
+        // A scale is told by the rigid torque alone, but it is a part of all of the joint's torque.
+        let share = match cause {
+            Cause::TorqueScale => least,
+            _ => least * spread(study, joint, column) / study.scales.torque[joint].max(1e-300),
+        };
         if share > HIDDEN {
             let because = "other effects found explain the same torque in these motions";
             add(cause, because.into(), least.is_finite().then_some((key, least)), None);

@@ -119,6 +119,34 @@ fn torque_offset() {
     added("torque_offset", ELBOW, |_| 1.5, &[("offset", 1.5)], 0.05);
 }
 
+/// What sets in halfway is named with its onset, whatever it is.
+#[test]
+fn what_sets_in_has_its_onset() {
+    let name = trio().joints()[ELBOW].name.clone();
+    let onset = 1006.0;
+    let offset = |_: &Motion| 1.5;
+    let spring = |m: &Motion| 4.0 * (m.q[ELBOW] - 0.3);
+    type Torque<'a> = &'a dyn Fn(&Motion) -> f64;
+    let effects: [(&str, Torque<'_>); 2] = [("torque_offset", &offset), ("spring", &spring)];
+    for (effect, torque) in effects {
+        let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+            ordinary(motion, tau);
+            if motion.clock >= onset {
+                tau[ELBOW] += torque(motion);
+            }
+        };
+        let diagnosis = diagnosed(&trio(), &trio(), &concealed, Vec::new());
+        let finding = diagnosis.report.findings.iter().find(|f| f.effect == effect);
+        let finding = finding.unwrap_or_else(|| panic!("{effect}: {:?}", sentences(&diagnosis)));
+        assert_eq!(finding.joint.as_deref(), Some(name.as_str()));
+        let found = finding.parameters["onset"].value;
+        assert!((found - onset).abs() < 0.1, "{effect}: {found}");
+        assert!(finding.sentence.contains("from 1006 s on"), "{}", finding.sentence);
+        let again = diagnosed(&trio(), &trio(), &concealed, diagnosis.effects.clone());
+        assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
+    }
+}
+
 #[test]
 fn torque_ripple() {
     let ripple = |m: &Motion| 1.2 * (17.0 * m.q[ELBOW] + 0.6).sin();

@@ -32,6 +32,7 @@ struct Contact {
 /// - A base turned by `angle` about `axis` turns gravity, seen from it, the other way: g' = R(axis, angle)ᵀ g.
 /// - The friction forms take the exact sign of q̇, and nothing at rest. [`TorqueModel::predict`] takes a drifting friction
 ///   as warm; [`Self::predict_at`] knows the time. The load of load-dependent friction is |rigid_j|.
+/// - What sets in at an onset acts from then on; where no time is given, it acts.
 /// - `q` is what the encoder says; springs and ripple take it as it is.
 /// - Delay, elasticity and backlash are no functions of (q, q̇, q̈) and are left out, as is a contact where no time is given.
 ///
@@ -43,10 +44,17 @@ pub struct Corrected {
     tool: Frame,
     encoder_offsets: Vec<f64>,
     dry: Vec<(usize, Dry)>,
-    smooth: Vec<(usize, Smooth)>,
-    factors: Vec<f64>,
+    /// The joint, the law, and when it sets in.
+    smooth: Vec<(usize, Smooth, Option<f64>)>,
+    /// Of each joint, the torque reported over the true one, and from when on (s).
+    factors: Vec<(usize, f64, Option<f64>)>,
     limits: Vec<f64>,
     contacts: Vec<Contact>,
+}
+
+/// Whether what sets in at `onset` acts at `time`.
+fn acts(onset: Option<f64>, time: Option<f64>) -> bool {
+    !matches!((onset, time), (Some(onset), Some(time)) if time < onset)
 }
 
 impl Corrected {
@@ -62,7 +70,7 @@ impl Corrected {
             encoder_offsets: vec![0.0; dof],
             dry: Vec::new(),
             smooth: Vec::new(),
-            factors: vec![1.0; dof],
+            factors: Vec::new(),
             limits: vec![f64::INFINITY; dof],
             contacts: Vec::new(),
         };
@@ -118,7 +126,7 @@ impl Corrected {
             }
             Effect::RotorInertia { inertia, .. } => rotors[j] += inertia,
             Effect::EncoderOffset { offset, .. } => self.encoder_offsets[j] -= offset,
-            Effect::TorqueScale { factor, .. } => self.factors[j] *= factor,
+            Effect::TorqueScale { factor, onset, .. } => self.factors.push((j, factor, onset)),
             Effect::TorqueSaturation { limit, .. } => self.limits[j] = self.limits[j].min(limit),
             _ => {
                 let other = match effect {
@@ -127,11 +135,11 @@ impl Corrected {
                 };
                 // The reaction on the other joint is the same with the two exchanged.
                 if let (Some(o), Some(Law::Smooth(smooth))) = (other, laws::law(effect, joint)) {
-                    self.smooth.push((o, smooth));
+                    self.smooth.push((o, smooth, None));
                 }
                 match laws::law(effect, other) {
                     Some(Law::Dry(dry)) => self.dry.push((j, dry)),
-                    Some(Law::Smooth(smooth)) => self.smooth.push((j, smooth)),
+                    Some(Law::Smooth(smooth)) => self.smooth.push((j, smooth, effect.onset())),
                     None => {}
                 }
             }
@@ -149,9 +157,15 @@ impl Corrected {
         &self.encoder_offsets
     }
 
-    /// Of each joint, the torque reported over the true one.
-    pub fn torque_factors(&self) -> &[f64] {
-        &self.factors
+    /// The torque of `joint` as the drive reports it over the true one, at `time` (s on the recordings' own clock); without
+    /// a time, after all onsets.
+    pub fn torque_factor(&self, joint: usize, time: Option<f64>) -> f64 {
+        let acting = |(j, _, onset): &&(usize, f64, Option<f64>)| *j == joint && acts(*onset, time);
+        self.factors
+            .iter()
+            .filter(acting)
+            .map(|(_, factor, _)| factor)
+            .product()
     }
 
     /// The largest torque each drive applies (N m or N), as the drive reports it; infinite where there is no limit.
@@ -204,7 +218,7 @@ impl Corrected {
         self.add_smooth(time, workspace, q, qd, qdd, effects);
         for (joint, effect) in effects.iter_mut().enumerate() {
             let limit = self.limits[joint];
-            let total = self.factors[joint] * (rigid[joint] + *effect);
+            let total = self.torque_factor(joint, time) * (rigid[joint] + *effect);
             // What is not rigid is an effect, a scale and a cut too.
             *effect = total.clamp(-limit, limit) - rigid[joint];
         }
@@ -233,7 +247,7 @@ impl Corrected {
         qdd: &[f64],
         tau: &mut [f64],
     ) {
-        for (joint, smooth) in &self.smooth {
+        for (joint, smooth, _) in self.smooth.iter().filter(|(.., onset)| acts(*onset, time)) {
             tau[*joint] += smooth.torque(*joint, q, qd, qdd);
         }
         self.add_contacts(time, workspace, tau);

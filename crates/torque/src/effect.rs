@@ -75,6 +75,9 @@ pub enum Effect {
         /// 2 for turbulent drag; other losses that grow faster than the speed lie about it.
         #[serde(default = "two")]
         exponent: f64,
+        /// s, on the recordings' own clock; before it there is none of it. `None`: always.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        onset: Option<f64>,
     },
     /// τ = inertia q̈: the drive's rotor, seen at the joint.
     RotorInertia {
@@ -89,6 +92,9 @@ pub enum Effect {
         joint: String,
         /// Without unit.
         factor: f64,
+        /// s, on the recordings' own clock; before it there is none of it. `None`: always.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        onset: Option<f64>,
     },
     /// τ = offset.
     TorqueOffset {
@@ -96,6 +102,9 @@ pub enum Effect {
         joint: String,
         /// N m.
         offset: f64,
+        /// s, on the recordings' own clock; before it there is none of it. `None`: always.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        onset: Option<f64>,
     },
     /// τ = amplitude sin(periods q + phase).
     TorqueRipple {
@@ -204,6 +213,9 @@ pub enum Effect {
         /// Points (rad, N m), by angle; linear between, constant beyond. Empty: the straight line.
         #[serde(default)]
         curve: Vec<[f64; 2]>,
+        /// s, on the recordings' own clock; before it there is none of it. `None`: always.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        onset: Option<f64>,
     },
     /// A force on the tool for a while: τ = −Jᵀ F.
     ExternalContact {
@@ -251,6 +263,17 @@ impl Effect {
             Self::EncoderOffset { .. } => "encoder_offset",
             Self::Spring { .. } => "spring",
             Self::ExternalContact { .. } => "external_contact",
+        }
+    }
+
+    /// When it sets in (s, on the recordings' own clock); `None` if it always acts.
+    pub fn onset(&self) -> Option<f64> {
+        match self {
+            Self::QuadraticDrag { onset, .. }
+            | Self::TorqueScale { onset, .. }
+            | Self::TorqueOffset { onset, .. }
+            | Self::Spring { onset, .. } => *onset,
+            _ => None,
         }
     }
 

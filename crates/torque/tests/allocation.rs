@@ -48,6 +48,7 @@ fn a_corrected_model_does_not_allocate() {
             stiffness: 1.0,
             rest: 0.0,
             curve: vec![[0.0, 0.0], [1.0, 2.0]],
+            onset: None,
         },
         Effect::ExternalContact {
             start: 0.0,

@@ -70,7 +70,7 @@ pub fn spring(reader: &mut Reader<'_>, index: usize, joint: String, units: &Unit
             .iter()
             .map(|&(term, place)| {
                 let value = place.map_or(0.0, |place| draw[place]);
-                match term {
+                match term.always() {
                     Term::One(_) => value,
                     Term::Position(_, power) => value * q.powi(power),
                     Term::Tent { centre, width, .. } => value * (1.0 - ((q - centre) / width).abs()).max(0.0),
@@ -102,5 +102,6 @@ pub fn spring(reader: &mut Reader<'_>, index: usize, joint: String, units: &Unit
         stiffness,
         rest,
         curve,
+        onset: reader.onset(),
     }
 }

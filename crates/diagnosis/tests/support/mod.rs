@@ -43,6 +43,8 @@ pub fn trio() -> Arm {
 pub struct Motion {
     /// s, since the recording's start.
     pub time: f64,
+    /// s, on the clock that runs through all recordings.
+    pub clock: f64,
     /// rad.
     pub q: Vec<f64>,
     /// rad/s.
@@ -56,6 +58,7 @@ pub fn motion(dof: usize, time: f64, variant: usize) -> Motion {
     let middle = |joint: usize| [0.0, -0.5, 0.7][joint % 3];
     let mut motion = Motion {
         time,
+        clock: time + start(variant),
         q: (0..dof).map(middle).collect(),
         qd: vec![0.0; dof],
         qdd: vec![0.0; dof],

@@ -198,7 +198,8 @@ fn is_twin(a: &Effect, b: &Effect) -> bool {
         (Effect::Spring { curve, .. }, Effect::Spring { curve: other, .. }) => curve.is_empty() == other.is_empty(),
         _ => true,
     };
-    same && a.name() == b.name() && a.joint() == b.joint()
+    // What sets in later comes on top of what always acts.
+    same && a.onset() == b.onset() && a.name() == b.name() && a.joint() == b.joint()
 }
 
 /// What TOML's or serde's message means to the one who wrote the file.
@@ -278,7 +279,7 @@ fn unit(effect: &Effect, parameter: &str) -> Option<&'static str> {
         (_, "level" | "positive" | "negative" | "coulomb" | "breakaway" | "amplitude" | "offset" | "limit") => "N m",
         (_, "inertia") => "kg m²",
         (_, "velocity") => "rad/s",
-        (_, "time_constant" | "delay" | "start" | "duration") => "s",
+        (_, "time_constant" | "delay" | "start" | "duration" | "onset") => "s",
         (_, "periods") => "a turn",
         (_, "stiffness") => "N m/rad",
         (Effect::ViscousFriction { .. }, "coefficient") | (_, "damping" | "viscous") => "N m s/rad",

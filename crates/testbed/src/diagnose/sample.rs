@@ -102,6 +102,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
             as_effect: Effect::TorqueOffset {
                 joint: String::new(),
                 offset: 0.0,
+                onset: None,
             },
         }
     });

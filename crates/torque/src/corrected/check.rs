@@ -49,6 +49,9 @@ pub(super) fn check(effect: &Effect) -> Result<(), TorqueError> {
             None => Ok(()),
         }
     };
+    if let Some(onset) = effect.onset() {
+        all(&[("onset", onset)], FINITE)?;
+    }
     match *effect {
         Effect::ViscousFriction { coefficient, .. } | Effect::QuadraticDrag { coefficient, .. } => {
             all(&[("coefficient", coefficient)], NOT_NEGATIVE)

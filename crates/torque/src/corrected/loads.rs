@@ -3,14 +3,14 @@
 use arm::JointKind;
 
 use super::laws::{Circumstance, Smooth};
-use super::{Contact, Corrected};
+use super::{Contact, Corrected, acts};
 use crate::model::Workspace;
 
 impl Corrected {
     /// Viscous friction of each joint (N m s/rad or N s/m).
     pub fn viscous(&self) -> Vec<f64> {
         let mut coefficients = vec![0.0; self.arm.dof()];
-        for (joint, smooth) in &self.smooth {
+        for (joint, smooth, _) in &self.smooth {
             if let Smooth::Viscous { coefficient } = smooth {
                 coefficients[*joint] += coefficient;
             }
@@ -54,8 +54,8 @@ impl Corrected {
             dry[*joint] += law.level(qd[*joint], at);
             opposing[*joint] += law.bias();
         }
-        for (joint, smooth) in &self.smooth {
-            if !matches!(smooth, Smooth::Viscous { .. }) {
+        for (joint, smooth, onset) in &self.smooth {
+            if !matches!(smooth, Smooth::Viscous { .. }) && acts(*onset, Some(time)) {
                 opposing[*joint] += smooth.torque(*joint, q, qd, qdd);
             }
         }

@@ -69,6 +69,7 @@ fn friction_follows_the_sign_of_the_velocity() {
                 joint: a(),
                 coefficient: 4.0,
                 exponent: 2.0,
+                onset: None,
             },
             0.0,
             -0.5,
@@ -100,6 +101,7 @@ fn position_makes_springs_and_ripple() {
             Effect::TorqueOffset {
                 joint: a(),
                 offset: -0.7,
+                onset: None,
             },
             1.0,
             1.0,
@@ -118,6 +120,7 @@ fn position_makes_springs_and_ripple() {
         stiffness: 10.0,
         rest: 0.2,
         curve,
+        onset: None,
     };
     near(added(spring(vec![]), 0.5, 0.0), 3.0);
     let curve = vec![[-1.0, 4.0], [0.0, 2.0], [1.0, 3.0]];
@@ -235,16 +238,41 @@ fn a_coupling_follows_the_other_joint() {
     near(found.effects[1], -0.5);
 }
 
+/// What sets in at a time is not there before; where no time is given, it is.
+#[test]
+fn an_onset_is_waited_for() {
+    let effects = [
+        Effect::TorqueOffset {
+            joint: a(),
+            offset: 2.0,
+            onset: Some(10.0),
+        },
+        Effect::TorqueScale {
+            joint: a(),
+            factor: 1.5,
+            onset: Some(20.0),
+        },
+    ];
+    let model = Corrected::new(&arm(PENDULUM), &effects).expect("they are physical");
+    let of = |time| predict(&model, time, &[std::f64::consts::FRAC_PI_2], &[0.0], &[1.0]).torque(0);
+    near(of(Some(9.9)), 0.6);
+    near(of(Some(10.0)), 2.6);
+    near(of(Some(20.0)), 3.9);
+    near(of(None), 3.9);
+}
+
 #[test]
 fn scale_and_limit_come_last() {
     let effects = [
         Effect::TorqueOffset {
             joint: a(),
             offset: 2.0,
+            onset: None,
         },
         Effect::TorqueScale {
             joint: a(),
             factor: 1.5,
+            onset: None,
         },
         Effect::TorqueSaturation { joint: a(), limit: 2.5 },
     ];
@@ -296,6 +324,7 @@ fn loads_and_torques_agree() {
             stiffness: 3.0,
             rest: 0.1,
             curve: vec![],
+            onset: None,
         },
         Effect::ExternalContact {
             start: 0.0,
@@ -341,7 +370,8 @@ fn refusals_name_effect_joint_and_value() {
     assert_eq!(
         refused(Effect::TorqueScale {
             joint: a(),
-            factor: f64::NAN
+            factor: f64::NAN,
+            onset: None,
         }),
         "torque_scale of a: factor is NaN; it must be finite and positive"
     );
@@ -367,6 +397,7 @@ fn refusals_name_effect_joint_and_value() {
         stiffness: 0.0,
         rest: 0.0,
         curve: vec![[1.0, 0.0], [0.5, 0.0]],
+        onset: None,
     };
     assert!(refused(bent).contains("larger than the one before"));
     let nowhere = Effect::GravityMisalignment {

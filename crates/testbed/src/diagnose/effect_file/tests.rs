@@ -45,6 +45,7 @@ fn all(joint: &str, other: &str) -> Vec<Effect> {
             joint: joint(),
             coefficient: 0.3,
             exponent: 2.0,
+            onset: None,
         },
         Effect::RotorInertia {
             joint: joint(),
@@ -53,10 +54,12 @@ fn all(joint: &str, other: &str) -> Vec<Effect> {
         Effect::TorqueScale {
             joint: joint(),
             factor: 1.1,
+            onset: None,
         },
         Effect::TorqueOffset {
             joint: joint(),
             offset: -0.1,
+            onset: None,
         },
         Effect::TorqueRipple {
             joint: joint(),
@@ -112,12 +115,14 @@ fn all(joint: &str, other: &str) -> Vec<Effect> {
             stiffness: 10.0,
             rest: 0.1,
             curve: vec![],
+            onset: None,
         },
         Effect::Spring {
             joint: joint(),
             stiffness: 0.0,
             rest: 0.0,
             curve: vec![[-1.0, 2.0], [0.5, 1.0]],
+            onset: None,
         },
         Effect::ExternalContact {
             start: 12.0,

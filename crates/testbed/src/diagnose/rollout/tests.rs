@@ -127,6 +127,7 @@ fn drives_and_encoders_distort_and_are_put_right() {
         Effect::TorqueScale {
             joint: name(1),
             factor: 1.15,
+            onset: None,
         },
         Effect::EncoderOffset {
             joint: name(2),
@@ -135,6 +136,7 @@ fn drives_and_encoders_distort_and_are_put_right() {
         Effect::TorqueOffset {
             joint: name(0),
             offset: 3.0,
+            onset: None,
         },
     ];
     let recording = record(&arm, 0.0, 0.0, 5.0, |j, tau, q| match j {

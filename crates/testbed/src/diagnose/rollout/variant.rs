@@ -72,7 +72,7 @@ impl Variant {
     pub(super) fn run(&mut self, course: &Course<'_>, start: &Start, instants: usize) -> Path {
         let dof = start.q.len();
         let mut q = vec![Vec::with_capacity(instants + 1); dof];
-        let mut ran_away = self.begin(start).is_err();
+        let mut ran_away = self.begin(course, start).is_err();
         for (j, path) in q.iter_mut().enumerate() {
             path.push(start.q[j]);
         }
@@ -105,13 +105,14 @@ impl Variant {
     }
 
     /// Puts the plant into the measured state.
-    fn begin(&mut self, start: &Start) -> anyhow::Result<()> {
+    fn begin(&mut self, course: &Course<'_>, start: &Start) -> anyhow::Result<()> {
+        let time = course.recording.time(start.tick);
         let mut q = start.q.clone();
         for (j, q) in q.iter_mut().enumerate() {
             *q += self.model.encoder_offsets()[j];
             if let Some(connection) = &mut self.drives.connections[j] {
                 let rotor = self.model.arm().joints()[j].rotor_inertia;
-                let carried = start.tau[j] / self.model.torque_factors()[j] - rotor * start.qdd[j];
+                let carried = start.tau[j] / self.model.torque_factor(j, Some(time)) - rotor * start.qdd[j];
                 *q = connection.start(*q, start.qd[j], carried);
             }
         }
@@ -126,15 +127,15 @@ impl Variant {
         for substep in 0..course.substeps {
             // All that acts is taken at the middle of the step.
             let into = (substep as f64 + 0.5) * step;
+            let time = course.recording.time(tick) + into;
             for j in 0..self.tau.len() {
                 let commanded = commanded(course, j, tick, into - self.drives.delays[j]);
                 let limit = self.model.torque_limits()[j];
-                self.tau[j] = commanded.clamp(-limit, limit) / self.model.torque_factors()[j];
+                self.tau[j] = commanded.clamp(-limit, limit) / self.model.torque_factor(j, Some(time));
                 self.encoder_rate[j] = self.plant.qd()[j] + 0.5 * step * self.qdd[j];
                 self.encoder[j] = self.plant.q()[j] + 0.5 * step * self.plant.qd()[j] - self.model.encoder_offsets()[j];
             }
             if self.is_loaded {
-                let time = course.recording.time(tick) + into;
                 self.model.joint_loads(
                     time,
                     &mut self.workspace,

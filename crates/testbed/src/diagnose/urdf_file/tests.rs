@@ -49,6 +49,7 @@ fn effects() -> Vec<Effect> {
         Effect::TorqueOffset {
             joint: "b".into(),
             offset: 0.3,
+            onset: None,
         },
     ]
 }
