@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// A diagnosis; what is not scored is not read.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -21,6 +21,9 @@ pub struct Answer {
     /// Errors of prediction, by joint.
     #[serde(default)]
     pub fit: BTreeMap<String, Fit>,
+    /// How far the simulated arm goes from the recorded motion, by joint.
+    #[serde(default)]
+    pub rollout: BTreeMap<String, Rollout>,
 }
 
 /// An effect named.
@@ -30,6 +33,9 @@ pub struct Named {
     pub effect: String,
     /// The joint; `None` for the whole arm.
     pub joint: Option<String>,
+    /// The joint that turns this one's drive, too, of a coupling.
+    #[serde(default)]
+    pub other: Option<String>,
     /// Its numbers.
     #[serde(default)]
     pub parameters: BTreeMap<String, Number>,
@@ -102,4 +108,15 @@ pub struct Fit {
     /// With a learned correction instead.
     #[serde(default)]
     pub held_out_nrmse_learned: Option<f64>,
+}
+
+/// Root mean square distance of a joint's simulated motion from the recorded one (rad or m).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Rollout {
+    /// Of the model as it was given.
+    #[serde(rename = "nominal_rms_rad")]
+    pub nominal: f64,
+    /// With the effects named.
+    #[serde(rename = "augmented_rms_rad")]
+    pub diagnosed: f64,
 }

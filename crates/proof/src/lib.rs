@@ -19,6 +19,7 @@ mod motion;
 mod outcome;
 mod physics;
 mod plain;
+mod published;
 mod robot;
 mod rules;
 mod score;
@@ -32,7 +33,7 @@ mod targets;
 mod test_robots;
 mod truth;
 
-pub use answer::{Answer, Fit, Named, Number, Other, Refused, Unseen};
+pub use answer::{Answer, Fit, Named, Number, Other, Refused, Rollout, Unseen};
 pub use calibration::{Bin, Calibration};
 pub use campaign::{Campaign, CasePlan};
 pub use case::write_case;
@@ -45,6 +46,9 @@ pub use motion::{DURATION, PAUSE};
 pub use outcome::{FalseName, Fate, Outcome, OutsideOutcome};
 pub use physics::{EFFECTS, UNKNOWN, form_parameters, forms};
 pub use plain::Plain;
+pub use published::{
+    Besides, Compared, Denied, Evidence, HeldOutErrors, Published, PublishedNumber, RobotScore, Said, SaidFate, SaidOutcome, compared_parameters,
+};
 pub use robot::Robot;
 pub use rules::{LEAST_SHARE, Name};
 pub use score::{Family, Score, Tried, score};

@@ -187,6 +187,14 @@ pub struct ProveArgs {
     #[arg(long, value_name = "DIR", requires = "cases_from")]
     pub truth: Option<PathBuf>,
 
+    /// Take real robots' recordings instead, with what their publishers say as the truth (.toml, such as docs/published.toml)
+    #[arg(long, value_name = "FILE", requires = "recordings", conflicts_with_all = ["robot", "cases", "seed", "cases_from", "shard", "merge"])]
+    pub published: Option<PathBuf>,
+
+    /// Where the recordings of --published are: a folder a robot
+    #[arg(long, value_name = "DIR", requires = "published")]
+    pub recordings: Option<PathBuf>,
+
     /// Write the report to this file as Markdown as well
     #[arg(long, value_name = "FILE")]
     pub markdown: Option<PathBuf>,

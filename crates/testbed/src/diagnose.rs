@@ -4,7 +4,7 @@ mod command;
 pub mod effect_file;
 mod inputs;
 mod learned;
-mod numbers;
+pub mod numbers;
 pub mod page;
 #[cfg(feature = "viewer")]
 mod rerun;

@@ -7,6 +7,7 @@ mod disturbance;
 mod figures;
 mod markdown;
 mod page;
+mod published;
 mod reasons;
 mod report;
 mod results;

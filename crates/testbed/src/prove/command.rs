@@ -15,7 +15,7 @@ use super::disturbance::{self, Disturbance};
 use super::rows::{self, Row};
 use super::shards::{self, Label};
 use super::vault::Vault;
-use super::{markdown, page, work};
+use super::{markdown, page, published, work};
 use crate::cli::ProveArgs;
 use crate::{interrupt, output};
 
@@ -44,6 +44,9 @@ pub struct Proof {
 pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
     if let Some(path) = &args.markdown {
         output::check_writable(path)?;
+    }
+    if let (Some(file), Some(recordings)) = (&args.published, &args.recordings) {
+        return published::run(args, file, recordings);
     }
     if let Some(folder) = &args.merge {
         let (label, rows) = shards::merge(folder)?;
@@ -125,7 +128,7 @@ fn protocol(
 }
 
 /// Effects as `--only` takes them.
-fn list(terms: &[proof::Name]) -> String {
+pub fn list(terms: &[proof::Name]) -> String {
     let words = terms.iter().map(|(effect, joint)| match joint {
         Some(joint) => format!("{effect}:{joint}"),
         None => effect.clone(),
@@ -150,7 +153,10 @@ impl Proof {
 }
 
 /// The hashes of all diagnoses.
-fn answers(vault: &Vault, places: &[Place]) -> anyhow::Result<BTreeMap<String, Option<String>>> {
+///
+/// # Errors
+/// If one is not what its record says.
+pub fn answers(vault: &Vault, places: &[Place]) -> anyhow::Result<BTreeMap<String, Option<String>>> {
     let answer = |place: &Place| {
         let (_, text) = vault.answer(&format!("diagnoses/{}", place.name))?;
         Ok((place.name.clone(), text.map(|text| sha256(text.as_bytes()))))

@@ -5,11 +5,20 @@ use super::report::{Block, blocks};
 
 /// The whole of it; drawings are left out, their tables stay.
 pub fn text(proof: &Proof) -> String {
+    render(
+        blocks(proof),
+        "Made by `testbed prove`; the same seed and program give the same bytes.",
+    )
+}
+
+/// Any report, with its last line.
+pub fn render(blocks: Vec<Block>, made: &str) -> String {
     let mut text = String::new();
-    for block in blocks(proof) {
+    for block in blocks {
         match block {
             Block::Title(title) => text.push_str(&format!("# {title}\n\n")),
             Block::Heading(heading) => text.push_str(&format!("## {heading}\n\n")),
+            Block::Section(heading) => text.push_str(&format!("### {heading}\n\n")),
             Block::Text(paragraph) => text.push_str(&format!("{paragraph}\n\n")),
             Block::Code(code) => text.push_str(&format!("```sh\n{code}\n```\n\n")),
             Block::Figure { .. } => {}
@@ -30,7 +39,7 @@ pub fn text(proof: &Proof) -> String {
             }
         }
     }
-    text.push_str("Made by `testbed prove`; the same seed and program give the same bytes.\n");
+    text.push_str(&format!("{made}\n"));
     text
 }
 

@@ -19,27 +19,38 @@ const STYLE: &str = concat!(
 /// # Errors
 /// If it cannot be written.
 pub fn write(path: &Path, proof: &Proof) -> anyhow::Result<()> {
-    let page = whole(proof).into_string();
+    let eyebrow = format!("testbed proof · {} · sealed as `{}`", proof.seal.source, proof.seal.whole);
+    let made = format!(
+        "Made by testbed {} (`testbed prove`). The same seed and program give the same page, byte for byte.",
+        proof.seal.program.version
+    );
+    write_blocks(path, "Concealed physics: a proof", &eyebrow, &blocks(proof), &made)
+}
+
+/// Writes any report, whole or not at all: its title, what stands over it, and its last line.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn write_blocks(path: &Path, title: &str, eyebrow: &str, blocks: &[Block], made: &str) -> anyhow::Result<()> {
+    let page = whole(title, eyebrow, blocks, made).into_string();
     recording::write_whole(path, |file| file.write_all(page.as_bytes()))?;
     Ok(())
 }
 
-fn whole(proof: &Proof) -> Markup {
+fn whole(title: &str, eyebrow: &str, blocks: &[Block], made: &str) -> Markup {
     html! {
         (DOCTYPE)
         html lang="en" {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Concealed physics: a proof" }
+                title { (title) }
                 style { (PreEscaped(STYLE)) }
             }
             body {
-                p.eyebrow { "testbed proof · " (proof.seal.source) " · sealed as " code { (proof.seal.whole) } }
-                @for block in blocks(proof) { (markup(&block)) }
-                p.small.soft {
-                    "Made by testbed " (proof.seal.program.version) " (" code { "testbed prove" } "). The same seed and program give the same page, byte for byte."
-                }
+                p.eyebrow { (inline(eyebrow)) }
+                @for block in blocks { (markup(block)) }
+                p.small.soft { (inline(made)) }
             }
         }
     }
@@ -49,6 +60,7 @@ fn markup(block: &Block) -> Markup {
     match block {
         Block::Title(title) => html! { h1 { (title) } },
         Block::Heading(heading) => html! { h2 { (heading) } },
+        Block::Section(heading) => html! { h3 { (heading) } },
         Block::Text(text) => html! { p { (inline(text)) } },
         Block::Code(code) => html! { pre { code { (code) } } },
         Block::Figure { svg, caption } => html! { figure { (PreEscaped(svg)) figcaption { (caption) } } },

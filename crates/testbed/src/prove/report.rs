@@ -11,6 +11,8 @@ pub enum Block {
     Title(String),
     /// A heading.
     Heading(&'static str),
+    /// A heading under it.
+    Section(String),
     /// A paragraph.
     Text(String),
     /// A table; the columns after the first `words` hold numbers.

@@ -1,0 +1,112 @@
+//! A diagnosis' findings, and the same torques in other words.
+
+use std::collections::BTreeMap;
+
+use super::name_of;
+use crate::answer::{Answer, Named, Number};
+use crate::rules::Name;
+
+/// A name that findings amount to, with its numbers.
+pub struct Reading {
+    /// The effect and its joint.
+    pub name: Name,
+    /// Its numbers; no number is made up.
+    pub parameters: BTreeMap<String, Number>,
+    /// The findings it is made of, by their place in the answer.
+    pub of: Vec<usize>,
+    /// Whether it is another name than theirs.
+    rewritten: bool,
+}
+
+impl Reading {
+    /// Whether no finding has this name.
+    pub fn is_rewritten(&self) -> bool {
+        self.rewritten
+    }
+
+    /// The name of the first finding it is made of.
+    pub fn first(&self, answer: &Answer) -> Option<Name> {
+        Some(name_of(answer.findings.get(*self.of.first()?)?))
+    }
+}
+
+/// The findings as they are, and after them what else they say.
+pub fn readings(answer: &Answer) -> Vec<Reading> {
+    let findings = || answer.findings.iter().enumerate();
+    let mut list: Vec<Reading> = findings()
+        .map(|(k, finding)| Reading {
+            name: name_of(finding),
+            parameters: finding.parameters.clone(),
+            of: vec![k],
+            rewritten: false,
+        })
+        .collect();
+    for (k, finding) in findings() {
+        let mut add = |effect: &str, joint: &Option<String>, parameters: BTreeMap<String, Number>, of: Vec<usize>| {
+            list.push(Reading {
+                name: (effect.to_owned(), joint.clone()),
+                parameters,
+                of,
+                rewritten: true,
+            });
+        };
+        let joint = &finding.joint;
+        let number = |key: &str| finding.parameters.get(key).copied();
+        match finding.effect.as_str() {
+            // F₊ forwards and F₋ backwards are their mean against the motion, and half their difference always.
+            "friction_asymmetry" => {
+                if let (Some(positive), Some(negative)) = (number("positive"), number("negative")) {
+                    let level = scaled(combined(positive, negative, 1.0), 0.5);
+                    let offset = scaled(combined(positive, negative, -1.0), 0.5);
+                    add("coulomb_friction", joint, one("level", level), vec![k]);
+                    add("torque_offset", joint, one("offset", offset), vec![k]);
+                }
+            }
+            "coulomb_friction" => {
+                let is_offset = |(_, other): &(usize, &Named)| other.effect == "torque_offset" && other.joint == *joint;
+                if let Some((at, other)) = findings().find(is_offset)
+                    && let (Some(level), Some(offset)) = (number("level"), other.parameters.get("offset"))
+                {
+                    let mut both = one("positive", combined(level, *offset, 1.0));
+                    both.extend(one("negative", combined(level, *offset, -1.0)));
+                    add("friction_asymmetry", joint, both, vec![k, at]);
+                }
+            }
+            "stribeck_friction" | "load_dependent_friction" | "thermal_drift" => {
+                let level = number("coulomb").map_or_else(BTreeMap::new, |level| one("level", level));
+                add("coulomb_friction", joint, level, vec![k]);
+            }
+            "transmission_coupling" => add(&finding.effect, &finding.other, finding.parameters.clone(), vec![k]),
+            _ => {}
+        }
+    }
+    list
+}
+
+fn one(key: &str, number: Number) -> BTreeMap<String, Number> {
+    [(key.to_owned(), number)].into()
+}
+
+/// a + sign b, its interval as if the two were independent.
+fn combined(a: Number, b: Number, sign: f64) -> Number {
+    let half = |number: Number| match number.ci95 {
+        [Some(low), Some(high)] => Some(0.5 * (high - low)),
+        _ => None,
+    };
+    let value = match (a.value, b.value) {
+        (Some(a), Some(b)) => Some(a + sign * b),
+        _ => None,
+    };
+    let ci95 = match (value, half(a), half(b)) {
+        (Some(value), Some(a), Some(b)) => [Some(value - a.hypot(b)), Some(value + a.hypot(b))],
+        _ => [None, None],
+    };
+    Number { value, ci95 }
+}
+
+fn scaled(number: Number, factor: f64) -> Number {
+    Number {
+        value: number.value.map(|value| factor * value),
+        ci95: number.ci95.map(|bound| bound.map(|bound| factor * bound)),
+    }
+}

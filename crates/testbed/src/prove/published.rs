@@ -1,0 +1,177 @@
+//! `testbed prove --published`: real robots' recordings diagnosed under seal, with what their publishers say as the truth.
+
+mod file;
+mod fold;
+mod page;
+mod quantities;
+mod robot_page;
+mod robots;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+use anyhow::{Context, ensure};
+use proof::{Answer, Published, RobotScore, SaidFate, Seal};
+use serde::Serialize;
+
+use super::cases::Place;
+use super::command::{answers, list};
+use super::vault::Vault;
+use super::{markdown, page as html, work};
+use crate::cli::ProveArgs;
+use crate::{interrupt, output};
+use file::{File, Robot};
+
+/// What a proof on published recordings leaves for programs: `score.json`.
+#[derive(Serialize)]
+pub struct Real {
+    /// `testbed.published_proof/1`.
+    pub schema: &'static str,
+    /// The command that makes it again.
+    pub command: String,
+    /// What was fixed before the first diagnosis.
+    pub seal: Seal,
+    /// What was fixed before the truth was opened: SHA-256 of each diagnosis, by robot.
+    pub answers: BTreeMap<String, Option<String>>,
+    /// What came of each robot.
+    pub robots: Vec<Tried>,
+    /// Robots of the file whose folders are not there.
+    pub absent: Vec<String>,
+}
+
+/// A robot, its recordings and what came of them.
+#[derive(Serialize)]
+pub struct Tried {
+    /// As the file has it.
+    #[serde(skip)]
+    pub robot: Robot,
+    /// What the program said in place of a diagnosis.
+    pub error: Option<String>,
+    /// The score.
+    pub score: RobotScore,
+}
+
+/// Runs the protocol on the robots of `file` whose folders are in `recordings`; what is finished already is not done again.
+///
+/// # Errors
+/// If the file says what cannot be, no robot's folder is there or a file of one is missing, a seal is broken, a process
+/// cannot be started, or the user interrupts.
+pub fn run(args: &ProveArgs, file: &Path, recordings: &Path) -> anyhow::Result<()> {
+    let file = File::load(file)?;
+    let (robots, absent) = robots::there(&file, recordings)?;
+    let vault = Vault::new(&args.out)?;
+    let deferred = interrupt::Deferred::start();
+    let places: Vec<Place> = robots
+        .iter()
+        .enumerate()
+        .map(|(number, robot)| robots::place(number, robot, &vault.out))
+        .collect();
+    let tasks: Vec<(&Robot, &Place)> = robots.iter().zip(&places).collect();
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let jobs = args.jobs.map_or(cores, usize::from);
+    work::all("copying", &tasks, jobs, |(robot, place)| {
+        robots::stage(robot, &recordings.join(&robot.name), place)
+    })?;
+    let names: Vec<&str> = robots.iter().map(|robot| robot.name.as_str()).collect();
+    let source = format!("{} as published in a file with SHA-256 {}", names.join(", "), file.sha256);
+    let seal = vault.seal(&places, source)?;
+    let pairs: Vec<_> = places.iter().zip(&seal.cases).collect();
+    work::all("diagnosing", &pairs, jobs, |(place, sealed)| {
+        vault.diagnose(place, sealed, &format!("diagnoses/{}", place.name), None)
+    })?;
+    let answers = answers(&vault, &places)?;
+    output::write_json(&vault.out.join("answers.json"), &answers)?;
+    // Only now.
+    let truths: Mutex<BTreeMap<String, Published>> = Mutex::default();
+    work::all("fitting what is said", &pairs, jobs, |(place, sealed)| {
+        let bytes = std::fs::read(&place.truth).with_context(|| place.truth.display().to_string())?;
+        sealed.check_truth(&bytes)?;
+        let truth: Published = serde_json::from_slice(&bytes).with_context(|| place.truth.display().to_string())?;
+        vault.diagnose(place, sealed, &control(place), Some(&list(&truth.terms())))?;
+        if let Ok(mut truths) = truths.lock() {
+            truths.insert(place.name.clone(), truth);
+        }
+        Ok(())
+    })?;
+    let mut truths = truths.into_inner().unwrap_or_default();
+    drop(deferred);
+    let mut tried = Vec::new();
+    for (robot, place) in robots.into_iter().zip(&places) {
+        let truth = truths.remove(&place.name).context("its truth was opened")?;
+        let (record, text) = vault.answer(&format!("diagnoses/{}", place.name))?;
+        let (answer, said) = (parsed(text)?, parsed(vault.answer(&control(place))?.1)?);
+        tried.push(Tried {
+            score: truth.score(answer.as_ref(), said.as_ref()),
+            error: record.and_then(|record| record.error),
+            robot,
+        });
+    }
+    let real = Real {
+        schema: "testbed.published_proof/1",
+        command: "testbed prove --published docs/published.toml --recordings RECORDINGS --out proof-real/".to_owned(),
+        seal,
+        answers,
+        robots: tried,
+        absent,
+    };
+    write(args, &vault.out, &real)
+}
+
+/// Where the fit of what is said goes.
+fn control(place: &Place) -> String {
+    format!("controls/{}.said", place.name)
+}
+
+fn parsed(text: Option<String>) -> anyhow::Result<Option<Answer>> {
+    Ok(text.map(|text| serde_json::from_str(&text)).transpose()?)
+}
+
+fn write(args: &ProveArgs, out: &Path, real: &Real) -> anyhow::Result<()> {
+    let (report, score) = (out.join("report.html"), out.join("score.json"));
+    output::write_json(&score, real)?;
+    let made = "Made by `testbed prove --published`; the same recordings, file and program give the same bytes.";
+    let blocks = page::blocks(real);
+    let eyebrow = format!("testbed proof · {} · sealed as `{}`", names(real), real.seal.whole);
+    html::write_blocks(&report, "Concealed in the real world", &eyebrow, &blocks, made)?;
+    if let Some(path) = &args.markdown {
+        let text = markdown::render(blocks, made);
+        recording::write_whole(path, |file| file.write_all(text.as_bytes()))?;
+    }
+    output::print(&summary(real))?;
+    let paths: Vec<&PathBuf> = [&report, &score].into_iter().chain(&args.markdown).collect();
+    for path in paths {
+        output::print(&format!("written: {}\n", path.display()))?;
+    }
+    Ok(())
+}
+
+fn names(real: &Real) -> String {
+    let names: Vec<&str> = real.robots.iter().map(|tried| tried.robot.name.as_str()).collect();
+    names.join(", ")
+}
+
+/// The robots as a table.
+fn summary(real: &Real) -> String {
+    let header = ["robot", "said, found", "not observable", "contradicted", "held out"].map(str::to_owned);
+    let mut table = output::table(header);
+    for Tried { robot, score, .. } in &real.robots {
+        let count = |fates: &[SaidFate]| score.said.iter().filter(|said| fates.contains(&said.fate)).count();
+        let found = count(&[SaidFate::Named, SaidFate::SameTorque]);
+        let contradicted = score.besides.iter().filter(|name| name.contradicted_by.is_some()).count();
+        table.add_row([
+            robot.name.clone(),
+            format!("{found} of {}", score.said.len()),
+            count(&[SaidFate::NotObservable]).to_string(),
+            contradicted.to_string(),
+            fold::held_out(score),
+        ]);
+    }
+    format!("{}; sealed as {}\n{table}\n", names(real), real.seal.whole)
+}
+
+/// Refuses an empty list of `what` under `place`.
+fn ensure_some<T>(list: &[T], place: &str, what: &str) -> anyhow::Result<()> {
+    ensure!(!list.is_empty(), "{place}: {what} is empty; name at least one");
+    Ok(())
+}

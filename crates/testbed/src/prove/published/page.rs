@@ -1,0 +1,233 @@
+//! What a proof on published recordings says, as blocks of its report.
+
+use proof::{Compared, Evidence, SaidFate, quantile};
+
+use super::fold::{error, rms};
+use super::robots::names;
+use super::{Real, Tried, robot_page};
+use crate::prove::command::percent;
+use crate::prove::report::{Block, table, text};
+
+/// The whole report.
+pub fn blocks(real: &Real) -> Vec<Block> {
+    let mut list = opening(real);
+    list.extend(errors(real));
+    list.extend(protocol(real));
+    list.extend(origins(real));
+    list.push(Block::Heading("Robot by robot"));
+    list.push(text(
+        "What is said: a *number* is the publishers\u{2019}; *derived* is what follows from a law or constants they give; a *statement* has no number. *Same torque* is the \
+         same law in other words: friction of F₊ forwards and F₋ backwards is Coulomb friction of (F₊ + F₋)/2 with an offset of (F₊ − F₋)/2, and a coupling acts on both its joints. A \
+         difference is (found − published)/|published|. *Could be* is another effect that explains the recordings nearly as well, by the diagnosis\u{2019} own account.",
+    ));
+    list.extend(real.robots.iter().flat_map(robot_page::blocks));
+    list.extend(hashes(real));
+    list
+}
+
+/// How many of what is said of a robot came out as one of `fates`.
+fn count(tried: &Tried, fates: &[SaidFate]) -> usize {
+    let said = tried.score.said.iter();
+    said.filter(|said| fates.contains(&said.fate)).count()
+}
+
+/// The robot's published numbers beside those found.
+fn numbers(tried: &Tried) -> impl Iterator<Item = &Compared> {
+    let said = tried.score.said.iter().flat_map(|said| &said.numbers);
+    said.filter(|number| number.found.is_some())
+}
+
+/// `k of n`, and the median of the differences' sizes.
+fn agreement<'a>(numbers: impl Iterator<Item = &'a Compared>) -> [String; 2] {
+    let list: Vec<&Compared> = numbers.collect();
+    let inside = list.iter().filter(|number| number.covered).count();
+    let sizes: Vec<f64> = list.iter().filter_map(|n| Some(n.difference?.abs())).collect();
+    let median = quantile(&sizes, 0.5).map_or_else(|| "–".to_owned(), percent);
+    if list.is_empty() {
+        return ["–".to_owned(), median];
+    }
+    [format!("{inside} of {}", list.len()), median]
+}
+
+fn opening(real: &Real) -> Vec<Block> {
+    use SaidFate::{Confusable, Missed, Named, NotObservable, SameTorque, Unexplained};
+    let sum = |fates: &[SaidFate]| -> usize { real.robots.iter().map(|tried| count(tried, fates)).sum() };
+    let said: usize = real.robots.iter().map(|tried| tried.score.said.len()).sum();
+    let besides = || real.robots.iter().flat_map(|tried| &tried.score.besides);
+    let contradicted = besides().filter(|name| name.contradicted_by.is_some()).count();
+    let [inside, median] = agreement(real.robots.iter().flat_map(numbers));
+    let found = sum(&[Named, SameTorque]);
+    let absent = match real.absent.as_slice() {
+        [] => String::new(),
+        list => format!(" Not tried, as their folders were not there: {}.", list.join(", ")),
+    };
+    let mut rows: Vec<Vec<String>> = real.robots.iter().map(row).collect();
+    rows.push(vec![
+        "**all**".into(),
+        said.to_string(),
+        sum(&[Named]).to_string(),
+        sum(&[SameTorque]).to_string(),
+        sum(&[Confusable]).to_string(),
+        sum(&[NotObservable]).to_string(),
+        sum(&[Unexplained]).to_string(),
+        sum(&[Missed]).to_string(),
+        inside.clone(),
+        median.clone(),
+        besides().filter(|name| name.contradicted_by.is_none()).count().to_string(),
+        contradicted.to_string(),
+    ]);
+    let head = [
+        "robot",
+        "said to be there",
+        "named",
+        "named as the same torque",
+        "only as what it could be",
+        "declared not observable",
+        "joint left unexplained",
+        "missed",
+        "numbers inside our 95 % interval",
+        "median difference",
+        "named besides, not published",
+        "named against what is published",
+    ];
+    vec![
+        Block::Title("Concealed in the real world: published recordings, diagnosed under seal".into()),
+        text(format!(
+            "Recordings of {} real machines, published by others, were diagnosed by processes that were given the recordings and a rigid URDF alone. Of {said} things \
+             that the publishers say are there (an effect on a joint), {found} were named. Where they give a number and we name the effect, {inside} numbers are inside our 95 % interval; the \
+             median difference is {median}. {contradicted} names contradict what is published.{absent}",
+            real.robots.len()
+        )),
+        table(&head, 1, rows),
+    ]
+}
+
+fn row(tried: &Tried) -> Vec<String> {
+    use SaidFate::{Confusable, Missed, Named, NotObservable, SameTorque, Unexplained};
+    let score = &tried.score;
+    let contradicted = score.besides.iter().filter(|name| name.contradicted_by.is_some()).count();
+    let statements = score.said.iter().filter(|o| o.said.evidence == Evidence::Statement).count();
+    let said = match statements {
+        0 => score.said.len().to_string(),
+        n => format!("{} ({n} without a number)", score.said.len()),
+    };
+    let mut cells = vec![tried.robot.name.clone(), said];
+    for fate in [Named, SameTorque, Confusable, NotObservable, Unexplained, Missed] {
+        cells.push(count(tried, &[fate]).to_string());
+    }
+    cells.extend(agreement(numbers(tried)));
+    cells.push((score.besides.len() - contradicted).to_string());
+    cells.push(contradicted.to_string());
+    cells
+}
+
+/// How well it predicts what it was not fitted to.
+fn errors(real: &Real) -> Vec<Block> {
+    let row = |tried: &Tried| {
+        let (robot, score) = (&tried.robot, &tried.score);
+        let of = |figure: fn(&proof::HeldOutErrors) -> Option<f64>| error(rms(&score.held_out, figure));
+        let motion = |figure: fn(&proof::Rollout) -> f64| {
+            let rms = rms(&score.rollout, |rollout| Some(figure(rollout)));
+            rms.map_or_else(|| "–".to_owned(), |rms| crate::output::rounded(1e3 * rms, 3))
+        };
+        vec![
+            robot.name.clone(),
+            format!("{} and {}", robot.train.len(), robot.held_out.len()),
+            match (&score.verdict, &tried.error) {
+                (Some(verdict), _) => format!("`{verdict}`"),
+                (None, reason) => format!("no answer: {}", reason.as_deref().unwrap_or_default()),
+            },
+            of(|errors| errors.nominal),
+            of(|errors| errors.diagnosed),
+            of(|errors| errors.said),
+            of(|errors| errors.learned),
+            motion(|rollout| rollout.nominal),
+            motion(|rollout| rollout.diagnosed),
+        ]
+    };
+    let head = [
+        "robot",
+        "recordings, fitted and held out",
+        "verdict",
+        "held-out error, URDF",
+        "diagnosed",
+        "what is said, fitted",
+        "learned",
+        "simulated motion off by (mrad or mm), URDF",
+        "diagnosed",
+    ];
+    vec![
+        text(
+            "How well each model predicts recordings it was not fitted to: NRMSE of the torque (root mean square error over the torque\u{2019}s standard deviation, samples in motion), root mean square \
+             over the joints; and how far the simulated arm, driven by the recorded torques over short windows, strays from the recorded motion. *What is said, fitted* has exactly the effects that the \
+             publishers name, their sizes fitted to the same recordings (`diagnose --only`); *learned* is Independent Joint Learning on the same recordings. A distance of hundreds of mrad means that the simulation runs away, and is a lower bound.",
+        ),
+        table(&head, 3, real.robots.iter().map(row).collect()),
+    ]
+}
+
+fn protocol(real: &Real) -> Vec<Block> {
+    vec![
+        Block::Heading("How it was done, and what it does not show"),
+        text(
+            "Before the first diagnosis the SHA-256 of the program, of each recording and URDF and of what is published was written (`seal.json`, `SHA256SUMS`). Each diagnosis ran in a process of its \
+             own, without environment, in a new folder that held copies of the recordings and the URDF and nothing else: the command that anyone runs, with the same arguments for all robots. The hashes of all diagnoses were \
+             written (`answers.json`) before what is published was read.",
+        ),
+        text(
+            "**It is a blind run of the program, not a blind test of the method**: these recordings, and most of the published numbers, were known to those who wrote the diagnosis while they wrote it. \
+             The test on physics that nobody had seen is [the other one](proof.md). Publishers\u{2019} knowledge is no complete truth either: their numbers are estimates with another filter, from recordings that may not be these, \
+             or constants of a controller. So a name counts as false only where what is published contradicts it; a name that nobody published is listed as such, and nobody knows whether it is right.",
+        ),
+        Block::Code(real.command.clone()),
+    ]
+}
+
+fn origins(real: &Real) -> Vec<Block> {
+    let row = |tried: &Tried| {
+        let (robot, source) = (&tried.robot, &tried.robot.source);
+        let year = source.year.map_or_else(String::new, |year| format!(", {year}"));
+        vec![
+            robot.name.clone(),
+            format!("{}: {}{year}; {}", source.authors, source.title, source.url),
+            source.licence.clone(),
+            source.files.clone(),
+            source.converted.clone(),
+        ]
+    };
+    let head = ["folder", "source", "licence", "files there", "how ours differ"];
+    vec![
+        Block::Heading("Where the recordings come from"),
+        text(
+            "None of it is in this repository: each has its own licence. To repeat the proof make one folder a robot in a folder of your choice (`RECORDINGS` above), with `robot.urdf` and the recordings as CSV: `t` (s), `q_<joint>` (rad or m), `qd_<joint>` where \
+             the robot gave it, `tau_<joint>` (N m or N at the joint); more columns are described in [recordings.md](recordings.md). Numbers at the joint, SI, nothing filtered, nothing resampled. The seal at the end has the SHA-256 of each of our files; with rounding of \
+             your own you get other hashes, and the same results to the digits shown. A robot whose folder is not there is left out, and said to be.",
+        ),
+        table(&head, 5, real.robots.iter().map(row).collect()),
+    ]
+}
+
+fn hashes(real: &Real) -> Vec<Block> {
+    let code = |text: &str| format!("`{text}`");
+    let mut rows = Vec::new();
+    for tried in &real.robots {
+        let name = &tried.robot.name;
+        let Some(sealed) = real.seal.case(name) else { continue };
+        for (ours, theirs) in names(&tried.robot) {
+            let hash = sealed.files.get(&theirs).map_or_else(String::new, |hash| code(hash));
+            rows.push(vec![name.clone(), code(&ours), hash]);
+        }
+        rows.push(vec![name.clone(), "what is published".into(), code(&sealed.truth)]);
+        let answer = real.answers.get(name).cloned().flatten();
+        let answer = answer.map_or_else(|| "none".to_owned(), |hash| code(&hash));
+        rows.push(vec![name.clone(), "the diagnosis".into(), answer]);
+    }
+    vec![
+        Block::Heading("The seal"),
+        text(format!(
+            "Program: testbed {}, SHA-256 `{}`. All under seal: `{}`, the SHA-256 of `SHA256SUMS`. Source: {}.",
+            real.seal.program.version, real.seal.program.sha256, real.seal.whole, real.seal.source
+        )),
+        table(&["robot", "file", "SHA-256"], 3, rows),
+    ]
+}

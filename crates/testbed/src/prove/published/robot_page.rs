@@ -1,0 +1,200 @@
+//! One robot in the report: what is said and found, what is named besides, what was not seen, and the errors by joint.
+
+use proof::{Besides, Compared, Evidence, SaidFate, SaidOutcome};
+
+use super::Tried;
+use super::fold::error;
+use crate::diagnose::numbers::{scaled, short};
+use crate::output::rounded;
+use crate::prove::command::percent;
+use crate::prove::report::{Block, name, table, text};
+
+/// The robot's section.
+pub fn blocks(tried: &Tried) -> Vec<Block> {
+    let (robot, score) = (&tried.robot, &tried.score);
+    let mut list = vec![Block::Section(format!("{}: {}", robot.name, robot.title))];
+    if let Some(reason) = &tried.error {
+        list.push(text(format!("There is no diagnosis: {reason}")));
+    }
+    let head = [
+        "said to be there",
+        "how it is known",
+        "what came of it",
+        "published",
+        "found, and its 95 % interval",
+        "difference",
+        "inside",
+    ];
+    list.push(table(&head, 3, score.said.iter().flat_map(said).collect()));
+    let places: Vec<&String> = score.said.iter().map(|outcome| &outcome.said.place).collect();
+    let mut seen: Vec<&String> = Vec::new();
+    places.into_iter().for_each(|place| {
+        if !seen.contains(&place) {
+            seen.push(place);
+        }
+    });
+    let seen: Vec<&str> = seen.into_iter().map(String::as_str).collect();
+    list.push(text(format!("Said in: {}.", seen.join("; "))));
+    if score.besides.is_empty() {
+        list.push(text("Nothing else was named."));
+    } else {
+        let head = ["named besides", "published?", "in words", "could be", "share", "probability"];
+        list.push(table(&head, 4, score.besides.iter().map(besides).collect()));
+    }
+    list.push(text(unseen(tried)));
+    list.push(errors(tried));
+    for note in &robot.notes {
+        list.push(text(format!("*Note of ours:* {note}")));
+    }
+    list
+}
+
+/// A row for each number, or one for what has none.
+fn said(outcome: &SaidOutcome) -> Vec<Vec<String>> {
+    let said = &outcome.said;
+    let effects: Vec<String> = said.effects.iter().map(|effect| format!("`{effect}`")).collect();
+    let joint = said.joint.as_ref().map_or_else(String::new, |joint| format!(" on {joint}"));
+    let what = format!("{}{joint}", effects.join(" or "));
+    let evidence = match said.evidence {
+        Evidence::Number => "number",
+        Evidence::Derived => "derived",
+        Evidence::Statement => "statement",
+    };
+    let came = came_of(outcome);
+    let row = |what: String, came: String, cells: [String; 4]| {
+        [vec![what, evidence.to_owned(), came], cells.to_vec()].concat()
+    };
+    if !outcome.numbers.is_empty() {
+        let numbers = outcome.numbers.iter();
+        return numbers
+            .map(|number| row(format!("{what}, {}", number.parameter), came.clone(), compared(number)))
+            .collect();
+    }
+    if said.parameters.is_empty() {
+        return vec![row(what, came, Default::default())];
+    }
+    let numbers = said.parameters.iter();
+    numbers
+        .map(|(key, number)| {
+            let published = quantity(number.value, number.value, &number.unit, true);
+            let cells = [published, String::new(), String::new(), String::new()];
+            row(format!("{what}, {key}"), came.clone(), cells)
+        })
+        .collect()
+}
+
+fn came_of(outcome: &SaidOutcome) -> String {
+    let other = outcome.named_as.as_ref().map(name).unwrap_or_default();
+    match outcome.fate {
+        SaidFate::Named => "named".into(),
+        SaidFate::SameTorque => format!("same torque: {other}"),
+        SaidFate::Confusable => format!("could be, for {other}"),
+        SaidFate::NotObservable => "declared not observable".into(),
+        SaidFate::Unexplained => "**missed**; the joint is left unexplained".into(),
+        SaidFate::Missed => "**missed**".into(),
+    }
+}
+
+/// Published, found with interval, difference, inside.
+fn compared(number: &Compared) -> [String; 4] {
+    let scale = number.published;
+    let published = quantity(number.published, scale, &number.unit, true);
+    let Some(found) = number.found else {
+        return [published, "no such number".into(), String::new(), String::new()];
+    };
+    let bound = |bound: Option<f64>| {
+        bound.map_or_else(|| "–".to_owned(), |bound| quantity(bound, scale, &number.unit, false))
+    };
+    let [low, high] = number.ci95.map(bound);
+    let found = quantity(found, scale, &number.unit, true);
+    [
+        published,
+        format!("{found} ({low} … {high})"),
+        number.difference.map_or_else(String::new, signed_percent),
+        if number.covered { "yes" } else { "no" }.to_owned(),
+    ]
+}
+
+/// `value` under the prefix that suits `scale`.
+fn quantity(value: f64, scale: f64, unit: &str, with_unit: bool) -> String {
+    let scaled = scaled(scale.abs(), if unit == "1" { "" } else { unit });
+    let number = short(value / scaled.factor);
+    if with_unit && !scaled.unit.is_empty() {
+        format!("{number} {}", scaled.unit)
+    } else {
+        number
+    }
+}
+
+fn signed_percent(share: f64) -> String {
+    let text = percent(share.abs());
+    match share {
+        share if text == "0 %" || share == 0.0 => text,
+        share if share < 0.0 => format!("−{text}"),
+        _ => format!("+{text}"),
+    }
+}
+
+fn besides(besides: &Besides) -> Vec<String> {
+    let published = match (&besides.contradicted_by, besides.comes_with) {
+        (Some(place), _) => format!("**against** {place}"),
+        (None, true) => "comes with what is said".to_owned(),
+        (None, false) => "not published".to_owned(),
+    };
+    let others: Vec<String> = besides.confusable_with.iter().map(name).collect();
+    // What is before the error, which the tables have.
+    let sentence = besides.sentence.split("; held-out error").next().unwrap_or_default();
+    vec![
+        name(&besides.name),
+        published,
+        sentence.to_owned(),
+        others.join(", "),
+        percent(besides.share),
+        besides.probability.map_or_else(|| "–".to_owned(), |p| format!("{p:.2}")),
+    ]
+}
+
+fn unseen(tried: &Tried) -> String {
+    let score = &tried.score;
+    let unexplained = match score.unexplained.as_slice() {
+        [] => "No joint is left unexplained.".to_owned(),
+        joints => format!("Left unexplained: {}.", joints.join(", ")),
+    };
+    let all = score.held_out.len();
+    let effects = score.not_observable.iter().map(|(effect, joints)| match joints.len() {
+        count if count == all && all > 1 => format!("`{effect}` (all joints)"),
+        _ => format!("`{effect}` ({})", joints.join(", ")),
+    });
+    let effects: Vec<String> = effects.collect();
+    if effects.is_empty() {
+        return unexplained;
+    }
+    format!("{unexplained} Could not be seen at all sizes: {}.", effects.join(", "))
+}
+
+fn errors(tried: &Tried) -> Block {
+    let score = &tried.score;
+    let rows = score.held_out.iter().map(|(joint, errors)| {
+        let rollout = score.rollout.get(joint);
+        let motion = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| rounded(1e3 * value, 3));
+        vec![
+            joint.clone(),
+            error(errors.nominal),
+            error(errors.diagnosed),
+            error(errors.said),
+            error(errors.learned),
+            motion(rollout.map(|rollout| rollout.nominal)),
+            motion(rollout.map(|rollout| rollout.diagnosed)),
+        ]
+    });
+    let head = [
+        "joint",
+        "held-out error, URDF",
+        "diagnosed",
+        "what is said, fitted",
+        "learned",
+        "simulated motion off by (mrad or mm), URDF",
+        "diagnosed",
+    ];
+    table(&head, 1, rows.collect())
+}
