@@ -10,6 +10,7 @@ mod inspect;
 mod paper;
 mod prove;
 mod prove_paper;
+mod prove_published;
 mod refusals;
 mod runs;
 mod support;

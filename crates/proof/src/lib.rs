@@ -47,7 +47,8 @@ pub use outcome::{FalseName, Fate, Outcome, OutsideOutcome};
 pub use physics::{EFFECTS, UNKNOWN, form_parameters, forms};
 pub use plain::Plain;
 pub use published::{
-    Besides, Compared, Denied, Evidence, HeldOutErrors, Published, PublishedNumber, RobotScore, Said, SaidFate, SaidOutcome, compared_parameters,
+    Besides, Compared, Denied, Evidence, HeldOutErrors, Published, PublishedNumber, RobotScore, Said, SaidFate,
+    SaidOutcome, compared_parameters,
 };
 pub use robot::Robot;
 pub use rules::{LEAST_SHARE, Name};

@@ -51,10 +51,12 @@ pub struct PublishedNumber {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Evidence {
-    /// The publishers give the number.
+    /// The publishers give the number, as a result of measuring this machine or its kind.
     Number,
-    /// It follows from a law or constants that they give.
+    /// It follows from a law that they give.
     Derived,
+    /// A constant of a model that they use, of which it is not said that it was measured on this machine.
+    Constant,
     /// They say that it is there, or it almost surely is; no number is known.
     Statement,
 }
@@ -96,8 +98,10 @@ pub struct SaidOutcome {
     pub said: Said,
     /// What came of it.
     pub fate: SaidFate,
-    /// The finding that it is.
+    /// The finding that it is, or whose confusable set has it.
     pub named_as: Option<Name>,
+    /// All findings that it is, in words.
+    pub sentences: Vec<String>,
     /// Its numbers beside the finding's.
     pub numbers: Vec<Compared>,
 }
@@ -206,7 +210,10 @@ impl Published {
         let mut not_observable: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for unseen in &given.not_observable {
             if let Some(joint) = &unseen.joint {
-                not_observable.entry(unseen.effect.clone()).or_default().push(joint.clone());
+                not_observable
+                    .entry(unseen.effect.clone())
+                    .or_default()
+                    .push(joint.clone());
             }
         }
         let held_out = given.fit.iter().map(|(joint, fit)| {
@@ -240,11 +247,16 @@ impl Published {
             .flat_map(|reading| reading.of.iter().copied())
             .collect();
         let mut list = Vec::new();
-        for (k, finding) in answer.findings.iter().enumerate().filter(|(k, _)| !known.contains(k)) {
+        let findings = answer.findings.iter().enumerate();
+        for (_, finding) in findings.filter(|(k, _)| !known.contains(k)) {
             let name = name_of(finding);
             let denied = self.denied.iter().find(|denied| denied.is(&name));
             let comes_with = self.said.iter().any(|said| {
-                said.joint == name.1 && said.effects.iter().any(|effect| brings(effect).contains(&name.0.as_str()))
+                said.joint == name.1
+                    && said
+                        .effects
+                        .iter()
+                        .any(|effect| brings(effect).contains(&name.0.as_str()))
             });
             let rivals = finding.confusable_with.iter();
             list.push(Besides {
@@ -252,8 +264,10 @@ impl Published {
                 comes_with,
                 share: finding.share,
                 probability: finding.probability,
-                confusable_with: rivals.map(|other| (other.effect.clone(), other.joint.clone())).collect(),
-                sentence: answer.findings[k].sentence.clone(),
+                confusable_with: rivals
+                    .map(|other| (other.effect.clone(), other.joint.clone()))
+                    .collect(),
+                sentence: finding.sentence.clone(),
                 name,
             });
         }
@@ -325,12 +339,24 @@ fn outcome(said: &Said, answer: &Answer, readings: &[Reading]) -> SaidOutcome {
         let place = |key: &String| keys.iter().position(|other| other == key);
         let mut list: Vec<_> = said.parameters.iter().collect();
         list.sort_by_key(|(key, _)| place(key));
-        list.into_iter().map(|(key, number)| compared(key, number, reading)).collect()
+        list.into_iter()
+            .map(|(key, number)| compared(key, number, reading))
+            .collect()
     });
+    let of = |reading: &Reading| reading.of.clone();
+    let all: BTreeSet<usize> = readings
+        .iter()
+        .filter(|reading| said.is(&reading.name))
+        .flat_map(of)
+        .collect();
+    let sentences = all
+        .iter()
+        .filter_map(|&k| Some(answer.findings.get(k)?.sentence.clone()));
     SaidOutcome {
         said: said.clone(),
         fate,
         named_as,
+        sentences: sentences.collect(),
         numbers,
     }
 }
@@ -350,9 +376,7 @@ fn compared(key: &str, number: &PublishedNumber, reading: &Reading) -> Compared 
         difference: value
             .filter(|_| published != 0.0)
             .map(|value| (value - published) / published.abs()),
-        covered: value.is_some()
-            && low.is_none_or(|low| low <= published)
-            && high.is_none_or(|high| published <= high),
+        covered: value.is_some() && low.is_none_or(|low| low <= published) && high.is_none_or(|high| published <= high),
     }
 }
 

@@ -58,14 +58,22 @@ fn answer() -> Answer {
 #[test]
 fn each_fate_is_told_from_the_others() {
     let published = published(vec![
-        said(&["friction_asymmetry"], Some("a"), &[("positive", 16.5), ("negative", 20.0)]),
+        said(
+            &["friction_asymmetry"],
+            Some("a"),
+            &[("positive", 16.5), ("negative", 20.0)],
+        ),
         said(&["coulomb_friction"], Some("a"), &[("level", 20.4)]),
         said(&["torque_offset"], Some("a"), &[("offset", -3.2)]),
         said(&["gravity_misalignment"], None, &[]),
         said(&["viscous_friction"], Some("c"), &[("coefficient", 2.0)]),
         said(&["viscous_friction"], Some("c"), &[("coefficient", 4.0)]),
         said(&["viscous_friction", "coulomb_friction"], Some("c"), &[]),
-        said(&["transmission_coupling"], Some("a"), &[("viscous", 0.8), ("coulomb", 1.0)]),
+        said(
+            &["transmission_coupling"],
+            Some("a"),
+            &[("viscous", 0.8), ("coulomb", 1.0)],
+        ),
         said(&["rotor_inertia"], Some("b"), &[]),
         said(&["rotor_inertia"], Some("c"), &[]),
     ]);
@@ -85,6 +93,7 @@ fn each_fate_is_told_from_the_others() {
         Missed,
     ];
     assert_eq!(fates, expected);
+    assert_eq!(score.said[2].sentences, ["a: dry friction"]);
     let numbers = |k: usize| &score.said[k].numbers;
     assert!(numbers(0)[0].covered && !numbers(0)[1].covered);
     assert_eq!(numbers(0)[0].parameter, "positive");

@@ -19,7 +19,10 @@ const STYLE: &str = concat!(
 /// # Errors
 /// If it cannot be written.
 pub fn write(path: &Path, proof: &Proof) -> anyhow::Result<()> {
-    let eyebrow = format!("testbed proof · {} · sealed as `{}`", proof.seal.source, proof.seal.whole);
+    let eyebrow = format!(
+        "testbed proof · {} · sealed as `{}`",
+        proof.seal.source, proof.seal.whole
+    );
     let made = format!(
         "Made by testbed {} (`testbed prove`). The same seed and program give the same page, byte for byte.",
         proof.seal.program.version

@@ -1,5 +1,6 @@
 //! `testbed prove --published`: real robots' recordings diagnosed under seal, with what their publishers say as the truth.
 
+mod figure;
 mod file;
 mod fold;
 mod page;
@@ -74,7 +75,11 @@ pub fn run(args: &ProveArgs, file: &Path, recordings: &Path) -> anyhow::Result<(
         robots::stage(robot, &recordings.join(&robot.name), place)
     })?;
     let names: Vec<&str> = robots.iter().map(|robot| robot.name.as_str()).collect();
-    let source = format!("{} as published in a file with SHA-256 {}", names.join(", "), file.sha256);
+    let source = format!(
+        "{} as published in a file with SHA-256 {}",
+        names.join(", "),
+        file.sha256
+    );
     let seal = vault.seal(&places, source)?;
     let pairs: Vec<_> = places.iter().zip(&seal.cases).collect();
     work::all("diagnosing", &pairs, jobs, |(place, sealed)| {
@@ -158,7 +163,11 @@ fn summary(real: &Real) -> String {
     for Tried { robot, score, .. } in &real.robots {
         let count = |fates: &[SaidFate]| score.said.iter().filter(|said| fates.contains(&said.fate)).count();
         let found = count(&[SaidFate::Named, SaidFate::SameTorque]);
-        let contradicted = score.besides.iter().filter(|name| name.contradicted_by.is_some()).count();
+        let contradicted = score
+            .besides
+            .iter()
+            .filter(|name| name.contradicted_by.is_some())
+            .count();
         table.add_row([
             robot.name.clone(),
             format!("{found} of {}", score.said.len()),

@@ -260,10 +260,7 @@ impl File {
         }
         let known: Vec<String> = arm.joints().iter().map(|joint| joint.name.clone()).collect();
         let hint = nearest(name, &known).map_or(String::new(), |near| format!("did you mean \"{near}\"? "));
-        let reason = format!(
-            "the URDF has no joint \"{name}\"; {hint}it has {}",
-            known.join(", ")
-        );
+        let reason = format!("the URDF has no joint \"{name}\"; {hint}it has {}", known.join(", "));
         Err(self.fail(joint.span(), &reason))
     }
 
@@ -279,7 +276,8 @@ impl File {
         for (key, numbers) in &says.parameters {
             let name = key.get_ref();
             let [effect] = says.effects.as_slice() else {
-                let reason = "which of several effects is meant is not said, so there can be no number; name one effect";
+                let reason =
+                    "which of several effects is meant is not said, so there can be no number; name one effect";
                 return Err(self.fail(key.span(), reason));
             };
             let effect = effect.get_ref();

@@ -4,21 +4,25 @@ use proof::{Compared, Evidence, SaidFate, quantile};
 
 use super::fold::{error, rms};
 use super::robots::names;
-use super::{Real, Tried, robot_page};
+use super::{Real, Tried, figure, robot_page};
 use crate::prove::command::percent;
 use crate::prove::report::{Block, table, text};
 
 /// The whole report.
 pub fn blocks(real: &Real) -> Vec<Block> {
     let mut list = opening(real);
+    list.extend(figure::numbers(&real.robots).map(|svg| Block::Figure {
+        svg,
+        caption: "Each number that was found over the one published, with our 95 % interval; hollow: constants of a model they use. What is off the axis is drawn at its end.".into(),
+    }));
     list.extend(errors(real));
     list.extend(protocol(real));
     list.extend(origins(real));
     list.push(Block::Heading("Robot by robot"));
     list.push(text(
-        "What is said: a *number* is the publishers\u{2019}; *derived* is what follows from a law or constants they give; a *statement* has no number. *Same torque* is the \
+        "How it is known: a `number` is the publishers\u{2019} own; `derived` is what follows from a law they give; a `constant` is one of a model they use, of which it is not said that it was measured; a `statement` has no number. `same torque` is the \
          same law in other words: friction of F₊ forwards and F₋ backwards is Coulomb friction of (F₊ + F₋)/2 with an offset of (F₊ − F₋)/2, and a coupling acts on both its joints. A \
-         difference is (found − published)/|published|. *Could be* is another effect that explains the recordings nearly as well, by the diagnosis\u{2019} own account.",
+         difference is (found − published)/|published|. `could be` is another effect that explains the recordings nearly as well, by the diagnosis\u{2019} own account. Notes of ours were written after results had been seen.",
     ));
     list.extend(real.robots.iter().flat_map(robot_page::blocks));
     list.extend(hashes(real));
@@ -73,7 +77,10 @@ fn opening(real: &Real) -> Vec<Block> {
         sum(&[Missed]).to_string(),
         inside.clone(),
         median.clone(),
-        besides().filter(|name| name.contradicted_by.is_none()).count().to_string(),
+        besides()
+            .filter(|name| name.contradicted_by.is_none())
+            .count()
+            .to_string(),
         contradicted.to_string(),
     ]);
     let head = [
@@ -99,14 +106,23 @@ fn opening(real: &Real) -> Vec<Block> {
             real.robots.len()
         )),
         table(&head, 1, rows),
+        by_evidence(real),
     ]
 }
 
 fn row(tried: &Tried) -> Vec<String> {
     use SaidFate::{Confusable, Missed, Named, NotObservable, SameTorque, Unexplained};
     let score = &tried.score;
-    let contradicted = score.besides.iter().filter(|name| name.contradicted_by.is_some()).count();
-    let statements = score.said.iter().filter(|o| o.said.evidence == Evidence::Statement).count();
+    let contradicted = score
+        .besides
+        .iter()
+        .filter(|name| name.contradicted_by.is_some())
+        .count();
+    let statements = score
+        .said
+        .iter()
+        .filter(|o| o.said.evidence == Evidence::Statement)
+        .count();
     let said = match statements {
         0 => score.said.len().to_string(),
         n => format!("{} ({n} without a number)", score.said.len()),
@@ -119,6 +135,30 @@ fn row(tried: &Tried) -> Vec<String> {
     cells.push((score.besides.len() - contradicted).to_string());
     cells.push(contradicted.to_string());
     cells
+}
+
+/// The same agreement, by how a number is known.
+fn by_evidence(real: &Real) -> Block {
+    let kinds = [
+        (Evidence::Number, "`number`: the publishers\u{2019} own"),
+        (Evidence::Derived, "`derived` from a law they give"),
+        (Evidence::Constant, "`constant` of a model they use"),
+    ];
+    let rows = kinds.iter().filter_map(|(kind, words)| {
+        let outcomes = || real.robots.iter().flat_map(|tried| &tried.score.said);
+        let known = || outcomes().filter(|outcome| outcome.said.evidence == *kind);
+        let published: usize = known().map(|outcome| outcome.said.parameters.len()).sum();
+        let numbers = known().flat_map(|outcome| &outcome.numbers);
+        let [inside, median] = agreement(numbers.filter(|number| number.found.is_some()));
+        (published > 0).then(|| vec![(*words).to_owned(), published.to_string(), inside, median])
+    });
+    let head = [
+        "how a number is known",
+        "numbers published",
+        "inside our 95 % interval, of those found",
+        "median difference",
+    ];
+    table(&head, 1, rows.collect())
 }
 
 /// How well it predicts what it was not fitted to.
@@ -159,8 +199,8 @@ fn errors(real: &Real) -> Vec<Block> {
     vec![
         text(
             "How well each model predicts recordings it was not fitted to: NRMSE of the torque (root mean square error over the torque\u{2019}s standard deviation, samples in motion), root mean square \
-             over the joints; and how far the simulated arm, driven by the recorded torques over short windows, strays from the recorded motion. *What is said, fitted* has exactly the effects that the \
-             publishers name, their sizes fitted to the same recordings (`diagnose --only`); *learned* is Independent Joint Learning on the same recordings. A distance of hundreds of mrad means that the simulation runs away, and is a lower bound.",
+             over the joints; and how far the simulated arm, driven by the recorded torques over short windows, strays from the recorded motion. `what is said, fitted` has exactly the effects that the \
+             publishers name, their sizes fitted to the same recordings (`diagnose --only`); `learned` is Independent Joint Learning on the same recordings. A distance of hundreds of mrad means that the simulation runs away, and is a lower bound.",
         ),
         table(&head, 3, real.robots.iter().map(row).collect()),
     ]
@@ -171,12 +211,12 @@ fn protocol(real: &Real) -> Vec<Block> {
         Block::Heading("How it was done, and what it does not show"),
         text(
             "Before the first diagnosis the SHA-256 of the program, of each recording and URDF and of what is published was written (`seal.json`, `SHA256SUMS`). Each diagnosis ran in a process of its \
-             own, without environment, in a new folder that held copies of the recordings and the URDF and nothing else: the command that anyone runs, with the same arguments for all robots. The hashes of all diagnoses were \
-             written (`answers.json`) before what is published was read.",
+             own, without environment, in a new folder that held copies of the recordings and the URDF and nothing else: the command that anyone runs, with the same arguments for all robots. What is published is read at the start, to be \
+             checked and sealed; no diagnosis is given it, and nothing is held against it before the hashes of all diagnoses are written (`answers.json`).",
         ),
         text(
             "**It is a blind run of the program, not a blind test of the method**: these recordings, and most of the published numbers, were known to those who wrote the diagnosis while they wrote it. \
-             The test on physics that nobody had seen is [the other one](proof.md). Publishers\u{2019} knowledge is no complete truth either: their numbers are estimates with another filter, from recordings that may not be these, \
+             The test on physics that nobody had seen is the other one (`docs/proof.md`). Publishers\u{2019} knowledge is no complete truth either: their numbers are estimates with another filter, from recordings that may not be these, \
              or constants of a controller. So a name counts as false only where what is published contradicts it; a name that nobody published is listed as such, and nobody knows whether it is right.",
         ),
         Block::Code(real.command.clone()),
@@ -200,8 +240,7 @@ fn origins(real: &Real) -> Vec<Block> {
         Block::Heading("Where the recordings come from"),
         text(
             "None of it is in this repository: each has its own licence. To repeat the proof make one folder a robot in a folder of your choice (`RECORDINGS` above), with `robot.urdf` and the recordings as CSV: `t` (s), `q_<joint>` (rad or m), `qd_<joint>` where \
-             the robot gave it, `tau_<joint>` (N m or N at the joint); more columns are described in [recordings.md](recordings.md). Numbers at the joint, SI, nothing filtered, nothing resampled. The seal at the end has the SHA-256 of each of our files; with rounding of \
-             your own you get other hashes, and the same results to the digits shown. A robot whose folder is not there is left out, and said to be.",
+             the robot gave it, `tau_<joint>` (N m or N at the joint); more columns are described in `docs/recordings.md`. Numbers at the joint, SI, nothing filtered, nothing resampled. How ours differ from the sources is what the notes that came with this collection of recordings, and the sources\u{2019} own programs, say; it was not checked against the originals number by number. The seal at the end has the SHA-256 of each of our files; files made anew, rounded in another way, have others. A robot whose folder is not there is left out, and said to be.",
         ),
         table(&head, 5, real.robots.iter().map(row).collect()),
     ]

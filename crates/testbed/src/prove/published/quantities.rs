@@ -38,7 +38,10 @@ fn units(effect: &str, parameter: &str, kind: Option<JointKind>) -> &'static [Un
             &[("N/m", 1.0), ("kN/m", 1e3)],
         ),
         (_, "inertia") => either(&[("kg m²", 1.0)], MASS),
-        (_, "velocity") => either(&[("rad/s", 1.0), ("deg/s", PI / 180.0)], &[("m/s", 1.0), ("mm/s", 1e-3)]),
+        (_, "velocity") => either(
+            &[("rad/s", 1.0), ("deg/s", PI / 180.0)],
+            &[("m/s", 1.0), ("mm/s", 1e-3)],
+        ),
         (_, "mass") => MASS,
         (_, "com_x" | "com_y" | "com_z") => LENGTH,
         (_, "force") => FORCE,
@@ -49,12 +52,7 @@ fn units(effect: &str, parameter: &str, kind: Option<JointKind>) -> &'static [Un
 }
 
 /// The factor that takes a number in `unit` to SI, and the SI unit; or what is wrong with the unit, with the remedy.
-pub fn si(
-    effect: &str,
-    parameter: &str,
-    kind: Option<JointKind>,
-    unit: &str,
-) -> Result<(f64, &'static str), String> {
+pub fn si(effect: &str, parameter: &str, kind: Option<JointKind>, unit: &str) -> Result<(f64, &'static str), String> {
     let known = units(effect, parameter, kind);
     let found = known.iter().find(|(name, _)| *name == unit);
     match (found, known.first()) {
@@ -82,7 +80,10 @@ mod tests {
         assert_eq!(viscous(JointKind::Prismatic, "N s/m"), Ok((1.0, "N s/m")));
         let refused = viscous(JointKind::Prismatic, "N m s/rad").expect_err("a slide does not turn");
         assert!(refused.ends_with("give N s/m"), "{refused}");
-        assert_eq!(si("rotor_inertia", "inertia", Some(JointKind::Prismatic), "g"), Ok((1e-3, "kg")));
+        assert_eq!(
+            si("rotor_inertia", "inertia", Some(JointKind::Prismatic), "g"),
+            Ok((1e-3, "kg"))
+        );
         assert_eq!(si("payload", "mass", None, "kg"), Ok((1.0, "kg")));
     }
 

@@ -1,5 +1,8 @@
 //! One robot in the report: what is said and found, what is named besides, what was not seen, and the errors by joint.
 
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+
 use proof::{Besides, Compared, Evidence, SaidFate, SaidOutcome};
 
 use super::Tried;
@@ -38,13 +41,20 @@ pub fn blocks(tried: &Tried) -> Vec<Block> {
     if score.besides.is_empty() {
         list.push(text("Nothing else was named."));
     } else {
-        let head = ["named besides", "published?", "in words", "could be", "share", "probability"];
+        let head = [
+            "named besides",
+            "published?",
+            "in words",
+            "could be",
+            "share",
+            "probability",
+        ];
         list.push(table(&head, 4, score.besides.iter().map(besides).collect()));
     }
     list.push(text(unseen(tried)));
     list.push(errors(tried));
     for note in &robot.notes {
-        list.push(text(format!("*Note of ours:* {note}")));
+        list.push(text(format!("**Note of ours.** {note}")));
     }
     list
 }
@@ -53,11 +63,15 @@ pub fn blocks(tried: &Tried) -> Vec<Block> {
 fn said(outcome: &SaidOutcome) -> Vec<Vec<String>> {
     let said = &outcome.said;
     let effects: Vec<String> = said.effects.iter().map(|effect| format!("`{effect}`")).collect();
-    let joint = said.joint.as_ref().map_or_else(String::new, |joint| format!(" on {joint}"));
+    let joint = said
+        .joint
+        .as_ref()
+        .map_or_else(String::new, |joint| format!(" on {joint}"));
     let what = format!("{}{joint}", effects.join(" or "));
     let evidence = match said.evidence {
         Evidence::Number => "number",
         Evidence::Derived => "derived",
+        Evidence::Constant => "constant",
         Evidence::Statement => "statement",
     };
     let came = came_of(outcome);
@@ -71,7 +85,9 @@ fn said(outcome: &SaidOutcome) -> Vec<Vec<String>> {
             .collect();
     }
     if said.parameters.is_empty() {
-        return vec![row(what, came, Default::default())];
+        let found: Vec<&str> = outcome.sentences.iter().map(|sentence| in_short(sentence)).collect();
+        let cells = [String::new(), found.join("; "), String::new(), String::new()];
+        return vec![row(what, came, cells)];
     }
     let numbers = said.parameters.iter();
     numbers
@@ -102,9 +118,8 @@ fn compared(number: &Compared) -> [String; 4] {
     let Some(found) = number.found else {
         return [published, "no such number".into(), String::new(), String::new()];
     };
-    let bound = |bound: Option<f64>| {
-        bound.map_or_else(|| "–".to_owned(), |bound| quantity(bound, scale, &number.unit, false))
-    };
+    let bound =
+        |bound: Option<f64>| bound.map_or_else(|| "–".to_owned(), |bound| quantity(bound, scale, &number.unit, false));
     let [low, high] = number.ci95.map(bound);
     let found = quantity(found, scale, &number.unit, true);
     [
@@ -142,16 +157,26 @@ fn besides(besides: &Besides) -> Vec<String> {
         (None, false) => "not published".to_owned(),
     };
     let others: Vec<String> = besides.confusable_with.iter().map(name).collect();
-    // What is before the error, which the tables have.
-    let sentence = besides.sentence.split("; held-out error").next().unwrap_or_default();
     vec![
         name(&besides.name),
         published,
-        sentence.to_owned(),
+        in_short(&besides.sentence).to_owned(),
         others.join(", "),
         percent(besides.share),
-        besides.probability.map_or_else(|| "–".to_owned(), |p| format!("{p:.2}")),
+        besides
+            .probability
+            .map_or_else(|| "–".to_owned(), |p| format!("{p:.2}")),
     ]
+}
+
+/// A finding's sentence without the joint and the error, which the tables have.
+fn in_short(sentence: &str) -> &str {
+    let end = ["; held-out error", ", with which"]
+        .into_iter()
+        .filter_map(|mark| sentence.find(mark))
+        .min();
+    let sentence = &sentence[..end.unwrap_or(sentence.len())];
+    sentence.split_once(": ").map_or(sentence, |(_, rest)| rest)
 }
 
 fn unseen(tried: &Tried) -> String {
@@ -160,16 +185,28 @@ fn unseen(tried: &Tried) -> String {
         [] => "No joint is left unexplained.".to_owned(),
         joints => format!("Left unexplained: {}.", joints.join(", ")),
     };
-    let all = score.held_out.len();
-    let effects = score.not_observable.iter().map(|(effect, joints)| match joints.len() {
-        count if count == all && all > 1 => format!("`{effect}` (all joints)"),
-        _ => format!("`{effect}` ({})", joints.join(", ")),
-    });
-    let effects: Vec<String> = effects.collect();
-    if effects.is_empty() {
+    let mut by_joints: BTreeMap<(Reverse<usize>, &Vec<String>), Vec<String>> = BTreeMap::new();
+    for (effect, joints) in &score.not_observable {
+        let place = by_joints.entry((Reverse(joints.len()), joints)).or_default();
+        place.push(format!("`{effect}`"));
+    }
+    if by_joints.is_empty() {
         return unexplained;
     }
-    format!("{unexplained} Could not be seen at all sizes: {}.", effects.join(", "))
+    let groups = by_joints.iter().map(|((_, joints), effects)| {
+        let is_all = joints.len() == score.held_out.len() && joints.len() > 1;
+        let joints = if is_all {
+            "all joints".to_owned()
+        } else {
+            joints.join(", ")
+        };
+        format!("on {joints} {}", effects.join(", "))
+    });
+    let groups: Vec<String> = groups.collect();
+    format!(
+        "{unexplained} Said not to show in these recordings, or not below some size: {}.",
+        groups.join("; ")
+    )
 }
 
 fn errors(tried: &Tried) -> Block {
