@@ -147,6 +147,20 @@ fn recordings_are_sealed_diagnosed_and_held_against_what_is_published() {
 }
 
 #[test]
+fn a_robot_that_cannot_be_diagnosed_is_told_and_all_of_it_missed() {
+    let sandbox = published();
+    sandbox.write("data/trio/c.csv", "t,q_turn,tau_turn\n0,nothing,0\n");
+    sandbox.succeed(&[&COMMAND[..], &["--markdown", "real.md"]].concat());
+    let robot = &sandbox.json("proof/score.json")["robots"][0];
+    let error = robot["error"].as_str().expect("a reason");
+    assert!(error.contains("c.csv"), "{error}");
+    let said = robot["score"]["said"].as_array().expect("a list");
+    assert!(said.iter().all(|said| said["fate"] == "missed"), "{said:?}");
+    let markdown = String::from_utf8(bytes(&sandbox, "real.md")).expect("text");
+    assert!(markdown.contains("There is no diagnosis: "), "{markdown}");
+}
+
+#[test]
 fn what_cannot_be_is_refused_with_line_and_remedy() {
     let sandbox = published();
     let cases = [

@@ -3,6 +3,7 @@
 mod figure;
 mod file;
 mod fold;
+mod misses;
 mod page;
 mod quantities;
 mod robot_page;

@@ -4,13 +4,14 @@ use proof::{Compared, Evidence, SaidFate, quantile};
 
 use super::fold::{error, rms};
 use super::robots::names;
-use super::{Real, Tried, figure, robot_page};
+use super::{Real, Tried, figure, misses, robot_page};
 use crate::prove::command::percent;
 use crate::prove::report::{Block, table, text};
 
 /// The whole report.
 pub fn blocks(real: &Real) -> Vec<Block> {
     let mut list = opening(real);
+    list.extend(misses::blocks(&real.robots));
     list.extend(figure::numbers(&real.robots).map(|svg| Block::Figure {
         svg,
         caption: "Each number that was found over the one published, with our 95 % interval; hollow: constants of a model they use. What is off the axis is drawn at its end.".into(),

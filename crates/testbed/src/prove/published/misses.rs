@@ -1,0 +1,76 @@
+//! What does not agree with what is published, up front.
+
+use proof::{Evidence, SaidFate};
+
+use super::Tried;
+use crate::prove::command::percent;
+use crate::prove::report::{Block, text};
+
+/// A number that is further off is told up front.
+const FAR: f64 = 0.2;
+
+/// What was missed, and which of the publishers' own numbers are far from ours, robot by robot.
+pub fn blocks(robots: &[Tried]) -> Vec<Block> {
+    let missed = each(robots, |tried| {
+        let outcomes = tried.score.said.iter();
+        let missed = outcomes.filter(|o| matches!(o.fate, SaidFate::Missed | SaidFate::Unexplained));
+        missed
+            .map(|outcome| {
+                let said = &outcome.said;
+                name(&said.effects, said.joint.as_deref())
+            })
+            .collect()
+    });
+    let far = each(robots, |tried| {
+        let own = tried
+            .score
+            .said
+            .iter()
+            .filter(|o| o.said.evidence != Evidence::Constant);
+        let mut list = Vec::new();
+        for outcome in own {
+            let said = &outcome.said;
+            for number in &outcome.numbers {
+                if let Some(difference) = number.difference.filter(|difference| difference.abs() > FAR) {
+                    let sign = if difference < 0.0 { "−" } else { "+" };
+                    let name = name(&said.effects, said.joint.as_deref());
+                    list.push(format!(
+                        "{name}, {} {sign}{}",
+                        number.parameter,
+                        percent(difference.abs())
+                    ));
+                }
+            }
+        }
+        list
+    });
+    let mut list = Vec::new();
+    if !missed.is_empty() {
+        list.push(text(format!(
+            "**Missed.** {missed}. Why, as far as it is known, is in the notes under each robot."
+        )));
+    }
+    if !far.is_empty() {
+        list.push(text(format!(
+            "**More than {} away from the publishers\u{2019} own number.** {far}.",
+            percent(FAR)
+        )));
+    }
+    list
+}
+
+/// `robot: a, b; robot: c`, of robots that have any.
+fn each(robots: &[Tried], of: impl Fn(&Tried) -> Vec<String>) -> String {
+    let lists = robots.iter().map(|tried| (&tried.robot.name, of(tried)));
+    let words = lists.filter(|(_, list)| !list.is_empty());
+    let words: Vec<String> = words
+        .map(|(name, list)| format!("{name}: {}", list.join(", ")))
+        .collect();
+    words.join("; ")
+}
+
+fn name(effects: &[String], joint: Option<&str>) -> String {
+    let effects: Vec<String> = effects.iter().map(|effect| format!("`{effect}`")).collect();
+    let joint = joint.map_or_else(String::new, |joint| format!(" on {joint}"));
+    format!("{}{joint}", effects.join(" or "))
+}
