@@ -31,6 +31,7 @@ mod summary;
 mod targets;
 #[cfg(test)]
 mod test_robots;
+mod tracking;
 mod truth;
 
 pub use answer::{Answer, Fit, Named, Number, Other, Refused, Rollout, Unseen};
@@ -42,6 +43,7 @@ pub use controls::{HeldOut, WrongTerm, true_terms, wrong_term};
 pub use draw::FAMILIES;
 pub use error::ProofError;
 pub use intervals::{Counted, quantile, wilson};
+pub use machine::{Inverse, LinkMotion, Seen, VelocityFilter};
 pub use motion::{DURATION, PAUSE};
 pub use outcome::{FalseName, Fate, Outcome, OutsideOutcome};
 pub use physics::{EFFECTS, UNKNOWN, form_parameters, forms};
@@ -57,4 +59,5 @@ pub use seal::{Program, Seal, SealError, SealedCase, sha256, sha256_of};
 pub use sizes::Sized;
 pub use summary::{Curve, Errors, ParameterScore, SizeBin};
 pub use targets::Target;
+pub use tracking::{CaseMachine, Driven};
 pub use truth::{Concealed, Truth};

@@ -1,4 +1,4 @@
-//! The true machine: the plant in its position loop, with all that its URDF leaves out.
+//! The true machine: the plant and its drives under a law, with all that its URDF leaves out.
 
 use arm::{Arm, Matrix6xX, Workspace};
 use plant::{Plant, PlantOptions};
@@ -11,24 +11,24 @@ use crate::truth::Concealed;
 
 mod drive;
 mod friction;
+mod inverse;
+mod law;
 mod parts;
 
 pub(crate) use drive::LONGEST_DELAY;
+pub use drive::VelocityFilter;
 use drive::{Drive, Rotor};
 use friction::Friction;
+pub use inverse::{Inverse, LinkMotion};
+pub(crate) use law::Begin;
+pub use law::Seen;
+use law::{Law, PositionLoop};
 use parts::Parts;
 
 /// The loop's period, and the plant's step (s).
 pub(crate) const TICK: f64 = 1e-3;
 /// rapier's plain step: another than the diagnosis' own simulation takes.
 const ORDER: usize = 1;
-/// The drives' velocity filter (Hz).
-const VELOCITY_FILTER: f64 = 40.0;
-/// Damping ratio of the position loop, and its natural frequency (rad/s) at least and at most.
-const DAMPING: f64 = 0.8;
-const FREQUENCIES: (f64, f64) = (20.7, 30.0);
-/// How far a joint would hang from its loop under a torque as large as its own gravity's (rad or m).
-const SAG: f64 = 0.05;
 /// The furthest a joint may be from its reference (rad or m).
 pub(crate) const FURTHEST: f64 = 0.35;
 /// Time constant of the drive load that friction feels (s).
@@ -70,10 +70,16 @@ impl<'a> Machine<'a> {
     /// # Errors
     /// [`ProofError::Lost`] if it cannot follow; [`ProofError::Plant`] if it cannot be simulated.
     pub(crate) fn run(&self, reference: &Reference, quantum: f64) -> Result<Run, ProofError> {
-        let mut simulation = Simulation::new(self, reference, quantum)?;
-        let ticks = reference.ticks();
-        for tick in 0..ticks {
-            simulation.tick(tick)?;
+        let n = self.robot.arm().dof();
+        let begin = Begin {
+            time: reference.time(0),
+            q: &reference.q[..n],
+            holding: &reference.ff[..n],
+        };
+        let mut law = PositionLoop::new(reference, self.robot, &self.parts);
+        let mut simulation = Simulation::new(self, &begin, quantum, reference.ticks())?;
+        for tick in 0..reference.ticks() {
+            simulation.tick(tick, reference.time(tick), &mut law)?;
         }
         let run = simulation.run;
         let names = self.robot.arm().joints();
@@ -87,12 +93,32 @@ impl<'a> Machine<'a> {
         }
         Ok(run)
     }
+
+    /// Drives the machine by `law` for so many ticks; what the drives saw, and where the links were at every tick.
+    ///
+    /// # Errors
+    /// [`ProofError::Plant`] if it cannot be simulated, or leaves all bounds.
+    pub(crate) fn drive(
+        &self,
+        begin: &Begin<'_>,
+        quantum: f64,
+        ticks: usize,
+        law: &mut dyn Law,
+    ) -> Result<(Run, Vec<f64>), ProofError> {
+        let mut simulation = Simulation::new(self, begin, quantum, ticks)?;
+        let mut links = Vec::with_capacity(ticks * begin.q.len());
+        for tick in 0..ticks {
+            links.extend_from_slice(simulation.plant.q());
+            simulation.tick(tick, begin.time + tick as f64 * TICK, law)?;
+        }
+        Ok((simulation.run, links))
+    }
 }
 
 /// A run under way.
 struct Simulation<'a> {
     parts: &'a Parts,
-    reference: &'a Reference,
+    holding: Vec<f64>,
     robot: &'a Robot,
     quantum: f64,
     /// The arm as it is now, without the rotors that move by themselves.
@@ -114,20 +140,23 @@ struct Simulation<'a> {
     friction: Friction,
     rigid: Vec<f64>,
     contact: Matrix6xX<f64>,
+    /// Positions and velocities as the drives see them.
+    sensed: [Vec<f64>; 2],
+    commands: Vec<f64>,
     run: Run,
 }
 
 impl<'a> Simulation<'a> {
-    fn new(machine: &'a Machine<'a>, reference: &'a Reference, quantum: f64) -> Result<Self, ProofError> {
+    fn new(machine: &'a Machine<'a>, begin: &Begin<'_>, quantum: f64, ticks: usize) -> Result<Self, ProofError> {
         let n = machine.robot.arm().dof();
-        let start = reference.time(0);
+        let start = begin.time;
         let parts = &machine.parts;
         let arm = machine.robot.driven();
         let plant = Plant::new(&arm, &options())?;
-        let size = reference.ticks() * n;
+        let size = ticks * n;
         let mut simulation = Self {
             parts,
-            reference,
+            holding: begin.holding.to_vec(),
             robot: machine.robot,
             quantum,
             workspace: Workspace::new(&arm),
@@ -143,6 +172,8 @@ impl<'a> Simulation<'a> {
             friction: Friction::new(n),
             rigid: vec![0.0; n],
             contact: Matrix6xX::zeros(n),
+            sensed: [vec![0.0; n], vec![0.0; n]],
+            commands: vec![0.0; n],
             run: Run {
                 q: Vec::with_capacity(size),
                 qd: Vec::with_capacity(size),
@@ -151,13 +182,12 @@ impl<'a> Simulation<'a> {
             arm,
             plant,
         };
-        let mut q: Vec<f64> = reference.q[..n].to_vec();
+        let mut q: Vec<f64> = begin.q.to_vec();
         for (j, q) in q.iter_mut().enumerate() {
             let bias = parts.encoder(j, start);
             *q -= bias;
-            let gains = gains(machine.robot, j, parts.more_rotor(j));
-            simulation.drives.push(Drive::new(*q + bias, reference.ff[j], gains));
-            simulation.loads[j] = [reference.ff[j]; 2];
+            simulation.drives.push(Drive::new(*q + bias, begin.holding[j]));
+            simulation.loads[j] = [begin.holding[j]; 2];
         }
         simulation.plant.set_state(&q, &vec![0.0; n])?;
         simulation.change(start, true)?;
@@ -193,7 +223,7 @@ impl<'a> Simulation<'a> {
             let rotor = Rotor::new(connection, inertia, self.robot.link_inertia(j), q[j], qd[j]);
             if first {
                 // The encoder's side starts on its reference, the spring already under its load.
-                q[j] -= rotor.deflection(self.reference.ff[j]);
+                q[j] -= rotor.deflection(self.holding[j]);
             }
             self.rotors[j] = Some(rotor);
         }
@@ -206,26 +236,27 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    fn tick(&mut self, tick: usize) -> Result<(), ProofError> {
+    fn tick(&mut self, tick: usize, time: f64, law: &mut dyn Law) -> Result<(), ProofError> {
         let n = self.drives.len();
-        let time = self.reference.time(tick);
         if time >= self.next_change {
             self.change(time, false)?;
         }
-        let row = tick * n;
         for j in 0..n {
             let position = self.rotors[j]
                 .as_ref()
                 .map_or(self.plant.q()[j], |rotor| rotor.position);
             let drive = &mut self.drives[j];
             drive.sense(position + self.parts.encoder(j, time), self.quantum);
-            let at = row + j;
-            let wanted = (self.reference.q[at], self.reference.qd[at], self.reference.ff[at]);
-            let command = drive.command(wanted);
-            self.run.q.push(drive.position);
-            self.run.qd.push(drive.velocity);
-            self.run.tau.push(command);
+            (self.sensed[0][j], self.sensed[1][j]) = (drive.sensed.position, drive.sensed.velocity);
         }
+        let [q, qd] = &self.sensed;
+        law.command(&Seen { tick, q, qd }, &mut self.commands);
+        for (drive, command) in self.drives.iter_mut().zip(&self.commands) {
+            drive.take(*command);
+        }
+        self.run.q.extend_from_slice(q);
+        self.run.qd.extend_from_slice(qd);
+        self.run.tau.extend_from_slice(&self.commands);
         self.feel_loads();
         for j in 0..n {
             self.net[j] = self.joint_torque(j, time);
@@ -365,13 +396,5 @@ fn options() -> PlantOptions {
     }
 }
 
-/// Proportional and derivative gain of the position loop of joint `j`, whose rotor has `more` inertia than is known of its drive.
-fn gains(robot: &Robot, j: usize, more: f64) -> (f64, f64) {
-    let inertia = robot.inertia(j) + more;
-    // A light wrist without rotors needs a stiffer loop, or it would hang from it.
-    let holds = (robot.holding(j) / SAG / inertia).sqrt();
-    let frequency = holds.clamp(FREQUENCIES.0, FREQUENCIES.1);
-    (inertia * frequency * frequency, 2.0 * DAMPING * frequency * inertia)
-}
 #[cfg(test)]
 mod tests;

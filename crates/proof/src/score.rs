@@ -29,6 +29,8 @@ pub struct Tried {
     pub true_terms: Option<Answer>,
     /// A wrong term in place of a true one.
     pub wrong_term: Option<Answer>,
+    /// The tracking error of a task with the diagnosed causes over that with the exact model, where a task was tracked.
+    pub tracking_over_exact: Option<f64>,
 }
 
 /// What the diagnoses of all cases are worth. Everything is counted in names: an effect on a joint.
@@ -72,6 +74,8 @@ pub struct Score {
     pub over_true_terms: Errors,
     /// The same over joints instead of cases.
     pub over_true_terms_by_joint: Errors,
+    /// Tracking error with the diagnosed causes over the exact model's, of the cases in which a task was tracked.
+    pub tracking_over_exact: Errors,
     /// What was concealed (rows) against what it was called (columns).
     pub confusion: BTreeMap<String, BTreeMap<String, usize>>,
     /// Probability against outcome, of findings that are not ordinary.
@@ -193,6 +197,7 @@ pub fn score(cases: &[Tried]) -> Score {
                 .filter_map(HeldOut::over_true_terms),
         ),
         over_true_terms_by_joint: errors(cases.iter().flat_map(by_joint)),
+        tracking_over_exact: errors(cases.iter().filter_map(|case| case.tracking_over_exact)),
         confusion: confusion(&concealed, &false_names, &outside),
         calibration: calibration(&all.iter().flat_map(|case| case.said.clone()).collect::<Vec<_>>()),
         calibration_of_all: calibration(&all.iter().flat_map(|case| case.said_of_all.clone()).collect::<Vec<_>>()),

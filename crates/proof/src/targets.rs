@@ -50,6 +50,7 @@ pub fn targets(score: &Score) -> Vec<Target> {
     let at_most = |value: f64| [None, Some(value)];
     let asked: usize = score.families.values().map(Family::asked).sum();
     let (main, over) = (score.main_parameters, score.over_true_terms);
+    let tracking = score.tracking_over_exact;
     let (wrong, refused) = (score.outside_with_a_wrong_name, score.outside_refused);
     vec![
         target("macro F1 over the families", score.macro_f1, at_least(0.95), asked),
@@ -91,6 +92,12 @@ pub fn targets(score: &Score) -> Vec<Target> {
             over.ninetieth,
             at_most(1.5),
             over.count,
+        ),
+        target(
+            "tracking error with the diagnosed cause over the exact model’s, median",
+            tracking.median,
+            at_most(1.5),
+            tracking.count,
         ),
     ]
 }

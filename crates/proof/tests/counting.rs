@@ -22,6 +22,7 @@ fn scored(concealed: Value, answer: Answer) -> Score {
         joints: vec!["b".into(), "a".into()],
         true_terms: Some(answer.clone()),
         wrong_term: None,
+        tracking_over_exact: None,
         answer: Some(answer),
     }])
 }

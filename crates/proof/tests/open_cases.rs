@@ -115,6 +115,7 @@ fn compare(truths: &Path, answers: &Path) {
             answer: answer.map(|text| serde_json::from_str::<Answer>(&text).expect("a diagnosis")),
             true_terms: None,
             wrong_term: None,
+            tracking_over_exact: None,
         });
     }
     assert_eq!(printed(&cases), theirs);

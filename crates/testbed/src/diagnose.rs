@@ -3,7 +3,7 @@
 mod command;
 pub mod effect_file;
 mod inputs;
-mod learned;
+pub mod learned;
 pub mod numbers;
 pub mod page;
 #[cfg(feature = "viewer")]

@@ -13,6 +13,7 @@ mod report;
 mod results;
 mod rows;
 mod shards;
+mod tracking;
 mod vault;
 mod work;
 

@@ -1,9 +1,11 @@
-//! A joint's drive: encoder, position loop, what becomes of its command, and a rotor that moves by itself.
+//! A joint's drive: encoder, what becomes of its command, and a rotor that moves by itself.
 
+use super::TICK;
 use super::parts::DriveNow;
-use super::{TICK, VELOCITY_FILTER};
 use crate::physics::Connection;
 
+/// The drives' velocity filter (Hz).
+const VELOCITY_FILTER: f64 = 40.0;
 /// How many commands a drive remembers: the longest delay, in ticks.
 const MEMORY: usize = 128;
 /// Parts of a tick in which a rotor moves.
@@ -14,13 +16,36 @@ const GAP_FREQUENCY: f64 = 160.0;
 /// The longest delay (s) that a drive can have.
 pub(crate) const LONGEST_DELAY: f64 = (MEMORY - 2) as f64 * TICK;
 
-/// Encoder, position loop and command of a joint.
+/// What a drive makes of its encoder: the difference over each tick, through a low-pass filter of first order at 40 Hz.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VelocityFilter {
+    /// What the encoder said last (rad or m).
+    pub position: f64,
+    /// The velocity, about 4 ms late (rad/s or m/s).
+    pub velocity: f64,
+}
+
+impl VelocityFilter {
+    /// At rest at `position`.
+    pub fn new(position: f64) -> Self {
+        Self {
+            position,
+            velocity: 0.0,
+        }
+    }
+
+    /// Takes what the encoder says a tick of 1 ms later.
+    pub fn take(&mut self, read: f64) {
+        let weight = 1.0 - (-std::f64::consts::TAU * VELOCITY_FILTER * TICK).exp();
+        self.velocity += weight * ((read - self.position) / TICK - self.velocity);
+        self.position = read;
+    }
+}
+
+/// Encoder and command of a joint.
 pub(super) struct Drive {
-    /// What the encoder says (rad or m).
-    pub(super) position: f64,
-    /// The same, differentiated and filtered.
-    pub(super) velocity: f64,
-    gains: (f64, f64),
+    /// What the encoder says, and at what rate.
+    pub(super) sensed: VelocityFilter,
     commands: [f64; MEMORY],
     /// Where the next command goes.
     next: usize,
@@ -29,11 +54,9 @@ pub(super) struct Drive {
 
 impl Drive {
     /// At rest at `position` under the torque `holding`.
-    pub(super) fn new(position: f64, holding: f64, gains: (f64, f64)) -> Self {
+    pub(super) fn new(position: f64, holding: f64) -> Self {
         Self {
-            position,
-            velocity: 0.0,
-            gains,
+            sensed: VelocityFilter::new(position),
             commands: [holding; MEMORY],
             next: 0,
             lagging: holding,
@@ -46,17 +69,13 @@ impl Drive {
         } else {
             position
         };
-        let weight = 1.0 - (-std::f64::consts::TAU * VELOCITY_FILTER * TICK).exp();
-        self.velocity += weight * ((read - self.position) / TICK - self.velocity);
-        self.position = read;
+        self.sensed.take(read);
     }
 
-    /// The torque for a wanted position, velocity and feed-forward torque.
-    pub(super) fn command(&mut self, (q, qd, ff): (f64, f64, f64)) -> f64 {
-        let command = ff + self.gains.0 * (q - self.position) + self.gains.1 * (qd - self.velocity);
+    /// The command of this tick (N m or N).
+    pub(super) fn take(&mut self, command: f64) {
         self.commands[self.next] = command;
         self.next = (self.next + 1) % MEMORY;
-        command
     }
 
     /// The mean over the coming tick of what the drive applies (N m or N, true): late, limited, and reported with a factor.

@@ -53,8 +53,7 @@ impl Motion<'_> {
     }
 }
 
-/// Learns what `arm` leaves of the torques in `training` and predicts the whole torque of the rows of `held_out`:
-/// `[recording][joint][row]` (N m or N).
+/// Learns what `arm` leaves of the torques in `training`.
 ///
 /// Rows to learn from are spread evenly over those at which all joints move that ever do, or, where those are too few,
 /// over those at which any moves. The same inputs give the same bits.
@@ -64,12 +63,7 @@ impl Motion<'_> {
 ///
 /// # Panics
 /// If a signal has not one row a joint of the arm, or rows of different lengths.
-pub fn predict(
-    arm: &Arm,
-    training: &[Motion<'_>],
-    held_out: &[Motion<'_>],
-    options: &LearnedOptions,
-) -> anyhow::Result<Vec<Vec<Vec<f64>>>> {
+pub fn learn(arm: &Arm, training: &[Motion<'_>], options: &LearnedOptions) -> anyhow::Result<Learned> {
     let dof = arm.dof();
     let mut samples = Samples::new(dof);
     let mut row_of = [vec![0.0; dof], vec![0.0; dof], vec![0.0; dof], vec![0.0; dof]];
@@ -81,7 +75,30 @@ pub fn predict(
         let [q, qd, qdd, tau] = &row_of;
         samples.push(Sample { q, qd, qdd, tau })?;
     }
-    let model = Learned::on_top_of(arm, Inputs::NewtonEuler13, &samples, &options.training)?;
+    Ok(Learned::on_top_of(
+        arm,
+        Inputs::NewtonEuler13,
+        &samples,
+        &options.training,
+    )?)
+}
+
+/// Learns as [`learn`] does, and predicts the whole torque of the rows of `held_out`: `[recording][joint][row]` (N m or N).
+///
+/// # Errors
+/// As [`learn`].
+///
+/// # Panics
+/// As [`learn`].
+pub fn predict(
+    arm: &Arm,
+    training: &[Motion<'_>],
+    held_out: &[Motion<'_>],
+    options: &LearnedOptions,
+) -> anyhow::Result<Vec<Vec<Vec<f64>>>> {
+    let dof = arm.dof();
+    let model = learn(arm, training, options)?;
+    let mut row_of = [vec![0.0; dof], vec![0.0; dof], vec![0.0; dof], vec![0.0; dof]];
     let mut workspace = Workspace::new(dof);
     let mut prediction = Prediction::new(dof);
     let mut predict = |motion: &Motion<'_>| {

@@ -1,11 +1,12 @@
 //! Where cases come from: drawn from a seed, or anybody's folders.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail, ensure};
 use proof::{Campaign, CasePlan, ProofError, Robot, conceal_case, write_case};
 
-use super::disturbance;
+use super::{disturbance, tracking};
 use crate::cli::ProveArgs;
 use crate::conceal;
 
@@ -116,6 +117,26 @@ impl Source {
                 Ok(drawn.chain([place(plans.len(), disturbance::CASE)]).collect())
             }
             Self::Given { cases, truth } => given(cases, truth),
+        }
+    }
+
+    /// The numbers of the cases in which a task is tracked: told by the plan, so that a share of a campaign knows its own; none of cases
+    /// that were given, whose truths need not say enough to make their machines again.
+    ///
+    /// # Errors
+    /// If the task's scenario cannot be read.
+    pub fn tracked(&self) -> anyhow::Result<BTreeSet<usize>> {
+        match self {
+            Self::Drawn { robots, plans, .. } => tracking::chosen(plans, robots),
+            Self::Given { .. } => Ok(BTreeSet::new()),
+        }
+    }
+
+    /// The robot that a case is drawn on.
+    pub fn robot(&self, place: &Place) -> Option<&Robot> {
+        match self {
+            Self::Drawn { robots, plans, .. } => plans.get(place.number).map(|plan| plan.robot(robots)),
+            Self::Given { .. } => None,
         }
     }
 

@@ -12,14 +12,15 @@ use crate::interrupt;
 
 /// What a child did.
 pub enum Ended {
-    /// The diagnosis it wrote.
-    Answer(String),
+    /// The diagnosis it wrote, and the named effects as `diagnose --known` takes them (not where effects were given).
+    Answer { json: String, model: Option<String> },
     /// The last line it wrote instead.
     Failed(String),
 }
 
-/// Diagnoses the files of `folder`: `program diagnose --robot … --train … --held-out … --json out.json --jobs 1`, with what
-/// is to be fitted alone in `only`. The process gets no environment, and starts in a new folder with copies of the files.
+/// Diagnoses the files of `folder`: `program diagnose --robot … --train … --held-out … --json out.json --jobs 1`, with `--model
+/// model.toml`, or else with what is to be fitted alone in `only`. The process gets no environment, and starts in a new folder with
+/// copies of the files.
 ///
 /// # Errors
 /// If it cannot be started, or the user interrupts.
@@ -37,9 +38,10 @@ pub fn diagnose(program: &Path, folder: &Path, files: &Files, only: Option<&str>
         .args(&files.train);
     command.arg("--held-out").args(&files.held_out);
     command.args(["--json", "out.json", "--jobs", "1"]);
-    if let Some(only) = only {
-        command.args(["--only", only]);
-    }
+    match only {
+        Some(only) => command.args(["--only", only]),
+        None => command.args(["--model", "model.toml"]),
+    };
     command
         .stdin(Stdio::null())
         .stdout(Stdio::null())
@@ -61,7 +63,10 @@ pub fn diagnose(program: &Path, folder: &Path, files: &Files, only: Option<&str>
         bail!("interrupted");
     }
     if status.success() {
-        return Ok(Ended::Answer(std::fs::read_to_string(room.path().join("out.json"))?));
+        let read = |name: &str| std::fs::read_to_string(room.path().join(name)).context(name.to_owned());
+        let model = only.is_none().then(|| read("model.toml")).transpose()?;
+        let json = read("out.json")?;
+        return Ok(Ended::Answer { json, model });
     }
     errors.seek(SeekFrom::Start(0))?;
     let mut text = Vec::new();

@@ -1,4 +1,4 @@
-//! The protocol: conceal, seal, diagnose, open, try the controls, score, report.
+//! The protocol: conceal, seal, diagnose, open, try the controls, close the loop, score, report.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -14,6 +14,7 @@ use super::cases::{Files, Place, Source};
 use super::disturbance::{self, Disturbance};
 use super::rows::{self, Row};
 use super::shards::{self, Label};
+use super::tracking::{self, CaseTracking};
 use super::vault::Vault;
 use super::{markdown, page, published, work};
 use crate::cli::ProveArgs;
@@ -35,6 +36,8 @@ pub struct Proof {
     /// What came of the paper's own disturbance, which the score leaves out; drawn campaigns have it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub paper: Option<Disturbance>,
+    /// What came of tracking task D on the machines of a dozen cases.
+    pub tracking: Vec<CaseTracking>,
 }
 
 /// Runs the protocol as `args` say; what is finished already is not done again.
@@ -81,7 +84,7 @@ pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
     write(args, &out, &proof)
 }
 
-/// Conceals, seals, diagnoses, opens, and tries the controls.
+/// Conceals, seals, diagnoses, opens, tries the controls, and closes the loop.
 fn protocol(
     source: &Source,
     vault: &Vault,
@@ -120,9 +123,27 @@ fn protocol(
         })
     })?;
     let mut truths = truths.into_inner().unwrap_or_default();
+    let chosen = source.tracked()?;
+    let tracked: Vec<_> = pairs
+        .iter()
+        .filter(|(place, _)| chosen.contains(&place.number))
+        .collect();
+    times.of("track", || {
+        work::all("tracking task D", &tracked, jobs, |(place, sealed)| {
+            tracking::step::track(source, vault, place, sealed, &truths[&place.name])
+        })
+    })?;
     let rows: anyhow::Result<Vec<Row>> = pairs
         .iter()
-        .map(|(place, sealed)| row(vault, place, sealed, truths.remove(&place.name).unwrap_or_default()))
+        .map(|(place, sealed)| {
+            let truth = truths.remove(&place.name).unwrap_or_default();
+            let is_tracked = chosen.contains(&place.number);
+            let tracking = is_tracked.then(|| tracking::step::text(vault, place)).transpose()?;
+            Ok(Row {
+                tracking,
+                ..row(vault, place, sealed, truth)?
+            })
+        })
         .collect();
     Ok((seal, rows?))
 }
@@ -148,6 +169,10 @@ impl Proof {
             answers: rows.iter().map(|row| (row.case.clone(), answer(row))).collect(),
             score: rows::score(rows.iter().filter(|row| !is_paper(row)))?,
             paper: rows.iter().find(is_paper).map(disturbance::assess).transpose()?,
+            tracking: rows
+                .iter()
+                .filter_map(|row| row.tracked().transpose())
+                .collect::<anyhow::Result<_>>()?,
         })
     }
 }
@@ -179,6 +204,7 @@ fn row(vault: &Vault, place: &Place, sealed: &SealedCase, truth: String) -> anyh
         error: record.and_then(|record| record.error),
         true_terms: control("true")?,
         wrong_term: control("wrong")?,
+        tracking: None,
     })
 }
 

@@ -6,6 +6,8 @@ use anyhow::Context;
 use proof::{Answer, Score, SealedCase, Tried, Truth, sha256};
 use serde::{Deserialize, Serialize};
 
+use super::tracking::CaseTracking;
+
 /// Everything that is known of a case, as it was read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
@@ -25,6 +27,8 @@ pub struct Row {
     pub true_terms: Option<String>,
     /// A wrong term in place of a true one.
     pub wrong_term: Option<String>,
+    /// What came of tracking a task ([`CaseTracking`]), in the cases in which one was tracked.
+    pub tracking: Option<String>,
 }
 
 impl Row {
@@ -52,7 +56,17 @@ impl Row {
             answer: answer(&self.diagnosis, "the diagnosis")?,
             true_terms: answer(&self.true_terms, "the true terms")?,
             wrong_term: answer(&self.wrong_term, "the wrong term")?,
+            tracking_over_exact: self.tracked()?.and_then(|tracking| tracking.over_exact()),
         })
+    }
+
+    /// What came of tracking a task, if one was tracked.
+    ///
+    /// # Errors
+    /// If the text is not what it should be.
+    pub fn tracked(&self) -> anyhow::Result<Option<CaseTracking>> {
+        let parse = |text: &String| serde_json::from_str(text).with_context(|| format!("{}: the tracking", self.case));
+        self.tracking.as_ref().map(parse).transpose()
     }
 }
 

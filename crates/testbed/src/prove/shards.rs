@@ -91,7 +91,7 @@ impl Label {
 
 /// The columns: name, whether it may be empty, and what is in it.
 type Column = (&'static str, bool, fn(&Row) -> anyhow::Result<Option<String>>);
-const COLUMNS: [Column; 8] = [
+const COLUMNS: [Column; 9] = [
     ("case", false, |row| Ok(Some(row.case.clone()))),
     ("joints", false, |row| Ok(Some(serde_json::to_string(&row.joints)?))),
     ("files", false, |row| Ok(Some(serde_json::to_string(&row.files)?))),
@@ -100,6 +100,7 @@ const COLUMNS: [Column; 8] = [
     ("error", true, |row| Ok(row.error.clone())),
     ("true_terms", true, |row| Ok(row.true_terms.clone())),
     ("wrong_term", true, |row| Ok(row.wrong_term.clone())),
+    ("tracking", true, |row| Ok(row.tracking.clone())),
 ];
 
 /// Writes a share, whole or not at all.
@@ -187,6 +188,7 @@ pub fn read(path: &Path) -> anyhow::Result<(Label, Vec<Row>)> {
             error: take("error"),
             true_terms: take("true_terms"),
             wrong_term: take("wrong_term"),
+            tracking: take("tracking"),
         });
     }
     Ok((label, rows))
@@ -253,6 +255,7 @@ mod tests {
             error: (number == 1).then(|| "it failed".into()),
             true_terms: None,
             wrong_term: None,
+            tracking: (number == 2).then(|| "{}".into()),
         }
     }
 

@@ -21,6 +21,8 @@ pub struct Record {
     pub only: Option<String>,
     /// SHA-256 of the JSON it wrote.
     pub answer: Option<String>,
+    /// SHA-256 of the effects it wrote as TOML.
+    pub model: Option<String>,
     /// What it said instead.
     pub error: Option<String>,
 }
@@ -41,7 +43,7 @@ impl Vault {
     /// # Errors
     /// If it cannot be made, or the program cannot read itself.
     pub fn new(out: &Path) -> anyhow::Result<Self> {
-        for folder in ["", "cases", "truth", "diagnoses", "controls"] {
+        for folder in ["", "cases", "truth", "diagnoses", "controls", "tracking"] {
             let folder = out.join(folder);
             std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
         }
@@ -99,7 +101,8 @@ impl Vault {
         Ok(seal)
     }
 
-    /// Diagnoses a sealed case, or with `only` fits some effects alone, into `name`.json, unless that is done.
+    /// Diagnoses a sealed case into `name`.json and `name`.toml, or with `only` fits some effects alone into `name`.json, unless that
+    /// is done.
     ///
     /// # Errors
     /// If the seal is broken, the process cannot be started, or the user interrupts.
@@ -109,28 +112,34 @@ impl Vault {
         let is_same = |record: &Record| {
             record.program == self.program.sha256 && record.inputs == inputs && record.only.as_deref() == only
         };
+        let is_there = |hash: &Option<String>, path: &Path| {
+            hash.as_ref()
+                .is_none_or(|hash| sha256_of(path).is_ok_and(|is| is == *hash))
+        };
+        let model = self.model_path(name);
         if let Some(record) = read_record(&record).filter(is_same)
-            && record
-                .answer
-                .as_ref()
-                .is_none_or(|hash| sha256_of(&answer).is_ok_and(|is| is == *hash))
+            && is_there(&record.answer, &answer)
+            && is_there(&record.model, &model)
         {
             return Ok(());
         }
         sealed.check_files(&place.folder)?;
         let files = Files::of(&place.folder)?;
-        let (text, error) = match child::diagnose(&self.executable, &place.folder, &files, only)? {
-            Ended::Answer(text) => (Some(text), None),
-            Ended::Failed(reason) => (None, Some(reason)),
+        let (text, effects, error) = match child::diagnose(&self.executable, &place.folder, &files, only)? {
+            Ended::Answer { json, model } => (Some(json), model, None),
+            Ended::Failed(reason) => (None, None, Some(reason)),
         };
-        if let Some(text) = &text {
-            recording::write_whole(&answer, |file| file.write_all(text.as_bytes()))?;
+        for (text, path) in [(&text, &answer), (&effects, &model)] {
+            if let Some(text) = text {
+                recording::write_whole(path, |file| file.write_all(text.as_bytes()))?;
+            }
         }
         let done = Record {
             program: self.program.sha256.clone(),
             inputs,
             only: only.map(str::to_owned),
             answer: text.map(|text| sha256(text.as_bytes())),
+            model: effects.map(|text| sha256(text.as_bytes())),
             error,
         };
         output::write_json(&record, &done)
@@ -148,13 +157,23 @@ impl Vault {
         let Some(hash) = &record.answer else {
             return Ok((Some(record), None));
         };
-        let text = std::fs::read_to_string(&answer).with_context(|| answer.display().to_string())?;
-        ensure!(
-            sha256(text.as_bytes()) == *hash,
-            "{}: was changed after it was written",
-            answer.display()
-        );
+        let text = unchanged(&answer, hash)?;
         Ok((Some(record), Some(text)))
+    }
+
+    /// The effects that a diagnosis named, as TOML; `None` if it gave no answer.
+    ///
+    /// # Errors
+    /// If that is not what its record says.
+    pub fn model(&self, name: &str) -> anyhow::Result<Option<String>> {
+        let Some(hash) = read_record(&self.paths(name).1).and_then(|record| record.model) else {
+            return Ok(None);
+        };
+        unchanged(&self.model_path(name), &hash).map(Some)
+    }
+
+    fn model_path(&self, name: &str) -> PathBuf {
+        self.out.join(format!("{name}.toml"))
     }
 
     fn paths(&self, name: &str) -> (PathBuf, PathBuf) {
@@ -163,6 +182,17 @@ impl Vault {
             self.out.join(format!("{name}.done.json")),
         )
     }
+}
+
+/// The text of a file of which the hash was kept.
+fn unchanged(path: &Path, hash: &str) -> anyhow::Result<String> {
+    let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
+    ensure!(
+        sha256(text.as_bytes()) == hash,
+        "{}: was changed after it was written",
+        path.display()
+    );
+    Ok(text)
 }
 
 fn read_record(path: &Path) -> Option<Record> {

@@ -1,0 +1,79 @@
+//! What commands a machine's drives: the recordings' own position loop, or a controller from outside.
+
+use super::parts::Parts;
+use crate::motion::Reference;
+use crate::robot::Robot;
+
+/// Damping ratio of the position loop, and its natural frequency (rad/s) at least and at most.
+const DAMPING: f64 = 0.8;
+const FREQUENCIES: (f64, f64) = (20.7, 30.0);
+/// How far a joint would hang from its loop under a torque as large as its own gravity's (rad or m).
+const SAG: f64 = 0.05;
+
+/// How a machine starts: at rest.
+pub(crate) struct Begin<'a> {
+    /// s, on the recordings' clock.
+    pub time: f64,
+    /// What its encoders say (rad or m).
+    pub q: &'a [f64],
+    /// The torques that its drives held before (N m or N).
+    pub holding: &'a [f64],
+}
+
+/// What a controller sees at a tick of 1 ms; one entry a joint.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a> {
+    /// Which tick, from 0.
+    pub tick: usize,
+    /// Encoder positions (rad or m).
+    pub q: &'a [f64],
+    /// The same through a [`crate::VelocityFilter`] (rad/s or m/s).
+    pub qd: &'a [f64],
+}
+
+/// Finds the drives' torques, once a tick.
+pub(crate) trait Law {
+    /// The torques commanded for the coming tick, into `torque` (N m or N).
+    fn command(&mut self, seen: &Seen<'_>, torque: &mut [f64]);
+}
+
+impl<F: FnMut(&Seen<'_>, &mut [f64])> Law for F {
+    fn command(&mut self, seen: &Seen<'_>, torque: &mut [f64]) {
+        self(seen, torque);
+    }
+}
+
+/// The loop that recordings are made in: proportional and derivative, on top of the user's model.
+pub(super) struct PositionLoop<'a> {
+    reference: &'a Reference,
+    gains: Vec<(f64, f64)>,
+}
+
+impl<'a> PositionLoop<'a> {
+    pub(super) fn new(reference: &'a Reference, robot: &Robot, parts: &Parts) -> Self {
+        let joints = 0..robot.arm().dof();
+        Self {
+            reference,
+            gains: joints.map(|j| gains(robot, j, parts.more_rotor(j))).collect(),
+        }
+    }
+}
+
+impl Law for PositionLoop<'_> {
+    fn command(&mut self, seen: &Seen<'_>, torque: &mut [f64]) {
+        for (j, torque) in torque.iter_mut().enumerate() {
+            let at = seen.tick * self.gains.len() + j;
+            let (q, qd, ff) = (self.reference.q[at], self.reference.qd[at], self.reference.ff[at]);
+            *torque = ff + self.gains[j].0 * (q - seen.q[j]) + self.gains[j].1 * (qd - seen.qd[j]);
+        }
+    }
+}
+
+/// Proportional and derivative gain of the position loop of joint `j`, whose rotor has `more` inertia than is known of its drive.
+fn gains(robot: &Robot, j: usize, more: f64) -> (f64, f64) {
+    let inertia = robot.inertia(j) + more;
+    // A light wrist without rotors needs a stiffer loop, or it would hang from it.
+    let holds = (robot.holding(j) / SAG / inertia).sqrt();
+    let frequency = holds.clamp(FREQUENCIES.0, FREQUENCIES.1);
+    (inertia * frequency * frequency, 2.0 * DAMPING * frequency * inertia)
+}

@@ -1,0 +1,244 @@
+//! The loop closed: on the machines of a dozen cases a controller tracks task D under five models, one of them the diagnosed one.
+
+mod choice;
+mod closed_loop;
+mod course;
+mod plan;
+#[cfg(feature = "viewer")]
+mod show;
+pub mod step;
+mod trained;
+pub mod words;
+
+use std::path::Path;
+
+use anyhow::Context;
+use proof::{CaseMachine, DURATION, Name, PAUSE, Robot, Truth, sha256};
+use serde::{Deserialize, Serialize};
+
+use self::closed_loop::Rate;
+use self::course::Course;
+use self::plan::Plan;
+use super::cases::Files;
+use crate::diagnose::effect_file::EffectFile;
+use crate::scenario::Scenario;
+
+pub use self::choice::chosen;
+
+/// The task that is tracked.
+const TASK: &str = "taskD";
+
+/// What the controller's feed-forward knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Model {
+    /// The URDF.
+    Nominal,
+    /// The URDF and what was named.
+    Diagnosed,
+    /// The URDF and what Independent Joint Learning made of the same recordings.
+    Learned,
+    /// The URDF, what was named, and what was learned of the rest.
+    Both,
+    /// The true machine's own laws.
+    Exact,
+}
+
+impl Model {
+    /// All, in the report's order.
+    pub const ALL: [Self; 5] = [Self::Nominal, Self::Diagnosed, Self::Learned, Self::Both, Self::Exact];
+
+    /// In a table's head.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Nominal => "nominal",
+            Self::Diagnosed => "with the diagnosed cause",
+            Self::Learned => "with IJL",
+            Self::Both => "with both",
+            Self::Exact => "exact",
+        }
+    }
+}
+
+/// Something concealed in the machine that is not ordinary.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cause {
+    /// Its name in the truth.
+    pub effect: String,
+    /// The joint; `None` for the whole arm.
+    pub joint: Option<String>,
+    /// When it set in (s, on the recordings' clock), where that was not at the start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub onset: Option<f64>,
+}
+
+/// The links' distance from the task's reference under one model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Tracked {
+    /// What the controller knew.
+    pub model: Model,
+    /// Root mean square, one a joint (rad or m); empty if the loop left all bounds.
+    pub rms: Vec<f64>,
+    /// The largest, one a joint (rad or m).
+    pub largest: Vec<f64>,
+    /// The share of ticks in which an effort limit of the URDF cut the torque, one a joint.
+    pub cut: Vec<f64>,
+    /// Root mean square over joints and time (rad or m); `None` if the loop left all bounds.
+    pub error: Option<f64>,
+    /// The same in a loop that sends the reference's velocity through the drives' filter: without the filter's lag.
+    pub error_without_lag: Option<f64>,
+}
+
+/// What came of a case: `tracking/CASE.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CaseTracking {
+    /// The case.
+    pub case: String,
+    /// SHA-256 of the hashes of what it was made of: program, recordings and URDF, truth, effects named.
+    pub made_of: String,
+    /// When the task begins, on the recordings' clock (s).
+    pub start: f64,
+    /// The joints' names, base to tip.
+    pub joints: Vec<String>,
+    /// What is concealed and not ordinary.
+    pub concealed: Vec<Cause>,
+    /// What was named, as the diagnosed model has it.
+    pub named: Vec<Name>,
+    /// One a model, in the order of [`Model::ALL`].
+    pub runs: Vec<Tracked>,
+}
+
+impl CaseTracking {
+    /// The error under a model (rad or m).
+    pub fn error(&self, model: Model) -> Option<f64> {
+        self.runs.iter().find(|run| run.model == model)?.error
+    }
+
+    /// The error under a model without the velocity filter's lag (rad or m).
+    pub fn error_without_lag(&self, model: Model) -> Option<f64> {
+        self.runs.iter().find(|run| run.model == model)?.error_without_lag
+    }
+
+    /// The diagnosed model's error over the exact one's; infinite if it lost the arm.
+    pub fn over_exact(&self) -> Option<f64> {
+        over(self.error(Model::Diagnosed), self.error(Model::Exact))
+    }
+
+    /// The same without the velocity filter's lag.
+    pub fn over_exact_without_lag(&self) -> Option<f64> {
+        over(
+            self.error_without_lag(Model::Diagnosed),
+            self.error_without_lag(Model::Exact),
+        )
+    }
+}
+
+/// An error over the exact model's, if that kept the arm.
+fn over(error: Option<f64>, exact: Option<f64>) -> Option<f64> {
+    let exact = exact?.max(f64::MIN_POSITIVE);
+    Some(error.map_or(f64::INFINITY, |error| error / exact))
+}
+
+/// What a case is tracked from.
+pub struct Case<'a> {
+    /// The robot it was drawn on.
+    pub robot: &'a Robot,
+    /// Its folder, with recordings and URDF.
+    pub folder: &'a Path,
+    /// The truth.
+    pub truth: &'a Truth,
+    /// The effects that the diagnosis named, as TOML; `None` if it gave no answer.
+    pub named: Option<&'a str>,
+}
+
+impl Case<'_> {
+    /// Tracks the task on the machine of the case under all models; into `timeline`, if there is one, goes what the viewer shows.
+    ///
+    /// # Errors
+    /// If the case cannot be read, nothing can be learned from its recordings, or the timeline cannot be written.
+    pub fn track(&self, made_of: String, timeline: Option<&Path>) -> anyhow::Result<CaseTracking> {
+        let case = &self.truth.case;
+        let task = Scenario::built_in(TASK)?;
+        let files = Files::of(self.folder)?;
+        let machine = CaseMachine::new(self.robot, self.truth)?;
+        // As long after the last recording as these are apart.
+        let start = (files.train.len() + files.held_out.len()) as f64 * (DURATION + PAUSE);
+        let course = Course::new(&task, start);
+        let arm = self.robot.arm();
+        let effects = match self.named {
+            Some(text) => EffectFile::parse(text.to_owned(), &self.folder.with_file_name("model.toml"), arm)?.effects,
+            None => Vec::new(),
+        };
+        let recorded = trained::Recorded::read(arm, self.folder, &files.train).with_context(|| case.clone())?;
+        let (nominal, diagnosed) = (Plan::nominal(arm, &course), Plan::diagnosed(arm, &effects, &course)?);
+        let plans = [
+            nominal.clone(),
+            diagnosed.clone(),
+            nominal.with(&recorded.learn(arm, &[])?, &course),
+            diagnosed.with(&recorded.learn(arm, &effects)?, &course),
+            Plan::exact(&machine, &course),
+        ];
+        let run = |plan: &Plan, rate| closed_loop::run(&machine, self.robot, &task, &course, plan, rate);
+        let each = |rate| {
+            plans
+                .iter()
+                .map(|plan| run(plan, rate))
+                .collect::<anyhow::Result<Vec<_>>>()
+        };
+        let (runs, without_lag) = (each(Rate::AsItIs)?, each(Rate::Filtered)?);
+        if let Some(path) = timeline {
+            self.show(path, &task, &course, &runs)?;
+        }
+        let pairs = runs.iter().zip(&without_lag);
+        let tracked = Model::ALL
+            .iter()
+            .zip(pairs)
+            .map(|(&model, (run, other))| run.tracked(model, other, &course));
+        let ordinary = |effect: &proof::Concealed| effect.expressed_share.is_none();
+        let concealed = self.truth.concealed.iter().filter(|effect| !ordinary(effect));
+        Ok(CaseTracking {
+            case: case.clone(),
+            made_of,
+            start,
+            joints: arm.joints().iter().map(|joint| joint.name.clone()).collect(),
+            concealed: concealed
+                .map(|effect| Cause {
+                    effect: effect.name().to_owned(),
+                    joint: effect.joint.clone(),
+                    onset: effect.onset,
+                })
+                .collect(),
+            named: effects
+                .iter()
+                .map(|effect| (effect.name().to_owned(), effect.joint().map(str::to_owned)))
+                .collect(),
+            runs: tracked.collect(),
+        })
+    }
+
+    #[cfg(feature = "viewer")]
+    fn show(&self, path: &Path, task: &Scenario, course: &Course, runs: &[closed_loop::Run]) -> anyhow::Result<()> {
+        let title = format!("{} of {}, {}", task.title, self.truth.case, self.robot.name());
+        show::write(
+            path,
+            &title,
+            self.robot.arm(),
+            &self.folder.join("robot.urdf"),
+            course,
+            runs,
+        )
+    }
+
+    #[cfg(not(feature = "viewer"))]
+    fn show(&self, path: &Path, _: &Scenario, _: &Course, _: &[closed_loop::Run]) -> anyhow::Result<()> {
+        anyhow::bail!("{}: this testbed was built without the viewer", path.display())
+    }
+}
+
+/// One number for what a tracking is made of.
+fn made_of(hashes: [&str; 4]) -> String {
+    sha256(hashes.join("\n").as_bytes())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,126 @@
+//! The closed loop on a case's machine: computed torque, the same gains whatever the model.
+
+use proof::{CaseMachine, ProofError, Robot, VelocityFilter};
+use torque::{Command, Controller, RigidBody};
+
+use super::course::Course;
+use super::plan::Plan;
+use super::{Model, Tracked};
+use crate::scenario::Scenario;
+
+/// A run under a model; `[tick × dof + joint]`.
+pub struct Run {
+    /// Where the links were (rad or m); empty if the loop left all bounds.
+    pub links: Vec<f64>,
+    /// The torques commanded (N m or N); empty likewise.
+    #[cfg_attr(not(feature = "viewer"), expect(dead_code, reason = "the viewer is its reader"))]
+    pub tau: Vec<f64>,
+    /// In how many ticks an effort limit cut the torque, one a joint.
+    cut: Vec<usize>,
+}
+
+/// What the measured velocity, which is filtered, is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rate {
+    /// The reference's as it is, as in the loop that recordings are made in: the filter's lag is an error under every model.
+    AsItIs,
+    /// The reference's through the same filter: nothing but the model is left.
+    Filtered,
+}
+
+/// Tracks the course on `machine` with the gains of `task` and the feed-forward of `plan`.
+///
+/// The feedback's mass matrix is that of the URDF with the drives' ordinary inertias, as in the loop that the recordings were made in.
+///
+/// # Errors
+/// If the controller does not fit the arm.
+pub fn run(
+    machine: &CaseMachine<'_>,
+    robot: &Robot,
+    task: &Scenario,
+    course: &Course,
+    plan: &Plan,
+    rate: Rate,
+) -> anyhow::Result<Run> {
+    let dof = course.dof;
+    let arm = robot.arm().clone().with_rotor_inertias(robot.rotor_inertias());
+    // The feed-forward comes from the plan; the controller's own model is not asked.
+    let model = RigidBody::new(arm.clone());
+    let mut controller = Controller::new(&model, arm, task.feedback.clone())?;
+    let mut command = Command::new(dof);
+    let (mut error, mut error_rate) = (vec![0.0; dof], vec![0.0; dof]);
+    let mut cut = vec![0; dof];
+    let begin: Vec<f64> = (0..dof).map(|j| course.at.q[j] + plan.beyond(0, j)[0]).collect();
+    let mut wanted: Vec<VelocityFilter> = begin.iter().map(|&q| VelocityFilter::new(q)).collect();
+    let driven = machine.drive(course.begin, &begin, course.ticks, |seen, torque| {
+        for j in 0..dof {
+            let at = seen.tick * dof + j;
+            let [beyond, its_rate] = plan.beyond(seen.tick, j);
+            wanted[j].take(course.at.q[at] + beyond);
+            error[j] = wanted[j].position - seen.q[j];
+            error_rate[j] = match rate {
+                Rate::Filtered => wanted[j].velocity,
+                Rate::AsItIs => course.at.qd[at] + its_rate,
+            } - seen.qd[j];
+            let [known, learned] = plan.command(seen.tick, j);
+            (command.feedforward.rigid[j], command.feedforward.learned[j]) = (known, learned);
+        }
+        controller.feed_back(seen.q, &error, &error_rate, &mut command);
+        torque.copy_from_slice(&command.torque);
+        for (count, &is_cut) in cut.iter_mut().zip(&command.saturated) {
+            *count += usize::from(is_cut);
+        }
+    });
+    let (links, tau) = match driven {
+        Ok(driven) => (driven.links, driven.tau),
+        // An arm that runs away under a model is a result.
+        Err(ProofError::Plant(_)) => (Vec::new(), Vec::new()),
+        Err(error) => return Err(error.into()),
+    };
+    Ok(Run { links, tau, cut })
+}
+
+impl Run {
+    /// The links' distance from the task's reference; `other` is the same with [`Rate::Filtered`].
+    pub fn tracked(&self, model: Model, other: &Self, course: &Course) -> Tracked {
+        let (rms, largest) = self.errors(course);
+        Tracked {
+            error: mean(&rms),
+            error_without_lag: mean(&other.errors(course).0),
+            cut: match rms.is_empty() {
+                true => Vec::new(),
+                false => self
+                    .cut
+                    .iter()
+                    .map(|&count| count as f64 / course.ticks as f64)
+                    .collect(),
+            },
+            model,
+            rms,
+            largest,
+        }
+    }
+
+    /// Root mean square and largest, one a joint; empty if the loop left all bounds.
+    fn errors(&self, course: &Course) -> (Vec<f64>, Vec<f64>) {
+        if self.links.is_empty() {
+            return (Vec::new(), Vec::new());
+        }
+        let dof = course.dof;
+        let first = course.run_in * dof;
+        let ticks = (course.ticks - course.run_in) as f64;
+        let (mut rms, mut largest) = (vec![0.0; dof], vec![0.0_f64; dof]);
+        let rows = self.links.iter().zip(&course.at.q).enumerate().skip(first);
+        for (k, (q, wanted)) in rows {
+            let error = wanted - q;
+            rms[k % dof] += error * error / ticks;
+            largest[k % dof] = largest[k % dof].max(error.abs());
+        }
+        (rms.into_iter().map(f64::sqrt).collect(), largest)
+    }
+}
+
+/// Root mean square over the joints; `None` without any.
+fn mean(rms: &[f64]) -> Option<f64> {
+    (!rms.is_empty()).then(|| (rms.iter().map(|rms| rms * rms).sum::<f64>() / rms.len() as f64).sqrt())
+}

@@ -1,0 +1,125 @@
+//! The task's reference at every tick of 1 ms, and the way into it from rest.
+
+use crate::reference::Motion;
+use crate::scenario::Scenario;
+
+/// A tick (s): the machine's own.
+pub const TICK: f64 = 1e-3;
+/// How long the arm takes to come up to the task's speed (s).
+const RUN_IN: f64 = 3.0;
+/// How far beyond the end late drives must be told what to do (ticks): the longest delay that can be concealed.
+const BEYOND: usize = 128;
+
+/// Positions, velocities and accelerations; `[tick × dof + joint]`, rad or m.
+pub struct Table {
+    pub q: Vec<f64>,
+    pub qd: Vec<f64>,
+    pub qdd: Vec<f64>,
+}
+
+/// What is to be tracked.
+pub struct Course {
+    /// Joints.
+    pub dof: usize,
+    /// The time of the first tick, on the recordings' clock (s).
+    pub begin: f64,
+    /// Ticks before the task begins.
+    pub run_in: usize,
+    /// Ticks in all.
+    pub ticks: usize,
+    /// At the ticks.
+    pub at: Table,
+    /// In the middle between a tick and the next, where a torque that is held between them is right; some more than there are ticks.
+    pub middle: Table,
+}
+
+impl Course {
+    /// The reference of `task`, which begins at `start` (s, on the recordings' clock).
+    pub fn new(task: &Scenario, start: f64) -> Self {
+        let run_in = (RUN_IN / TICK).round() as usize;
+        let ticks = run_in + (task.duration / TICK).round() as usize;
+        Self {
+            dof: task.arm.dof(),
+            begin: start - RUN_IN,
+            run_in,
+            ticks,
+            at: table(task, ticks, 0.0),
+            middle: table(task, ticks + BEYOND, 0.5),
+        }
+    }
+
+    /// The task's own time of a tick (s); negative on the way into it.
+    #[cfg(any(test, feature = "viewer"))]
+    pub fn time(&self, tick: usize) -> f64 {
+        tick as f64 * TICK - RUN_IN
+    }
+
+    /// The time on the recordings' clock in the middle after a tick (s).
+    pub fn middle_time(&self, tick: usize) -> f64 {
+        self.begin + (tick as f64 + 0.5) * TICK
+    }
+}
+
+fn table(task: &Scenario, ticks: usize, after: f64) -> Table {
+    let dof = task.arm.dof();
+    let with = || Vec::with_capacity(ticks * dof);
+    let mut table = Table {
+        q: with(),
+        qd: with(),
+        qdd: with(),
+    };
+    let mut motion = Motion::new(dof);
+    for tick in 0..ticks {
+        let [along, rate, change] = way((tick as f64 + after) * TICK - RUN_IN);
+        task.reference.at(along, &mut motion);
+        table.q.extend_from_slice(&motion.q);
+        for (qd, qdd) in motion.qd.iter().zip(&motion.qdd) {
+            table.qd.push(qd * rate);
+            table.qdd.push(qdd * rate * rate + qd * change);
+        }
+    }
+    table
+}
+
+/// Where on the task's own curve the arm is at `time` (s), how fast it goes along it, and that rate's rate: from rest it comes up to
+/// the task's speed at time 0.
+fn way(time: f64) -> [f64; 3] {
+    if time >= 0.0 {
+        return [time, 1.0, 0.0];
+    }
+    let x = 1.0 + time / RUN_IN;
+    let rate = x * x * x * (10.0 + x * (6.0 * x - 15.0));
+    let change = 30.0 * x * x * (1.0 - x) * (1.0 - x) / RUN_IN;
+    // The integral of the rate, which is half of the time when the task begins.
+    let along = RUN_IN * (x.powi(4) * (2.5 + x * (x - 3.0)) - 0.5);
+    [along, rate, change]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// From rest into the task without a jump; velocities and accelerations are the derivatives of positions.
+    #[test]
+    fn the_way_into_the_task_is_smooth() {
+        let task = Scenario::built_in("taskD").expect("it comes with the program");
+        let course = Course::new(&task, 90.0);
+        let n = course.dof;
+        assert_eq!((course.begin, course.time(course.run_in)), (87.0, 0.0));
+        assert!(
+            course.at.qd[..n]
+                .iter()
+                .chain(&course.at.qdd[..n])
+                .all(|rate| *rate == 0.0)
+        );
+        for tick in 1..course.ticks - 1 {
+            for j in 0..n {
+                let [before, here, after] = [tick - 1, tick, tick + 1].map(|tick| course.at.q[tick * n + j]);
+                let qd = (after - before) / (2.0 * TICK);
+                let qdd = (after - 2.0 * here + before) / (TICK * TICK);
+                assert!((qd - course.at.qd[tick * n + j]).abs() < 1e-5);
+                assert!((qdd - course.at.qdd[tick * n + j]).abs() < 2e-2);
+            }
+        }
+    }
+}

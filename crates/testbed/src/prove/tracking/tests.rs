@@ -1,0 +1,102 @@
+//! A machine whose effects are known: what each model is worth on it.
+
+use proof::{Concealed, Settings, conceal_effects, write_case};
+use torque::Effect;
+
+use super::*;
+
+/// Conceals `effects` in the PUMA 560, and tracks the task with `named` as what was diagnosed.
+fn tracked(effects: &[Concealed], named: &[Effect]) -> CaseTracking {
+    let robots = crate::conceal::robots(&["puma560".to_owned()]).expect("it comes with the program");
+    let settings = Settings {
+        training: 1,
+        ..Settings::default()
+    };
+    let concealment = conceal_effects(&robots[0], "case_000", effects, &settings).expect("they can be concealed");
+    let folder = tempfile::tempdir().expect("a folder");
+    let case = write_case(&concealment, folder.path(), &folder.path().join("truth")).expect("it can be written");
+    let joints = robots[0].arm().joints().iter().zip(robots[0].rotor_inertias());
+    let drives = joints.map(|(joint, &inertia)| Effect::RotorInertia {
+        joint: joint.name.clone(),
+        inertia,
+    });
+    let file = EffectFile {
+        robot: None,
+        effects: drives.chain(named.iter().cloned()).collect(),
+    };
+    let case = Case {
+        robot: &robots[0],
+        folder: &case,
+        truth: &concealment.truth,
+        named: Some(&file.to_text().expect("effects can be written")),
+    };
+    case.track(String::new(), None).expect("it can be tracked")
+}
+
+/// Without the velocity filter's lag, which is an error under every model.
+fn errors(tracking: &CaseTracking) -> [f64; 5] {
+    Model::ALL.map(|model| tracking.error_without_lag(model).expect("no loop is lost"))
+}
+
+/// The true effect put in is as good as the exact model, and both are far better than none.
+#[test]
+fn a_true_name_tracks_as_the_exact_model_does() {
+    let joint = || "joint2".to_owned();
+    let drag = Concealed::new("quadratic_drag", Some("joint2")).with("coefficient", 40.0);
+    let named = Effect::QuadraticDrag {
+        joint: joint(),
+        coefficient: 40.0,
+        exponent: 2.0,
+        onset: None,
+    };
+    let tracking = tracked(&[drag], &[named]);
+    let [nominal, diagnosed, learned, _, exact] = errors(&tracking);
+    assert!(
+        exact < 0.01 * nominal && learned > 10.0 * exact,
+        "{exact} {learned} {nominal}"
+    );
+    assert!((diagnosed / exact - 1.0).abs() < 0.05, "{diagnosed} {exact}");
+    assert_eq!(tracking.start, 60.0);
+    assert!(tracking.over_exact().is_some_and(|over| over < 1.05));
+}
+
+/// What is no torque: a late drive is commanded early, an encoder and a spring's rotor are sent where they belong.
+#[test]
+fn drives_are_made_up_for() {
+    let on = |name: &str| Some(format!("joint{name}"));
+    let effects = [
+        Concealed::new("actuation_delay", on("1").as_deref()).with("delay", 0.0085),
+        Concealed::new("encoder_offset", on("2").as_deref()).with("offset", 0.03),
+        Concealed::new("joint_elasticity", on("3").as_deref())
+            .with("stiffness", 900.0)
+            .with("damping", 2.0),
+        Concealed::new("torque_scale", on("5").as_deref()).with("factor", 1.3),
+    ];
+    let joint = |name: &str| format!("joint{name}");
+    let named = [
+        Effect::ActuationDelay {
+            joint: joint("1"),
+            delay: 0.0085,
+        },
+        Effect::EncoderOffset {
+            joint: joint("2"),
+            offset: 0.03,
+        },
+        Effect::JointElasticity {
+            joint: joint("3"),
+            stiffness: 900.0,
+            damping: 2.0,
+        },
+        Effect::TorqueScale {
+            joint: joint("5"),
+            factor: 1.3,
+            onset: None,
+        },
+    ];
+    let tracking = tracked(&effects, &named);
+    let [nominal, diagnosed, learned, _, exact] = errors(&tracking);
+    // Nothing that is learned of torques sends an encoder elsewhere.
+    assert!(learned.min(nominal) > 0.9 * 0.03 / 6_f64.sqrt(), "{learned} {nominal}");
+    assert!(exact < 0.05 * nominal, "{exact} {nominal}");
+    assert!((diagnosed / exact - 1.0).abs() < 0.1, "{diagnosed} {exact}");
+}

@@ -1,0 +1,141 @@
+//! Independent Joint Learning on the recordings that a diagnosis was fitted to, alone and on top of what was named.
+
+use std::path::Path;
+
+use anyhow::Context;
+use arm::Arm;
+use diagnosis::{Input, Options, Trace};
+use recording::{Recording, RegularRecording};
+use torque::{Effect, Learned, Prediction, Workspace};
+
+use super::plan::correction;
+use crate::diagnose::learned::{self, LearnedOptions, Motion};
+
+/// Samples learned from: twice those of a diagnosis, which only compares; the cost grows with the cube.
+const SAMPLES: usize = 300;
+
+/// The training recordings as a diagnosis filters and differentiates them.
+pub struct Recorded {
+    traces: Vec<Trace>,
+}
+
+impl Recorded {
+    /// Reads `files` in `folder`, whose joints are those of `arm`.
+    ///
+    /// # Errors
+    /// If one cannot be read, or nothing can be fitted to them.
+    pub fn read(arm: &Arm, folder: &Path, files: &[String]) -> anyhow::Result<Self> {
+        let regular = |name: &String| -> anyhow::Result<RegularRecording> {
+            let path = folder.join(name);
+            let recording = Recording::read_csv(&path)?;
+            Ok(recording.regular().with_context(|| path.display().to_string())?.0)
+        };
+        let recordings: Vec<RegularRecording> = files.iter().map(regular).collect::<anyhow::Result<_>>()?;
+        let inputs: Vec<Input<'_>> = files
+            .iter()
+            .zip(&recordings)
+            .map(|(name, recording)| Input {
+                name,
+                recording,
+                held_out: false,
+            })
+            .collect();
+        // Nothing is fitted: what is wanted is its filtered motion.
+        let options = Options {
+            only: Some(Vec::new()),
+            ..Options::default()
+        };
+        let diagnosis = diagnosis::diagnose(arm, &inputs, &options, &|_| ())?;
+        Ok(Self {
+            traces: diagnosis.traces.recordings,
+        })
+    }
+
+    /// Learns what `arm` with `effects` leaves of the recorded torques.
+    ///
+    /// # Errors
+    /// If the effects do not fit the arm, or a regression fails.
+    pub fn learn(&self, arm: &Arm, effects: &[Effect]) -> anyhow::Result<Learned> {
+        let model = correction(arm, effects)?;
+        let dof = arm.dof();
+        let (mut workspace, mut prediction) = (Workspace::new(dof), Prediction::new(dof));
+        let mut rows = [vec![0.0; dof], vec![0.0; dof], vec![0.0; dof]];
+        let mut changed: Vec<[Vec<Vec<f64>>; 2]> = Vec::new();
+        for trace in &self.traces {
+            // What acts is to be explained, not what was commanded: that was earlier, or more.
+            let mut tau: Vec<Vec<f64>> = (0..dof)
+                .map(|j| applied(trace, j, effects, &arm.joints()[j].name))
+                .collect();
+            let mut q = trace.q.clone();
+            for row in 0..trace.time.len() {
+                for (into, signal) in rows.iter_mut().zip([&trace.q, &trace.qd, &trace.qdd]) {
+                    into.iter_mut()
+                        .zip(signal)
+                        .for_each(|(value, joint)| *value = joint[row]);
+                }
+                let [said, qd, qdd] = &rows;
+                model.predict_at(trace.time[row], &mut workspace, said, qd, qdd, &mut prediction);
+                for j in 0..dof {
+                    // Rigid torque and inputs are those of where the joint stands.
+                    q[j][row] += model.encoder_offsets()[j];
+                    tau[j][row] -= prediction.effects[j];
+                }
+            }
+            changed.push([q, tau]);
+        }
+        let motions: Vec<Motion<'_>> = self
+            .traces
+            .iter()
+            .zip(&changed)
+            .map(|(trace, [q, tau])| Motion {
+                q,
+                qd: &trace.qd,
+                qdd: &trace.qdd,
+                tau,
+                moving: &trace.moving,
+            })
+            .collect();
+        let options = LearnedOptions {
+            samples: SAMPLES,
+            ..LearnedOptions::default()
+        };
+        learned::learn(model.arm(), &motions, &options)
+    }
+}
+
+/// The torque that the drive of joint `j`, called `joint`, applied by the effects named: late, and limited.
+fn applied(trace: &Trace, j: usize, effects: &[Effect], joint: &str) -> Vec<f64> {
+    let (mut late, mut most) = (0.0, f64::INFINITY);
+    for effect in effects.iter().filter(|effect| effect.joint() == Some(joint)) {
+        match *effect {
+            Effect::ActuationDelay { delay, .. } => late += delay,
+            Effect::TorqueSaturation { limit, .. } => most = limit.min(most),
+            _ => {}
+        }
+    }
+    let mut tau = shifted(&trace.time, &trace.tau[j], late);
+    for tau in &mut tau {
+        *tau = tau.clamp(-most, most);
+    }
+    tau
+}
+
+/// A signal's values so much earlier (s), linear between rows and the first before them.
+fn shifted(time: &[f64], values: &[f64], late: f64) -> Vec<f64> {
+    if late == 0.0 {
+        return values.to_vec();
+    }
+    let at = |&now: &f64| {
+        let wanted = now - late;
+        let after = time.partition_point(|&stamp| stamp <= wanted);
+        match (after.checked_sub(1), time.get(after)) {
+            (Some(before), Some(next)) => {
+                let part = (wanted - time[before]) / (next - time[before]);
+                values[before] + part * (values[after] - values[before])
+            }
+            (Some(before), None) => values[before],
+            (None, _) => values[0],
+        }
+    };
+    time.iter().map(at).collect()
+}
