@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use arm::Arm;
 use rayon::prelude::*;
-use torque::Effect;
+use torque::{Effect, Reference};
 
 use crate::bursts;
 use crate::candidate::Cause;
@@ -19,7 +19,7 @@ use crate::predict::{augmented, errors};
 use crate::report::{Finding, RecordingNames, Report, Traces};
 use crate::study::Study;
 use crate::traces::traces;
-use crate::{known, search_plan, sentences, settings, settled, two_sides, unseen};
+use crate::{known, next, search_plan, sentences, settings, settled, two_sides, unseen};
 
 /// How to diagnose.
 #[derive(Clone, Debug)]
@@ -31,6 +31,8 @@ pub struct Options {
     /// Fit these effects and no others, whatever comes of them: nothing is searched for, no name is earned or lost. `None`
     /// searches the catalogue.
     pub only: Option<Vec<Wanted>>,
+    /// Whether to propose the next experiment.
+    pub next: bool,
 }
 
 impl Default for Options {
@@ -39,6 +41,7 @@ impl Default for Options {
             cutoff: settings::CUTOFF,
             known: Vec::new(),
             only: None,
+            next: false,
         }
     }
 }
@@ -52,6 +55,8 @@ pub struct Diagnosis {
     pub traces: Traces,
     /// The named effects that correct the torque model.
     pub effects: Vec<Effect>,
+    /// The motion of the next experiment, if one was asked for and tells more.
+    pub next: Option<Reference>,
     /// What was left out of the recordings, in sentences.
     pub remarks: Vec<String>,
 }
@@ -150,6 +155,25 @@ pub fn diagnose(
         finding.sentence = sentences::of(finding, &fit);
     }
     let traces = traces(&study, &judged, &findings, &left);
+    let not_observable = unseen::unseen(&study, &products, &judged.named);
+    let next = if options.next {
+        progress("what to record next");
+        let corrects = |(finding, _): &&(Finding, Option<usize>)| finding.corrects;
+        let found = findings.iter().filter(corrects).map(|(finding, _)| &finding.as_effect);
+        let effects: Vec<Effect> = options.known.iter().chain(found).cloned().collect();
+        let robot = (arm, effects.as_slice());
+        Some(next::propose(
+            &study,
+            &products,
+            &judged.named,
+            robot,
+            &findings,
+            &not_observable,
+        )?)
+    } else {
+        None
+    };
+    let (next_experiment, next) = next.map_or((None, None), |next| (Some(next.report), next.motion));
     let findings: Vec<Finding> = findings.into_iter().map(|(finding, _)| finding).collect();
     let report = Report {
         schema: "testbed.diagnosis/1",
@@ -160,11 +184,12 @@ pub fn diagnose(
         },
         verdict: verdict(&findings, &unexplained, &not_enough_data, &located),
         unexplained,
-        not_observable: unseen::unseen(&study, &products, &judged.named),
+        not_observable,
         not_enough_data,
         located,
         fit,
         rollout: BTreeMap::new(),
+        next_experiment,
         findings,
     };
     let effects = report
@@ -177,6 +202,7 @@ pub fn diagnose(
         report,
         traces,
         effects,
+        next,
         remarks: std::mem::take(&mut study.motions.remarks),
     })
 }

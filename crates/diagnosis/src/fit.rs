@@ -4,6 +4,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::table::{Gram, Table};
 
+mod joined;
 mod left_out;
 
 /// Independent pieces of evidence a second of motion: residuals of a wrong model are correlated over longer than the filter …
@@ -16,6 +17,11 @@ const MOST_EVIDENCE_RATE: f64 = 10.0;
 const RIDGE: f64 = 1e-9;
 /// Weights are found anew as often.
 const REWEIGHTINGS: usize = 3;
+
+/// Pieces of evidence a second of a motion of frequency `tempo` (Hz).
+pub fn evidence_rate(tempo: f64) -> f64 {
+    (EVIDENCE_PER_PERIOD * tempo).clamp(EVIDENCE_RATE, MOST_EVIDENCE_RATE)
+}
 
 /// The inner products over some of the recordings.
 #[derive(Clone, Debug)]
@@ -85,11 +91,7 @@ impl Products {
             gram: (0..table.dof()).map(sum).collect(),
             count: (0..table.dof()).map(|joint| over(joint, &|_| 1.0)).collect(),
             evidence: (0..table.dof())
-                .map(|joint| {
-                    over(joint, &|r| {
-                        seconds[r] * (EVIDENCE_PER_PERIOD * tempo[joint]).clamp(EVIDENCE_RATE, MOST_EVIDENCE_RATE)
-                    })
-                })
+                .map(|joint| over(joint, &|r| seconds[r] * evidence_rate(tempo[joint])))
                 .collect(),
             floor: floor.to_vec(),
             recordings,

@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use torque::Effect;
 
+use crate::next::NextExperiment;
+
 /// What was found. Maps are keyed by the URDF joint's name.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
@@ -30,6 +32,9 @@ pub struct Report {
     pub fit: BTreeMap<String, JointFit>,
     /// How the simulated arm follows the recorded one; empty where it was not simulated.
     pub rollout: BTreeMap<String, JointRollout>,
+    /// The motion that tells most of what is open; where it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub next_experiment: Option<NextExperiment>,
 }
 
 /// Paths as given on the command line.

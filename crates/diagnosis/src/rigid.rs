@@ -33,6 +33,11 @@ impl Rigid {
     /// Of `arm` with joints that stand `offset` (rad or m) beyond their encoders, along `chunk`; the links' shares are those
     /// of links with the inertial parameters `nominal`.
     pub fn new(arm: &Arm, nominal: &[f64], offset: &[f64], chunk: &Chunk) -> Self {
+        Self::with_derivatives(arm, nominal, offset, chunk, true)
+    }
+
+    /// The same; without `derivatives` those by position and velocity, which cost most, stay zero.
+    pub fn with_derivatives(arm: &Arm, nominal: &[f64], offset: &[f64], chunk: &Chunk, derivatives: bool) -> Self {
         let n = arm.dof();
         let ticks = chunk.ticks();
         let zeros = || vec![0.0; ticks];
@@ -82,7 +87,7 @@ impl Rigid {
                     rigid.payload[joint][k][tick] = (0..10).map(|l| regressor[(joint, last + l)] * to_link[l][k]).sum();
                 }
             }
-            for by in 0..n {
+            for by in 0..if derivatives { n } else { 0 } {
                 let (at, speed) = (q[by], qd[by]);
                 q[by] = at + STEP;
                 arm.inverse_dynamics(&mut workspace, &q, &qd, &qdd, &mut plus);

@@ -38,8 +38,13 @@ impl Standing {
 /// The margin that halves the doubt e-fold (nats).
 const MARGIN_SCALE: f64 = 8.0;
 
-/// Tries everything else in the place of `member`.
-pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: usize) -> Standing {
+/// How much worse (nats) a rival of a finding that explains so much (nats) may be, to explain nearly as much.
+pub fn allowance(explained: f64) -> f64 {
+    NEARLY_NATS.max(NEARLY * explained)
+}
+
+/// What rivals of `member` stand beside: all else that is chosen, and what `member` is a form of.
+pub fn beside(study: &Study, chosen: &Chosen, member: usize) -> Vec<usize> {
     let finding = &study.candidates[member];
     let mut set: Vec<usize> = chosen.others(member);
     // A form of something simpler stands against that with something else.
@@ -55,6 +60,13 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
     {
         set.push(plain);
     }
+    set
+}
+
+/// Tries everything else in the place of `member`.
+pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: usize) -> Standing {
+    let finding = &study.candidates[member];
+    let set = beside(study, chosen, member);
     let without = problem.choose(set.clone(), &chosen.fit.weights);
     let is_other = |c: usize| {
         let other = &study.candidates[c];
@@ -106,7 +118,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         }
     }
     let explained = without.fit.loss - chosen.fit.loss;
-    let allowance = NEARLY_NATS.max(NEARLY * explained);
+    let allowance = allowance(explained);
     let mut results: Vec<(f64, f64, Cause, Option<usize>)> = sets
         .into_par_iter()
         .filter_map(|(cause, joint, added)| {

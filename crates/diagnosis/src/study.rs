@@ -1,19 +1,23 @@
 //! Everything the search works on: recordings filtered, the model along them, columns, candidates.
 
-use arm::{Arm, Vector3};
+use arm::Arm;
 use rayon::prelude::*;
 
 use crate::candidate::{Candidate, Cause, MayBe, catalogue};
 use crate::columns::Scales;
 use crate::fit::{Fit, Products};
 use crate::known::Known;
-use crate::measure::{self, drives, inertia, mean, noise, scales, seconds, spans};
+use crate::measure::{self, drives, mean, noise, scales, seconds, spans};
 use crate::motion::{Input, Motions};
 use crate::rigid::Rigid;
 use crate::search::Problem;
 use crate::table::{Moving, Table};
 use crate::term::Term;
 use crate::{scan, settings};
+
+mod about;
+
+pub use about::About;
 
 /// The evidence that an onset must bring: it was looked for at some hundred times (nats).
 const ONSET: f64 = 6.0;
@@ -179,34 +183,12 @@ impl Study {
     }
 
     fn about(&mut self, fit: &Fit, kept: &[usize], anyway: bool) -> Option<Vec<usize>> {
-        let mut arm = self.arm.clone();
-        let mut offset = vec![0.0; arm.dof()];
-        let mut carried = Vec::new();
-        let mut tilt = Vector3::zeros();
-        let mut payload = [0.0; 10];
-        for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
-            let term = self.table.terms[column];
-            match term {
-                Term::Payload(k) => payload[k] = value,
-                Term::Link(link) => arm = arm.with_scaled_link(link, 1.0 + value),
-                Term::Scale => arm = arm.with_scaled_inertias(1.0 + value),
-                Term::EncoderOffset(joint) => offset[joint] = value,
-                Term::Tilt(axis) => tilt[axis] = value,
-                _ => continue,
-            }
-            carried.push((term, value));
-        }
+        let About { arm, offset, carried } = About::new(self, fit);
         // Nothing to carry, and nothing carried by an earlier choice.
         if carried.is_empty() && !self.carries && !anyway {
             return None;
         }
         self.carries = !carried.is_empty();
-        if payload[0] != 0.0 {
-            arm = arm.with_payload(&inertia(&payload));
-        }
-        if tilt.norm() > 0.0 {
-            arm = arm.with_turned_base(tilt, tilt.norm());
-        }
         let nominal = self.arm.inertial_parameters();
         self.rigid = self
             .motions

@@ -147,6 +147,28 @@ impl Table {
         table
     }
 
+    /// `terms` alone, without rows: for products that were formed elsewhere, term k of every joint that it acts on in place k.
+    pub fn bare(terms: Vec<Term>, dof: usize) -> Self {
+        let place = |joint: usize| -> Vec<Option<usize>> {
+            let acts = |term: &Term| term.joint().is_none_or(|only| only == joint);
+            let terms = terms.iter().enumerate();
+            terms.map(|(k, term)| acts(term).then_some(k)).collect()
+        };
+        let none = || JointTable {
+            y: Vec::new(),
+            x: Vec::new(),
+            moving: Vec::new(),
+            stretches: Vec::new(),
+            count: Vec::new(),
+        };
+        Self {
+            place: (0..dof).map(place).collect(),
+            joints: (0..dof).map(|_| none()).collect(),
+            rows: Vec::new(),
+            terms,
+        }
+    }
+
     /// The same terms for another arm along the same motions; what depends on the motion alone is taken from `self`.
     pub fn formed_anew(
         &self,

@@ -15,6 +15,42 @@ use crate::term::Term;
 /// A linear effect is said to be hidden if it could be as large as this part of the joint's torque unseen.
 const HIDDEN: f64 = 0.06;
 
+/// Effects whose torque is in proportion to one parameter, and that parameter.
+pub const LINEAR: [(Cause, &str); 7] = [
+    (Cause::Drag, "coefficient"),
+    (Cause::RotorInertia, "inertia"),
+    (Cause::Thermal, "amplitude"),
+    (Cause::LoadDependent, "gain"),
+    (Cause::TorqueScale, "factor"),
+    (Cause::Spring, "stiffness"),
+    (Cause::EncoderOffset, "offset"),
+];
+
+/// How well a column shows on a joint.
+pub struct Visibility {
+    /// What it adds, at a coefficient of one, to the weighted sum of squares beside what was found.
+    pub own: f64,
+    /// Its standard deviation.
+    pub spread: f64,
+    /// Moving rows.
+    pub count: f64,
+    /// Pieces of evidence.
+    pub evidence: f64,
+    /// The standard deviation of the joint's torque (N m or N).
+    pub torque: f64,
+}
+
+impl Visibility {
+    /// The least coefficient that brings the evidence `needed` (nats) and the share that a name needs.
+    pub fn least(&self, needed: f64) -> f64 {
+        let count = self.count.max(1.0);
+        let drop = count * ((2.0 * needed / self.evidence.max(1e-9)).exp() - 1.0);
+        let by_evidence = (drop / self.own.max(1e-300)).sqrt();
+        let by_share = LEAST_SHARE * self.torque / self.spread.max(1e-300);
+        by_evidence.max(by_share)
+    }
+}
+
 /// What could not be seen beside `chosen`.
 pub fn unseen(study: &Study, products: &Products, chosen: &Chosen) -> Vec<NotObservable> {
     let dof = study.motions.dof;
@@ -115,15 +151,7 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
             }
         }
     }
-    for (cause, key) in [
-        (Cause::Drag, "coefficient"),
-        (Cause::RotorInertia, "inertia"),
-        (Cause::Thermal, "amplitude"),
-        (Cause::LoadDependent, "gain"),
-        (Cause::TorqueScale, "factor"),
-        (Cause::Spring, "stiffness"),
-        (Cause::EncoderOffset, "offset"),
-    ] {
+    for (cause, key) in LINEAR {
         if found.contains(&cause) {
             continue;
         }
@@ -146,12 +174,18 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
         else {
             continue;
         };
-        let own = products.drop_of(&study.table, &chosen.fit, column);
-        let least = least_coefficient(study, products, candidate, joint, own, column);
+        let visibility = Visibility {
+            own: products.drop_of(&study.table, &chosen.fit, column),
+            spread: spread(study, joint, column),
+            count: products.count[joint],
+            evidence: products.evidence[joint],
+            torque: study.scales.torque[joint],
+        };
+        let least = visibility.least(needed(candidate));
         // A scale is told by the rigid torque alone, but it is a part of all of the joint's torque.
         let share = match cause {
             Cause::TorqueScale => least,
-            _ => least * spread(study, joint, column) / study.scales.torque[joint].max(1e-300),
+            _ => least * visibility.spread / visibility.torque.max(1e-300),
         };
         if share > HIDDEN {
             let because = "other effects found explain the same torque in these motions";
@@ -178,7 +212,7 @@ fn size(study: &Study, candidate: &Candidate) -> f64 {
 }
 
 /// The evidence that a name needs here (nats).
-fn needed(candidate: &Candidate) -> f64 {
+pub fn needed(candidate: &Candidate) -> f64 {
     candidate.cost.max(LEAST_EVIDENCE)
 }
 
@@ -189,22 +223,6 @@ fn is_seen(study: &Study, products: &Products, chosen: &Chosen, candidate: &Cand
     let nats = 0.5 * products.evidence[joint] * (1.0 + drop / products.count[joint].max(1.0)).ln();
     let share = spread(study, joint, column) / study.scales.torque[joint].max(1e-300);
     nats > needed(candidate) && share > LEAST_SHARE
-}
-
-/// The least coefficient of a column that brings the evidence and the share needed.
-fn least_coefficient(
-    study: &Study,
-    products: &Products,
-    candidate: &Candidate,
-    joint: usize,
-    own: f64,
-    column: usize,
-) -> f64 {
-    let count = products.count[joint].max(1.0);
-    let drop = count * ((2.0 * needed(candidate) / products.evidence[joint].max(1e-9)).exp() - 1.0);
-    let by_evidence = (drop / own.max(1e-300)).sqrt();
-    let by_share = LEAST_SHARE * study.scales.torque[joint] / spread(study, joint, column).max(1e-300);
-    by_evidence.max(by_share)
 }
 
 /// The standard deviation of a column on a joint's moving training rows.

@@ -44,9 +44,9 @@ pub struct RunArgs {
     #[arg(long, value_name = "NAME|FILE")]
     pub scenario: String,
 
-    /// The torque model that the controller feeds forward
-    #[arg(long, value_enum, default_value = "independent-joint")]
-    pub model: ModelKind,
+    /// The torque model that the controller feeds forward [default: the scenario's; independent-joint where it names none]
+    #[arg(long, value_enum)]
+    pub model: Option<ModelKind>,
 
     /// What the model is trained on: scenarios, or recordings (.csv) [default: the scenario's own list]
     #[arg(long, value_name = "A,B,…", value_delimiter = ',')]
@@ -146,6 +146,10 @@ pub struct DiagnoseArgs {
     /// Write the URDF with what it can hold of the corrected model to this file
     #[arg(long, value_name = "OUT")]
     pub urdf: Option<PathBuf>,
+
+    /// Propose the motion that tells most of what is left open, and write it to this file as a scenario (.toml)
+    #[arg(long, value_name = "OUT", conflicts_with = "only")]
+    pub next: Option<PathBuf>,
 
     /// Where Rerun shows the diagnosis: off, save[=FILE], spawn or connect[=URL]
     #[cfg_attr(not(feature = "viewer"), arg(hide = true))]
@@ -267,7 +271,7 @@ impl DiagnoseArgs {
             Some(Rerun::Save(None)) => Some(Path::new("diagnosis.rrd")),
             _ => None,
         };
-        let files = [&self.json, &self.report, &self.model, &self.urdf];
+        let files = [&self.json, &self.report, &self.model, &self.urdf, &self.next];
         files.into_iter().flatten().map(PathBuf::as_path).chain(rerun).collect()
     }
 }

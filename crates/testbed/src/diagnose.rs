@@ -4,6 +4,7 @@ mod command;
 pub mod effect_file;
 mod inputs;
 pub mod learned;
+mod next_file;
 pub mod numbers;
 pub mod page;
 #[cfg(feature = "viewer")]

@@ -10,7 +10,6 @@ mod models;
 mod output;
 mod paper;
 mod prove;
-mod reference;
 mod run;
 mod scenario;
 mod sensors;

@@ -11,6 +11,7 @@ use torque::{Gp, Lengths, Samples, TorqueModel};
 
 use crate::cli::RunArgs;
 use crate::interrupt;
+use crate::models::ModelKind;
 use crate::output::{self, Tracking};
 use crate::scenario::Scenario;
 use crate::simulation::{self, Observer, Outcome};
@@ -69,44 +70,43 @@ struct Percentiles {
 /// One that says what was being done, what was found and how to mend it.
 pub fn run(args: &RunArgs) -> anyhow::Result<()> {
     let scenario = Scenario::load(&args.scenario)?;
-    let sources = if args.model.learns() {
+    let kind = args.model.unwrap_or(scenario.model);
+    let sources = if kind.learns() {
         args.train.as_ref().unwrap_or(&scenario.training).clone()
     } else {
         Vec::new()
     };
-    if args.model.learns() && sources.is_empty() {
+    if kind.learns() && sources.is_empty() {
         bail!(
             "the model \"{}\" is trained, but the scenario names nothing to train on; give --train taskA,taskB,… or \
              [training] scenarios = […]",
-            args.model.flag()
+            kind.flag()
         );
     }
     let out = args.out.as_deref();
     check_outputs(args, &scenario, &sources)?;
     let samples = training::training_samples(&scenario, &sources, args.seed)?;
-    notes(args, &scenario, &samples);
+    notes(args, kind, &scenario, &samples);
 
     let options = args.length_scales.training_options();
     let model = {
         let progress = output::spinner("training");
-        if args.model.learns() {
-            let (title, sources) = (args.model.title(), sources.join(", "));
+        if kind.learns() {
+            let (title, sources) = (kind.title(), sources.join(", "));
             progress.set_message(format!("training {title} on {sources} ({} samples)", samples.len()));
         }
-        let model = args
-            .model
-            .build(&scenario.arm, &scenario.nominal_arm(), &samples, &options);
+        let model = kind.build(&scenario.arm, &scenario.nominal_arm(), &samples, &options);
         progress.finish_and_clear();
         model.context("training failed")?
     };
     let deferred = interrupt::Deferred::start();
-    let folder = RunFolder::create(out, &format!("{}-{}", scenario.name, args.model.flag()))?;
+    let folder = RunFolder::create(out, &format!("{}-{}", scenario.name, kind.flag()))?;
     let rerun_file = observers::rerun_file(args, &folder.path);
-    let mut viewer = View::open(args, &scenario, rerun_file.as_deref())?;
+    let mut viewer = View::open(args, kind, &scenario, rerun_file.as_deref())?;
     let mut progress = Progress::new(scenario.duration);
     let outcome = simulation::run(
         &scenario,
-        args.model,
+        kind,
         model.as_ref(),
         args.seed,
         &mut [&mut progress as &mut dyn Observer, &mut viewer],
@@ -121,7 +121,7 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
         joints: scenario.arm.joints().iter().map(|joint| joint.name.as_str()).collect(),
         train: &sources,
         seed: args.seed,
-        tracking: [Tracking::new(args.model, &outcome)],
+        tracking: [Tracking::new(kind, &outcome)],
         torque_mse: torque_error(&scenario, model.as_ref())?,
         saturated: outcome.saturated.clone(),
         real_time_factor: outcome.real_time_factor,
@@ -142,7 +142,7 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
         written.extend(rerun_file.clone());
     }
     drop(deferred);
-    let mut text = text(&scenario, args, &sources, &summary, &outcome);
+    let mut text = text(&scenario, kind, &sources, &summary, &outcome);
     for path in &written {
         text += &format!("written: {}\n", path.display());
     }
@@ -200,14 +200,14 @@ fn regression(gp: &Gp) -> Regression {
 }
 
 /// Says what is doubtful in what was asked for, in the robot and in the reference.
-fn notes(args: &RunArgs, scenario: &Scenario, samples: &Samples) {
+fn notes(args: &RunArgs, kind: ModelKind, scenario: &Scenario, samples: &Samples) {
     for note in &scenario.notes {
         eprintln!("note: {note}");
     }
-    if args.train.is_some() && !args.model.learns() {
+    if args.train.is_some() && !kind.learns() {
         eprintln!(
             "note: the model \"{}\" does not learn; --train is not used",
-            args.model.flag()
+            kind.flag()
         );
     }
     if samples.len() > MANY_SAMPLES {
@@ -216,7 +216,7 @@ fn notes(args: &RunArgs, scenario: &Scenario, samples: &Samples) {
             samples.len()
         );
     }
-    let mut motion = crate::reference::Motion::new(scenario.arm.dof());
+    let mut motion = torque::Motion::new(scenario.arm.dof());
     let mut outside = vec![false; scenario.arm.dof()];
     for time in scenario.sample_times() {
         scenario.reference.at(time, &mut motion);
@@ -243,7 +243,7 @@ fn notes(args: &RunArgs, scenario: &Scenario, samples: &Samples) {
 }
 
 /// The result for people.
-fn text(scenario: &Scenario, args: &RunArgs, sources: &[String], summary: &Summary<'_>, outcome: &Outcome) -> String {
+fn text(scenario: &Scenario, kind: ModelKind, sources: &[String], summary: &Summary<'_>, outcome: &Outcome) -> String {
     let trained = if sources.is_empty() {
         String::new()
     } else {
@@ -256,7 +256,7 @@ fn text(scenario: &Scenario, args: &RunArgs, sources: &[String], summary: &Summa
         scenario.arm.dof(),
         scenario.duration,
         scenario.control_rate,
-        args.model.flag()
+        kind.flag()
     );
     let header = ["joint", "RMS error", "largest error", "torque error, MSE", "saturated"];
     let mut table = output::table(header.map(str::to_owned));

@@ -7,9 +7,9 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 use arm::Arm;
-use torque::Feedback;
+use torque::{Feedback, Reference};
 
-use crate::reference::Reference;
+use crate::models::ModelKind;
 use crate::sensors::SensorNoise;
 
 /// A validated scenario. Vectors have one entry a joint of the arm.
@@ -27,6 +27,8 @@ pub struct Scenario {
     pub urdf: PathBuf,
     /// Length of the run (s).
     pub duration: f64,
+    /// The torque model that is run unless another is asked for.
+    pub model: ModelKind,
     /// The factor on the masses and inertia tensors of the controller's model.
     pub inertia_scale: f64,
     /// The motion to follow.

@@ -6,11 +6,10 @@ use anyhow::{Context, ensure};
 use arm::Arm;
 use plant::{Plant, PlantOptions};
 use recording::Recording;
-use torque::{Command, Controller, TorqueModel};
+use torque::{Command, Controller, Motion, TorqueModel};
 
 use crate::interrupt;
 use crate::models::ModelKind;
-use crate::reference::Motion;
 use crate::scenario::Scenario;
 use crate::sensors::Sensors;
 use crate::telemetry::Sample;

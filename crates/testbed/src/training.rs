@@ -5,9 +5,8 @@ use std::path::Path;
 use anyhow::{Context, ensure};
 use arm::Arm;
 use recording::Recording;
-use torque::Samples;
+use torque::{Motion, Reference, Samples};
 
-use crate::reference::{Motion, Reference};
 use crate::scenario::Scenario;
 use crate::sensors::Sensors;
 

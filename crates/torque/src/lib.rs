@@ -11,6 +11,7 @@ mod error;
 mod inputs;
 mod learned;
 mod model;
+mod reference;
 mod rigid_body;
 mod samples;
 
@@ -22,5 +23,6 @@ pub use gp::{Gp, LengthScales, Lengths};
 pub use inputs::Inputs;
 pub use learned::{Learned, TrainingOptions};
 pub use model::{Prediction, TorqueModel, Workspace};
+pub use reference::{Fade, Motion, Reference, Sine};
 pub use rigid_body::RigidBody;
 pub use samples::{Sample, Samples};

@@ -106,6 +106,30 @@ impl Gram {
         self.square
     }
 
+    /// That of columns at these places, in this order; nothing where there is none.
+    pub fn picked(&self, places: &[Option<usize>]) -> Gram {
+        let of = |i: Option<usize>, k: Option<usize>| match (i, k) {
+            (Some(i), Some(k)) => self.of(i, k),
+            _ => 0.0,
+        };
+        Gram {
+            rows: (0..places.len())
+                .map(|k| (0..=k).map(|i| of(places[i], places[k])).collect())
+                .collect(),
+            right: places
+                .iter()
+                .map(|place| place.map_or(0.0, |i| self.right[i]))
+                .collect(),
+            square: self.square,
+        }
+    }
+
+    /// With more in y that no column has.
+    pub fn with_noise(mut self, square: f64) -> Gram {
+        self.square += square;
+        self
+    }
+
     /// The sum of several of the same `columns` columns.
     pub fn sum<'a>(columns: usize, grams: impl Iterator<Item = &'a Gram>) -> Gram {
         let mut sum = Gram {

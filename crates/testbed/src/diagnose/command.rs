@@ -10,7 +10,7 @@ use recording::RegularRecording;
 use super::effect_file::EffectFile;
 use super::learned::{self, LearnedOptions, Motion};
 use super::rollout::{RolloutOptions, rollout};
-use super::{inputs, page, terminal, urdf_file};
+use super::{inputs, next_file, page, terminal, urdf_file};
 use crate::cli::DiagnoseArgs;
 use crate::library::{self, Source};
 use crate::output;
@@ -46,6 +46,7 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
         cutoff: args.cutoff.unwrap_or(Options::default().cutoff),
         known,
         only,
+        next: args.next.is_some(),
     };
     let mut diagnosis = diagnosis::diagnose(&arm, &list, &options, &|doing| spinner.set_message(doing.to_owned()))?;
     for remark in &diagnosis.remarks {
@@ -72,7 +73,8 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
     }
     write(args, &arm, &urdf_path, &diagnosis, effects)?;
     output::print(&terminal::table(&diagnosis.report))?;
-    for path in args.outputs() {
+    let is_written = |path: &&Path| args.next.as_deref() != Some(*path) || diagnosis.next.is_some();
+    for path in args.outputs().into_iter().filter(is_written) {
         output::print(&format!("written: {}\n", path.display()))?;
     }
     Ok(())
@@ -202,6 +204,9 @@ fn write(
             effects,
         };
         file.write(path)?;
+    }
+    if let (Some(path), Some(motion), Some(next)) = (&args.next, &diagnosis.next, &diagnosis.report.next_experiment) {
+        next_file::write(path, &args.robot, urdf_path, next, motion)?;
     }
     if let Some(path) = &args.report {
         page::write(path, &diagnosis.report, &diagnosis.traces, arm)?;

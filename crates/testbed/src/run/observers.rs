@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cli::{Rerun, RunArgs};
+use crate::models::ModelKind;
 use crate::scenario::Scenario;
 use crate::simulation::Observer;
 use crate::telemetry::Sample;
@@ -70,7 +71,7 @@ impl View {
     ///
     /// # Errors
     /// If the file cannot be created, or no viewer can be started.
-    pub fn open(args: &RunArgs, scenario: &Scenario, file: Option<&Path>) -> anyhow::Result<Self> {
+    pub fn open(args: &RunArgs, kind: ModelKind, scenario: &Scenario, file: Option<&Path>) -> anyhow::Result<Self> {
         use crate::viewer::{Sink, Viewer};
         use anyhow::Context;
         let sink = match (&args.rerun, file) {
@@ -79,7 +80,7 @@ impl View {
             (_, Some(file)) => Sink::Save(file.to_owned()),
             (_, None) => return Ok(Self(None)),
         };
-        let title = format!("{}, {}, seed {}", scenario.title, args.model.title(), args.seed);
+        let title = format!("{}, {}, seed {}", scenario.title, kind.title(), args.seed);
         let viewer = Viewer::open(&sink, &title, &scenario.arm, &scenario.urdf).context("opening Rerun")?;
         Ok(Self(Some(viewer)))
     }
@@ -120,7 +121,7 @@ impl View {
     ///
     /// # Errors
     /// None.
-    pub fn open(_: &RunArgs, _: &Scenario, _: Option<&Path>) -> anyhow::Result<Self> {
+    pub fn open(_: &RunArgs, _: ModelKind, _: &Scenario, _: Option<&Path>) -> anyhow::Result<Self> {
         Ok(Self)
     }
 

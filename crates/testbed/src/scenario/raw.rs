@@ -38,6 +38,7 @@ pub struct RawScenario {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RawModel {
+    pub kind: Option<Spanned<String>>,
     pub inertia_scale: Option<Spanned<f64>>,
 }
 
@@ -48,6 +49,7 @@ pub struct RawReference {
     pub frequency_1: Option<Spanned<PerJoint>>,
     pub frequency_2: Option<Spanned<PerJoint>>,
     pub centre: Option<Spanned<PerJoint>>,
+    pub fade: Option<Spanned<f64>>,
     #[serde(default)]
     pub sines: Vec<RawSine>,
     pub sample_rate: Option<Spanned<f64>>,

@@ -3,12 +3,12 @@
 use anyhow::{Context, anyhow, bail, ensure};
 use arm::Arm;
 use toml::Spanned;
-use torque::Feedback;
+use torque::{Fade, Feedback, Reference, Sine};
 
 use super::Scenario;
 use super::raw::{PerJoint, RawReference, RawScenario};
 use crate::library::{self, Source};
-use crate::reference::{Reference, Sine};
+use crate::models::ModelKind;
 use crate::sensors::SensorNoise;
 
 /// Defaults of the optional keys, as docs/scenarios.md gives them.
@@ -59,13 +59,17 @@ pub fn scenario(source: &Source, raw: RawScenario) -> anyhow::Result<Scenario> {
             format!("duration of {duration:?} s at a {what} of {rate} Hz makes {count} steps; 1 to {most} are possible")
         })?;
     }
+    let model = match &raw.model.kind {
+        None => ModelKind::IndependentJoint,
+        Some(written) => check.model(written)?,
+    };
     let inertia_scale = check.number("model.inertia_scale", raw.model.inertia_scale.as_ref(), 1.0)?;
     if let Some(written) = &raw.model.inertia_scale {
         check.ensure(inertia_scale > 0.0, written, || {
             format!("model.inertia_scale is {inertia_scale}; give a positive factor, 1 for no error")
         })?;
     }
-    let reference = check.reference(&raw.reference, sample_rate.min(control_rate))?;
+    let reference = check.reference(&raw.reference, sample_rate.min(control_rate), duration)?;
     let kp = check.not_negative("controller.kp", raw.controller.kp.as_ref(), KP)?;
     let kd = check.not_negative("controller.kd", raw.controller.kd.as_ref(), KD)?;
     let feedback = match raw.controller.feedback.as_ref().map(|f| (f, f.get_ref().as_str())) {
@@ -115,6 +119,7 @@ pub fn scenario(source: &Source, raw: RawScenario) -> anyhow::Result<Scenario> {
         arm: true_arm,
         urdf,
         duration,
+        model,
         inertia_scale,
         reference,
         sample_rate,
@@ -146,6 +151,19 @@ impl Check<'_> {
             format!("{key} is {value:?}; give a finite number")
         })?;
         Ok(value)
+    }
+
+    fn model(&self, written: &Spanned<String>) -> anyhow::Result<ModelKind> {
+        let known = ModelKind::ALL.map(ModelKind::flag);
+        match known.iter().position(|flag| flag == written.get_ref()) {
+            Some(at) => Ok(ModelKind::ALL[at]),
+            None => bail!(
+                "{}: model.kind is \"{}\"; known: {}",
+                self.source.place(written.span()),
+                written.get_ref(),
+                known.join(", ")
+            ),
+        }
     }
 
     fn rate(&self, key: &str, written: Option<&Spanned<f64>>, default: f64) -> anyhow::Result<f64> {
@@ -219,7 +237,7 @@ impl Check<'_> {
         Ok(values)
     }
 
-    fn reference(&self, table: &Spanned<RawReference>, rate: f64) -> anyhow::Result<Reference> {
+    fn reference(&self, table: &Spanned<RawReference>, rate: f64, duration: f64) -> anyhow::Result<Reference> {
         let raw = table.get_ref();
         let here = || self.source.place(table.span());
         let centre = self.joints("reference.centre", raw.centre.as_ref(), 0.0)?;
@@ -260,6 +278,17 @@ impl Check<'_> {
                 here()
             ));
         }
-        Ok(Reference { centre, sines })
+        let seconds = self.number("reference.fade", raw.fade.as_ref(), 0.0)?;
+        if let Some(written) = &raw.fade {
+            self.ensure((0.0..=0.5 * duration).contains(&seconds), written, || {
+                format!(
+                    "reference.fade is {seconds:?} s; give 0 to {}, half of the duration",
+                    0.5 * duration
+                )
+            })?;
+        }
+        let end = duration;
+        let fade = (seconds > 0.0).then_some(Fade { seconds, end });
+        Ok(Reference { centre, sines, fade })
     }
 }

@@ -1,4 +1,4 @@
-//! The motion a run is to follow: sums of sines.
+//! The motion a run is to follow: sums of sines, faded in and out where that is asked for.
 
 use std::f64::consts::TAU;
 
@@ -13,13 +13,24 @@ pub struct Sine {
     pub phase: Vec<f64>,
 }
 
-/// q(t) = centre + Σ sines, one entry a joint.
+/// From rest at the start, and back to rest at the end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fade {
+    /// How long either takes (s).
+    pub seconds: f64,
+    /// When the motion has ended (s).
+    pub end: f64,
+}
+
+/// q(t) = centre + Σ sines, one entry a joint; the sum times a factor that rises from 0 to 1 and falls again, if it fades.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     /// rad or m.
     pub centre: Vec<f64>,
     /// The sines.
     pub sines: Vec<Sine>,
+    /// How it fades in and out; `None` starts and ends in full motion.
+    pub fade: Option<Fade>,
 }
 
 /// Position, velocity and acceleration of every joint.
@@ -60,6 +71,36 @@ impl Reference {
                 motion.qdd[joint] -= amplitude * omega * omega * sin;
             }
         }
+        let Some(fade) = self.fade else { return };
+        let [e, ed, edd] = fade.factor(time);
+        for (joint, centre) in self.centre.iter().enumerate() {
+            let (s, sd, sdd) = (motion.q[joint] - centre, motion.qd[joint], motion.qdd[joint]);
+            motion.q[joint] = centre + e * s;
+            motion.qd[joint] = ed * s + e * sd;
+            motion.qdd[joint] = edd * s + 2.0 * ed * sd + e * sdd;
+        }
+    }
+}
+
+impl Fade {
+    /// The factor at `time` with its first two derivatives (1, 1/s, 1/s²): x³ (10 − 15 x + 6 x²), at rest on both sides.
+    fn factor(&self, time: f64) -> [f64; 3] {
+        let (x, sense) = if time < 0.5 * self.end {
+            (time / self.seconds, 1.0)
+        } else {
+            ((self.end - time) / self.seconds, -1.0)
+        };
+        if x >= 1.0 {
+            return [1.0, 0.0, 0.0];
+        }
+        let x = x.max(0.0);
+        let slope = 30.0 * x * x * (1.0 - x) * (1.0 - x);
+        let curvature = 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x);
+        [
+            x * x * x * (10.0 + x * (6.0 * x - 15.0)),
+            sense * slope / self.seconds,
+            curvature / (self.seconds * self.seconds),
+        ]
     }
 }
 
@@ -84,6 +125,7 @@ mod tests {
                     phase: vec![-1.0],
                 },
             ],
+            fade: Some(Fade { seconds: 1.0, end: 5.0 }),
         };
         let at = |t: f64| {
             let mut motion = Motion::new(1);
@@ -91,10 +133,13 @@ mod tests {
             motion
         };
         let h = 1e-4;
-        for t in [0.0, 0.7, 3.1] {
+        for t in [0.0, 0.4, 0.7, 3.1, 4.2, 4.9] {
             let (before, here, after) = (at(t - h), at(t), at(t + h));
             assert!(((after.q[0] - before.q[0]) / (2.0 * h) - here.qd[0]).abs() < 1e-6);
-            assert!(((after.qd[0] - before.qd[0]) / (2.0 * h) - here.qdd[0]).abs() < 1e-5);
+            assert!(((after.qd[0] - before.qd[0]) / (2.0 * h) - here.qdd[0]).abs() < 2e-3);
+        }
+        for t in [0.0, 5.0, 6.0] {
+            assert_eq!((at(t).q[0], at(t).qd[0], at(t).qdd[0]), (0.3, 0.0, 0.0));
         }
     }
 }

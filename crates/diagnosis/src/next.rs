@@ -1,0 +1,340 @@
+//! The next experiment: the motion that tells most of what the recordings leave open, within the robot's limits.
+//!
+//! A motion nobody has made yet is added to the recordings on paper: the torque that the findings say it needs, the columns
+//! of the findings and of their rivals along it, an error as large as the recordings'. The rivals are then fitted in the
+//! findings' place as they are in the recordings ([`crate::rivals`]), with all else refitted.
+
+use std::collections::BTreeSet;
+
+use arm::Arm;
+use rayon::prelude::*;
+use torque::{Corrected, Effect, Reference};
+
+use crate::candidate::Cause;
+use crate::fit::Products;
+use crate::report::{Confusable, Finding, NotObservable};
+use crate::search::Chosen;
+use crate::study::Study;
+use crate::unseen;
+
+mod advice;
+mod designs;
+mod limits;
+mod prospect;
+mod report;
+#[cfg(test)]
+mod tests;
+
+pub use report::{JointLimits, NextExperiment, Separation, Shows, Untold};
+
+use designs::{DURATION, Design};
+use limits::{Limits, taken};
+use prospect::{Outlook, Pair, Prospect};
+
+/// A confusion counts as resolved if the rival is this many times as far off as it need be: the prediction is not perfect.
+const SURE: f64 = 1.5;
+/// The parts of what is needed between which more is better.
+const COUNTED: (f64, f64) = (0.05, 4.0);
+/// What shows better counts this much beside a confusion resolved.
+const SECOND: f64 = 0.1;
+/// What would be seen from this part of the size on is shown better.
+const BETTER: f64 = 0.8;
+/// The motion chosen is looked at so many times a second (Hz).
+const FINE: f64 = 500.0;
+/// Joints beside those in question take this part of the speed and the room, in some of the motions tried.
+const ASIDE: [f64; 2] = [0.2, 0.5];
+
+/// What to do next.
+#[derive(Clone, Debug)]
+pub struct Next {
+    /// What others read.
+    pub report: NextExperiment,
+    /// The motion; `None` if none would tell more.
+    pub motion: Option<Reference>,
+}
+
+/// A confusion, ready to be tried.
+struct Confusion {
+    finding: Confusable,
+    rival: Confusable,
+    pair: Pair,
+    joints: Vec<usize>,
+}
+
+/// Something unseen whose torque is in proportion to its size.
+struct Hidden<'a> {
+    entry: &'a NotObservable,
+    parameter: &'static str,
+    before: Option<f64>,
+    joint: usize,
+    /// `None` for a torque limit.
+    column: Option<(usize, f64)>,
+}
+
+/// A motion that was tried.
+struct Tried {
+    design: Design,
+    motion: Reference,
+    separations: Vec<[f64; 2]>,
+    shows: Vec<Option<f64>>,
+    worth: f64,
+}
+
+/// Proposes a motion for what `findings`, each with the candidate that it was named from, and `hidden` leave open. `effects`
+/// is all that is known of the robot, known before or found, beyond the model `arm`.
+///
+/// # Errors
+/// If the effects cannot be put into the model.
+pub fn propose(
+    study: &Study,
+    products: &Products,
+    chosen: &Chosen,
+    (arm, effects): (&Arm, &[Effect]),
+    findings: &[(Finding, Option<usize>)],
+    hidden: &[NotObservable],
+) -> Result<Next, torque::TorqueError> {
+    let confusions = confusions(study, chosen, findings);
+    let hidden = visible(study, chosen, hidden);
+    let columns = confusions
+        .iter()
+        .flat_map(|c| c.pair.instead.iter().flatten().chain(&c.pair.without));
+    let columns = columns.copied().chain(hidden.iter().filter_map(|h| Some(h.column?.0)));
+    let nothing = Next {
+        report: NextExperiment {
+            duration: None,
+            separates: Vec::new(),
+            not_separated: Vec::new(),
+            shows: Vec::new(),
+            limits: Vec::new(),
+        },
+        motion: None,
+    };
+    let Some(prospect) = Prospect::new(study, products, chosen, columns.collect()) else {
+        return Ok(nothing);
+    };
+    let limits = Limits::new(study, Corrected::new(arm, effects)?);
+    let now = prospect.now();
+    let before: Vec<[f64; 2]> = confusions.iter().map(|c| prospect.separation(&now, &c.pair)).collect();
+    let attempt = |design: Design| -> Option<Tried> {
+        let motion = design.within(&limits)?;
+        Some(tried(&prospect, &confusions, &hidden, design, motion))
+    };
+    let mut list: Vec<Tried> = designs::all().into_par_iter().filter_map(attempt).collect();
+    if let Some(best) = best(&list) {
+        let concerned: BTreeSet<usize> = confusions.iter().flat_map(|c| c.joints.iter().copied()).collect();
+        if !concerned.is_empty() && concerned.len() < arm.dof() {
+            let aside = ASIDE.map(|others| Design {
+                only: concerned.iter().copied().collect(),
+                others,
+                ..list[best].design.clone()
+            });
+            let more: Vec<Tried> = aside.into_par_iter().filter_map(attempt).collect();
+            list.extend(more);
+        }
+    }
+    let Some(best) = best(&list) else {
+        return Ok(nothing);
+    };
+    Ok(described(&limits, &confusions, &hidden, &before, &list, best))
+}
+
+/// The first of those that are worth most.
+fn best(list: &[Tried]) -> Option<usize> {
+    (0..list.len()).max_by(|&a, &b| list[a].worth.total_cmp(&list[b].worth).then(b.cmp(&a)))
+}
+
+fn tried(
+    prospect: &Prospect<'_>,
+    confusions: &[Confusion],
+    hidden: &[Hidden<'_>],
+    design: Design,
+    motion: Reference,
+) -> Tried {
+    let outlook = prospect.with(&motion);
+    let separations: Vec<[f64; 2]> = confusions
+        .iter()
+        .map(|c| prospect.separation(&outlook, &c.pair))
+        .collect();
+    let shows = shows(prospect, &outlook, hidden);
+    let apart = separations
+        .iter()
+        .map(|[apart, needed]| (apart / needed).clamp(COUNTED.0, COUNTED.1).ln());
+    let seen = hidden
+        .iter()
+        .zip(&shows)
+        .map(|(hidden, after)| match (hidden.gain(*after), after) {
+            (Some(gain), _) => gain.clamp(0.0, 2.0),
+            // At no size before, at some now.
+            (None, Some(_)) => 1.0,
+            (None, None) => 0.0,
+        });
+    let worth = apart.sum::<f64>() + SECOND * seen.sum::<f64>();
+    Tried {
+        design,
+        motion,
+        separations,
+        shows,
+        worth,
+    }
+}
+
+impl Hidden<'_> {
+    /// The logarithm of how many times smaller (a limit: larger) the size is from which it shows.
+    fn gain(&self, after: Option<f64>) -> Option<f64> {
+        let ratio = (self.before? / after?).ln();
+        Some(if self.column.is_some() { ratio } else { -ratio })
+    }
+}
+
+/// The sizes from which each of `hidden` would be seen.
+fn shows(prospect: &Prospect<'_>, outlook: &Outlook, hidden: &[Hidden<'_>]) -> Vec<Option<f64>> {
+    let wanted: Vec<(usize, usize)> = hidden.iter().filter_map(|h| Some((h.joint, h.column?.0))).collect();
+    let mut seen = prospect.visibility(outlook, &wanted).into_iter();
+    let size = |hidden: &Hidden<'_>| match hidden.column {
+        None => Some(outlook.largest[hidden.joint]),
+        Some((_, needed)) => seen.next().map(|v| v.least(needed)).filter(|size| size.is_finite()),
+    };
+    hidden.iter().map(size).collect()
+}
+
+/// What each finding could be instead, as sets of columns. What was not named from columns (a push, a second encoder) is left out.
+fn confusions(study: &Study, chosen: &Chosen, findings: &[(Finding, Option<usize>)]) -> Vec<Confusion> {
+    let columns_of = |set: &[usize]| -> Vec<usize> {
+        let columns = set.iter().flat_map(|&c| study.candidates[c].columns.iter().copied());
+        columns.collect::<BTreeSet<usize>>().into_iter().collect()
+    };
+    let index = |name: &str| study.arm.joints().iter().position(|joint| joint.name == name);
+    let mut list = Vec::new();
+    for (finding, member) in findings {
+        let Some(member) = *member else { continue };
+        let this = &study.candidates[member];
+        let set = crate::rivals::beside(study, chosen, member);
+        let with = |added: &[usize]| columns_of(&[&set, added].concat());
+        for rival in &finding.confusable_with {
+            let joint = rival.joint.as_deref().and_then(index);
+            let is_it = |c: &usize| {
+                let other = &study.candidates[*c];
+                let finer = this.columns.iter().all(|column| other.columns.contains(column));
+                other.cause.name() == Some(rival.effect) && !finer && (other.joint == joint)
+            };
+            let forms: Vec<usize> = (0..study.candidates.len()).filter(is_it).collect();
+            let instead: Vec<Vec<usize>> = if this.cause == Cause::InertialScale && rival.effect == "torque_scale" {
+                let is_factor = |c: &usize| study.candidates[*c].cause == Cause::TorqueScale;
+                vec![with(&(0..study.candidates.len()).filter(is_factor).collect::<Vec<_>>())]
+            } else {
+                forms.iter().map(|&form| with(&[form])).collect()
+            };
+            if instead.is_empty() {
+                continue;
+            }
+            let pair = Pair {
+                without: columns_of(&set),
+                instead,
+            };
+            list.push(Confusion {
+                finding: Confusable {
+                    effect: finding.effect,
+                    joint: finding.joint.clone(),
+                },
+                rival: rival.clone(),
+                pair,
+                joints: this.joint.into_iter().chain(joint).collect(),
+            });
+        }
+    }
+    list
+}
+
+/// Those of `hidden` whose size a motion can be tried on without simulating it: torque limits, and what is linear.
+fn visible<'a>(study: &Study, chosen: &Chosen, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> {
+    let of = |entry: &'a NotObservable| {
+        let name = entry.joint.as_deref()?;
+        let joint = study.arm.joints().iter().position(|joint| joint.name == name)?;
+        if entry.effect == "torque_saturation" {
+            let (parameter, before) = entry.would_be_seen_below.iter().next()?;
+            return Some(Hidden {
+                entry,
+                parameter,
+                before: Some(*before),
+                joint,
+                column: None,
+            });
+        }
+        let (cause, parameter) = unseen::LINEAR
+            .into_iter()
+            .find(|(cause, _)| cause.name() == Some(entry.effect))?;
+        let mut candidates = study.candidates.iter();
+        let candidate = candidates.find(|candidate| candidate.cause == cause && candidate.joint == Some(joint))?;
+        let column = candidate
+            .columns
+            .iter()
+            .rev()
+            .find(|c| !chosen.fit.columns.contains(c))?;
+        Some(Hidden {
+            entry,
+            parameter,
+            before: entry.would_be_seen_above.values().next().copied(),
+            joint,
+            column: Some((*column, unseen::needed(candidate))),
+        })
+    };
+    hidden.iter().filter_map(of).collect()
+}
+
+fn described(
+    limits: &Limits,
+    confusions: &[Confusion],
+    hidden: &[Hidden<'_>],
+    before: &[[f64; 2]],
+    list: &[Tried],
+    best: usize,
+) -> Next {
+    let chosen = &list[best];
+    let (mut separates, mut not_separated) = (Vec::new(), Vec::new());
+    for (k, confusion) in confusions.iter().enumerate() {
+        let [after, needed] = chosen.separations[k];
+        let (finding, rival) = (confusion.finding.clone(), confusion.rival.clone());
+        if after >= SURE * needed {
+            separates.push(Separation {
+                finding,
+                rival,
+                before: before[k][0],
+                after,
+                needed,
+            });
+            continue;
+        }
+        let all = list.iter().map(|tried| tried.separations[k]);
+        let furthest = all.max_by(|a, b| (a[0] / a[1]).total_cmp(&(b[0] / b[1])));
+        let furthest = furthest.unwrap_or([after, needed]);
+        not_separated.push(advice::untold(finding, rival, furthest, SURE * furthest[1]));
+    }
+    let shows: Vec<Shows> = hidden
+        .iter()
+        .zip(&chosen.shows)
+        .filter_map(|(hidden, after)| {
+            let after = (*after)?;
+            let is_better = hidden.gain(Some(after)).is_none_or(|gain| gain > -BETTER.ln());
+            is_better.then(|| Shows {
+                effect: hidden.entry.effect,
+                joint: hidden.entry.joint.clone(),
+                parameter: hidden.parameter,
+                before: hidden.before,
+                after,
+            })
+        })
+        .collect();
+    let tells = !separates.is_empty() || !shows.is_empty();
+    let needed = limits.needed(&chosen.motion, DURATION, FINE);
+    debug_assert!(taken(&needed)[0] < 1.05);
+    Next {
+        motion: tells.then(|| chosen.motion.clone()),
+        report: NextExperiment {
+            duration: tells.then_some(DURATION),
+            separates,
+            not_separated,
+            shows,
+            limits: if tells { needed } else { Vec::new() },
+        },
+    }
+}

@@ -1,0 +1,149 @@
+//! The motions that are tried: sums of a few sines, within limits.
+
+use std::f64::consts::TAU;
+
+use torque::{Fade, Reference, Sine};
+
+use super::limits::{Limits, taken};
+
+/// How long a motion takes (s).
+pub const DURATION: f64 = 25.0;
+/// It begins and ends at rest, and fades within (s).
+const FADE: f64 = 3.0;
+/// The slowest and the fastest sine (Hz).
+const FREQUENCIES: (f64, f64) = (0.08, 1.6);
+/// Frequencies and phases differ by multiples of it, less their whole parts: joints never move alike.
+const GOLDEN: f64 = 0.618_033_988_749_895;
+/// By so much of themselves frequencies differ at most.
+const DETUNED: f64 = 0.17;
+/// What is slow moves at this part of the speed.
+const SLOW: f64 = 0.25;
+/// A motion that needs too much is slowed down and made smaller by this factor, so often at most.
+const STEP: f64 = 0.85;
+const STEPS: usize = 12;
+/// Limits are looked at so many times a second while designs are compared (Hz).
+const COARSE: f64 = 25.0;
+
+/// How a joint's motion is made up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mix {
+    /// One sine: every cycle takes the whole range and all speeds up to the highest.
+    Steady,
+    /// Two sines of almost the same frequency: the motion swells and dies away.
+    Beats,
+    /// Three, so that it is slow for longer.
+    Swells,
+    /// A large slow sine and a small fast one.
+    SlowAndFast,
+}
+
+/// A motion to try.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Design {
+    /// How each joint moves.
+    pub mix: Mix,
+    /// The part of a joint's allowed speed.
+    pub speed: f64,
+    /// The part of its room.
+    pub amplitude: f64,
+    /// The joints that move so; the others hold still or move slowly. All where empty.
+    pub only: Vec<usize>,
+    /// What part of the speed and the room the others take.
+    pub others: f64,
+}
+
+/// The designs that move all joints.
+pub fn all() -> Vec<Design> {
+    let mut list = Vec::new();
+    for mix in [Mix::Steady, Mix::Beats, Mix::Swells, Mix::SlowAndFast] {
+        for speed in [0.4, 1.0] {
+            for amplitude in [0.65, 1.0] {
+                list.push(Design {
+                    mix,
+                    speed,
+                    amplitude,
+                    only: Vec::new(),
+                    others: 1.0,
+                });
+            }
+        }
+    }
+    list
+}
+
+impl Design {
+    /// The motion, slowed down and made smaller until it is within `limits`; `None` if it cannot be.
+    pub fn within(&self, limits: &Limits) -> Option<Reference> {
+        let (mut speed, mut amplitude) = (self.speed, self.amplitude);
+        for _ in 0..STEPS {
+            let reference = self.reference(limits, speed, amplitude);
+            let [fast, strong] = taken(&limits.needed(&reference, DURATION, COARSE));
+            if fast <= 1.0 && strong <= 1.0 {
+                return Some(reference);
+            }
+            speed *= STEP;
+            if strong > 1.0 && speed < 0.5 * self.speed {
+                // What it costs to hold the arm there does not fall with the speed.
+                amplitude *= STEP;
+            }
+        }
+        None
+    }
+
+    fn reference(&self, limits: &Limits, speed: f64, amplitude: f64) -> Reference {
+        let dof = limits.middle.len();
+        let tones = match self.mix {
+            Mix::Steady => 1,
+            Mix::Beats | Mix::SlowAndFast => 2,
+            Mix::Swells => 3,
+        };
+        let blank = || Sine {
+            amplitude: vec![0.0; dof],
+            frequency: vec![FREQUENCIES.0; dof],
+            phase: vec![0.0; dof],
+        };
+        let mut sines: Vec<Sine> = (0..tones).map(|_| blank()).collect();
+        for j in 0..dof {
+            let part = if self.only.is_empty() || self.only.contains(&j) {
+                1.0
+            } else {
+                self.others
+            };
+            let (room, fast) = (part * amplitude * limits.room[j], part * speed * limits.speed[j]);
+            if room <= 0.0 || fast <= 0.0 {
+                continue;
+            }
+            for (tone, sine) in sines.iter_mut().enumerate() {
+                let (room, fast) = match (self.mix, tone) {
+                    (Mix::Steady, _) => (room, fast),
+                    (Mix::Beats, 0) => (0.5 * room, 0.5 * fast),
+                    (Mix::Beats, _) => (0.5 * room, 0.5 * (1.0 - DETUNED) * fast),
+                    (Mix::Swells, 0) => (0.5 * room, 0.5 * fast),
+                    (Mix::Swells, 1) => (0.25 * room, 0.25 * (1.0 - DETUNED) * fast),
+                    (Mix::Swells, _) => (0.25 * room, 0.25 * (1.0 - 2.0 * DETUNED) * fast),
+                    (Mix::SlowAndFast, 0) => (0.7 * room, SLOW * fast),
+                    (Mix::SlowAndFast, _) => (0.3 * room, (1.0 - SLOW) * fast),
+                };
+                let turn = (GOLDEN * (tones * j + tone + 1) as f64).fract();
+                let wanted = fast / (TAU * room) * (1.0 - DETUNED * turn);
+                let frequency = wanted.clamp(FREQUENCIES.0, FREQUENCIES.1);
+                sine.frequency[j] = rounded(frequency);
+                sine.amplitude[j] = rounded(room.min(fast / (TAU * frequency)));
+                sine.phase[j] = rounded(TAU * (GOLDEN * (dof * tone + j + 3) as f64).fract());
+            }
+        }
+        Reference {
+            centre: limits.middle.iter().map(|&middle| rounded(middle)).collect(),
+            sines,
+            fade: Some(Fade {
+                seconds: FADE,
+                end: DURATION,
+            }),
+        }
+    }
+}
+
+/// To four decimals, as the scenario's file has it.
+fn rounded(value: f64) -> f64 {
+    (1e4 * value).round() / 1e4
+}

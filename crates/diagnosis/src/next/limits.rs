@@ -1,0 +1,131 @@
+//! What a motion may ask of the joints, and whether it stays within.
+
+use torque::{Corrected, Motion, Prediction, Reference, Workspace};
+
+use super::report::JointLimits;
+use crate::study::Study;
+
+/// The part of a joint's range that is kept free at either end.
+const MARGIN: f64 = 0.05;
+/// The part of a velocity and an effort limit that a motion may take.
+const WITHIN: f64 = 0.8;
+/// No further from the middle of what was recorded than this many times as far as recorded: nobody knows what stands there.
+const WIDER: f64 = 1.5;
+/// No faster than this many times what was recorded.
+const FASTER: f64 = 3.0;
+/// Where the URDF has no limit: so many times the speed, and the torque, that were recorded.
+const FASTER_UNLIMITED: f64 = 2.0;
+/// Likewise, of the torque.
+const STRONGER_UNLIMITED: f64 = 1.5;
+
+/// What each joint may do.
+pub struct Limits {
+    names: Vec<String>,
+    /// The middle of the motion (rad or m).
+    pub middle: Vec<f64>,
+    /// How far from there (rad or m).
+    pub room: Vec<f64>,
+    /// rad/s or m/s.
+    pub speed: Vec<f64>,
+    /// N m or N.
+    pub torque: Vec<f64>,
+    model: Corrected,
+}
+
+impl Limits {
+    /// Of the arm of `study`; torques are those of `model`, which has what is known and what was found.
+    pub fn new(study: &Study, model: Corrected) -> Self {
+        let joints = study.arm.joints();
+        let scales = &study.scales;
+        let typical = {
+            let moving = (0..joints.len()).filter(|&j| scales.speed[j] > scales.rest[j]);
+            let mut ranges: Vec<f64> = moving.map(|j| 0.5 * scales.range[j]).collect();
+            ranges.sort_by(f64::total_cmp);
+            ranges.get(ranges.len() / 2).copied().unwrap_or(0.0)
+        };
+        let mut limits = Self {
+            names: joints.iter().map(|joint| joint.name.clone()).collect(),
+            middle: scales.middle.clone(),
+            room: Vec::new(),
+            speed: Vec::new(),
+            torque: Vec::new(),
+            model,
+        };
+        let fastest = scales.speed.iter().copied().fold(0.0, f64::max);
+        for (j, joint) in joints.iter().enumerate() {
+            let (lower, upper) = (joint.limits.lower, joint.limits.upper);
+            let free = if (upper - lower).is_finite() {
+                MARGIN * (upper - lower)
+            } else {
+                0.0
+            };
+            let middle = scales.middle[j];
+            let to_a_limit = (upper - free - middle).min(middle - lower - free).max(0.0);
+            // A joint that was held still may move as the others do.
+            let recorded = 0.5 * scales.range[j];
+            let (half, speed) = if scales.speed[j] > scales.rest[j] {
+                (WIDER * recorded, scales.speed[j])
+            } else {
+                (typical, 0.3 * fastest)
+            };
+            limits.room.push(half.min(to_a_limit));
+            limits.speed.push(if joint.limits.velocity.is_finite() {
+                (WITHIN * joint.limits.velocity).min(FASTER * speed)
+            } else {
+                FASTER_UNLIMITED * speed
+            });
+            let torque = study.measured[j].iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
+            limits.torque.push(if joint.limits.effort.is_finite() {
+                // What it gave already it can give again.
+                (WITHIN * joint.limits.effort).max(torque.min(joint.limits.effort))
+            } else {
+                STRONGER_UNLIMITED * torque
+            });
+        }
+        limits
+    }
+
+    /// What `reference` needs of each joint over `duration` (s), looked at `hertz` times a second.
+    pub fn needed(&self, reference: &Reference, duration: f64, hertz: f64) -> Vec<JointLimits> {
+        let dof = self.names.len();
+        let mut needed: Vec<JointLimits> = (0..dof)
+            .map(|j| JointLimits {
+                joint: self.names[j].clone(),
+                position: [f64::INFINITY, f64::NEG_INFINITY],
+                position_allowed: [self.middle[j] - self.room[j], self.middle[j] + self.room[j]],
+                velocity: 0.0,
+                velocity_allowed: self.speed[j],
+                torque: 0.0,
+                torque_allowed: self.torque[j],
+            })
+            .collect();
+        let mut motion = Motion::new(dof);
+        let mut workspace = Workspace::new(dof);
+        let mut prediction = Prediction::new(dof);
+        for k in 0..=(duration * hertz) as usize {
+            let time = k as f64 / hertz;
+            reference.at(time, &mut motion);
+            let (q, qd, qdd) = (&motion.q, &motion.qd, &motion.qdd);
+            // The time is the motion's own: a push that was found is not repeated, a drive is warm.
+            self.model
+                .predict_at(f64::INFINITY, &mut workspace, q, qd, qdd, &mut prediction);
+            for (j, needed) in needed.iter_mut().enumerate() {
+                needed.position[0] = needed.position[0].min(q[j]);
+                needed.position[1] = needed.position[1].max(q[j]);
+                needed.velocity = needed.velocity.max(qd[j].abs());
+                needed.torque = needed.torque.max(prediction.torque(j).abs());
+            }
+        }
+        needed
+    }
+}
+
+/// The largest share of what a joint may that `needed` takes: of speed, and of torque. Positions are within by design.
+pub fn taken(needed: &[JointLimits]) -> [f64; 2] {
+    let share = |of: f64, allowed: f64| if of > 0.0 { of / allowed.max(1e-300) } else { 0.0 };
+    let most = |pick: &dyn Fn(&JointLimits) -> f64| needed.iter().map(pick).fold(0.0, f64::max);
+    [
+        most(&|joint| share(joint.velocity, joint.velocity_allowed)),
+        most(&|joint| share(joint.torque, joint.torque_allowed)),
+    ]
+}

@@ -1,0 +1,300 @@
+//! What the recordings and a motion that nobody has made yet would say together.
+
+use torque::{Motion, Reference};
+
+use super::designs::DURATION;
+use crate::columns::values;
+use crate::fit::{Products, evidence_rate};
+use crate::motion::{Chunk, Motions};
+use crate::rigid::Rigid;
+use crate::search::Chosen;
+use crate::signal::Kernel;
+use crate::study::{About, Study};
+use crate::table::{Moving, Table};
+use crate::term::Term;
+use crate::unseen::Visibility;
+use crate::{rivals, settings};
+
+/// Between the last recording and the motion (s).
+const BETWEEN: f64 = 10.0;
+/// Ticks of a motion are so many times further apart than those of the recordings.
+const COARSER: usize = 2;
+/// A torque that depends on itself (a delay) is found in so many passes.
+const PASSES: usize = 3;
+
+/// A finding and one thing that it could be instead, as sets of columns.
+pub struct Pair {
+    /// All but the finding.
+    pub without: Vec<usize>,
+    /// All with the rival in the finding's place, in each of its sizes.
+    pub instead: Vec<Vec<usize>>,
+}
+
+/// The recordings as far as some columns go, ready for a motion to be added.
+pub struct Prospect<'a> {
+    study: &'a Study,
+    chosen: &'a Chosen,
+    about: About,
+    nominal: Vec<f64>,
+    /// Places of the study's columns, which are kept in ascending order.
+    columns: Vec<usize>,
+    bare: Table,
+    old: Products,
+    template: usize,
+    /// Whether a column needs derivatives of the rigid torque.
+    derivatives: bool,
+    /// From tick to tick of a motion (s), the filter on that grid, and ticks from row to row.
+    grid: (f64, Kernel, usize),
+    /// When the motion would begin (s).
+    start: f64,
+    torque: Vec<[f64; 3]>,
+    speed: Vec<[f64; 2]>,
+}
+
+/// The recordings and a motion.
+pub struct Outlook {
+    products: Products,
+    torque: Vec<f64>,
+    weights: Vec<f64>,
+    /// The largest torque that the motion needs, one a joint (N m or N).
+    pub largest: Vec<f64>,
+}
+
+impl<'a> Prospect<'a> {
+    /// Of the recordings fitted in `study`, as far as `columns` go; `None` if there are none.
+    pub fn new(study: &'a Study, products: &Products, chosen: &'a Chosen, mut columns: Vec<usize>) -> Option<Self> {
+        columns.extend(&chosen.fit.columns);
+        columns.sort_unstable();
+        columns.dedup();
+        let terms: Vec<Term> = columns.iter().map(|&column| study.table.terms[column]).collect();
+        let fitted = || {
+            let chunks = study.motions.chunks.iter();
+            chunks.filter(|chunk| study.fitted[chunk.recording])
+        };
+        let template = fitted().max_by_key(|chunk| chunk.ticks())?;
+        // A sum of slow sines needs no finer grid.
+        let (period, stride) = (COARSER as f64 * template.period, template.stride.div_ceil(COARSER));
+        let needs = |term: &Term| matches!(term, Term::Elastic { .. } | Term::Gap { .. } | Term::EncoderOffset(_));
+        let dof = study.motions.dof;
+        let end = study.motions.chunks.iter().map(|chunk| chunk.time(chunk.ticks()));
+        let mut torque = vec![[0.0; 3]; dof];
+        let mut speed = vec![[0.0; 2]; dof];
+        for chunk in fitted() {
+            for j in 0..dof {
+                moments(&mut torque[j], &chunk.tau[j]);
+                powers(&mut speed[j], &chunk.qd[j], &chunk.qdd[j]);
+            }
+        }
+        Some(Self {
+            study,
+            chosen,
+            about: About::new(study, &chosen.fit),
+            nominal: study.arm.inertial_parameters(),
+            derivatives: terms.iter().any(needs),
+            grid: (period, Kernel::new(study.motions.cutoff, period), stride),
+            bare: Table::bare(terms, dof),
+            old: products.picked(&study.table, &columns),
+            columns,
+            template: template.recording,
+            start: end.fold(0.0, f64::max) + BETWEEN,
+            torque,
+            speed,
+        })
+    }
+
+    /// As it stands, without a motion.
+    pub fn now(&self) -> Outlook {
+        Outlook {
+            products: self.old.clone(),
+            torque: self.study.scales.torque.clone(),
+            weights: self.chosen.fit.weights.clone(),
+            largest: vec![0.0; self.study.motions.dof],
+        }
+    }
+
+    /// With the motion of `reference`.
+    pub fn with(&self, reference: &Reference) -> Outlook {
+        let study = self.study;
+        let dof = study.motions.dof;
+        let mut chunk = self.chunk(reference);
+        let (About { arm, offset, .. }, derivatives) = (&self.about, self.derivatives);
+        let rigid = Rigid::with_derivatives(arm, &self.nominal, offset, &chunk, derivatives);
+        self.add_torques(&mut chunk, &rigid);
+        let largest = chunk
+            .tau
+            .iter()
+            .map(|tau| tau.iter().fold(0.0_f64, |most, tau| most.max(tau.abs())));
+        let largest = largest.collect();
+        let (mut torque, mut tempo, mut rates) = (Vec::new(), Vec::new(), Vec::new());
+        for j in 0..dof {
+            let mut sums = self.torque[j];
+            moments(&mut sums, &chunk.tau[j]);
+            let n = sums[0].max(1.0);
+            torque.push((sums[2] / n - (sums[1] / n).powi(2)).max(0.0).sqrt());
+            let mut power = self.speed[j];
+            powers(&mut power, &chunk.qd[j], &chunk.qdd[j]);
+            tempo.push((power[1] / power[0].max(1e-300)).sqrt() / std::f64::consts::TAU);
+            rates.push(evidence_rate(study.motions.tempo[j]));
+        }
+        let seconds = chunk.period * chunk.stride as f64;
+        let mut source = study.motions.sources[self.template].clone();
+        source.held_out = false;
+        let motions = Motions {
+            dof,
+            chunks: vec![chunk],
+            sources: vec![source],
+            cutoff: study.motions.cutoff,
+            tempo: tempo.clone(),
+            one_clock: study.motions.one_clock,
+            remarks: Vec::new(),
+        };
+        let terms = self.bare.terms.clone();
+        let table = Table::new(
+            &motions,
+            &[rigid],
+            &study.scales,
+            terms,
+            &self.about.carried,
+            Moving::ThroughReversals,
+        );
+        let new = Products::new(&table, |_| true, &[seconds], &tempo, &study.floor);
+        let new = new.picked(&table, &(0..self.columns.len()).collect::<Vec<_>>());
+        // What is left of the recordings will be left of the motion, too.
+        let left: Vec<f64> = (0..dof)
+            .map(|j| self.chosen.fit.rss[j].max(0.0) / self.old.count[j].max(1.0))
+            .collect();
+        let evidence = (0..dof)
+            .map(|j| {
+                let rate = evidence_rate(tempo[j]);
+                self.old.evidence[j] / rates[j] * rate + new.count[j] * seconds * rate
+            })
+            .collect();
+        let floor = (0..dof)
+            .map(|j| study.noise[j] + (settings::TOLERANCE * torque[j]).powi(2))
+            .collect();
+        Outlook {
+            products: self.old.joined(&new, &left, evidence, floor),
+            torque,
+            weights: self.chosen.fit.weights.clone(),
+            largest,
+        }
+    }
+
+    /// The motion on the grid of the recordings. It is slow enough to pass the first filter unchanged.
+    fn chunk(&self, reference: &Reference) -> Chunk {
+        let dof = self.study.motions.dof;
+        let (period, kernel, stride) = self.grid.clone();
+        let ticks = (DURATION / period) as usize + 1;
+        let zeros = || vec![vec![0.0; ticks]; dof];
+        let mut chunk = Chunk {
+            start: self.start,
+            q: zeros(),
+            qd: zeros(),
+            qdd: zeros(),
+            tau: zeros(),
+            recording: 0,
+            period,
+            kernel,
+            stride,
+        };
+        let mut motion = Motion::new(dof);
+        for tick in 0..ticks {
+            reference.at(tick as f64 * period, &mut motion);
+            for j in 0..dof {
+                chunk.q[j][tick] = motion.q[j];
+                chunk.qd[j][tick] = motion.qd[j];
+                chunk.qdd[j][tick] = motion.qdd[j];
+            }
+        }
+        chunk
+    }
+
+    /// The torques that the findings say the motion needs.
+    fn add_torques(&self, chunk: &mut Chunk, rigid: &Rigid) {
+        let fit = &self.chosen.fit;
+        let is_carried = |term: Term| self.about.carried.iter().any(|(carried, _)| *carried == term);
+        let depends = |term: Term| matches!(term, Term::Late { .. } | Term::Excess { .. });
+        let scales = &self.study.scales;
+        let mut free = rigid.tau.clone();
+        let mut own = Vec::new();
+        for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
+            let term = self.study.table.terms[column];
+            if is_carried(term) {
+                continue;
+            }
+            if depends(term) {
+                own.push((term, value));
+                continue;
+            }
+            for (joint, tau) in free.iter_mut().enumerate() {
+                add(tau, value, values(term, joint, chunk, rigid, scales));
+            }
+        }
+        chunk.tau.clone_from(&free);
+        for _ in 0..if own.is_empty() { 0 } else { PASSES } {
+            let mut next = free.clone();
+            for &(term, value) in &own {
+                for (joint, tau) in next.iter_mut().enumerate() {
+                    add(tau, value, values(term, joint, chunk, rigid, scales));
+                }
+            }
+            chunk.tau = next;
+        }
+    }
+
+    fn places(&self, columns: &[usize]) -> Vec<usize> {
+        columns
+            .iter()
+            .filter_map(|column| self.columns.binary_search(column).ok())
+            .collect()
+    }
+
+    /// How much worse (nats) the rival of `pair` explains `outlook` than the finding does, and what tells them apart.
+    pub fn separation(&self, outlook: &Outlook, pair: &Pair) -> [f64; 2] {
+        let loss = |columns: &[usize]| {
+            let fit = outlook
+                .products
+                .fit(&self.bare, &self.places(columns), &outlook.weights);
+            fit.loss
+        };
+        let with = loss(&self.chosen.fit.columns);
+        let without = loss(&pair.without);
+        let rival = pair.instead.iter().map(|set| loss(set)).fold(f64::INFINITY, f64::min);
+        [rival - with, rivals::allowance(without - with)]
+    }
+
+    /// How well columns show beside the findings, each on a joint.
+    pub fn visibility(&self, outlook: &Outlook, wanted: &[(usize, usize)]) -> Vec<Visibility> {
+        let products = &outlook.products;
+        let columns = self.places(&self.chosen.fit.columns);
+        let fit = products.fit(&self.bare, &columns, &outlook.weights);
+        let of = |&(joint, column): &(usize, usize)| {
+            let place = self.columns.binary_search(&column).ok()?;
+            Some(Visibility {
+                own: products.drop_of(&self.bare, &fit, place),
+                spread: products.size(joint, place),
+                count: products.count[joint],
+                evidence: products.evidence[joint],
+                torque: outlook.torque[joint],
+            })
+        };
+        wanted.iter().filter_map(of).collect()
+    }
+}
+
+fn add(sum: &mut [f64], factor: f64, values: Option<Vec<f64>>) {
+    for (sum, value) in sum.iter_mut().zip(values.unwrap_or_default()) {
+        *sum += factor * value;
+    }
+}
+
+fn moments(sums: &mut [f64; 3], signal: &[f64]) {
+    sums[0] += signal.len() as f64;
+    sums[1] += signal.iter().sum::<f64>();
+    sums[2] += signal.iter().map(|v| v * v).sum::<f64>();
+}
+
+fn powers(sums: &mut [f64; 2], speed: &[f64], acceleration: &[f64]) {
+    sums[0] += speed.iter().map(|v| v * v).sum::<f64>();
+    sums[1] += acceleration.iter().map(|v| v * v).sum::<f64>();
+}

@@ -1,0 +1,88 @@
+//! The next experiment as others read it: the field `next_experiment` of a diagnosis.
+
+use serde::Serialize;
+
+use crate::report::Confusable;
+
+/// The motion that tells most, and what it would tell.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NextExperiment {
+    /// How long the motion takes (s); `None` if none would tell more.
+    pub duration: Option<f64>,
+    /// The confusions that it should resolve.
+    pub separates: Vec<Separation>,
+    /// The confusions that it leaves: most of them no motion within the limits resolves. With what would.
+    pub not_separated: Vec<Untold>,
+    /// What could not be seen, and from which size it would be seen then.
+    pub shows: Vec<Shows>,
+    /// How far the motion goes, joint by joint.
+    pub limits: Vec<JointLimits>,
+}
+
+/// How far apart a finding and what it could be instead are, before the motion and after it: how much worse (nats) the
+/// rival explains the recordings. They are told apart above `needed`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Separation {
+    /// The finding.
+    pub finding: Confusable,
+    /// What it could be instead.
+    pub rival: Confusable,
+    /// In the recordings there are.
+    pub before: f64,
+    /// With the motion.
+    pub after: f64,
+    /// What tells them apart then.
+    pub needed: f64,
+}
+
+/// A confusion that the motion leaves.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Untold {
+    /// The finding.
+    pub finding: Confusable,
+    /// What it could be instead.
+    pub rival: Confusable,
+    /// The most that any motion tried would set them apart (nats).
+    pub best: f64,
+    /// What would tell them apart there.
+    pub needed: f64,
+    /// Why it is left.
+    pub because: String,
+    /// The experiment that would tell.
+    pub instead: String,
+}
+
+/// An effect that the motion shows at a smaller size than the recordings do.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Shows {
+    /// The catalogue's name.
+    pub effect: &'static str,
+    /// The joint.
+    pub joint: Option<String>,
+    /// What its size is called.
+    pub parameter: &'static str,
+    /// The size from which (a torque limit: below which) the recordings would have shown it; `None` if at no size.
+    pub before: Option<f64>,
+    /// The same with the motion.
+    pub after: f64,
+}
+
+/// What the motion needs of a joint, and what it may: the URDF's limits with a margin, or where it has none a multiple of
+/// what the joint went through in the recordings.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct JointLimits {
+    /// The joint.
+    pub joint: String,
+    /// Lowest and highest position (rad or m).
+    pub position: [f64; 2],
+    /// Where it may be (rad or m).
+    pub position_allowed: [f64; 2],
+    /// Largest speed (rad/s or m/s).
+    pub velocity: f64,
+    /// The speed that it may have (rad/s or m/s).
+    pub velocity_allowed: f64,
+    /// Largest torque by the model with the findings (N m or N).
+    pub torque: f64,
+    /// The torque that it may need (N m or N).
+    pub torque_allowed: f64,
+}

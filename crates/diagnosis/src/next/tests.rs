@@ -1,0 +1,1 @@
+//! Proposals on a small arm.

@@ -1,0 +1,116 @@
+//! The next experiment as a scenario file, which `testbed --scenario` runs and `docs/scenarios.md` describes.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use anyhow::Context;
+use diagnosis::{Confusable, NextExperiment};
+use torque::Reference;
+
+use super::{numbers, words};
+use crate::library;
+
+/// Writes `motion` to `path`, whole or not at all, with what it is for in comments; `robot` is as it was given.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn write(path: &Path, robot: &str, urdf: &Path, next: &NextExperiment, motion: &Reference) -> anyhow::Result<()> {
+    let robot = if library::is_built_in(robot) {
+        robot.to_owned()
+    } else {
+        beside(path, urdf)?
+    };
+    let text = text(&robot, next, motion);
+    recording::write_whole(path, |file| file.write_all(text.as_bytes()))?;
+    Ok(())
+}
+
+/// Where `urdf` is, seen from the folder of `path`: its name alone if it is there, too; else from the root.
+fn beside(path: &Path, urdf: &Path) -> anyhow::Result<String> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let absolute = |path: &Path| path.canonicalize().with_context(|| path.display().to_string());
+    let (folder, urdf) = (absolute(folder.unwrap_or(Path::new(".")))?, absolute(urdf)?);
+    let place = urdf.strip_prefix(&folder).unwrap_or(&urdf);
+    Ok(place.display().to_string())
+}
+
+fn text(robot: &str, next: &NextExperiment, motion: &Reference) -> String {
+    let mut text = String::from("# The next experiment, proposed by testbed diagnose.\n#\n");
+    let mut line = |words: &str| {
+        let _ = writeln!(text, "# {words}");
+    };
+    if !next.separates.is_empty() {
+        line("It should tell apart (by how much the second explains worse, before and with this motion; what tells):");
+    }
+    for pair in &next.separates {
+        let [before, after, needed] = [pair.before, pair.after, pair.needed].map(numbers::short);
+        let (finding, rival) = (name(&pair.finding), name(&pair.rival));
+        line(&format!("  {finding} and {rival}: {before} -> {after} nats ({needed})"));
+    }
+    if !next.not_separated.is_empty() {
+        line("It does not tell apart:");
+    }
+    for pair in &next.not_separated {
+        let (finding, rival) = (name(&pair.finding), name(&pair.rival));
+        line(&format!("  {finding} and {rival}: {}; {}", pair.because, pair.instead));
+    }
+    if !next.shows.is_empty() {
+        line("It would show from a smaller size on, or at all (a torque limit: from a higher one on):");
+    }
+    for shows in &next.shows {
+        let before = shows.before.map_or_else(|| "no size".to_owned(), numbers::short);
+        let (effect, after) = (words::wording(shows.effect).name, numbers::short(shows.after));
+        let joint = words::joint(shows.joint.as_deref());
+        line(&format!(
+            "  {effect} on {joint}, {}: {before} -> {after}",
+            shows.parameter
+        ));
+    }
+    line(
+        "It needs of each joint, of what it may (the URDF's limits with a margin, and not far beyond what was recorded):",
+    );
+    for joint in &next.limits {
+        let [low, high] = joint.position.map(numbers::short);
+        let [least, most] = joint.position_allowed.map(numbers::short);
+        let [speed, fastest] = [joint.velocity, joint.velocity_allowed].map(numbers::short);
+        let [torque, strongest] = [joint.torque, joint.torque_allowed].map(numbers::short);
+        line(&format!(
+            "  {}: {low} to {high} of {least} to {most} rad or m; {speed} of {fastest} rad/s or m/s; {torque} of {strongest} N m or N",
+            joint.joint
+        ));
+    }
+    line("Nobody has looked for what stands in the arm's way: run it slowly first.");
+    line("On a robot, let it follow the columns reference_<joint> of the recording that this scenario leaves.");
+    let list = |values: &[f64]| {
+        let words: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
+        format!("[{}]", words.join(", "))
+    };
+    // Debug of a string is TOML's basic string, but for rare control characters.
+    let _ = writeln!(
+        text,
+        "\ntitle = \"The next experiment\"\nrobot = {}\nduration = {:?}\n\n[model]\nkind = \"rigid-body\"\n\n[controller]\nkp = 10000.0\nkd = 200.0\n\n[reference]\ncentre = {}",
+        toml::Value::String(robot.to_owned()),
+        next.duration.unwrap_or_default(),
+        list(&motion.centre)
+    );
+    if let Some(fade) = &motion.fade {
+        let _ = writeln!(text, "fade = {:?}", fade.seconds);
+    }
+    for sine in &motion.sines {
+        let [amplitude, frequency, phase] = [&sine.amplitude, &sine.frequency, &sine.phase].map(|values| list(values));
+        let _ = writeln!(
+            text,
+            "\n[[reference.sines]]\namplitude = {amplitude}\nfrequency = {frequency}\nphase = {phase}"
+        );
+    }
+    text
+}
+
+/// `viscous friction on joint2`.
+pub fn name(what: &Confusable) -> String {
+    let effect = words::wording(what.effect).name;
+    match &what.joint {
+        Some(joint) => format!("{effect} on {joint}"),
+        None => effect.to_owned(),
+    }
+}
