@@ -44,6 +44,6 @@ pub use diagnose::{Diagnosis, Options, diagnose};
 pub use error::DiagnosisError;
 pub use given::Wanted;
 pub use motion::Input;
-pub use next::{JointLimits, NextExperiment, Separation, Shows, Untold};
+pub use next::{JointLimits, Left, NextExperiment, Separation, Shows, Untold};
 pub use predict::LEAST_ROWS;
 pub use report::*;

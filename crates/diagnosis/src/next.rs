@@ -25,7 +25,7 @@ mod report;
 #[cfg(test)]
 mod tests;
 
-pub use report::{JointLimits, NextExperiment, Separation, Shows, Untold};
+pub use report::{JointLimits, Left, NextExperiment, Separation, Shows, Untold};
 
 use designs::{DURATION, Design};
 use limits::{Limits, taken};

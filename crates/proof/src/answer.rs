@@ -24,6 +24,39 @@ pub struct Answer {
     /// How far the simulated arm goes from the recorded motion, by joint.
     #[serde(default)]
     pub rollout: BTreeMap<String, Rollout>,
+    /// The motion it proposes, where it was asked for one.
+    #[serde(default)]
+    pub next_experiment: Option<Next>,
+}
+
+/// A proposed experiment.
+#[derive(Clone, Debug, Default, Deserialize)]
+pub struct Next {
+    /// The confusions that it should resolve.
+    pub separates: Vec<Told>,
+    /// Those that it leaves.
+    pub not_separated: Vec<Left>,
+}
+
+/// A confusion that a motion should resolve.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Told {
+    /// What was named.
+    pub finding: Other,
+    /// What it could be instead.
+    pub rival: Other,
+}
+
+/// A confusion that it leaves.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Left {
+    /// What was named.
+    pub finding: Other,
+    /// What it could be instead.
+    pub rival: Other,
+    /// Why, in a word.
+    #[serde(default)]
+    pub kind: String,
 }
 
 /// An effect named.

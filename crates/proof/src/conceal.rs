@@ -67,6 +67,9 @@ pub const RATES: [u32; 8] = [1000, 500, 250, 200, 125, 100, 50, 40];
 /// Rows lie so many ticks apart in hard cases: mostly 100 to 500 Hz.
 const HARD_TICKS: [usize; 9] = [1, 2, 2, 4, 4, 5, 5, 8, 10];
 
+/// How many training recordings an easy and a hard case have.
+pub(crate) const TRAINING: [usize; 2] = [3, 2];
+
 /// A case under way: what is drawn first, and what does not change with the effects.
 pub(crate) struct Stage<'a> {
     pub robot: &'a Robot,
@@ -88,6 +91,9 @@ enum Stream {
     Noise,
     Effects,
 }
+
+/// The stream of the noise on what is recorded of a case later.
+pub(crate) const AGAIN: u64 = 8;
 
 fn random(seed: u64, stream: Stream) -> ChaCha8Rng {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
@@ -294,7 +300,7 @@ pub fn conceal_effects(
 /// # Errors
 /// [`ProofError::NotExpressed`] if no draw comes out; [`ProofError::Plant`] if the robot cannot be simulated.
 pub fn conceal_case(robot: &Robot, plan: &CasePlan) -> Result<Concealment, ProofError> {
-    let training = if plan.hard { 2 } else { 3 };
+    let training = TRAINING[usize::from(plan.hard)];
     let stage = Stage::new(robot, plan.seed, plan.hard, training, plan.background_friction);
     if plan.effects.is_empty() {
         let (runs, _) = stage.run_all(&[])?;

@@ -4,6 +4,7 @@
 //! takes what it is given: either drives the plant in a 1 kHz position loop with physics in it that the URDF leaves out, records what
 //! encoders and drives report, and keeps the [`Truth`]. [`write_case`] puts the two in different places.
 
+mod again;
 mod answer;
 mod calibration;
 mod campaign;
@@ -12,6 +13,7 @@ mod conceal;
 mod controls;
 mod draw;
 mod error;
+mod experiment;
 mod intervals;
 mod law;
 mod machine;
@@ -34,7 +36,8 @@ mod test_robots;
 mod tracking;
 mod truth;
 
-pub use answer::{Answer, Fit, Named, Number, Other, Refused, Rollout, Unseen};
+pub use again::record_again;
+pub use answer::{Answer, Fit, Left, Named, Next, Number, Other, Refused, Rollout, Told, Unseen};
 pub use calibration::{Bin, Calibration};
 pub use campaign::{Campaign, CasePlan};
 pub use case::write_case;
@@ -42,6 +45,7 @@ pub use conceal::{Concealment, RATES, Settings, conceal_case, conceal_effects};
 pub use controls::{HeldOut, WrongTerm, true_terms, wrong_term};
 pub use draw::FAMILIES;
 pub use error::ProofError;
+pub use experiment::{After, Again, Confusion, Experiments, InCase};
 pub use intervals::{Counted, quantile, wilson};
 pub use machine::{Inverse, LinkMotion, Seen, VelocityFilter};
 pub use motion::{DURATION, PAUSE};

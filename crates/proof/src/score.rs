@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::answer::Answer;
 use crate::calibration::{Calibration, calibration};
 use crate::controls::{HeldOut, held_out};
+use crate::experiment::{Again, Experiments, experiments};
 use crate::intervals::Counted;
 use crate::outcome::{FalseName, Fate, Outcome, OutsideOutcome, outcomes};
 use crate::plain::{Plain, plain};
@@ -31,6 +32,8 @@ pub struct Tried {
     pub wrong_term: Option<Answer>,
     /// The tracking error of a task with the diagnosed causes over that with the exact model, where a task was tracked.
     pub tracking_over_exact: Option<f64>,
+    /// A second diagnosis, with the experiment that the first proposed; `None` if it was not tried.
+    pub again: Option<Again>,
 }
 
 /// What the diagnoses of all cases are worth. Everything is counted in names: an effect on a joint.
@@ -96,6 +99,8 @@ pub struct Score {
     pub sizes: Vec<Sized>,
     /// The controls, case by case.
     pub held_out: Vec<HeldOut>,
+    /// The experiments that were proposed.
+    pub experiments: Experiments,
 }
 
 /// The effects of one name.
@@ -173,6 +178,7 @@ pub fn score(cases: &[Tried]) -> Score {
             .map(|c| c.truth.case.clone())
             .collect(),
         targets: Vec::new(),
+        experiments: experiments(cases),
         macro_f1: mean(&|family| family.f1),
         macro_f1_strict: mean(&|family| family.f1_strict),
         families,

@@ -99,5 +99,10 @@ pub fn targets(score: &Score) -> Vec<Target> {
             at_most(1.5),
             tracking.count,
         ),
+        share(
+            "confusions resolved by the proposed experiment",
+            score.experiments.resolved,
+            at_least(0.70),
+        ),
     ]
 }

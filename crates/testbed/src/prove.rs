@@ -4,6 +4,7 @@ mod cases;
 mod child;
 mod command;
 mod disturbance;
+mod experiments;
 mod figures;
 mod markdown;
 mod page;

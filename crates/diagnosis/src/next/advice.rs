@@ -1,6 +1,6 @@
 //! What would tell where no motion does.
 
-use super::report::Untold;
+use super::report::{Left, Untold};
 use crate::report::Confusable;
 
 /// Less than this (nats) is nothing: the two are one torque.
@@ -9,25 +9,33 @@ const ALIAS: f64 = 1.0;
 /// The confusion of `finding` with `rival`, which the motion sets `after` and the best for it `best` apart (nats), where
 /// `needed` would tell; `sure` is the distance that is promised.
 pub fn untold(finding: Confusable, rival: Confusable, [best, needed]: [f64; 2], sure: f64) -> Untold {
-    let because = if best < ALIAS {
-        "the two are the same torque in every motion tried".to_owned()
+    let kind = if best < ALIAS {
+        Left::SameTorque
     } else if best < sure {
-        format!(
-            "within the limits no motion tried sets them further apart than {best:.1} of the {needed:.1} nats that tell"
-        )
+        Left::OutOfReach
     } else {
-        "another motion would tell, but this one serves the others better: propose again after it".to_owned()
+        Left::AnotherMotion
     };
-    let instead = if best < sure {
-        instead(finding.effect, rival.effect).to_owned()
-    } else {
-        "run the motion, diagnose with its recording, and propose again".to_owned()
+    let because = match kind {
+        Left::SameTorque => "the two are the same torque in every motion tried".to_owned(),
+        Left::OutOfReach => format!(
+            "no motion tried within the limits sets them further apart than {best:.1} nats, and {sure:.1} would be sure to tell"
+        ),
+        Left::AnotherMotion => {
+            "another motion would tell, but this one serves the others better: propose again after it".to_owned()
+        }
     };
+    let instead = match kind {
+        Left::AnotherMotion => "run the motion, diagnose with its recording, and propose again",
+        _ => instead(finding.effect, rival.effect),
+    };
+    let instead = instead.to_owned();
     Untold {
         finding,
         rival,
         best,
         needed,
+        kind,
         because,
         instead,
     }

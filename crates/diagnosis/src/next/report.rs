@@ -46,10 +46,24 @@ pub struct Untold {
     pub best: f64,
     /// What would tell them apart there.
     pub needed: f64,
-    /// Why it is left.
+    /// Why it is left, in a word.
+    pub kind: Left,
+    /// The same in a sentence.
     pub because: String,
     /// The experiment that would tell.
     pub instead: String,
+}
+
+/// Why a motion leaves a confusion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Left {
+    /// The two are the same torque in every motion.
+    SameTorque,
+    /// No motion within the limits sets them far enough apart.
+    OutOfReach,
+    /// Another motion would.
+    AnotherMotion,
 }
 
 /// An effect that the motion shows at a smaller size than the recordings do.

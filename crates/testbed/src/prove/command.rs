@@ -1,4 +1,4 @@
-//! The protocol: conceal, seal, diagnose, open, try the controls, close the loop, score, report.
+//! The protocol: conceal, seal, diagnose, open, try the controls, make the proposed experiments, close the loop, score, report.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -11,12 +11,13 @@ use proof::{Program, Score, Seal, SealedCase, Target, sha256, true_terms, wrong_
 use serde::Serialize;
 
 use super::cases::{Files, Place, Source};
+use super::child::Task;
 use super::disturbance::{self, Disturbance};
 use super::rows::{self, Row};
 use super::shards::{self, Label};
 use super::tracking::{self, CaseTracking};
 use super::vault::Vault;
-use super::{markdown, page, published, work};
+use super::{experiments, markdown, page, published, work};
 use crate::cli::ProveArgs;
 use crate::{interrupt, output};
 
@@ -99,7 +100,11 @@ fn protocol(
     let pairs: Vec<_> = places.iter().zip(&seal.cases).collect();
     times.of("diagnose", || {
         work::all("diagnosing", &pairs, jobs, |(place, sealed)| {
-            vault.diagnose(place, sealed, &format!("diagnoses/{}", place.name), None)
+            let task = Task {
+                next: true,
+                ..Task::default()
+            };
+            vault.diagnose(place, sealed, &format!("diagnoses/{}", place.name), task)
         })
     })?;
     output::write_json(&vault.out.join("answers.json"), &answers(vault, places)?)?;
@@ -112,9 +117,17 @@ fn protocol(
             let text = String::from_utf8(bytes).with_context(|| place.truth.display().to_string())?;
             let truth = rows::truth(&place.name, &text)?;
             let name = |control: &str| format!("controls/{}.{control}", place.name);
-            vault.diagnose(place, sealed, &name("true"), Some(&list(&true_terms(&truth))))?;
+            let fit = |control: &str, terms: &[proof::Name]| {
+                let only = list(terms);
+                let task = Task {
+                    only: Some(&only),
+                    ..Task::default()
+                };
+                vault.diagnose(place, sealed, &name(control), task)
+            };
+            fit("true", &true_terms(&truth))?;
             if let Some(wrong) = wrong_term(&truth, place.number) {
-                vault.diagnose(place, sealed, &name("wrong"), Some(&list(&wrong.terms)))?;
+                fit("wrong", &wrong.terms)?;
             }
             if let Ok(mut truths) = truths.lock() {
                 truths.insert(place.name.clone(), text);
@@ -123,6 +136,12 @@ fn protocol(
         })
     })?;
     let mut truths = truths.into_inner().unwrap_or_default();
+    times.of("experiments", || {
+        let chosen = experiments::chosen(source, vault, &pairs)?;
+        work::all("making the proposed experiments", &chosen, jobs, |(place, sealed)| {
+            experiments::make(source, vault, place, sealed, &truths[&place.name])
+        })
+    })?;
     let chosen = source.tracked()?;
     let tracked: Vec<_> = pairs
         .iter()
@@ -194,6 +213,7 @@ fn row(vault: &Vault, place: &Place, sealed: &SealedCase, truth: String) -> anyh
     let control = |name: &str| -> anyhow::Result<Option<String>> {
         Ok(vault.answer(&format!("controls/{}.{name}", place.name))?.1)
     };
+    let again = experiments::result(vault, place)?;
     let arm = Arm::from_urdf(place.folder.join(Files::of(&place.folder)?.robot))?;
     Ok(Row {
         case: place.name.clone(),
@@ -205,6 +225,8 @@ fn row(vault: &Vault, place: &Place, sealed: &SealedCase, truth: String) -> anyh
         true_terms: control("true")?,
         wrong_term: control("wrong")?,
         tracking: None,
+        again: again.0,
+        again_error: again.1,
     })
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use anyhow::Context;
-use proof::{Answer, Score, SealedCase, Tried, Truth, sha256};
+use proof::{Again, Answer, Score, SealedCase, Tried, Truth, sha256};
 use serde::{Deserialize, Serialize};
 
 use super::tracking::CaseTracking;
@@ -29,6 +29,10 @@ pub struct Row {
     pub wrong_term: Option<String>,
     /// What came of tracking a task ([`CaseTracking`]), in the cases in which one was tracked.
     pub tracking: Option<String>,
+    /// The diagnosis with the recording of the motion that the first one proposed.
+    pub again: Option<String>,
+    /// Why there is none, where it was tried.
+    pub again_error: Option<String>,
 }
 
 impl Row {
@@ -50,6 +54,8 @@ impl Row {
             let parse = |text: &String| serde_json::from_str(text).with_context(|| format!("{}: {what}", self.case));
             text.as_ref().map(parse).transpose()
         };
+        let again = answer(&self.again, "the diagnosis with the proposed motion")?.map(Box::new);
+        let failed = self.again_error.clone().map(Again::Failed);
         Ok(Tried {
             truth: truth(&self.case, &self.truth)?,
             joints: self.joints.clone(),
@@ -57,6 +63,7 @@ impl Row {
             true_terms: answer(&self.true_terms, "the true terms")?,
             wrong_term: answer(&self.wrong_term, "the wrong term")?,
             tracking_over_exact: self.tracked()?.and_then(|tracking| tracking.over_exact()),
+            again: again.map(Again::Answer).or(failed),
         })
     }
 

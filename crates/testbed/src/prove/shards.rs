@@ -91,7 +91,7 @@ impl Label {
 
 /// The columns: name, whether it may be empty, and what is in it.
 type Column = (&'static str, bool, fn(&Row) -> anyhow::Result<Option<String>>);
-const COLUMNS: [Column; 9] = [
+const COLUMNS: [Column; 11] = [
     ("case", false, |row| Ok(Some(row.case.clone()))),
     ("joints", false, |row| Ok(Some(serde_json::to_string(&row.joints)?))),
     ("files", false, |row| Ok(Some(serde_json::to_string(&row.files)?))),
@@ -101,6 +101,8 @@ const COLUMNS: [Column; 9] = [
     ("true_terms", true, |row| Ok(row.true_terms.clone())),
     ("wrong_term", true, |row| Ok(row.wrong_term.clone())),
     ("tracking", true, |row| Ok(row.tracking.clone())),
+    ("again", true, |row| Ok(row.again.clone())),
+    ("again_error", true, |row| Ok(row.again_error.clone())),
 ];
 
 /// Writes a share, whole or not at all.
@@ -189,6 +191,8 @@ pub fn read(path: &Path) -> anyhow::Result<(Label, Vec<Row>)> {
             true_terms: take("true_terms"),
             wrong_term: take("wrong_term"),
             tracking: take("tracking"),
+            again: take("again"),
+            again_error: take("again_error"),
         });
     }
     Ok((label, rows))
@@ -256,6 +260,8 @@ mod tests {
             true_terms: None,
             wrong_term: None,
             tracking: (number == 2).then(|| "{}".into()),
+            again: None,
+            again_error: (number == 2).then(|| "lost".into()),
         }
     }
 

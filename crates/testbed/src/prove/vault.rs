@@ -7,7 +7,7 @@ use proof::{Program, Seal, SealedCase, sha256, sha256_of};
 use serde::{Deserialize, Serialize};
 
 use super::cases::{Files, Place};
-use super::child::{self, Ended};
+use super::child::{self, Ended, Task};
 use crate::output;
 
 /// What a finished process left: enough to see that it need not run again, and to run it again.
@@ -23,6 +23,9 @@ pub struct Record {
     pub answer: Option<String>,
     /// SHA-256 of the effects it wrote as TOML.
     pub model: Option<String>,
+    /// SHA-256 of the scenario it proposed.
+    #[serde(default)]
+    pub next: Option<String>,
     /// What it said instead.
     pub error: Option<String>,
 }
@@ -43,7 +46,7 @@ impl Vault {
     /// # Errors
     /// If it cannot be made, or the program cannot read itself.
     pub fn new(out: &Path) -> anyhow::Result<Self> {
-        for folder in ["", "cases", "truth", "diagnoses", "controls", "tracking"] {
+        for folder in ["", "cases", "truth", "diagnoses", "controls", "next", "tracking"] {
             let folder = out.join(folder);
             std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
         }
@@ -101,16 +104,24 @@ impl Vault {
         Ok(seal)
     }
 
-    /// Diagnoses a sealed case into `name`.json and `name`.toml, or with `only` fits some effects alone into `name`.json, unless that
-    /// is done.
+    /// Diagnoses a sealed case as `task` says, into `name`.json, `name`.toml and, what it proposes, `name`.next.toml, unless that
+    /// is done. Where effects are given, there is no `name`.toml.
     ///
     /// # Errors
     /// If the seal is broken, the process cannot be started, or the user interrupts.
-    pub fn diagnose(&self, place: &Place, sealed: &SealedCase, name: &str, only: Option<&str>) -> anyhow::Result<()> {
+    pub fn diagnose(&self, place: &Place, sealed: &SealedCase, name: &str, task: Task<'_>) -> anyhow::Result<()> {
         let (answer, record) = self.paths(name);
-        let inputs = sealed.inputs();
+        let proposed = self.proposed(name);
+        let mut inputs = sealed.inputs();
+        if let Some(more) = task.more {
+            inputs = sha256(format!("{inputs} {}", sha256_of(more)?).as_bytes());
+        }
         let is_same = |record: &Record| {
-            record.program == self.program.sha256 && record.inputs == inputs && record.only.as_deref() == only
+            record.program == self.program.sha256 && record.inputs == inputs && record.only.as_deref() == task.only
+        };
+        let is_there = |hash: &Option<String>, path: &Path| {
+            hash.as_ref()
+                .is_none_or(|hash| sha256_of(path).is_ok_and(|is| is == *hash))
         };
         let is_there = |hash: &Option<String>, path: &Path| {
             hash.as_ref()
@@ -120,29 +131,37 @@ impl Vault {
         if let Some(record) = read_record(&record).filter(is_same)
             && is_there(&record.answer, &answer)
             && is_there(&record.model, &model)
+            && is_there(&record.next, &proposed)
         {
             return Ok(());
         }
         sealed.check_files(&place.folder)?;
         let files = Files::of(&place.folder)?;
-        let (text, effects, error) = match child::diagnose(&self.executable, &place.folder, &files, only)? {
-            Ended::Answer { json, model } => (Some(json), model, None),
-            Ended::Failed(reason) => (None, None, Some(reason)),
+        let (text, model_text, next, error) = match child::diagnose(&self.executable, &place.folder, &files, task)? {
+            Ended::Answer { json, model, next } => (Some(json), model, next, None),
+            Ended::Failed(reason) => (None, None, None, Some(reason)),
         };
-        for (text, path) in [(&text, &answer), (&effects, &model)] {
+        for (text, path) in [(&text, &answer), (&model_text, &model), (&next, &proposed)] {
             if let Some(text) = text {
                 recording::write_whole(path, |file| file.write_all(text.as_bytes()))?;
             }
         }
+        let hash = |text: Option<String>| text.map(|text| sha256(text.as_bytes()));
         let done = Record {
             program: self.program.sha256.clone(),
             inputs,
-            only: only.map(str::to_owned),
-            answer: text.map(|text| sha256(text.as_bytes())),
-            model: effects.map(|text| sha256(text.as_bytes())),
+            only: task.only.map(str::to_owned),
+            answer: hash(text),
+            model: hash(model_text),
+            next: hash(next),
             error,
         };
         output::write_json(&record, &done)
+    }
+
+    /// The scenario of the motion that a diagnosis proposed; there is none if its record has none.
+    pub fn proposed(&self, name: &str) -> PathBuf {
+        self.out.join(format!("{name}.next.toml"))
     }
 
     /// What a process left: its record, and the JSON it wrote.

@@ -1,0 +1,129 @@
+//! The proposed experiments: made on the concealed machine, and diagnosed again.
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+use proof::{Answer, ProofError, SealedCase, record_again};
+
+use super::cases::{Place, Source};
+use super::child::{MORE, NEXT, Task};
+use super::rows;
+use super::vault::Vault;
+use crate::output;
+use crate::scenario::Scenario;
+
+pub mod words;
+
+/// Cases that are looked at for experiments, spread evenly over a campaign: a second diagnosis of all would take too long.
+const LOOKED_AT: usize = 60;
+
+/// The cases whose proposed experiment is made: of [`LOOKED_AT`] spread evenly, those whose diagnosis proposes one for a
+/// confusion. What a case's turn is depends on its number alone, not on the others in its share.
+///
+/// # Errors
+/// If a diagnosis is not what its record says.
+pub fn chosen<'a>(
+    source: &Source,
+    vault: &Vault,
+    pairs: &[(&'a Place, &'a SealedCase)],
+) -> anyhow::Result<Vec<(&'a Place, &'a SealedCase)>> {
+    let Source::Drawn { plans, .. } = source else {
+        // The machine of a case that was given is not at hand.
+        return Ok(Vec::new());
+    };
+    let turn = |number: usize| number * LOOKED_AT / plans.len().max(1);
+    let mut list = Vec::new();
+    for &(place, sealed) in pairs {
+        let number = place.number;
+        let is_first_of_its_turn = number == 0 || turn(number) != turn(number - 1);
+        if number >= plans.len() || !is_first_of_its_turn {
+            continue;
+        }
+        let (_, text) = vault.answer(&first(place))?;
+        let Some(text) = text else { continue };
+        let answer: Answer = serde_json::from_str(&text).with_context(|| place.name.clone())?;
+        if answer.next_experiment.is_some_and(|next| !next.separates.is_empty()) {
+            list.push((place, sealed));
+        }
+    }
+    Ok(list)
+}
+
+/// Makes the proposed experiment of a case, whose truth is open, and diagnoses again with its recording, unless that is done.
+///
+/// # Errors
+/// If a file cannot be read or written, the process cannot be started, or the user interrupts.
+pub fn make(source: &Source, vault: &Vault, place: &Place, sealed: &SealedCase, truth: &str) -> anyhow::Result<()> {
+    let Source::Drawn { robots, plans, .. } = source else {
+        return Ok(());
+    };
+    let folder = folder(vault, place);
+    std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    // Where it stood when it was proposed: beside the URDF.
+    let (scenario, recording) = (folder.join(NEXT), folder.join(MORE));
+    let copies = [
+        (vault.proposed(&first(place)), scenario.clone()),
+        (place.folder.join("robot.urdf"), folder.join("robot.urdf")),
+    ];
+    let mut is_new = false;
+    for (from, to) in copies {
+        let bytes = std::fs::read(&from).with_context(|| from.display().to_string())?;
+        if std::fs::read(&to).ok().as_ref() != Some(&bytes) {
+            recording::write_whole(&to, |file| file.write_all(&bytes))?;
+            is_new = true;
+        }
+    }
+    let failed = folder.join("failed.json");
+    if is_new || !(recording.is_file() || failed.is_file()) {
+        let truth = rows::truth(&place.name, truth)?;
+        let scenario = Scenario::load(&scenario.display().to_string())?;
+        let plan = plans.get(place.number).context("there is no such case")?;
+        let mut motion = torque::Motion::new(scenario.arm.dof());
+        let mut at = |time: f64, q: &mut [f64]| {
+            scenario.reference.at(time, &mut motion);
+            q.copy_from_slice(&motion.q);
+        };
+        match record_again(plan.robot(robots), plan, &truth, scenario.duration, &mut at) {
+            Ok(made) => made.write_csv(&recording)?,
+            // What cannot be recorded is a result, too.
+            Err(error @ ProofError::Lost { .. }) => {
+                output::write_json(&failed, &error.to_string())?;
+            }
+            Err(error) => return Err(error.into()),
+        }
+    }
+    if !recording.is_file() {
+        return Ok(());
+    }
+    let task = Task {
+        more: Some(&recording),
+        ..Task::default()
+    };
+    vault.diagnose(place, sealed, &second(place), task)
+}
+
+/// What came of it: the second diagnosis, or why there is none; neither where none was tried.
+///
+/// # Errors
+/// If the diagnosis is not what its record says.
+pub fn result(vault: &Vault, place: &Place) -> anyhow::Result<(Option<String>, Option<String>)> {
+    let failed = folder(vault, place).join("failed.json");
+    if failed.is_file() {
+        let text = std::fs::read_to_string(&failed).with_context(|| failed.display().to_string())?;
+        return Ok((None, Some(serde_json::from_str(&text)?)));
+    }
+    let (record, text) = vault.answer(&second(place))?;
+    Ok((text, record.and_then(|record| record.error)))
+}
+
+fn folder(vault: &Vault, place: &Place) -> PathBuf {
+    vault.out.join("next").join(&place.name)
+}
+
+fn first(place: &Place) -> String {
+    format!("diagnoses/{}", place.name)
+}
+
+fn second(place: &Place) -> String {
+    format!("next/{}/diagnosis", place.name)
+}
