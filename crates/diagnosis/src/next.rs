@@ -32,7 +32,7 @@ use limits::{Limits, taken};
 use prospect::{Outlook, Pair, Prospect};
 
 /// A confusion counts as resolved if the rival is this many times as far off as it need be: the prediction is not perfect.
-const SURE: f64 = 1.5;
+const SURE: f64 = 1.2;
 /// The parts of what is needed between which more is better.
 const COUNTED: (f64, f64) = (0.05, 4.0);
 /// What shows better counts this much beside a confusion resolved.
@@ -97,7 +97,7 @@ pub fn propose(
     let hidden = visible(study, chosen, hidden);
     let columns = confusions
         .iter()
-        .flat_map(|c| c.pair.instead.iter().flatten().chain(&c.pair.without));
+        .flat_map(|c| c.pair.instead.iter().flat_map(|(set, _)| set).chain(&c.pair.without));
     let columns = columns.copied().chain(hidden.iter().filter_map(|h| Some(h.column?.0)));
     let nothing = Next {
         report: NextExperiment {
@@ -218,12 +218,14 @@ fn confusions(study: &Study, chosen: &Chosen, findings: &[(Finding, Option<usize
                 other.cause.name() == Some(rival.effect) && !finer && (other.joint == joint)
             };
             let forms: Vec<usize> = (0..study.candidates.len()).filter(is_it).collect();
-            let instead: Vec<Vec<usize>> = if this.cause == Cause::InertialScale && rival.effect == "torque_scale" {
-                let is_factor = |c: &usize| study.candidates[*c].cause == Cause::TorqueScale;
-                vec![with(&(0..study.candidates.len()).filter(is_factor).collect::<Vec<_>>())]
-            } else {
-                forms.iter().map(|&form| with(&[form])).collect()
-            };
+            let instead: Vec<(Vec<usize>, Vec<usize>)> =
+                if this.cause == Cause::InertialScale && rival.effect == "torque_scale" {
+                    let is_factor = |c: &usize| study.candidates[*c].cause == Cause::TorqueScale;
+                    let all: Vec<usize> = (0..study.candidates.len()).filter(is_factor).collect();
+                    vec![(with(&all), all)]
+                } else {
+                    forms.iter().map(|&form| (with(&[form]), vec![form])).collect()
+                };
             if instead.is_empty() {
                 continue;
             }

@@ -152,13 +152,15 @@ fn confusions(case: &str, first: &Answer, key: &Key) -> Vec<Confusion> {
         .iter()
         .map(|pair| (named(&pair.finding), named(&pair.rival)))
         .collect();
-    let mut list = Vec::new();
+    let mut list: Vec<Confusion> = Vec::new();
     for finding in &first.findings {
         let name = (finding.effect.clone(), finding.joint.clone());
         for other in &finding.confusable_with {
             let rival = named(other);
             let (finding_is_true, rival_is_true) = (key.known.contains(&name), key.known.contains(&rival));
-            if !finding_is_true && !rival_is_true {
+            // Two pushes have one name.
+            let is_known = |known: &Confusion| known.finding == name && known.rival == rival;
+            if (!finding_is_true && !rival_is_true) || list.iter().any(is_known) {
                 continue;
             }
             let is_it = |pair: &&crate::answer::Left| named(&pair.finding) == name && named(&pair.rival) == rival;

@@ -5,6 +5,7 @@ pub mod effect_file;
 mod inputs;
 pub mod learned;
 mod next_file;
+mod next_words;
 pub mod numbers;
 pub mod page;
 #[cfg(feature = "viewer")]

@@ -3,13 +3,13 @@
 use super::report::{Left, Untold};
 use crate::report::Confusable;
 
-/// Less than this (nats) is nothing: the two are one torque.
-const ALIAS: f64 = 1.0;
+/// Less than this (nats), or than this part of what tells, is nothing: the two are one torque.
+const ALIAS: (f64, f64) = (1.0, 0.1);
 
 /// The confusion of `finding` with `rival`, which the motion sets `after` and the best for it `best` apart (nats), where
 /// `needed` would tell; `sure` is the distance that is promised.
 pub fn untold(finding: Confusable, rival: Confusable, [best, needed]: [f64; 2], sure: f64) -> Untold {
-    let kind = if best < ALIAS {
+    let kind = if best < ALIAS.0.max(ALIAS.1 * needed) {
         Left::SameTorque
     } else if best < sure {
         Left::OutOfReach

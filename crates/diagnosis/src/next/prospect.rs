@@ -6,6 +6,7 @@ use super::designs::DURATION;
 use crate::columns::values;
 use crate::fit::{Products, evidence_rate};
 use crate::motion::{Chunk, Motions};
+use crate::physics::is_possible;
 use crate::rigid::Rigid;
 use crate::search::Chosen;
 use crate::signal::Kernel;
@@ -26,8 +27,8 @@ const PASSES: usize = 3;
 pub struct Pair {
     /// All but the finding.
     pub without: Vec<usize>,
-    /// All with the rival in the finding's place, in each of its sizes.
-    pub instead: Vec<Vec<usize>>,
+    /// All with the rival in the finding's place, in each of its sizes; and the candidates that the rival is.
+    pub instead: Vec<(Vec<usize>, Vec<usize>)>,
 }
 
 /// The recordings as far as some columns go, ready for a motion to be added.
@@ -251,16 +252,22 @@ impl<'a> Prospect<'a> {
 
     /// How much worse (nats) the rival of `pair` explains `outlook` than the finding does, and what tells them apart.
     pub fn separation(&self, outlook: &Outlook, pair: &Pair) -> [f64; 2] {
-        let loss = |columns: &[usize]| {
-            let fit = outlook
-                .products
-                .fit(&self.bare, &self.places(columns), &outlook.weights);
-            fit.loss
+        let fit = |columns: &[usize]| {
+            let places = self.places(columns);
+            outlook.products.fit(&self.bare, &places, &outlook.weights)
         };
-        let with = loss(&self.chosen.fit.columns);
-        let without = loss(&pair.without);
-        let rival = pair.instead.iter().map(|set| loss(set)).fold(f64::INFINITY, f64::min);
-        [rival - with, rivals::allowance(without - with)]
+        let with = fit(&self.chosen.fit.columns).loss;
+        let without = fit(&pair.without).loss;
+        let mut rivals: Vec<_> = pair.instead.iter().map(|(set, added)| (fit(set), set, added)).collect();
+        rivals.sort_by(|a, b| a.0.loss.total_cmp(&b.0.loss));
+        let study = self.study;
+        let possible = rivals.into_iter().find_map(|(mut fit, set, added)| {
+            fit.columns.clone_from(set);
+            let is_possible = |&c: &usize| is_possible(&study.candidates[c], &study.table, &fit, &study.arm);
+            added.iter().all(is_possible).then_some(fit.loss)
+        });
+        // What is impossible then is no better than nothing in the finding's place.
+        [possible.unwrap_or(without) - with, rivals::allowance(without - with)]
     }
 
     /// How well columns show beside the findings, each on a joint.

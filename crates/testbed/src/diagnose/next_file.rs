@@ -4,9 +4,10 @@ use std::fmt::Write;
 use std::path::Path;
 
 use anyhow::Context;
-use diagnosis::{Confusable, NextExperiment};
+use diagnosis::NextExperiment;
 use torque::Reference;
 
+use super::next_words::name;
 use super::{numbers, words};
 use crate::library;
 
@@ -104,13 +105,4 @@ fn text(robot: &str, next: &NextExperiment, motion: &Reference) -> String {
         );
     }
     text
-}
-
-/// `viscous friction on joint2`.
-pub fn name(what: &Confusable) -> String {
-    let effect = words::wording(what.effect).name;
-    match &what.joint {
-        Some(joint) => format!("{effect} on {joint}"),
-        None => effect.to_owned(),
-    }
 }

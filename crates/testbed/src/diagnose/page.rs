@@ -71,6 +71,7 @@ impl<'a> Page<'a> {
                     (self.errors())
                     (self.rollout())
                     (self.not_observable())
+                    (self.next_experiment())
                     (self.all_parameters())
                     (self.provenance())
                 }

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement};
 use diagnosis::{Finding, NotObservable, Report};
 
-use super::{numbers, words};
+use super::{next_words, numbers, words};
 use crate::output;
 
 /// The widest that lines are where nothing forces them to be wider.
@@ -45,6 +45,9 @@ pub fn table(report: &Report) -> String {
     }
     if !report.not_observable.is_empty() {
         text += &wrapped(&format!("could not be seen: {}", unseen(&report.not_observable)), "- ");
+    }
+    for sentence in report.next_experiment.iter().flat_map(next_words::sentences) {
+        text += &wrapped(&sentence, "- next: ");
     }
     let rollout = rollout(report);
     if !rollout.is_empty() {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use proof::{Score, Target};
 
 use super::command::percent;
+use super::experiments;
 
 /// In a sentence or two.
 pub fn reason(target: &Target, score: &Score) -> String {
@@ -32,6 +33,8 @@ pub fn reason(target: &Target, score: &Score) -> String {
         let missed = score.concealed.iter().filter(|o| o.is_asked());
         let missed = missed.filter(|o| !o.fate.is_covered());
         format!("neither: {}.", tally(missed.map(|o| o.effect.as_str())))
+    } else if what.starts_with("confusions") {
+        experiments::words::reason(&score.experiments)
     } else {
         held_out(score)
     }

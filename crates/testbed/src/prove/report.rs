@@ -3,7 +3,7 @@
 use proof::{Counted, Fate, Name, Score};
 
 use super::command::{Proof, figure, percent, wanted};
-use super::{disturbance, reasons, results, tracking};
+use super::{disturbance, experiments, reasons, results, tracking};
 
 /// A piece of a report. Text may hold `code` between backticks.
 pub enum Block {
@@ -91,6 +91,7 @@ pub fn blocks(proof: &Proof) -> Vec<Block> {
     list.extend(results::numbers(score));
     list.extend(results::controls(score));
     list.extend(results::calibration(score));
+    list.extend(experiments::words::blocks(&score.experiments));
     list.extend(proof.paper.iter().flat_map(disturbance::words::blocks));
     list.extend(tracking::words::blocks(&proof.tracking));
     list.extend(failures(score));

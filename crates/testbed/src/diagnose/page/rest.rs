@@ -7,7 +7,7 @@ use diagnosis::{NotObservable, Trace};
 use maud::{Markup, html};
 
 use super::Page;
-use crate::diagnose::{numbers, words};
+use crate::diagnose::{next_words, numbers, words};
 
 impl Page<'_> {
     /// Effects that may be there all the same.
@@ -35,6 +35,28 @@ impl Page<'_> {
                         }
                     }
                 } }
+            }
+        }
+    }
+
+    /// What to record next, where that was asked for.
+    pub(super) fn next_experiment(&self) -> Markup {
+        html! {
+            @if let Some(next) = &self.report.next_experiment {
+                h2 { "The next experiment" }
+                ul { @for sentence in next_words::sentences(next) { li { (sentence) "." } } }
+                @if !next.separates.is_empty() {
+                    div.scroll { table {
+                        thead { tr { th { "finding" } th { "or" } th.n { "apart now (nats)" } th.n { "with the motion" } th.n { "needed" } } }
+                        tbody { @for pair in &next.separates { tr {
+                            td { (next_words::name(&pair.finding)) }
+                            td { (next_words::name(&pair.rival)) }
+                            td.n { (numbers::short(pair.before)) }
+                            td.n { (numbers::short(pair.after)) }
+                            td.n { (numbers::short(pair.needed)) }
+                        } } }
+                    } }
+                }
             }
         }
     }
