@@ -169,6 +169,7 @@ pub fn diagnose(
             robot,
             &findings,
             &not_observable,
+            &unexplained,
         )?)
     } else {
         None

@@ -12,7 +12,7 @@ use torque::{Corrected, Effect, Reference};
 
 use crate::candidate::Cause;
 use crate::fit::Products;
-use crate::report::{Confusable, Finding, NotObservable};
+use crate::report::{Confusable, Finding, NotObservable, Unexplained};
 use crate::search::Chosen;
 use crate::study::Study;
 use crate::unseen;
@@ -22,8 +22,6 @@ mod designs;
 mod limits;
 mod prospect;
 mod report;
-#[cfg(test)]
-mod tests;
 
 pub use report::{JointLimits, Left, NextExperiment, Separation, Shows, Untold};
 
@@ -58,6 +56,8 @@ struct Confusion {
     finding: Confusable,
     rival: Confusable,
     pair: Pair,
+    /// Whether the findings explain the joint, or the whole arm.
+    is_explained: bool,
     joints: Vec<usize>,
 }
 
@@ -80,7 +80,8 @@ struct Tried {
     worth: f64,
 }
 
-/// Proposes a motion for what `findings`, each with the candidate that it was named from, and `hidden` leave open. `effects`
+/// Proposes a motion for what `findings`, each with the candidate that it was named from, and `hidden` leave open. On joints that
+/// are `unexplained` it promises nothing. `effects`
 /// is all that is known of the robot, known before or found, beyond the model `arm`.
 ///
 /// # Errors
@@ -92,8 +93,9 @@ pub fn propose(
     (arm, effects): (&Arm, &[Effect]),
     findings: &[(Finding, Option<usize>)],
     hidden: &[NotObservable],
+    unexplained: &[Unexplained],
 ) -> Result<Next, torque::TorqueError> {
-    let confusions = confusions(study, chosen, findings);
+    let confusions = confusions(study, chosen, findings, unexplained);
     let hidden = visible(study, chosen, hidden);
     let columns = confusions
         .iter()
@@ -112,7 +114,7 @@ pub fn propose(
     let Some(prospect) = Prospect::new(study, products, chosen, columns.collect()) else {
         return Ok(nothing);
     };
-    let limits = Limits::new(study, Corrected::new(arm, effects)?);
+    let limits = Limits::new(study, Corrected::new(arm, effects)?, unexplained.is_empty());
     let now = prospect.now();
     let before: Vec<[f64; 2]> = confusions.iter().map(|c| prospect.separation(&now, &c.pair)).collect();
     let attempt = |design: Design| -> Option<Tried> {
@@ -198,7 +200,12 @@ fn shows(prospect: &Prospect<'_>, outlook: &Outlook, hidden: &[Hidden<'_>]) -> V
 }
 
 /// What each finding could be instead, as sets of columns. What was not named from columns (a push, a second encoder) is left out.
-fn confusions(study: &Study, chosen: &Chosen, findings: &[(Finding, Option<usize>)]) -> Vec<Confusion> {
+fn confusions(
+    study: &Study,
+    chosen: &Chosen,
+    findings: &[(Finding, Option<usize>)],
+    unexplained: &[Unexplained],
+) -> Vec<Confusion> {
     let columns_of = |set: &[usize]| -> Vec<usize> {
         let columns = set.iter().flat_map(|&c| study.candidates[c].columns.iter().copied());
         columns.collect::<BTreeSet<usize>>().into_iter().collect()
@@ -240,6 +247,10 @@ fn confusions(study: &Study, chosen: &Chosen, findings: &[(Finding, Option<usize
                 },
                 rival: rival.clone(),
                 pair,
+                is_explained: !unexplained.iter().any(|left| {
+                    let on = |joint: &Option<String>| joint.as_ref().is_none_or(|joint| *joint == left.joint);
+                    on(&finding.joint) || on(&rival.joint)
+                }),
                 joints: this.joint.into_iter().chain(joint).collect(),
             });
         }
@@ -296,7 +307,7 @@ fn described(
     for (k, confusion) in confusions.iter().enumerate() {
         let [after, needed] = chosen.separations[k];
         let (finding, rival) = (confusion.finding.clone(), confusion.rival.clone());
-        if after >= SURE * needed {
+        if after >= SURE * needed && confusion.is_explained {
             separates.push(Separation {
                 finding,
                 rival,
@@ -309,7 +320,13 @@ fn described(
         let all = list.iter().map(|tried| tried.separations[k]);
         let furthest = all.max_by(|a, b| (a[0] / a[1]).total_cmp(&(b[0] / b[1])));
         let furthest = furthest.unwrap_or([after, needed]);
-        not_separated.push(advice::untold(finding, rival, furthest, SURE * furthest[1]));
+        not_separated.push(advice::untold(
+            finding,
+            rival,
+            furthest,
+            SURE * furthest[1],
+            confusion.is_explained,
+        ));
     }
     let shows: Vec<Shows> = hidden
         .iter()

@@ -7,26 +7,39 @@ use crate::report::Confusable;
 const ALIAS: (f64, f64) = (1.0, 0.1);
 
 /// The confusion of `finding` with `rival`, which the motion sets `after` and the best for it `best` apart (nats), where
-/// `needed` would tell; `sure` is the distance that is promised.
-pub fn untold(finding: Confusable, rival: Confusable, [best, needed]: [f64; 2], sure: f64) -> Untold {
+/// `needed` would tell; `sure` is the distance that is promised, where the findings explain
+/// what they are about.
+pub fn untold(
+    finding: Confusable,
+    rival: Confusable,
+    [best, needed]: [f64; 2],
+    sure: f64,
+    is_explained: bool,
+) -> Untold {
     let kind = if best < ALIAS.0.max(ALIAS.1 * needed) {
         Left::SameTorque
     } else if best < sure {
         Left::OutOfReach
-    } else {
+    } else if is_explained {
         Left::AnotherMotion
+    } else {
+        Left::Unexplained
     };
     let because = match kind {
         Left::SameTorque => "the two are the same torque in every motion tried".to_owned(),
         Left::OutOfReach => format!(
             "no motion tried within the limits sets them further apart than {best:.1} nats, and {sure:.1} would be sure to tell"
         ),
+        Left::Unexplained => {
+            "something without a name is left there, so that what a motion would tell cannot be foretold".to_owned()
+        }
         Left::AnotherMotion => {
             "another motion would tell, but this one serves the others better: propose again after it".to_owned()
         }
     };
     let instead = match kind {
         Left::AnotherMotion => "run the motion, diagnose with its recording, and propose again",
+        Left::Unexplained => "find first what is unexplained there",
         _ => instead(finding.effect, rival.effect),
     };
     let instead = instead.to_owned();

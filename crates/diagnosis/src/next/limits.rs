@@ -9,10 +9,11 @@ use crate::study::Study;
 const MARGIN: f64 = 0.05;
 /// The part of a velocity and an effort limit that a motion may take.
 const WITHIN: f64 = 0.8;
-/// No further from the middle of what was recorded than this many times as far as recorded: nobody knows what stands there.
-const WIDER: f64 = 1.5;
-/// No faster than this many times what was recorded.
-const FASTER: f64 = 3.0;
+/// No further from the middle of what was recorded than this many times as far as recorded, and no faster than this many
+/// times: nobody knows what stands there …
+const BEYOND: (f64, f64) = (1.5, 3.0);
+/// … and less far where the findings do not explain the recordings: the torque out there is not known.
+const BEYOND_UNEXPLAINED: (f64, f64) = (1.0, 1.5);
 /// Where the URDF has no limit: so many times the speed, and the torque, that were recorded.
 const FASTER_UNLIMITED: f64 = 2.0;
 /// Likewise, of the torque.
@@ -33,8 +34,10 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Of the arm of `study`; torques are those of `model`, which has what is known and what was found.
-    pub fn new(study: &Study, model: Corrected) -> Self {
+    /// Of the arm of `study`; torques are those of `model`, which has what is known and what was found, and which `explains` the
+    /// recordings or not.
+    pub fn new(study: &Study, model: Corrected, explains: bool) -> Self {
+        let (wider, faster) = if explains { BEYOND } else { BEYOND_UNEXPLAINED };
         let joints = study.arm.joints();
         let scales = &study.scales;
         let typical = {
@@ -64,15 +67,15 @@ impl Limits {
             // A joint that was held still may move as the others do.
             let recorded = 0.5 * scales.range[j];
             let (half, speed) = if scales.speed[j] > scales.rest[j] {
-                (WIDER * recorded, scales.speed[j])
+                (wider * recorded, scales.speed[j])
             } else {
                 (typical, 0.3 * fastest)
             };
             limits.room.push(half.min(to_a_limit));
             limits.speed.push(if joint.limits.velocity.is_finite() {
-                (WITHIN * joint.limits.velocity).min(FASTER * speed)
+                (WITHIN * joint.limits.velocity).min(faster * speed)
             } else {
-                FASTER_UNLIMITED * speed
+                FASTER_UNLIMITED.min(faster) * speed
             });
             let torque = study.measured[j].iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
             limits.torque.push(if joint.limits.effort.is_finite() {

@@ -64,6 +64,8 @@ pub enum Left {
     OutOfReach,
     /// Another motion would.
     AnotherMotion,
+    /// What the joint does is not explained, so that nothing can be said of a motion nobody made.
+    Unexplained,
 }
 
 /// An effect that the motion shows at a smaller size than the recordings do.

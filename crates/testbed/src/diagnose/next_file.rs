@@ -106,3 +106,51 @@ fn text(robot: &str, next: &NextExperiment, motion: &Reference) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use torque::{Fade, Sine};
+
+    use super::*;
+    use crate::scenario::Scenario;
+
+    /// What is written is what a scenario loads, to the last bit, beside its URDF or elsewhere.
+    #[test]
+    fn a_proposal_loads_as_the_scenario_it_was() {
+        let next = NextExperiment {
+            duration: Some(25.0),
+            separates: Vec::new(),
+            not_separated: Vec::new(),
+            shows: Vec::new(),
+            limits: Vec::new(),
+        };
+        let motion = Reference {
+            centre: vec![0.1, -0.2, 0.3, 0.0, 0.5, 0.0],
+            sines: vec![Sine {
+                amplitude: vec![0.5, 0.25, 0.125, 0.1, 0.2, 1.0 / 3.0],
+                frequency: vec![0.3, 0.4, 0.5, 0.6, 0.7, 1e-3],
+                phase: vec![0.0, 1.0, -2.0, 3.0, 4.0, 6.2],
+            }],
+            fade: Some(Fade {
+                seconds: 3.0,
+                end: 25.0,
+            }),
+        };
+        let folder = tempfile::tempdir().expect("a folder");
+        let urdf = folder.path().join("my \"arm\".urdf");
+        std::fs::write(&urdf, include_str!("../../../../assets/puma560.urdf")).expect("it writes");
+        let elsewhere = tempfile::tempdir().expect("a folder");
+        let robot = urdf.display().to_string();
+        for (path, robot) in [
+            (folder.path().join("next.toml"), robot.as_str()),
+            (elsewhere.path().join("next.toml"), robot.as_str()),
+            (folder.path().join("built_in.toml"), "puma560"),
+        ] {
+            write(&path, robot, &urdf, &next, &motion).expect("it writes");
+            let scenario = Scenario::load(&path.display().to_string()).expect("it loads");
+            assert_eq!(scenario.reference, motion);
+            assert_eq!((scenario.duration, scenario.arm.dof()), (25.0, 6));
+            assert!(!scenario.model.learns(), "it runs without training");
+        }
+    }
+}

@@ -17,6 +17,10 @@ pub mod words;
 /// Cases that are looked at for experiments, spread evenly over a campaign: a second diagnosis of all would take too long.
 const LOOKED_AT: usize = 60;
 
+/// A motion that the position loop cannot hold the machine on is made smaller about its centre, as a user does whose drive
+/// trips: the model that it was proposed with may be wrong.
+const SIZES: [f64; 3] = [1.0, 0.7, 0.5];
+
 /// The cases whose proposed experiment is made: of [`LOOKED_AT`] spread evenly, those whose diagnosis proposes one for a
 /// confusion. What a case's turn is depends on its number alone, not on the others in its share.
 ///
@@ -79,17 +83,25 @@ pub fn make(source: &Source, vault: &Vault, place: &Place, sealed: &SealedCase, 
         let scenario = Scenario::load(&scenario.display().to_string())?;
         let plan = plans.get(place.number).context("there is no such case")?;
         let mut motion = torque::Motion::new(scenario.arm.dof());
-        let mut at = |time: f64, q: &mut [f64]| {
-            scenario.reference.at(time, &mut motion);
-            q.copy_from_slice(&motion.q);
-        };
-        match record_again(plan.robot(robots), plan, &truth, scenario.duration, &mut at) {
-            Ok(made) => made.write_csv(&recording)?,
-            // What cannot be recorded is a result, too.
-            Err(error @ ProofError::Lost { .. }) => {
-                output::write_json(&failed, &error.to_string())?;
+        for size in SIZES {
+            let mut at = |time: f64, q: &mut [f64]| {
+                scenario.reference.at(time, &mut motion);
+                for ((q, wanted), centre) in q.iter_mut().zip(&motion.q).zip(&scenario.reference.centre) {
+                    *q = centre + size * (wanted - centre);
+                }
+            };
+            match record_again(plan.robot(robots), plan, &truth, scenario.duration, &mut at) {
+                Ok(made) => {
+                    made.write_csv(&recording)?;
+                    break;
+                }
+                // What cannot be recorded at any size is a result, too.
+                Err(error @ ProofError::Lost { .. }) if size == SIZES[SIZES.len() - 1] => {
+                    output::write_json(&failed, &error.to_string())?;
+                }
+                Err(ProofError::Lost { .. }) => {}
+                Err(error) => return Err(error.into()),
             }
-            Err(error) => return Err(error.into()),
         }
     }
     if !recording.is_file() {

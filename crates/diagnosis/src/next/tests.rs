@@ -1,1 +1,0 @@
-//! Proposals on a small arm.

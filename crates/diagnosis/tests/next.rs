@@ -1,0 +1,182 @@
+//! The next experiment: a motion within limits that tells what the recordings do not, and none where none does.
+
+mod support;
+
+use diagnosis::{Diagnosis, Input, Left, NextExperiment, Options, diagnose};
+use recording::{Recording, RegularRecording};
+use support::{ELBOW, Motion, SHOULDER, diagnosed_with, recorded, regular, trio};
+use torque::Reference;
+
+fn proposed(concealed: support::Concealed<'_>) -> (Diagnosis, NextExperiment) {
+    let options = Options {
+        next: true,
+        ..Options::default()
+    };
+    let diagnosis = diagnosed_with(&trio(), &trio(), concealed, &options).expect("it can be diagnosed");
+    let next = diagnosis.report.next_experiment.clone().expect("it was asked for");
+    (diagnosis, next)
+}
+
+/// Friction that is told from drag by nothing but a wider range of speeds.
+fn friction(motion: &mut Motion, tau: &mut [f64]) {
+    for (joint, level, coefficient) in [(SHOULDER, 0.8, 0.18), (ELBOW, 0.4, 0.084)] {
+        let speed = motion.qd[joint];
+        tau[joint] += level * speed.signum() + coefficient * speed;
+    }
+}
+
+fn is_confused(diagnosis: &Diagnosis, effect: &str, rival: &str) -> bool {
+    let mut findings = diagnosis.report.findings.iter();
+    findings.any(|f| f.effect == effect && f.confusable_with.iter().any(|other| other.effect == rival))
+}
+
+/// A recording of the arm with what is concealed along `reference`.
+fn made(reference: &Reference, seconds: f64, concealed: support::Concealed<'_>) -> Recording {
+    let along = |motion: &mut Motion, tau: &mut [f64]| {
+        let mut wanted = torque::Motion::new(3);
+        reference.at(motion.time, &mut wanted);
+        *motion = Motion {
+            time: motion.time,
+            q: wanted.q,
+            qd: wanted.qd,
+            qdd: wanted.qdd,
+        };
+        let arm = trio();
+        let mut workspace = arm::Workspace::new(&arm);
+        arm.inverse_dynamics(&mut workspace, &motion.q, &motion.qd, &motion.qdd, tau);
+        concealed(motion, tau);
+    };
+    recorded(&trio(), 3, seconds, &along)
+}
+
+#[test]
+fn a_faster_motion_tells_viscous_friction_from_drag() {
+    let (diagnosis, next) = proposed(&friction);
+    assert!(
+        is_confused(&diagnosis, "viscous_friction", "quadratic_drag"),
+        "{next:#?}"
+    );
+    let told = next
+        .separates
+        .iter()
+        .filter(|pair| pair.rival.effect == "quadratic_drag");
+    assert!(told.clone().count() > 0, "{next:#?}");
+    for pair in told {
+        assert!(pair.after > pair.needed && pair.after > pair.before, "{pair:?}");
+    }
+    // What was predicted comes true.
+    let motion = diagnosis.next.expect("a motion");
+    let seconds = next.duration.expect("a duration");
+    let mut recordings: Vec<RegularRecording> = [16.0, 16.0, 10.0]
+        .into_iter()
+        .enumerate()
+        .map(|(variant, seconds)| regular(&recorded(&trio(), variant, seconds, &friction)))
+        .collect();
+    recordings.push(regular(&made(&motion, seconds, &friction)));
+    let names = ["a", "b", "c", "next"];
+    let inputs: Vec<Input<'_>> = names
+        .into_iter()
+        .zip(&recordings)
+        .map(|(name, recording)| Input {
+            name,
+            recording,
+            held_out: name == "c",
+        })
+        .collect();
+    let second = diagnose(&trio(), &inputs, &Options::default(), &|_| {}).expect("it can be diagnosed");
+    let named = second.report.findings.iter().filter(|f| f.effect == "viscous_friction");
+    assert_eq!(named.count(), 2, "{:?}", second.report.findings);
+    assert!(!is_confused(&second, "viscous_friction", "quadratic_drag"));
+}
+
+#[test]
+fn a_motion_stays_within_the_limits() {
+    let (diagnosis, next) = proposed(&friction);
+    let motion = diagnosis.next.expect("a motion");
+    let arm = trio();
+    let mut at = torque::Motion::new(3);
+    let mut workspace = arm::Workspace::new(&arm);
+    let mut tau = vec![0.0; 3];
+    for k in 0..25_000 {
+        motion.at(f64::from(k) / 1e3, &mut at);
+        arm.inverse_dynamics(&mut workspace, &at.q, &at.qd, &at.qdd, &mut tau);
+        for (j, joint) in arm.joints().iter().enumerate() {
+            assert!(
+                (joint.limits.lower..=joint.limits.upper).contains(&at.q[j]),
+                "{} {}",
+                joint.name,
+                at.q[j]
+            );
+            assert!(
+                at.qd[j].abs() <= 0.85 * joint.limits.velocity,
+                "{} {}",
+                joint.name,
+                at.qd[j]
+            );
+            assert!(
+                tau[j].abs() + 2.5 <= 0.9 * joint.limits.effort,
+                "{} {}",
+                joint.name,
+                tau[j]
+            );
+        }
+    }
+    for joint in &next.limits {
+        assert!(joint.position_allowed[0] <= joint.position[0] && joint.position[1] <= joint.position_allowed[1]);
+        assert!(
+            joint.velocity <= 1.03 * joint.velocity_allowed && joint.torque <= 1.03 * joint.torque_allowed,
+            "{joint:?}"
+        );
+    }
+    // It begins and ends at rest.
+    for time in [0.0, 25.0] {
+        motion.at(time, &mut at);
+        assert!(at.qd.iter().chain(&at.qdd).all(|&v| v == 0.0));
+    }
+    // A weak and slow arm gets a motion that it can make.
+    let weak = support::TRIO.replace("effort=\"200\" velocity=\"5\"", "effort=\"45\" velocity=\"1.5\"");
+    let weak = arm::Arm::from_urdf_text(&weak, "weak.urdf").expect("it is an arm");
+    let options = Options {
+        next: true,
+        ..Options::default()
+    };
+    let diagnosis = diagnosed_with(&weak, &weak, &friction, &options).expect("it can be diagnosed");
+    let next = diagnosis.report.next_experiment.expect("it was asked for");
+    for joint in &next.limits {
+        assert!(joint.velocity <= 1.5 && joint.torque <= 45.0, "{joint:?}");
+    }
+}
+
+#[test]
+fn what_no_motion_tells_gets_advice_instead() {
+    let asymmetric = |motion: &mut Motion, tau: &mut [f64]| {
+        let speed = motion.qd[ELBOW];
+        tau[ELBOW] += if speed > 0.0 { 2.2 } else { -1.1 };
+    };
+    let (diagnosis, next) = proposed(&asymmetric);
+    assert!(
+        is_confused(&diagnosis, "friction_asymmetry", "torque_offset"),
+        "{:?}",
+        diagnosis.report.findings
+    );
+    assert!(!next.separates.iter().any(|pair| pair.rival.effect == "torque_offset"));
+    let untold = next
+        .not_separated
+        .iter()
+        .find(|untold| untold.rival.effect == "torque_offset");
+    let untold = untold.expect("it is said");
+    assert_eq!(untold.kind, Left::SameTorque);
+    assert!(untold.instead.contains("brake"), "{}", untold.instead);
+}
+
+#[test]
+fn the_proposal_does_not_depend_on_the_threads() {
+    let of = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("threads");
+        pool.install(|| proposed(&friction).0.next)
+    };
+    assert_eq!(of(1), of(3));
+}
