@@ -5,6 +5,7 @@ mod diagnose;
 mod diagnose_blind;
 mod diagnose_made;
 mod diagnose_mistakes;
+mod diagnose_next;
 mod diagnose_refusals;
 mod inspect;
 mod paper;
