@@ -23,6 +23,7 @@ fn scored(concealed: Value, answer: Answer) -> Score {
         true_terms: Some(answer.clone()),
         wrong_term: None,
         tracking_over_exact: None,
+        again: None,
         answer: Some(answer),
     }])
 }

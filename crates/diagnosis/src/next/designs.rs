@@ -116,9 +116,8 @@ impl Design {
             for (tone, sine) in sines.iter_mut().enumerate() {
                 let (room, fast) = match (self.mix, tone) {
                     (Mix::Steady, _) => (room, fast),
-                    (Mix::Beats, 0) => (0.5 * room, 0.5 * fast),
+                    (Mix::Beats | Mix::Swells, 0) => (0.5 * room, 0.5 * fast),
                     (Mix::Beats, _) => (0.5 * room, 0.5 * (1.0 - DETUNED) * fast),
-                    (Mix::Swells, 0) => (0.5 * room, 0.5 * fast),
                     (Mix::Swells, 1) => (0.25 * room, 0.25 * (1.0 - DETUNED) * fast),
                     (Mix::Swells, _) => (0.25 * room, 0.25 * (1.0 - 2.0 * DETUNED) * fast),
                     (Mix::SlowAndFast, 0) => (0.7 * room, SLOW * fast),

@@ -124,6 +124,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
             train: traces.recordings[..2].iter().map(|trace| trace.name.clone()).collect(),
             held_out: vec![traces.recordings[2].name.clone()],
         },
+        next_experiment: None,
         verdict: match plot {
             Plot::Clean => Verdict::NoMismatch,
             Plot::Rich => Verdict::PartlyExplained,

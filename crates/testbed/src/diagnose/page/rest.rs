@@ -44,7 +44,7 @@ impl Page<'_> {
         html! {
             @if let Some(next) = &self.report.next_experiment {
                 h2 { "The next experiment" }
-                ul { @for sentence in next_words::sentences(next) { li { (sentence) "." } } }
+                ul { @for sentence in next_words::sentences(next) { li { (words::capital(&sentence)) "." } } }
                 @if !next.separates.is_empty() {
                     div.scroll { table {
                         thead { tr { th { "finding" } th { "or" } th.n { "apart now (nats)" } th.n { "with the motion" } th.n { "needed" } } }
