@@ -6,9 +6,8 @@ use crate::report::Confusable;
 /// Less than this (nats), or than this part of what tells, is nothing: the two are one torque.
 const ALIAS: (f64, f64) = (1.0, 0.1);
 
-/// The confusion of `finding` with `rival`, which the motion sets `after` and the best for it `best` apart (nats), where
-/// `needed` would tell; `sure` is the distance that is promised, where the findings explain
-/// what they are about.
+/// The confusion of `finding` with `rival`, which the best motion for it sets `best` apart (nats), where `needed` would tell.
+/// `sure` is the distance from which it is promised, where the findings explain what they are about.
 pub fn untold(
     finding: Confusable,
     rival: Confusable,
@@ -16,19 +15,20 @@ pub fn untold(
     sure: f64,
     is_explained: bool,
 ) -> Untold {
-    let kind = if best < ALIAS.0.max(ALIAS.1 * needed) {
+    let kind = if best.abs() < ALIAS.0.max(ALIAS.1 * needed) {
         Left::SameTorque
+    } else if !is_explained {
+        Left::Unexplained
     } else if best < sure {
         Left::OutOfReach
-    } else if is_explained {
-        Left::AnotherMotion
     } else {
-        Left::Unexplained
+        Left::AnotherMotion
     };
     let because = match kind {
         Left::SameTorque => "the two are the same torque in every motion tried".to_owned(),
         Left::OutOfReach => format!(
-            "no motion tried within the limits sets them further apart than {best:.1} nats, and {sure:.1} would be sure to tell"
+            "no motion tried within the limits sets them further apart than {:.1} nats, and {sure:.1} would be sure to tell",
+            best.max(0.0)
         ),
         Left::Unexplained => {
             "something without a name is left there, so that what a motion would tell cannot be foretold".to_owned()
