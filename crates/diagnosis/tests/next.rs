@@ -37,6 +37,7 @@ fn made(reference: &Reference, seconds: f64, concealed: support::Concealed<'_>) 
         reference.at(motion.time, &mut wanted);
         *motion = Motion {
             time: motion.time,
+            clock: motion.clock,
             q: wanted.q,
             qd: wanted.qd,
             qdd: wanted.qdd,

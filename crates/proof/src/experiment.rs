@@ -234,6 +234,7 @@ mod tests {
                      "rival": {"effect": "viscous_friction", "joint": "a"}}], "not_separated": []}}"#,
             )),
             true_terms: None,
+            tracking_over_exact: None,
             wrong_term: None,
             again: second.map(|text| Again::Answer(Box::new(answer(text)))),
         }

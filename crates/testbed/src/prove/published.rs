@@ -18,6 +18,7 @@ use proof::{Answer, Published, RobotScore, SaidFate, Seal};
 use serde::Serialize;
 
 use super::cases::Place;
+use super::child::Task;
 use super::command::{answers, list};
 use super::vault::Vault;
 use super::{markdown, page as html, work};
@@ -84,7 +85,7 @@ pub fn run(args: &ProveArgs, file: &Path, recordings: &Path) -> anyhow::Result<(
     let seal = vault.seal(&places, source)?;
     let pairs: Vec<_> = places.iter().zip(&seal.cases).collect();
     work::all("diagnosing", &pairs, jobs, |(place, sealed)| {
-        vault.diagnose(place, sealed, &format!("diagnoses/{}", place.name), None)
+        vault.diagnose(place, sealed, &format!("diagnoses/{}", place.name), Task::default())
     })?;
     let answers = answers(&vault, &places)?;
     output::write_json(&vault.out.join("answers.json"), &answers)?;
@@ -94,7 +95,12 @@ pub fn run(args: &ProveArgs, file: &Path, recordings: &Path) -> anyhow::Result<(
         let bytes = std::fs::read(&place.truth).with_context(|| place.truth.display().to_string())?;
         sealed.check_truth(&bytes)?;
         let truth: Published = serde_json::from_slice(&bytes).with_context(|| place.truth.display().to_string())?;
-        vault.diagnose(place, sealed, &control(place), Some(&list(&truth.terms())))?;
+        let only = list(&truth.terms());
+        let task = Task {
+            only: Some(&only),
+            ..Task::default()
+        };
+        vault.diagnose(place, sealed, &control(place), task)?;
         if let Ok(mut truths) = truths.lock() {
             truths.insert(place.name.clone(), truth);
         }

@@ -123,10 +123,6 @@ impl Vault {
             hash.as_ref()
                 .is_none_or(|hash| sha256_of(path).is_ok_and(|is| is == *hash))
         };
-        let is_there = |hash: &Option<String>, path: &Path| {
-            hash.as_ref()
-                .is_none_or(|hash| sha256_of(path).is_ok_and(|is| is == *hash))
-        };
         let model = self.model_path(name);
         if let Some(record) = read_record(&record).filter(is_same)
             && is_there(&record.answer, &answer)

@@ -1,7 +1,7 @@
 //! The task's reference at every tick of 1 ms, and the way into it from rest.
 
-use crate::reference::Motion;
 use crate::scenario::Scenario;
+use torque::Motion;
 
 /// A tick (s): the machine's own.
 pub const TICK: f64 = 1e-3;
