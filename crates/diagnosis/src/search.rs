@@ -308,8 +308,20 @@ impl Problem<'_> {
         let set = chosen.others(member);
         let bare = self.choose(set.clone(), &chosen.fit.weights);
         let candidate = &self.candidates[member];
-        let is_plain = |c: &Candidate| Some(c.cause) == candidate.cause.plain() && c.joint == candidate.joint;
-        let Some(plain) = self.candidates.iter().position(is_plain) else {
+        let onset = |c: &Candidate| self.table.terms[c.columns[0]].onset();
+        let is_plain = |&c: &usize| {
+            let plain = &self.candidates[c];
+            Some(plain.cause) == candidate.cause.plain()
+                && plain.joint == candidate.joint
+                && onset(plain).is_some() == onset(candidate).is_some()
+        };
+        // Of what sets in halfway, that which sets in at nearly the same time.
+        let apart = |&c: &usize| match (onset(&self.candidates[c]), onset(candidate)) {
+            (Some(a), Some(b)) => (a - b).abs(),
+            _ => 0.0,
+        };
+        let plain = (0..self.candidates.len()).filter(is_plain);
+        let Some(plain) = plain.min_by(|a, b| apart(a).total_cmp(&apart(b))) else {
             return bare;
         };
         if set.contains(&plain) {

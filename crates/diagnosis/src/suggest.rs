@@ -36,7 +36,7 @@ impl Study {
                 )
             })
             .collect();
-        let mut new = scan::onsets(&self.table, &self.motions, &times, &residual, &self.fitted);
+        let mut new = scan::onsets(self, &chosen.fit.weights, &times, &residual);
         for (from, to) in windows {
             for round in [false, true] {
                 new.push((Cause::Contact, None, scan::contact_terms(from, to, round)));

@@ -11,6 +11,8 @@ pub enum Onset {
     Rigid,
     /// q̇ |q̇|.
     Drag,
+    /// One of the ten inertial parameters at the tool; it acts on all joints.
+    Payload(usize),
 }
 
 /// One column: the torque on one joint or several, for a coefficient of one.
@@ -160,7 +162,7 @@ pub enum Term {
     },
     /// A column that is nothing before a time.
     Since {
-        /// The joint.
+        /// The joint, of what acts on one.
         joint: usize,
         /// The column.
         what: Onset,
@@ -186,6 +188,7 @@ impl Onset {
             Self::Position => Term::Position(joint, 1),
             Self::Rigid => Term::Rigid(joint),
             Self::Drag => Term::Drag { joint, exponent: 2.0 },
+            Self::Payload(parameter) => Term::Payload(parameter),
         }
     }
 }
@@ -213,7 +216,10 @@ impl Term {
             self,
             Self::LoadSign(_)
                 | Self::Rigid(_)
-                | Self::Since { what: Onset::Rigid, .. }
+                | Self::Since {
+                    what: Onset::Rigid | Onset::Payload(_),
+                    ..
+                }
                 | Self::Elastic { .. }
                 | Self::Gap { .. }
                 | Self::Payload(_)
@@ -248,7 +254,11 @@ impl Term {
             | Self::Play(joint, _)
             | Self::Product(joint, _)
             | Self::Wave { joint, .. }
-            | Self::Since { joint, .. }
+            | Self::Since {
+                joint,
+                what: Onset::One | Onset::Position | Onset::Rigid | Onset::Drag,
+                ..
+            }
             | Self::Moment { joint, .. } => Some(joint),
             Self::PairVelocity(..)
             | Self::PairAcceleration(..)
@@ -260,6 +270,10 @@ impl Term {
             | Self::EncoderOffset(_)
             | Self::Tilt(_)
             | Self::Scale
+            | Self::Since {
+                what: Onset::Payload(_),
+                ..
+            }
             | Self::Force { .. } => None,
         }
     }

@@ -41,6 +41,8 @@ struct Contact {
 #[derive(Clone, Debug)]
 pub struct Corrected {
     arm: Arm,
+    /// The arm before something is picked up, until when (s), the earliest first.
+    earlier: Vec<(f64, Arm)>,
     tool: Frame,
     encoder_offsets: Vec<f64>,
     dry: Vec<(usize, Dry)>,
@@ -66,6 +68,7 @@ impl Corrected {
         let dof = arm.dof();
         let mut model = Self {
             arm: arm.clone(),
+            earlier: Vec::new(),
             tool: arm.tool_frame(),
             encoder_offsets: vec![0.0; dof],
             dry: Vec::new(),
@@ -85,7 +88,14 @@ impl Corrected {
             model.take(effect, joint, &mut rotors, &mut payloads)?;
         }
         model.arm = model.arm.with_rotor_inertias(&rotors);
-        for payload in &payloads {
+        payloads.sort_by(|(a, _), (b, _): &(Option<f64>, Inertia)| {
+            let key = |onset: &Option<f64>| onset.unwrap_or(f64::NEG_INFINITY);
+            key(a).total_cmp(&key(b))
+        });
+        for (onset, payload) in &payloads {
+            if let Some(onset) = onset {
+                model.earlier.push((*onset, model.arm.clone()));
+            }
             model.arm = model.arm.with_payload(payload);
         }
         Ok(model)
@@ -96,17 +106,21 @@ impl Corrected {
         effect: &Effect,
         joint: Option<usize>,
         rotors: &mut [f64],
-        payloads: &mut Vec<Inertia>,
+        payloads: &mut Vec<(Option<f64>, Inertia)>,
     ) -> Result<(), TorqueError> {
         let Some(j) = joint else {
             // The arm is moved out and back: builders take it whole.
             let arm = self.arm.clone();
             match *effect {
-                Effect::Payload { mass, com, inertia } => payloads.push(Inertia {
+                Effect::Payload {
                     mass,
-                    com: Vector3::from(com),
-                    tensor: check::tensor(inertia),
-                }),
+                    com,
+                    inertia,
+                    onset,
+                } => {
+                    let (com, tensor) = (Vector3::from(com), check::tensor(inertia));
+                    payloads.push((onset, Inertia { mass, com, tensor }));
+                }
                 Effect::InertialScale { factor } => self.arm = arm.with_scaled_inertias(factor),
                 Effect::GravityMisalignment { angle, axis } => {
                     self.arm = arm.with_turned_base(Vector3::from(axis), angle);
@@ -147,7 +161,7 @@ impl Corrected {
         Ok(())
     }
 
-    /// The rigid arm with all that changes its inertia or gravity.
+    /// The rigid arm with all that changes its inertia or gravity, and all that is ever picked up.
     pub fn arm(&self) -> &Arm {
         &self.arm
     }
@@ -204,7 +218,7 @@ impl Corrected {
             effects,
             learned,
         } = prediction;
-        self.rigid_torque(workspace, q, qd, qdd, rigid);
+        self.rigid_torque(time, workspace, [q, qd, qdd], rigid);
         effects.fill(0.0);
         learned.fill(0.0);
         for (joint, dry) in &self.dry {
@@ -224,8 +238,8 @@ impl Corrected {
         }
     }
 
-    /// The inverse dynamics at the angles where the joints stand.
-    fn rigid_torque(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64], rigid: &mut [f64]) {
+    /// The inverse dynamics at the angles where the joints stand, of the arm as it is at `time`.
+    fn rigid_torque(&self, time: Option<f64>, workspace: &mut Workspace, [q, qd, qdd]: [&[f64]; 3], rigid: &mut [f64]) {
         let Workspace {
             arm: scratch, input, ..
         } = workspace;
@@ -234,7 +248,9 @@ impl Corrected {
         for ((standing, q), offset) in standing.iter_mut().zip(q).zip(&self.encoder_offsets) {
             *standing = q + offset;
         }
-        self.arm.inverse_dynamics(scratch, standing, qd, qdd, rigid);
+        let earlier = self.earlier.iter().find(|(until, _)| !acts(Some(*until), time));
+        let arm = earlier.map_or(&self.arm, |(_, arm)| arm);
+        arm.inverse_dynamics(scratch, standing, qd, qdd, rigid);
     }
 
     /// Adds all but rigid body and dry friction to `tau`; the workspace knows where the joints stand.

@@ -175,6 +175,9 @@ pub enum Effect {
         /// Ixx Ixy Iyy Ixz Iyz Izz about the centre of mass, along the tool's axes (kg m²).
         #[serde(default)]
         inertia: [f64; 6],
+        /// s, on the recordings' own clock; before it the tool is empty. `None`: always.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        onset: Option<f64>,
     },
     /// The mass and inertia of the link that `joint` carries are (1 + relative) × the model's.
     LinkInertialError {
@@ -271,6 +274,7 @@ impl Effect {
         match self {
             Self::QuadraticDrag { onset, .. }
             | Self::TorqueScale { onset, .. }
+            | Self::Payload { onset, .. }
             | Self::TorqueOffset { onset, .. }
             | Self::Spring { onset, .. } => *onset,
             _ => None,

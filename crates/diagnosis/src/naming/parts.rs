@@ -26,7 +26,7 @@ pub fn rotor(reader: &mut Reader<'_>, joint: &str, units: &Units) -> Option<Name
 }
 
 pub fn payload(reader: &mut Reader<'_>) -> Effect {
-    let places: Vec<Option<usize>> = (0..10).map(|k| reader.at(|t| t == Term::Payload(k))).collect();
+    let places: Vec<Option<usize>> = (0..10).map(|k| reader.at(|t| t.always() == Term::Payload(k))).collect();
     let read = |draw: &[f64]| -> [f64; 10] {
         let mut parameters = [0.0; 10];
         for (value, place) in parameters.iter_mut().zip(&places) {
@@ -50,7 +50,12 @@ pub fn payload(reader: &mut Reader<'_>) -> Effect {
     } else {
         [0.0; 6]
     };
-    Effect::Payload { mass, com, inertia }
+    Effect::Payload {
+        mass,
+        com,
+        inertia,
+        onset: reader.onset(),
+    }
 }
 
 /// A straight spring, or a curve through the places where its columns peak.

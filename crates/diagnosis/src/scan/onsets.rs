@@ -1,10 +1,10 @@
 //! Effects that set in halfway: when, by what is left.
 
+use nalgebra::{Matrix4, Vector4};
 use rayon::prelude::*;
 
-use super::explained;
 use crate::candidate::Cause;
-use crate::motion::Motions;
+use crate::study::Study;
 use crate::table::Table;
 use crate::term::{Onset, Term};
 
@@ -15,82 +15,140 @@ const FORMS: [(Cause, &[Onset]); 4] = [
     (Cause::Spring, &[Onset::One, Onset::Position]),
     (Cause::Drag, &[Onset::Drag]),
 ];
-/// From one time that is tried to the next, and from either end of the recordings to the first of them (s).
+/// From one time that is tried to the next, and about the best of them (s).
 const STEP: f64 = 0.5;
+const FINE: f64 = 0.05;
+/// From either end of the recordings to the first time that is tried (s).
 const LEAST: f64 = 2.0;
 
-/// For each form on each joint, the candidate whose onset explains most of `residual` (N m or N, all rows). None where the
-/// recordings are not on one clock: before and after mean nothing then.
+/// For each form on each joint, and for a payload, the candidate whose onset explains most of `residual` (N m or N, all rows).
+/// None where the recordings are not on one clock: before and after mean nothing then.
 pub fn onsets(
-    table: &Table,
-    motions: &Motions,
+    study: &Study,
+    weights: &[f64],
     times: &[f64],
     residual: &[Vec<f64>],
-    fitted: &[bool],
 ) -> Vec<(Cause, Option<usize>, Vec<Term>)> {
-    if !motions.one_clock {
+    if !study.motions.one_clock {
         return Vec::new();
     }
-    let rows: Vec<usize> = table
-        .rows
-        .iter()
-        .zip(fitted)
-        .filter(|(_, fitted)| **fitted)
-        .flat_map(|(rows, _)| rows.clone())
-        .collect();
-    let forms: Vec<(usize, Cause, &[Onset])> = (0..table.dof())
+    let mut rows: Vec<usize> = study.training().collect();
+    rows.sort_by(|&a, &b| times[b].total_cmp(&times[a]));
+    let past = Past {
+        table: &study.table,
+        weights,
+        times,
+        residual,
+        rows,
+    };
+    let dof = study.table.dof();
+    let forms: Vec<(usize, Cause, &[Onset])> = (0..dof)
         .flat_map(|joint| FORMS.map(|(cause, what)| (joint, cause, what)))
         .collect();
-    forms
+    let mut list: Vec<(Cause, Option<usize>, Vec<Term>)> = forms
         .into_par_iter()
         .filter_map(|(joint, cause, what)| {
-            let from = best(table, times, &residual[joint], &rows, joint, what)?;
+            let from = past.best(&[joint], what)?;
             let terms = what.iter().map(|&what| Term::Since { joint, what, from }).collect();
             Some((cause, Some(joint), terms))
         })
-        .collect()
-}
-
-/// The onset from which on the columns `what` explain most of what is left of `joint` on its moving `rows`.
-fn best(table: &Table, times: &[f64], residual: &[f64], rows: &[usize], joint: usize, what: &[Onset]) -> Option<f64> {
-    let this = &table.joints[joint];
-    let column = |what: Onset| -> Option<&Vec<f64>> {
-        let term = table.terms.iter().position(|&term| term == what.always(joint))?;
-        table.place[joint][term].map(|place| &this.x[place])
-    };
-    let first = column(*what.first()?)?;
-    let second = match what.get(1) {
-        Some(&what) => Some(column(what)?),
-        None => None,
-    };
-    let mut moving: Vec<usize> = rows.iter().copied().filter(|&row| this.moving[row]).collect();
-    moving.sort_by(|&a, &b| times[b].total_cmp(&times[a]));
-    let (latest, earliest) = (times[*moving.first()?], times[*moving.last()?]);
-    let mut sums = [0.0; 5];
-    let mut found: Option<(f64, f64)> = None;
-    let mut next = latest - LEAST;
-    // From the end to the beginning, what the columns explain since each time.
-    for row in moving {
-        let time = times[row];
-        if time < earliest + LEAST {
-            break;
-        }
-        while time < next {
-            let [aa, ab, bb, ar, br] = sums;
-            let gain = match second {
-                Some(_) => explained(aa, ab, bb, ar, br),
-                None if aa > 0.0 => ar * ar / aa,
-                None => 0.0,
-            };
-            if found.is_none_or(|(most, _)| gain > most) {
-                found = Some((gain, next));
-            }
-            next -= STEP;
-        }
-        let (a, b, r) = (first[row], second.map_or(0.0, |x| x[row]), residual[row]);
-        for (sum, product) in sums.iter_mut().zip([a * a, a * b, b * b, a * r, b * r]) {
-            *sum += product;
+        .collect();
+    let joints: Vec<usize> = (0..dof).collect();
+    let body = [0, 1, 2, 3].map(Onset::Payload);
+    if let Some(from) = past.best(&joints, &body) {
+        // With its moments of inertia and, where they do not show, without.
+        for count in [10, 4] {
+            let what = (0..count).map(Onset::Payload);
+            let terms = what.map(|what| Term::Since { joint: 0, what, from }).collect();
+            list.push((Cause::Payload, None, terms));
         }
     }
-    found.map(|(_, from)| from)
+    list
+}
+
+/// What is left of the training recordings, the latest row first.
+struct Past<'a> {
+    table: &'a Table,
+    weights: &'a [f64],
+    times: &'a [f64],
+    residual: &'a [Vec<f64>],
+    rows: Vec<usize>,
+}
+
+impl Past<'_> {
+    /// The onset from which on the columns `what` explain most of what is left of `joints` on their moving rows.
+    fn best(&self, joints: &[usize], what: &[Onset]) -> Option<f64> {
+        let (table, times) = (self.table, self.times);
+        let columns: Vec<Vec<Option<&Vec<f64>>>> = joints
+            .iter()
+            .map(|&joint| {
+                let column = |what: &Onset| {
+                    let term = table.terms.iter().position(|&term| term == what.always(joint))?;
+                    table.place[joint][term].map(|place| &table.joints[joint].x[place])
+                };
+                what.iter().map(column).collect()
+            })
+            .collect();
+        if columns.iter().flatten().all(Option::is_none) {
+            return None;
+        }
+        let moves = |row: &&usize| joints.iter().any(|&joint| table.joints[joint].moving[**row]);
+        let (latest, earliest) = (
+            times[*self.rows.iter().find(moves)?],
+            times[*self.rows.iter().rev().find(moves)?],
+        );
+        let about = |found: f64| [(found - STEP).max(earliest + LEAST), (found + STEP).min(latest - LEAST)];
+        let coarse = self.scan(joints, &columns, [earliest + LEAST, latest - LEAST], STEP)?;
+        self.scan(joints, &columns, about(coarse), FINE)
+    }
+
+    /// The best of the onsets between two times, `step` from each other.
+    fn scan(
+        &self,
+        joints: &[usize],
+        columns: &[Vec<Option<&Vec<f64>>>],
+        [from, to]: [f64; 2],
+        step: f64,
+    ) -> Option<f64> {
+        let (table, times) = (self.table, self.times);
+        let (mut matrix, mut right) = (Matrix4::zeros(), Vector4::zeros());
+        let mut found: Option<(f64, f64)> = None;
+        let mut next = to;
+        // From the end to the beginning, what the columns explain since each time.
+        for &row in &self.rows {
+            let time = times[row];
+            while time < next && next >= from {
+                let gain = explained(&matrix, &right);
+                if found.is_none_or(|(most, _)| gain > most) {
+                    found = Some((gain, next));
+                }
+                next -= step;
+            }
+            if next < from {
+                break;
+            }
+            for (&joint, columns) in joints.iter().zip(columns) {
+                if !table.joints[joint].moving[row] {
+                    continue;
+                }
+                let mut x = Vector4::zeros();
+                for (value, column) in x.iter_mut().zip(columns) {
+                    *value = column.map_or(0.0, |column| column[row]);
+                }
+                matrix += self.weights[joint] * x * x.transpose();
+                right += self.weights[joint] * self.residual[joint][row] * x;
+            }
+        }
+        found.map(|(_, from)| from)
+    }
+}
+
+/// What columns of these inner products explain.
+fn explained(matrix: &Matrix4<f64>, right: &Vector4<f64>) -> f64 {
+    let mut matrix = *matrix;
+    let ridge = 1e-9 * matrix.trace();
+    for k in 0..4 {
+        matrix[(k, k)] += ridge.max(1e-300);
+    }
+    matrix.cholesky().map_or(0.0, |factor| right.dot(&factor.solve(right)))
 }

@@ -133,14 +133,23 @@ pub fn rollout(
 
     let run = |effects: &[Effect]| -> anyhow::Result<Run> {
         let mut variant = Variant::new(arm, effects, &course)?;
-        let paths = starts
-            .iter()
-            .map(|start| variant.run(&course, start, instants))
-            .collect();
-        Ok(Run {
-            paths,
-            remarks: variant.remarks,
-        })
+        let remarks = std::mem::take(&mut variant.remarks);
+        let mut acting = effects.to_vec();
+        let mut paths = Vec::with_capacity(starts.len());
+        for start in &starts {
+            // What is picked up within a window is not there in it.
+            let time = recording.time(start.tick);
+            let is_there = |effect: &&Effect| {
+                !matches!(effect, Effect::Payload { .. }) || effect.onset().is_none_or(|onset| onset <= time)
+            };
+            let now: Vec<Effect> = effects.iter().filter(is_there).cloned().collect();
+            if now != acting {
+                variant = Variant::new(arm, &now, &course)?;
+                acting = now;
+            }
+            paths.push(variant.run(&course, start, instants));
+        }
+        Ok(Run { paths, remarks })
     };
     let (nominal, augmented) = rayon::join(|| run(nominal), || run(augmented));
     let nominal = nominal.context("the nominal arm cannot be simulated")?;

@@ -115,6 +115,7 @@ fn payloads(effects: &[Effect]) -> Vec<Inertia> {
             mass,
             com,
             inertia: [xx, xy, yy, xz, yz, zz],
+            onset: None,
         } => Some(Inertia {
             mass,
             com: Vector3::from(com),
@@ -131,7 +132,7 @@ fn is_held(effect: &Effect) -> bool {
         effect,
         Effect::ViscousFriction { .. }
             | Effect::CoulombFriction { .. }
-            | Effect::Payload { .. }
+            | Effect::Payload { onset: None, .. }
             | Effect::LinkInertialError { .. }
             | Effect::InertialScale { .. }
     )

@@ -120,7 +120,7 @@ pub(super) fn check(effect: &Effect) -> Result<(), TorqueError> {
             &[("viscous", viscous), ("coulomb", coulomb), ("inertia", inertia)],
             FINITE,
         ),
-        Effect::Payload { mass, com, inertia } => {
+        Effect::Payload { mass, com, inertia, .. } => {
             all(&[("mass", mass)], NOT_NEGATIVE)?;
             all(&com.map(|value| ("com", value)), FINITE)?;
             all(&inertia.map(|value| ("inertia", value)), FINITE)?;

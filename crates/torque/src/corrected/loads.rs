@@ -41,7 +41,7 @@ impl Corrected {
         let needs_rigid = !self.contacts.is_empty() || self.dry.iter().any(|(_, dry)| dry.depends_on_load());
         if needs_rigid {
             // `dry` holds the rigid torque for as long as it is needed.
-            self.rigid_torque(workspace, q, qd, qdd, dry);
+            self.rigid_torque(Some(time), workspace, [q, qd, qdd], dry);
             workspace.rigid.copy_from_slice(dry);
         }
         dry.fill(0.0);

@@ -151,6 +151,7 @@ fn load_is_the_rigid_torque_of_the_corrected_arm() {
             mass: 1.0,
             com: [0.5, 0.0, 0.0],
             inertia: [0.0; 6],
+            onset: None,
         },
         Effect::LoadDependentFriction {
             joint: a(),
@@ -379,7 +380,8 @@ fn refusals_name_effect_joint_and_value() {
         refused(Effect::Payload {
             mass: 1.0,
             com: [0.0; 3],
-            inertia: [-1.0, 0.0, 1.0, 0.0, 0.0, 1.0]
+            inertia: [-1.0, 0.0, 1.0, 0.0, 0.0, 1.0],
+            onset: None,
         }),
         "payload of the whole arm: inertia's smallest principal moment is -1; it must be finite and not negative"
     );

@@ -96,6 +96,7 @@ fn all(joint: &str, other: &str) -> Vec<Effect> {
             mass: 1.5,
             com: [0.0, 0.01, 0.1],
             inertia: [0.01, 0.0, 0.01, 0.0, 0.0, 0.02],
+            onset: None,
         },
         Effect::LinkInertialError {
             joint: joint(),

@@ -97,6 +97,7 @@ fn friction_and_payload_named_are_friction_and_payload_simulated() {
         mass: 2.0,
         com: [0.0, 0.0, 0.1],
         inertia: [0.01, 0.0, 0.01, 0.0, 0.0, 0.01],
+        onset: None,
     });
     let truth = Corrected::new(&nominal, &effects)
         .expect("they are physical")

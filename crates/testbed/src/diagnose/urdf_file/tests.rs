@@ -40,6 +40,7 @@ fn effects() -> Vec<Effect> {
             mass: 1.5,
             com: [0.1, 0.02, 0.3],
             inertia: [0.03, 0.001, 0.02, 0.0, 0.002, 0.01],
+            onset: None,
         },
         Effect::LinkInertialError {
             joint: "b".into(),
@@ -122,6 +123,7 @@ fn the_puma_goes_round() {
             mass: 2.0,
             com: [0.0, 0.0, 0.1],
             inertia: [0.01, 0.0, 0.01, 0.0, 0.0, 0.01],
+            onset: None,
         },
         Effect::LinkInertialError {
             joint: joint(1),
