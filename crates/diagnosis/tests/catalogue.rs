@@ -153,7 +153,7 @@ fn what_sets_in_has_its_onset() {
 fn a_payload_picked_up_has_its_onset() {
     let body = arm::Inertia {
         mass: 1.2,
-        com: arm::Vector3::new(0.02, -0.01, 0.08),
+        com: Vector3::new(0.02, -0.01, 0.08),
         tensor: arm::Matrix3::identity() * 2e-3,
     };
     let (empty, loaded) = (trio(), trio().with_payload(&body));

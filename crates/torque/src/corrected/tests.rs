@@ -41,6 +41,16 @@ fn added(effect: Effect, q: f64, qd: f64) -> f64 {
     predict(&model, None, &[q, 0.0], &[qd, 0.0], &[0.0, 0.0]).effects[0]
 }
 
+fn offset(offset: f64, onset: Option<f64>) -> Effect {
+    let joint = a();
+    Effect::TorqueOffset { joint, offset, onset }
+}
+
+fn scale(factor: f64, onset: Option<f64>) -> Effect {
+    let joint = a();
+    Effect::TorqueScale { joint, factor, onset }
+}
+
 #[track_caller]
 fn near(found: f64, expected: f64) {
     assert!((found - expected).abs() < 1e-12, "{found} instead of {expected}");
@@ -242,18 +252,7 @@ fn a_coupling_follows_the_other_joint() {
 /// What sets in at a time is not there before; where no time is given, it is.
 #[test]
 fn an_onset_is_waited_for() {
-    let effects = [
-        Effect::TorqueOffset {
-            joint: a(),
-            offset: 2.0,
-            onset: Some(10.0),
-        },
-        Effect::TorqueScale {
-            joint: a(),
-            factor: 1.5,
-            onset: Some(20.0),
-        },
-    ];
+    let effects = [offset(2.0, Some(10.0)), scale(1.5, Some(20.0))];
     let model = Corrected::new(&arm(PENDULUM), &effects).expect("they are physical");
     let of = |time| predict(&model, time, &[std::f64::consts::FRAC_PI_2], &[0.0], &[1.0]).torque(0);
     near(of(Some(9.9)), 0.6);
@@ -264,19 +263,8 @@ fn an_onset_is_waited_for() {
 
 #[test]
 fn scale_and_limit_come_last() {
-    let effects = [
-        Effect::TorqueOffset {
-            joint: a(),
-            offset: 2.0,
-            onset: None,
-        },
-        Effect::TorqueScale {
-            joint: a(),
-            factor: 1.5,
-            onset: None,
-        },
-        Effect::TorqueSaturation { joint: a(), limit: 2.5 },
-    ];
+    let limit = Effect::TorqueSaturation { joint: a(), limit: 2.5 };
+    let effects = [offset(2.0, None), scale(1.5, None), limit];
     let of = |effects: &[Effect]| {
         let model = Corrected::new(&arm(PENDULUM), effects).expect("they are physical");
         predict(&model, None, &[std::f64::consts::FRAC_PI_2], &[0.0], &[1.0]).torque(0)
