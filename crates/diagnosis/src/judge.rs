@@ -19,6 +19,9 @@ const LEAST_BEYOND: f64 = 15.0;
 const BESIDE_A_LARGER: f64 = 0.1;
 /// … or, where that effect's form is certain, than this part.
 const BESIDE_A_CERTAIN: f64 = 0.05;
+/// Beside friction that grows with the load, a torque's scale must be larger than this part of it: both are a gain on the load,
+/// and what the load is, the drive's or the link's, is a matter of form.
+const BESIDE_LOADED_FRICTION: f64 = 0.3;
 /// Structure without a name must explain this much of a joint's torque spread …
 const LEAST_NAMELESS_SHARE: f64 = 0.012;
 /// … and this much of what the model as it was given misses …
@@ -281,7 +284,12 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
                 largest(&is_other, joint)
             };
             let share = member.shares[joint];
+            let loaded = match cause(member) {
+                Cause::TorqueScale => largest(&|m| cause(m) == Cause::LoadDependent, joint),
+                _ => 0.0,
+            };
             share >= LEAST_SHARE
+                && share >= BESIDE_LOADED_FRICTION * loaded
                 && share >= BESIDE_A_LARGER * others(false)
                 && share >= BESIDE_A_CERTAIN * others(true)
                 && share >= BESIDE_NAMELESS * largest(&|m| !is_named(m), joint)

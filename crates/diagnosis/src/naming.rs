@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use torque::Effect;
 
-use crate::bootstrap::Resampled;
+use crate::bootstrap::{OF_FORM, Resampled, SYSTEMATIC};
 use crate::candidate::Cause;
 use crate::refine::Size;
 use crate::report::Parameter;
@@ -51,7 +51,18 @@ impl Reader<'_> {
 
     /// Notes a parameter that is a function of the coefficients; its value.
     fn note(&mut self, key: &'static str, unit: &'static str, f: impl Fn(&[f64]) -> f64) -> f64 {
-        let (value, ci95) = self.resampled.interval(f);
+        self.note_within(SYSTEMATIC, key, unit, f)
+    }
+
+    /// The same with another part of the value that no repetition shows.
+    fn note_within(
+        &mut self,
+        systematic: f64,
+        key: &'static str,
+        unit: &'static str,
+        f: impl Fn(&[f64]) -> f64,
+    ) -> f64 {
+        let (value, ci95) = self.resampled.interval_within(systematic, f);
         self.parameters.insert(key, Parameter { value, ci95, unit });
         value
     }
@@ -62,10 +73,17 @@ impl Reader<'_> {
     }
 
     /// What is simulated at its size: where its torque is in proportion to that, its coefficient and the size's correction
-    /// mean the same, and only together are they determined. `value` takes both.
-    fn simulated(&mut self, key: &'static str, unit: &'static str, value: impl Fn(f64, f64) -> f64) -> f64 {
+    /// mean the same, and only together are they determined. `value` takes both; `systematic` is as in
+    /// [`Resampled::interval_within`].
+    fn simulated(
+        &mut self,
+        key: &'static str,
+        unit: &'static str,
+        systematic: f64,
+        value: impl Fn(f64, f64) -> f64,
+    ) -> f64 {
         let (first, size) = (self.nth(0), self.resampled.size(self.candidate, Size::Main));
-        self.note(key, unit, |draw| {
+        self.note_within(systematic, key, unit, |draw| {
             let drawn = first.map_or(1.0, |at| draw[at]);
             let size = size.map_or(0.0, |at| draw[at]);
             value(drawn, size)
@@ -84,6 +102,14 @@ impl Reader<'_> {
         match self.resampled.size(self.candidate, size) {
             Some(at) => self.note(key, unit, |draw| value * (1.0 + draw[at].clamp(-0.5, 0.5))),
             None => self.note(key, unit, |_| value),
+        }
+    }
+
+    /// The same of one that hangs on its form.
+    fn size_of_form(&mut self, key: &'static str, unit: &'static str, size: Size, value: f64) -> f64 {
+        match self.resampled.size(self.candidate, size) {
+            Some(at) => self.note_within(OF_FORM, key, unit, |draw| value * (1.0 + draw[at].clamp(-0.5, 0.5))),
+            None => self.note_within(OF_FORM, key, unit, |_| value),
         }
     }
 }
@@ -131,8 +157,8 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
             };
             Effect::StribeckFriction {
                 coulomb: reader.note("coulomb", units.torque, |draw| draw[a]),
-                breakaway: reader.note("breakaway", units.torque, |draw| draw[a] + draw[b]),
-                velocity: reader.size("velocity", units.speed, Size::Main, velocity),
+                breakaway: reader.note_within(OF_FORM, "breakaway", units.torque, |draw| draw[a] + draw[b]),
+                velocity: reader.size_of_form("velocity", units.speed, Size::Main, velocity),
                 exponent,
                 joint,
             }
@@ -213,7 +239,7 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
                 return Vec::new();
             };
             Effect::ActuationDelay {
-                delay: reader.simulated("delay", "s", |drawn, size| delay * (drawn + size)),
+                delay: reader.simulated("delay", "s", OF_FORM, |drawn, size| delay * (drawn + size)),
                 joint,
             }
         }
@@ -222,10 +248,10 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
                 return Vec::new();
             };
             Effect::JointElasticity {
-                stiffness: reader.simulated("stiffness", units.stiffness, |drawn, size| {
+                stiffness: reader.simulated("stiffness", units.stiffness, SYSTEMATIC, |drawn, size| {
                     stiffness / (drawn - size).clamp(0.4, 2.5)
                 }),
-                damping: reader.size("damping", units.damping, Size::Damping, damping),
+                damping: reader.size_of_form("damping", units.damping, Size::Damping, damping),
                 joint,
             }
         }
@@ -234,7 +260,9 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
                 return Vec::new();
             };
             Effect::Backlash {
-                halfgap: reader.simulated("halfgap", units.position, |drawn, size| halfgap * (drawn + size)),
+                halfgap: reader.simulated("halfgap", units.position, OF_FORM, |drawn, size| {
+                    halfgap * (drawn + size)
+                }),
                 joint,
             }
         }
@@ -309,7 +337,7 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
                 (draw[x].powi(2) + draw[y].powi(2) + draw[z].powi(2)).sqrt()
             });
             reader.note("start", "s", |_| from);
-            reader.size("duration", "s", Size::Duration, to - from);
+            reader.size_of_form("duration", "s", Size::Duration, to - from);
             Effect::ExternalContact {
                 start: from,
                 duration: to - from,

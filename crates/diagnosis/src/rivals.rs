@@ -118,6 +118,19 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         }
     }
     let explained = without.fit.loss - chosen.fit.loss;
+    let mut identical = Vec::new();
+    if finding.cause == Cause::TorqueOffset
+        && study.terms(member).iter().any(|term| term.onset().is_some())
+        && set.iter().any(|&c| {
+            let other = &study.candidates[c];
+            other.cause == Cause::Coulomb
+                && other.joint == finding.joint
+                && chosen.fit.coefficient(other.columns[0]) > chosen.fit.coefficient(finding.columns[0]).abs()
+        })
+    {
+        // Dry friction that from then on differs by direction: the same level, and the same constant.
+        identical.push((0.0, 0.0, Cause::Asymmetry, finding.joint));
+    }
     let allowance = allowance(explained);
     let mut results: Vec<(f64, f64, Cause, Option<usize>)> = sets
         .into_par_iter()
@@ -129,6 +142,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
             possible.then_some((next.fit.loss - chosen.fit.loss, next.score - chosen.score, cause, joint))
         })
         .collect();
+    results.extend(identical);
     results.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)).then(a.3.cmp(&b.3)));
     // What is simpler is likelier: the margin counts the costs.
     let margin = results.iter().map(|result| result.1).fold(explained, f64::min);

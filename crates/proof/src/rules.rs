@@ -37,7 +37,7 @@ pub fn same_machine(truth: &Truth, concealed: &Concealed) -> Option<Name> {
         _ => return None,
     };
     let number = |of: &Concealed, key: &str| of.parameters.get(key).and_then(serde_json::Value::as_f64);
-    // What sets in later, or friction of another kind beside it, is told by that.
+    // Friction of another kind beside it tells. Setting in later does not: the level is there before.
     let beside: Vec<&Concealed> = truth
         .concealed
         .iter()
@@ -45,7 +45,7 @@ pub fn same_machine(truth: &Truth, concealed: &Concealed) -> Option<Name> {
             c.joint == concealed.joint && crate::sizes::is_dry_friction(c.name()) && c.name() != concealed.name()
         })
         .collect();
-    let is_plain = concealed.onset.is_none() && concealed.form.is_none();
+    let is_plain = concealed.form.is_none();
     let same = match (concealed.name(), beside.as_slice()) {
         ("friction_asymmetry", []) => is_plain,
         // A constant beyond the level of friction would push by itself.

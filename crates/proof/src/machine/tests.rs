@@ -215,12 +215,15 @@ fn asymmetry_and_offset_give_one_recording() {
         .enumerate()
         .for_each(|(k, q)| *q = held[k % n]);
     let reference = Reference::new(robot.arm(), 0.0, reference.q);
-    let (a, b) = (
-        run(&robot, &[uneven], &reference),
-        run(&robot, &[level, offset], &reference),
-    );
-    let apart = a.tau.iter().zip(&b.tau).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    assert!(apart < 1e-6, "{apart}");
+    // Always, and from halfway of the motion on.
+    for onset in [None, Some(1.0)] {
+        let [mut uneven, mut offset] = [uneven.clone(), offset.clone()];
+        (uneven.onset, offset.onset) = (onset, onset);
+        let pair = [vec![uneven], vec![level.clone(), offset]];
+        let [a, b] = pair.map(|effects| run(&robot, &effects, &reference).tau);
+        let apart = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(apart < 1e-6, "{onset:?}: {apart}");
+    }
 }
 
 /// A machine that cannot follow says so.
