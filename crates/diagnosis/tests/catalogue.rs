@@ -3,16 +3,8 @@
 mod support;
 
 use arm::{Arm, Vector3};
-use diagnosis::{Diagnosis, Verdict};
-use support::{Concealed, ELBOW, Motion, SHOULDER, diagnosed, motion, trio};
-
-/// Friction of every joint, which every robot has.
-fn ordinary(motion: &Motion, tau: &mut [f64]) {
-    for joint in 0..3 {
-        let speed = motion.qd[joint];
-        tau[joint] += 0.6 * speed.signum() + 0.4 * speed;
-    }
-}
+use diagnosis::Verdict;
+use support::{Concealed, ELBOW, Motion, SHOULDER, diagnosed, motion, ordinary, sentences, trio};
 
 /// What is found beside plain friction must be `effect` on `joint`, with parameters within a part `tolerance` of the truth.
 fn check(
@@ -72,15 +64,6 @@ fn check(
     }
 }
 
-fn sentences(diagnosis: &Diagnosis) -> Vec<&str> {
-    diagnosis
-        .report
-        .findings
-        .iter()
-        .map(|finding| finding.sentence.as_str())
-        .collect()
-}
-
 /// An effect that adds a torque to one joint.
 fn added(effect: &str, joint: usize, torque: impl Fn(&Motion) -> f64, truth: &[(&str, f64)], tolerance: f64) {
     let arm = trio();
@@ -117,69 +100,6 @@ fn rotor_inertia() {
 #[test]
 fn torque_offset() {
     added("torque_offset", ELBOW, |_| 1.5, &[("offset", 1.5)], 0.05);
-}
-
-/// What sets in halfway is named with its onset, whatever it is.
-#[test]
-fn what_sets_in_has_its_onset() {
-    let name = trio().joints()[ELBOW].name.clone();
-    let onset = 1006.0;
-    let offset = |_: &Motion| 1.5;
-    let spring = |m: &Motion| 4.0 * (m.q[ELBOW] - 0.3);
-    type Torque<'a> = &'a dyn Fn(&Motion) -> f64;
-    let effects: [(&str, Torque<'_>); 2] = [("torque_offset", &offset), ("spring", &spring)];
-    for (effect, torque) in effects {
-        let concealed = |motion: &mut Motion, tau: &mut [f64]| {
-            ordinary(motion, tau);
-            if motion.clock >= onset {
-                tau[ELBOW] += torque(motion);
-            }
-        };
-        let diagnosis = diagnosed(&trio(), &trio(), &concealed, Vec::new());
-        let finding = diagnosis.report.findings.iter().find(|f| f.effect == effect);
-        let left = &diagnosis.report.unexplained;
-        let finding = finding.unwrap_or_else(|| panic!("{effect}: {:?} {left:?}", sentences(&diagnosis)));
-        assert_eq!(finding.joint.as_deref(), Some(name.as_str()));
-        let found = finding.parameters["onset"].value;
-        assert!((found - onset).abs() < 0.1, "{effect}: {found}");
-        assert!(finding.sentence.contains("from 1006 s on"), "{}", finding.sentence);
-        let again = diagnosed(&trio(), &trio(), &concealed, diagnosis.effects.clone());
-        assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
-    }
-}
-
-/// A payload picked up halfway is one payload, not what it does to each joint.
-#[test]
-fn a_payload_picked_up_has_its_onset() {
-    let body = arm::Inertia {
-        mass: 1.2,
-        com: Vector3::new(0.02, -0.01, 0.08),
-        tensor: arm::Matrix3::identity() * 2e-3,
-    };
-    let (empty, loaded) = (trio(), trio().with_payload(&body));
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
-        if motion.clock >= 1006.0 {
-            loaded.inverse_dynamics(
-                &mut arm::Workspace::new(&loaded),
-                &motion.q,
-                &motion.qd,
-                &motion.qdd,
-                tau,
-            );
-        }
-        ordinary(motion, tau);
-    };
-    let diagnosis = diagnosed(&empty, &empty, &concealed, Vec::new());
-    let plain = ["viscous_friction", "coulomb_friction"];
-    let special = diagnosis.report.findings.iter().filter(|f| !plain.contains(&f.effect));
-    let special: Vec<_> = special.collect();
-    assert_eq!(special.len(), 1, "{:?}", sentences(&diagnosis));
-    assert_eq!(special[0].effect, "payload");
-    let parameters = &special[0].parameters;
-    assert!((parameters["mass"].value - 1.2).abs() < 0.03, "{parameters:?}");
-    assert!((parameters["onset"].value - 1006.0).abs() < 0.1, "{parameters:?}");
-    let again = diagnosed(&empty, &empty, &concealed, diagnosis.effects.clone());
-    assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
 }
 
 #[test]

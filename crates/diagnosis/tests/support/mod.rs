@@ -161,3 +161,21 @@ pub fn diagnosed_with(
         .collect();
     diagnose(believed, &inputs, options, &|_| {})
 }
+
+/// Friction of every joint, which every robot has.
+pub fn ordinary(motion: &Motion, tau: &mut [f64]) {
+    for joint in 0..3 {
+        let speed = motion.qd[joint];
+        tau[joint] += 0.6 * speed.signum() + 0.4 * speed;
+    }
+}
+
+/// What was found, in words.
+pub fn sentences(diagnosis: &Diagnosis) -> Vec<&str> {
+    diagnosis
+        .report
+        .findings
+        .iter()
+        .map(|finding| finding.sentence.as_str())
+        .collect()
+}
