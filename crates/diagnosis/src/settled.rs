@@ -1,9 +1,11 @@
 //! The last fit: about the arm that the named effects make, and without what does not prove itself.
 
+use torque::Corrected;
+
 use crate::bootstrap::{Resampled, resample};
 use crate::found::useless;
 use crate::judge::{self, Judged};
-use crate::naming::name;
+use crate::naming::{Named, name};
 use crate::predict::{augmented, errors};
 use crate::search::{Chosen, Problem};
 use crate::study::Study;
@@ -101,10 +103,15 @@ fn give_up(study: &Study, judged: &mut Judged) {
     }
 }
 
-/// The weakest of the names whose size might be zero.
+/// The weakest of the names whose size might be zero, or is none that physics has.
 fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<usize> {
     let is_unclear = |member: &&judge::Member| {
         let named = name(study, resampled, member.candidate);
+        // With its sizes corrected it may be no physics any more: a level below zero.
+        let is_impossible = |named: &Named| Corrected::new(&study.arm, std::slice::from_ref(&named.effect)).is_err();
+        if named.iter().any(is_impossible) {
+            return true;
+        }
         named.first().is_some_and(|named| {
             let effect = named.effect.name();
             // A factor of one changes nothing.
