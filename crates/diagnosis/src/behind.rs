@@ -20,9 +20,10 @@ impl Behind {
                 joint,
                 stiffness,
                 damping,
-            } => (joint, elastic(joint, stiffness, damping, chunk, rigid)),
+            } => (joint, sprung(joint, 0.0, stiffness, |_| damping, chunk, rigid)),
             Term::Gap { joint, halfgap, stop } if stop.is_finite() => {
-                (joint, sprung_gap(joint, halfgap, stop, chunk, rigid))
+                let damping = |mass: f64| 2.0 * STOP_DAMPING * (stop * mass.max(0.0)).sqrt();
+                (joint, sprung(joint, halfgap, stop, damping, chunk, rigid))
             }
             Term::Gap { joint, halfgap, .. } => (joint, gap(joint, halfgap, chunk, rigid)),
             _ => return None,
@@ -45,11 +46,21 @@ impl Behind {
     }
 }
 
-/// δ behind a spring at joint `at`:
-/// M δ̈ + (D + ∂τ/∂q̇) δ̇ + (K + ∂τ/∂q) δ = −τ, driven by the drive's measured motion.
+/// Damping ratio of the ends of a gap: an impact is inelastic.
+const STOP_DAMPING: f64 = 1.0;
+
+/// δ behind a spring at joint `at`, in a gap of ± `halfgap` (none: zero) in which the link moves freely:
+/// M δ̈ + (D + ∂τ/∂q̇) δ̇ + ∂τ/∂q δ + K (δ ∓ halfgap) = −τ, driven by the drive's measured motion. `damping` gives D for M.
 ///
-/// Integrated by the trapezoidal rule (Newmark, β = 1/4), from the quasi-static δ = −τ/K.
-fn elastic(at: usize, stiffness: f64, damping: f64, chunk: &Chunk, rigid: &Rigid) -> Vec<[f64; 3]> {
+/// Integrated by the trapezoidal rule (Newmark, β = 1/4), from the quasi-static deflection.
+fn sprung(
+    at: usize,
+    halfgap: f64,
+    stiffness: f64,
+    damping: impl Fn(f64) -> f64,
+    chunk: &Chunk,
+    rigid: &Rigid,
+) -> Vec<[f64; 3]> {
     let h = chunk.period;
     let (mass, drag, slope) = (
         &rigid.mass[at][at],
@@ -59,14 +70,26 @@ fn elastic(at: usize, stiffness: f64, damping: f64, chunk: &Chunk, rigid: &Rigid
     let tau = &rigid.tau[at];
     let ticks = chunk.ticks();
     let mut out = Vec::with_capacity(ticks);
-    let mut delta = -tau[0] / (stiffness + slope[0]);
+    // Positive torque: the drive pushes the link in the positive direction, so the link lags behind.
+    let mut delta = -halfgap.copysign(tau[0]) - tau[0] / (stiffness + slope[0]);
     let (mut speed, mut acceleration) = (0.0, 0.0);
     for k in 0..ticks {
-        let (m, d, s) = (mass[k], damping + drag[k], stiffness + slope[k]);
         if k > 0 {
-            let place = delta + h * speed + 0.25 * h * h * acceleration;
+            let place: f64 = delta + h * speed + 0.25 * h * h * acceleration;
             let pace = speed + 0.5 * h * acceleration;
-            acceleration = (-tau[k] - d * pace - s * place) / (m + 0.5 * h * d + 0.25 * h * h * s);
+            let solve = |damping: f64, spring: f64, rest: f64| {
+                let (d, s) = (drag[k] + damping, slope[k] + spring);
+                -(tau[k] + d * pace + s * place - spring * rest) / (mass[k] + 0.5 * h * d + 0.25 * h * h * s).max(1e-9)
+            };
+            let against = |end: f64| solve(damping(mass[k]), stiffness, end);
+            // On whichever side of the gap the link then is.
+            acceleration = if halfgap == 0.0 {
+                against(0.0)
+            } else {
+                let free = solve(0.0, 0.0, 0.0);
+                let end = (place + 0.25 * h * h * free).clamp(-halfgap, halfgap);
+                if end.abs() < halfgap { free } else { against(end) }
+            };
             delta = place + 0.25 * h * h * acceleration;
             speed = pace + 0.5 * h * acceleration;
         }
@@ -75,8 +98,8 @@ fn elastic(at: usize, stiffness: f64, damping: f64, chunk: &Chunk, rigid: &Rigid
     out
 }
 
-/// The same behind a gap of ± `halfgap`: the link lies against one side while its torque presses it there, and
-/// moves freely from one to the other when the torque turns; impacts are inelastic, and the ends rigid.
+/// δ behind a gap of ± `halfgap` with rigid ends: the link lies against one side while its torque presses it there, and
+/// moves freely from one to the other when the torque turns; impacts are inelastic.
 fn gap(at: usize, halfgap: f64, chunk: &Chunk, rigid: &Rigid) -> Vec<[f64; 3]> {
     let h = chunk.period;
     let tau = &rigid.tau[at];
@@ -104,47 +127,6 @@ fn gap(at: usize, halfgap: f64, chunk: &Chunk, rigid: &Rigid) -> Vec<[f64; 3]> {
                 // The impact stops the link within this tick.
                 acceleration = -before / h;
             }
-        }
-        out.push([delta, speed, acceleration]);
-    }
-    out
-}
-
-/// Damping ratio of the ends of a gap: an impact is inelastic.
-const STOP_DAMPING: f64 = 1.0;
-
-/// The same where the ends of the gap are springs of `stop` (N m/rad or N/m), well damped: what gears give under load.
-fn sprung_gap(at: usize, halfgap: f64, stop: f64, chunk: &Chunk, rigid: &Rigid) -> Vec<[f64; 3]> {
-    let h = chunk.period;
-    let (mass, drag, slope) = (
-        &rigid.mass[at][at],
-        &rigid.by_velocity[at][at],
-        &rigid.by_position[at][at],
-    );
-    let tau = &rigid.tau[at];
-    let ticks = chunk.ticks();
-    let mut out = Vec::with_capacity(ticks);
-    // Positive torque: the drive pushes the link in the positive direction, so the link lags behind.
-    let mut delta = -halfgap.copysign(tau[0]) - tau[0] / stop;
-    let (mut speed, mut acceleration) = (0.0, 0.0);
-    for k in 0..ticks {
-        if k > 0 {
-            // Newmark's β = 1/4, on whichever side of the gap the link then is.
-            let place: f64 = delta + h * speed + 0.25 * h * h * acceleration;
-            let pace = speed + 0.5 * h * acceleration;
-            let solve = |damping: f64, spring: f64, rest: f64| {
-                let (d, s) = (drag[k] + damping, slope[k] + spring);
-                -(tau[k] + d * pace + s * place - spring * rest) / (mass[k] + 0.5 * h * d + 0.25 * h * h * s).max(1e-9)
-            };
-            let free = solve(0.0, 0.0, 0.0);
-            let end = (place + 0.25 * h * h * free).clamp(-halfgap, halfgap);
-            acceleration = if end.abs() < halfgap {
-                free
-            } else {
-                solve(2.0 * STOP_DAMPING * (stop * mass[k].max(0.0)).sqrt(), stop, end)
-            };
-            delta = place + 0.25 * h * h * acceleration;
-            speed = pace + 0.5 * h * acceleration;
         }
         out.push([delta, speed, acceleration]);
     }

@@ -120,7 +120,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
     let explained = without.fit.loss - chosen.fit.loss;
     let mut identical = Vec::new();
     if finding.cause == Cause::TorqueOffset
-        && study.terms(member).iter().any(|term| term.onset().is_some())
+        && problem.onset(finding).is_some()
         && set.iter().any(|&c| {
             let other = &study.candidates[c];
             other.cause == Cause::Coulomb

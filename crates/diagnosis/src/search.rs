@@ -308,7 +308,7 @@ impl Problem<'_> {
         let set = chosen.others(member);
         let bare = self.choose(set.clone(), &chosen.fit.weights);
         let candidate = &self.candidates[member];
-        let onset = |c: &Candidate| self.table.terms[c.columns[0]].onset();
+        let onset = |c: &Candidate| self.onset(c);
         let is_plain = |&c: &usize| {
             let plain = &self.candidates[c];
             Some(plain.cause) == candidate.cause.plain()

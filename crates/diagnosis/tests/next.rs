@@ -2,9 +2,9 @@
 
 mod support;
 
-use diagnosis::{Diagnosis, Input, Left, NextExperiment, Options, diagnose};
+use diagnosis::{Diagnosis, Left, NextExperiment, Options, diagnose};
 use recording::{Recording, RegularRecording};
-use support::{ELBOW, Motion, SHOULDER, diagnosed_with, recorded, regular, trio};
+use support::{ELBOW, Motion, SHOULDER, diagnosed_with, inputs, recorded, regular, trio};
 use torque::Reference;
 
 fn proposed(concealed: support::Concealed<'_>) -> (Diagnosis, NextExperiment) {
@@ -74,17 +74,7 @@ fn a_faster_motion_tells_viscous_friction_from_drag() {
         .map(|(variant, seconds)| regular(&recorded(&trio(), variant, seconds, &friction)))
         .collect();
     recordings.push(regular(&made(&motion, seconds, &friction)));
-    let names = ["a", "b", "c", "next"];
-    let inputs: Vec<Input<'_>> = names
-        .into_iter()
-        .zip(&recordings)
-        .map(|(name, recording)| Input {
-            name,
-            recording,
-            held_out: name == "c",
-        })
-        .collect();
-    let second = diagnose(&trio(), &inputs, &Options::default(), &|_| {}).expect("it can be diagnosed");
+    let second = diagnose(&trio(), &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed");
     let named = second.report.findings.iter().filter(|f| f.effect == "viscous_friction");
     assert_eq!(named.count(), 2, "{:?}", second.report.findings);
     assert!(!is_confused(&second, "viscous_friction", "quadratic_drag"));

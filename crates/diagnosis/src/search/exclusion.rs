@@ -14,7 +14,7 @@ impl Problem<'_> {
         let offsets = |cause| matches!(cause, Cause::TorqueOffset | Cause::Asymmetry | Cause::Spring);
         let shapes = |cause| matches!(cause, Cause::OwnPosition | Cause::Spring);
         // What sets in halfway comes on top of what always acts.
-        if self.sets_in(a) != self.sets_in(b) {
+        if self.onset(a).is_some() != self.onset(b).is_some() {
             return false;
         }
         let same = std::mem::discriminant(&a.cause) == std::mem::discriminant(&b.cause);
@@ -28,9 +28,9 @@ impl Problem<'_> {
         }
     }
 
-    /// Whether a candidate sets in halfway.
-    fn sets_in(&self, candidate: &Candidate) -> bool {
-        self.table.terms[candidate.columns[0]].onset().is_some()
+    /// When a candidate sets in (s); `None` if it always acts.
+    pub fn onset(&self, candidate: &Candidate) -> Option<f64> {
+        self.table.terms[candidate.columns[0]].onset()
     }
 
     /// Whether two contacts are within a second of each other: one contact, then.

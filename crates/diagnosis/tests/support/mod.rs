@@ -150,16 +150,20 @@ pub fn diagnosed_with(
         .enumerate()
         .map(|(variant, seconds)| regular(&recorded(robot, variant, seconds, concealed)))
         .collect();
-    let inputs: Vec<Input<'_>> = ["a", "b", "c"]
+    diagnose(believed, &inputs(&recordings), options, &|_| {})
+}
+
+/// Recordings a, b, c, d, of which c is held out.
+pub fn inputs(recordings: &[RegularRecording]) -> Vec<Input<'_>> {
+    ["a", "b", "c", "d"]
         .into_iter()
-        .zip(&recordings)
+        .zip(recordings)
         .map(|(name, recording)| Input {
             name,
             recording,
             held_out: name == "c",
         })
-        .collect();
-    diagnose(believed, &inputs, options, &|_| {})
+        .collect()
 }
 
 /// Friction of every joint, which every robot has.

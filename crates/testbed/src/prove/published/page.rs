@@ -162,6 +162,16 @@ fn by_evidence(real: &Real) -> Block {
     table(&head, 1, rows.collect())
 }
 
+/// The columns of errors, of a robot or of a joint.
+pub const ERRORS: [&str; 6] = [
+    "held-out error, URDF",
+    "diagnosed",
+    "what is said, fitted",
+    "learned",
+    "simulated motion off by (mrad or mm), URDF",
+    "diagnosed",
+];
+
 /// How well it predicts what it was not fitted to.
 fn errors(real: &Real) -> Vec<Block> {
     let row = |tried: &Tried| {
@@ -186,17 +196,7 @@ fn errors(real: &Real) -> Vec<Block> {
             motion(|rollout| rollout.diagnosed),
         ]
     };
-    let head = [
-        "robot",
-        "recordings, fitted and held out",
-        "verdict",
-        "held-out error, URDF",
-        "diagnosed",
-        "what is said, fitted",
-        "learned",
-        "simulated motion off by (mrad or mm), URDF",
-        "diagnosed",
-    ];
+    let head = [&["robot", "recordings, fitted and held out", "verdict"], &ERRORS[..]].concat();
     vec![
         text(
             "How well each model predicts recordings it was not fitted to: NRMSE of the torque (root mean square error over the torque\u{2019}s standard deviation, samples in motion), root mean square \

@@ -7,6 +7,7 @@ use proof::{Besides, Compared, Evidence, SaidFate, SaidOutcome};
 
 use super::Tried;
 use super::fold::error;
+use super::page::ERRORS;
 use crate::diagnose::numbers::{scaled, short};
 use crate::output::rounded;
 use crate::prove::command::percent;
@@ -224,14 +225,6 @@ fn errors(tried: &Tried) -> Block {
             motion(rollout.map(|rollout| rollout.diagnosed)),
         ]
     });
-    let head = [
-        "joint",
-        "held-out error, URDF",
-        "diagnosed",
-        "what is said, fitted",
-        "learned",
-        "simulated motion off by (mrad or mm), URDF",
-        "diagnosed",
-    ];
+    let head = [&["joint"], &ERRORS[..]].concat();
     table(&head, 1, rows.collect())
 }
