@@ -242,9 +242,7 @@ impl<'a> Simulation<'a> {
             self.change(time, false)?;
         }
         for j in 0..n {
-            let position = self.rotors[j]
-                .as_ref()
-                .map_or(self.plant.q()[j], |rotor| rotor.position);
+            let position = self.rotors[j].as_ref().map_or(self.plant.q()[j], Rotor::seen);
             let drive = &mut self.drives[j];
             drive.sense(position + self.parts.encoder(j, time), self.quantum);
             (self.sensed[0][j], self.sensed[1][j]) = (drive.sensed.position, drive.sensed.velocity);
@@ -301,8 +299,8 @@ impl<'a> Simulation<'a> {
             Some(rotor) => {
                 let friction = dry(rotor.velocity);
                 self.levels[j] = 0.0;
-                let net = applied - smooth(rotor.position, rotor.velocity) - friction.bias;
-                rotor.advance(net, friction.level, q, v, TICK)
+                let net = applied - smooth(rotor.seen(), rotor.velocity) - friction.bias;
+                rotor.advance(net, friction.level, q, v)
             }
             None => {
                 let friction = dry(v);

@@ -105,7 +105,8 @@ impl Drive {
 
 /// A rotor on a spring, in a gap or both; the encoder is on it.
 pub(super) struct Rotor {
-    pub(super) position: f64,
+    /// Where it was half a tick before the link's position now, as the link's velocity is of then.
+    position: f64,
     pub(super) velocity: f64,
     inertia: f64,
     stiffness: f64,
@@ -114,20 +115,25 @@ pub(super) struct Rotor {
 }
 
 impl Rotor {
-    /// A rotor of `inertia` that moves with its link, of inertia `link` (kg m²).
+    /// A rotor of `inertia` that moves with its link, of inertia `link` (kg m²), at `position` and `velocity`.
     pub(super) fn new(connection: Connection, inertia: f64, link: f64, position: f64, velocity: f64) -> Self {
         let stiffness = connection
             .stiffness
             .unwrap_or_else(|| inertia.min(link) * GAP_FREQUENCY * GAP_FREQUENCY);
         let damping = connection.damping.unwrap_or_else(|| 0.5 * (stiffness * inertia).sqrt());
         Self {
-            position,
+            position: position - 0.5 * TICK * velocity,
             velocity,
             inertia,
             stiffness,
             damping,
             connection,
         }
+    }
+
+    /// Where its encoder sees it, at the time of the link's position.
+    pub(super) fn seen(&self) -> f64 {
+        self.position + 0.5 * TICK * self.velocity
     }
 
     /// How far the rotor is ahead of its link under `torque`, spring and gap taken as straight.
@@ -159,15 +165,15 @@ impl Rotor {
         straight * (1.0 + (straight / self.connection.hardening).powi(2)) + touching * self.damping * rate
     }
 
-    /// Moves for `time` under `net` and dry friction of `level` while the link passes `q` at `v`: the mean torque on the link.
+    /// Moves for a tick under `net` and dry friction of `level` while the link passes `q` at `v`: the mean torque on the link.
     ///
     /// The plant's plain step keeps velocities half a step behind positions (leapfrog): a force is right if it is that of the time
-    /// about `q`, half of `time` before it to half after. Taken from `q` on, it would add a damping of stiffness × `time` / 2.
-    pub(super) fn advance(&mut self, net: f64, level: f64, q: f64, v: f64, time: f64) -> f64 {
-        let step = time / ROTOR_STEPS as f64;
+    /// about `q`, half a tick before it to half a tick after. Taken from `q` on, it would add a damping of stiffness × tick / 2.
+    pub(super) fn advance(&mut self, net: f64, level: f64, q: f64, v: f64) -> f64 {
+        let step = TICK / ROTOR_STEPS as f64;
         let mut sum = 0.0;
         for k in 0..ROTOR_STEPS {
-            let link = q + v * (step * k as f64 - 0.5 * time);
+            let link = q + v * (step * k as f64 - 0.5 * TICK);
             let through = self.torque(self.position - link, self.velocity - v);
             let free = self.velocity + step / self.inertia * (net - through);
             // Friction takes what it can, and no more than stops the rotor.
@@ -205,7 +211,7 @@ mod tests {
         let reduced = rotor * link / (rotor + link);
         let mut energies = Vec::new();
         for tick in 0..1500 {
-            v += TICK / link * rotor_side.advance(0.0, 0.0, q, v, TICK);
+            v += TICK / link * rotor_side.advance(0.0, 0.0, q, v);
             q += TICK * v;
             if tick % 500 == 0 {
                 let (stretch, rate) = (rotor_side.position - q + 0.5 * TICK * v, rotor_side.velocity - v);
@@ -219,6 +225,26 @@ mod tests {
                 "{} {expected}",
                 pair[1] / pair[0]
             );
+        }
+    }
+
+    /// Rotor and link go on together, with nothing between them: the encoder says where the link is, not where it was.
+    #[test]
+    fn what_moves_evenly_is_seen_where_it_is() {
+        let connection = Connection {
+            stiffness: Some(900.0),
+            damping: Some(2.0),
+            halfgap: 0.0,
+            more_rotor: 0.0,
+            hardening: f64::INFINITY,
+            round: false,
+        };
+        let (speed, mut q) = (1.0, 0.3);
+        let mut rotor = Rotor::new(connection, 0.8, 2.0, q, speed);
+        for _ in 0..1000 {
+            assert!((rotor.seen() - q).abs() < 1e-9, "{} {q}", rotor.seen());
+            assert!(rotor.advance(0.0, 0.0, q, speed).abs() < 1e-6);
+            q += TICK * speed;
         }
     }
 }
