@@ -21,8 +21,13 @@ impl Behind {
                 stiffness,
                 damping,
             } => (joint, sprung(joint, 0.0, stiffness, |_| damping, chunk, rigid)),
-            Term::Gap { joint, halfgap, stop } if stop.is_finite() => {
-                let damping = |mass: f64| 2.0 * STOP_DAMPING * (stop * mass.max(0.0)).sqrt();
+            Term::Gap {
+                joint,
+                halfgap,
+                stop,
+                ratio,
+            } if stop.is_finite() => {
+                let damping = |mass: f64| 2.0 * ratio * (stop * mass.max(0.0)).sqrt();
                 (joint, sprung(joint, halfgap, stop, damping, chunk, rigid))
             }
             Term::Gap { joint, halfgap, .. } => (joint, gap(joint, halfgap, chunk, rigid)),
@@ -45,9 +50,6 @@ impl Behind {
             .collect()
     }
 }
-
-/// Damping ratio of the ends of a gap: an impact is inelastic.
-const STOP_DAMPING: f64 = 1.0;
 
 /// δ behind a spring at joint `at`, in a gap of ± `halfgap` (none: zero) in which the link moves freely:
 /// M δ̈ + (D + ∂τ/∂q̇) δ̇ + ∂τ/∂q δ + K (δ ∓ halfgap) = −τ, driven by the drive's measured motion. `damping` gives D for M.

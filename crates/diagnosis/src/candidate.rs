@@ -1,7 +1,7 @@
 //! What may be the cause: the catalogue's effects, and forms that have no name.
 
 use crate::columns::Scales;
-use crate::term::Term;
+use crate::term::{Term, Times};
 
 /// A kind of cause; the catalogue's first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -151,6 +151,11 @@ impl Cause {
         self.is_ordinary() || matches!(self, Self::Asymmetry | Self::TorqueOffset)
     }
 
+    /// Whether it says that masses are not the model's.
+    pub fn is_wrong_mass(self) -> bool {
+        matches!(self, Self::LinkError | Self::InertialScale | Self::Payload)
+    }
+
     /// The simpler cause that it is a form of.
     pub fn plain(self) -> Option<Self> {
         match self {
@@ -234,8 +239,17 @@ impl Candidate {
     }
 }
 
+/// Two joints that turn one drive are no further apart in the chain: the drives of a wrist's axes pass through each other.
+pub const FARTHEST_COUPLED: usize = 2;
+
+/// The longest delay of a drive (s): no position loop bears more.
+pub const LONGEST_DELAY: f64 = 0.03;
+
 /// The shortest time constant of a drive that warms (s).
 pub const FASTEST_WARMING: f64 = 8.0;
+
+/// Damping ratios of a gap's ends to begin with: the link stays, or bounces.
+pub const STOP_RATIOS: [f64; 2] = [1.0, 0.2];
 
 /// Gaps to begin with, as shares of the range of the motion.
 pub const GAPS: [f64; 7] = [0.0025, 0.004, 0.008, 0.014, 0.022, 0.035, 0.06];
@@ -249,9 +263,8 @@ pub fn catalogue(scales: &Scales, span: Option<f64>, times: &[(f64, f64)]) -> Ve
     for joint in (0..dof).filter(|&joint| moves(joint)) {
         friction(&mut list, joint, scales.speed[joint], span);
         drive(&mut list, joint, scales);
-        // A drive that two joints turn sits between neighbours.
-        if joint > 0 && moves(joint - 1) {
-            let other = joint - 1;
+        // A drive that two joints turn sits near both.
+        for other in (joint.saturating_sub(FARTHEST_COUPLED)..joint).filter(|&other| moves(other)) {
             let pair = vec![Term::PairVelocity(joint, other), Term::PairAcceleration(joint, other)];
             list.push((Cause::Coupling(other), Some(joint), pair.clone()));
             for sense in [1.0, -1.0] {
@@ -318,7 +331,7 @@ fn drive(list: &mut List, joint: usize, scales: &Scales) {
         Cause::Spring,
         vec![Term::One(joint), position(1), position(2), position(3)],
     );
-    for delay in [0.002, 0.004, 0.006, 0.009, 0.013, 0.02, 0.03] {
+    for delay in [0.002, 0.004, 0.006, 0.009, 0.013, 0.02, LONGEST_DELAY] {
         add(Cause::Delay, vec![Term::Late { joint, delay }]);
     }
     for share in GAPS {
@@ -326,6 +339,7 @@ fn drive(list: &mut List, joint: usize, scales: &Scales) {
             joint,
             halfgap: share * scales.range[joint].min(1.5),
             stop: f64::INFINITY,
+            ratio: 1.0,
         };
         add(Cause::Backlash, vec![gap, Term::Acceleration(joint)]);
     }
@@ -334,7 +348,7 @@ fn drive(list: &mut List, joint: usize, scales: &Scales) {
 fn nameless(list: &mut List, joint: usize, scales: &Scales, times: &[(f64, f64)]) {
     let dof = scales.speed.len();
     let mut add = |cause, terms| list.push((cause, Some(joint), terms));
-    let tents = |of: usize, count: usize| -> Vec<Term> {
+    let tents = |of: usize, count: usize, times: Times| -> Vec<Term> {
         let width = scales.range[of] / (count - 1) as f64;
         let lowest = scales.middle[of] - 0.5 * scales.range[of];
         (0..count)
@@ -343,14 +357,15 @@ fn nameless(list: &mut List, joint: usize, scales: &Scales, times: &[(f64, f64)]
                 of,
                 centre: lowest + width * k as f64,
                 width,
+                times,
             })
             .collect()
     };
     // A curve that rises throughout is a spring's; any other has no name.
-    add(Cause::Spring, tents(joint, 12));
-    add(Cause::OwnPosition, tents(joint, 12));
+    add(Cause::Spring, tents(joint, 12, Times::One));
+    add(Cause::OwnPosition, tents(joint, 12, Times::One));
     for other in (0..dof).filter(|&o| o != joint && scales.speed[o] > scales.rest[o]) {
-        add(Cause::OtherPosition(other), tents(other, 8));
+        add(Cause::OtherPosition(other), tents(other, 8, Times::One));
         let forms = (0..4).map(|form| Term::OtherSpeed(joint, other, form)).collect();
         add(Cause::OtherSpeed(other), forms);
     }
@@ -362,6 +377,9 @@ fn nameless(list: &mut List, joint: usize, scales: &Scales, times: &[(f64, f64)]
         add(Cause::History, vec![Term::Play(joint, share * scales.range[joint])]);
     }
     add(Cause::Product, (0..4).map(|form| Term::Product(joint, form)).collect());
+    for times in [Times::Velocity, Times::Speed] {
+        add(Cause::Product, tents(joint, 6, times));
+    }
     let mut moments = Vec::new();
     for &(from, to) in times {
         let count = ((to - from) / 4.0).ceil().clamp(2.0, 12.0) as usize;

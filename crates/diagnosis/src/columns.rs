@@ -3,7 +3,7 @@
 use crate::behind::Behind;
 use crate::motion::Chunk;
 use crate::rigid::Rigid;
-use crate::term::Term;
+use crate::term::{Term, Times};
 
 /// What is slow, joint by joint: below it the sign of a velocity means nothing.
 #[derive(Clone, Debug)]
@@ -86,7 +86,20 @@ pub fn values(term: Term, joint: usize, chunk: &Chunk, rigid: &Rigid, scales: &S
                 -rigid.force[joint][axis][k]
             }
         }),
-        Term::Tent { of, centre, width, .. } => map(&|k| tent(chunk.q[of][k], centre, width)),
+        Term::Tent {
+            of,
+            centre,
+            width,
+            times,
+            ..
+        } => map(&|k| {
+            let height = tent(chunk.q[of][k], centre, width);
+            match times {
+                Times::One => height,
+                Times::Velocity => height * qd[k],
+                Times::Speed => height * qd[k].abs(),
+            }
+        }),
         Term::OtherSpeed(_, other, form) => map(&|k| {
             let speed = chunk.qd[other][k] / scales.speed[other].max(1e-9);
             match form {

@@ -79,7 +79,10 @@ pub fn diagnose(
     let may_be = |cause: Cause, joint: Option<usize>| {
         options.only.as_ref().is_none_or(|wanted| {
             let joint = joint.map(|joint| &arm.joints()[joint].name);
-            let is_wanted = |one: &Wanted| cause.name() == Some(&one.effect) && joint == one.joint.as_ref();
+            let is_wanted = |one: &Wanted| {
+                let is_there = joint == one.joint.as_ref() || (joint.is_some() && joint == one.other.as_ref());
+                cause.name() == Some(&one.effect) && is_there
+            };
             wanted.iter().any(is_wanted)
         })
     };

@@ -1,6 +1,6 @@
 //! A hypothesis: the effects that were asked for, fitted together, with no search and no judgement.
 
-use crate::candidate::Cause;
+use crate::candidate::{Cause, FARTHEST_COUPLED};
 use crate::error::DiagnosisError;
 use crate::judge::{self, Judged};
 use crate::refine::resize;
@@ -13,12 +13,24 @@ const SWEEPS: usize = 4;
 const ROUNDS: usize = 2;
 
 /// An effect to be fitted, by its name.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
     /// The catalogue's name.
     pub effect: String,
     /// The joint, or `None` for the whole arm.
     pub joint: Option<String>,
+    /// The joint that turns the drive too, if it is to be a certain one.
+    pub other: Option<String>,
+    /// Whether it sets in halfway, at a time that is looked for; `None` if that is open.
+    pub sets_in: Option<bool>,
+}
+
+/// What is wanted, in the study's numbers.
+#[derive(Clone, Copy)]
+struct Place<'a> {
+    wanted: &'a Wanted,
+    joint: Option<usize>,
+    other: Option<usize>,
 }
 
 impl Wanted {
@@ -36,31 +48,33 @@ impl Wanted {
 /// # Errors
 /// [`DiagnosisError::Wanted`], if one is given twice, is not in the catalogue, or not on such a joint.
 pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisError> {
-    let joints = check(study, wanted)?;
-    let mut waiting: Vec<(&Wanted, Option<usize>)> = wanted.iter().zip(joints).collect();
-    let mut placed: Vec<(&Wanted, Option<usize>)> = Vec::new();
+    let mut waiting = check(study, wanted)?;
+    let mut placed: Vec<Place<'_>> = Vec::new();
     let products = study.products(|r| study.fitted[r]);
     let mut chosen = study.problem(&products).choose(Vec::new(), &products.first_weights());
-    // Where a contact was and which period a ripple has is told by what the others leave.
+    // When something set in, where a contact was and which period a ripple has is told by what the others leave.
     for suggest in [false, true] {
-        if suggest && !waiting.is_empty() {
+        if suggest {
             study.suggest(&chosen);
         }
         let products = study.products(|r| study.fitted[r]);
         let problem = study.problem(&products);
-        waiting.retain(
-            |&(one, joint)| match best(&problem, &chosen, None, &one.effect, joint) {
+        waiting.retain(|&place| {
+            if !suggest && place.wanted.sets_in == Some(true) {
+                return true;
+            }
+            match best(&problem, &chosen, None, place) {
                 Some(next) => {
                     chosen = next;
-                    placed.push((one, joint));
+                    placed.push(place);
                     false
                 }
                 None => true,
-            },
-        );
+            }
+        });
         chosen = swept(&problem, chosen, &placed);
     }
-    for (one, _) in waiting {
+    for Place { wanted: one, .. } in waiting {
         let place = one.joint.as_deref().unwrap_or("the whole arm");
         let remark = format!(
             "{} on {place}: these recordings do not try it; it is left out",
@@ -89,14 +103,26 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
 }
 
 /// The joints' numbers.
-fn check(study: &Study, wanted: &[Wanted]) -> Result<Vec<Option<usize>>, DiagnosisError> {
-    let mut joints = Vec::new();
+fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, DiagnosisError> {
+    let mut places = Vec::new();
     for (k, one) in wanted.iter().enumerate() {
         let number = |name: &String| study.arm.joints().iter().position(|joint| joint.name == *name);
-        let joint = match &one.joint {
-            Some(name) => Some(number(name).ok_or_else(|| one.refused("the robot has no such joint"))?),
-            None => None,
+        let joint_of = |name: &Option<String>| match name {
+            Some(name) => number(name)
+                .map(Some)
+                .ok_or_else(|| one.refused("the robot has no such joint")),
+            None => Ok(None),
         };
+        let (mut joint, mut other) = (joint_of(&one.joint)?, joint_of(&one.other)?);
+        // Of two joints that turn one drive, the catalogue has the effect on the later.
+        if other > joint && joint.is_some() {
+            (joint, other) = (other, joint);
+        }
+        if let (Some(joint), Some(other)) = (joint, other)
+            && !(1..=FARTHEST_COUPLED).contains(&(joint - other))
+        {
+            return Err(one.refused("is looked for between joints that are next to each other, or one apart"));
+        }
         let on_arm = |effect: &str| Cause::ON_THE_ARM.iter().any(|cause| cause.name() == Some(effect));
         let on_joint = |effect: &str| Cause::ON_A_JOINT.iter().any(|cause| cause.name() == Some(effect));
         match (joint, on_arm(&one.effect), on_joint(&one.effect)) {
@@ -110,9 +136,10 @@ fn check(study: &Study, wanted: &[Wanted]) -> Result<Vec<Option<usize>>, Diagnos
         if !may_repeat && wanted[..k].contains(one) {
             return Err(one.refused("is given twice"));
         }
-        joints.push(joint);
+        let wanted = one;
+        places.push(Place { wanted, joint, other });
     }
-    Ok(joints)
+    Ok(places)
 }
 
 /// `chosen` with the best form of an effect in the place of the member at `instead`, or added to it.
@@ -120,8 +147,7 @@ fn best(
     problem: &Problem<'_>,
     chosen: &Chosen,
     instead: Option<usize>,
-    effect: &str,
-    joint: Option<usize>,
+    Place { wanted, joint, other }: Place<'_>,
 ) -> Option<Chosen> {
     let mut others = chosen.set.clone();
     if let Some(at) = instead {
@@ -131,26 +157,44 @@ fn best(
         let candidate = &problem.candidates[c];
         // What was asked for twice is there twice, not once in two sizes.
         let is_twin = |&other: &usize| problem.candidates[other].cause == candidate.cause && problem.exclude(c, other);
-        candidate.cause.name() == Some(effect) && candidate.joint == joint && !others.iter().any(is_twin)
+        let is_pair = match candidate.cause {
+            Cause::Coupling(with) => other.is_none_or(|other| other == with),
+            _ => true,
+        };
+        candidate.cause.name() == Some(wanted.effect.as_str())
+            && candidate.joint == joint
+            && is_pair
+            && !others.iter().any(is_twin)
     };
+    // What has no form that sets in halfway is taken as always acting.
+    let is_as_wanted = |&c: &usize| {
+        let sets_in = problem.onset(&problem.candidates[c]).is_some();
+        wanted.sets_in.is_none_or(|wanted| wanted == sets_in)
+    };
+    let mut forms: Vec<usize> = (0..problem.candidates.len()).filter(is_form).collect();
+    if forms.iter().any(is_as_wanted) {
+        forms.retain(is_as_wanted);
+    }
     let with = |c: usize| {
         let mut set = others.clone();
         set.insert(instead.unwrap_or(set.len()), c);
         let next = problem.choose(set, &chosen.fit.weights);
         (!problem.is_possible(c, &next.fit), next)
     };
-    let forms = (0..problem.candidates.len()).filter(is_form).map(with);
     // What physics allows goes first, if any of the forms is.
-    let best = forms.min_by(|a, b| a.0.cmp(&b.0).then(a.1.score.total_cmp(&b.1.score)));
+    let best = forms
+        .into_iter()
+        .map(with)
+        .min_by(|a, b| a.0.cmp(&b.0).then(a.1.score.total_cmp(&b.1.score)));
     best.map(|(_, next)| next)
 }
 
 /// `chosen` with each effect in the form that is best beside the others' forms.
-fn swept(problem: &Problem<'_>, mut chosen: Chosen, placed: &[(&Wanted, Option<usize>)]) -> Chosen {
+fn swept(problem: &Problem<'_>, mut chosen: Chosen, placed: &[Place<'_>]) -> Chosen {
     for _ in 0..SWEEPS {
         let before = chosen.set.clone();
-        for (at, &(one, joint)) in placed.iter().enumerate() {
-            if let Some(next) = best(problem, &chosen, Some(at), &one.effect, joint) {
+        for (at, &place) in placed.iter().enumerate() {
+            if let Some(next) = best(problem, &chosen, Some(at), place) {
                 chosen = next;
             }
         }

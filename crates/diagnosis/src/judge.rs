@@ -22,6 +22,9 @@ const BESIDE_A_CERTAIN: f64 = 0.05;
 /// Beside friction that grows with the load, a torque's scale must be larger than this part of it: both are a gain on the load,
 /// and what the load is, the drive's or the link's, is a matter of form.
 const BESIDE_LOADED_FRICTION: f64 = 0.3;
+/// Beside a link that is loose or sprung, a delay must be larger than this part of that: the link is late too, and what its
+/// simulation misses looks like more of it.
+const BESIDE_A_LOOSE_LINK: f64 = 0.5;
 /// Structure without a name must explain this much of a joint's torque spread …
 const LEAST_NAMELESS_SHARE: f64 = 0.012;
 /// … and this much of what the model as it was given misses …
@@ -284,12 +287,16 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
                 largest(&is_other, joint)
             };
             let share = member.shares[joint];
-            let loaded = match cause(member) {
-                Cause::TorqueScale => largest(&|m| cause(m) == Cause::LoadDependent, joint),
+            let alike = match cause(member) {
+                Cause::TorqueScale => BESIDE_LOADED_FRICTION * largest(&|m| cause(m) == Cause::LoadDependent, joint),
+                Cause::Delay => {
+                    let loose = |m: &Member| matches!(cause(m), Cause::Backlash | Cause::Elasticity);
+                    BESIDE_A_LOOSE_LINK * largest(&loose, joint)
+                }
                 _ => 0.0,
             };
             share >= LEAST_SHARE
-                && share >= BESIDE_LOADED_FRICTION * loaded
+                && share >= alike
                 && share >= BESIDE_A_LARGER * others(false)
                 && share >= BESIDE_A_CERTAIN * others(true)
                 && share >= BESIDE_NAMELESS * largest(&|m| !is_named(m), joint)

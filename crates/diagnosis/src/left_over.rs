@@ -76,6 +76,16 @@ const STRUCTURED_ABOVE_NOISE: f64 = 4.0;
 /// … and its autocorrelation from row to row is more than this: neither noise nor what filters leave has so long a memory.
 const REMEMBERS: f64 = 0.6;
 
+/// The error (NRMSE) that the findings leave on a joint, if it is too large and too regular to be noise.
+pub fn structured(fit: &JointFit) -> Option<f64> {
+    let error = fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented);
+    let least = error.min(fit.train_nrmse_augmented);
+    let is_structured = least >= STRUCTURED
+        && least * fit.torque_std >= STRUCTURED_ABOVE_NOISE * fit.noise
+        && fit.residual_autocorrelation > REMEMBERS;
+    is_structured.then_some(error)
+}
+
 /// Adds the joints that the findings leave poorly predicted.
 pub fn leftover(study: &Study, fit: &BTreeMap<String, JointFit>, unexplained: &mut Vec<Unexplained>) {
     for (joint, name) in study.arm.joints().iter().map(|joint| &joint.name).enumerate() {
@@ -83,11 +93,7 @@ pub fn leftover(study: &Study, fit: &BTreeMap<String, JointFit>, unexplained: &m
         let error = this.held_out_nrmse_augmented.unwrap_or(this.train_nrmse_augmented);
         let is_known = unexplained.iter().any(|left| left.joint == *name);
         let is_poor = error >= POOR && error * this.torque_std >= ABOVE_NOISE * this.noise;
-        let least = error.min(this.train_nrmse_augmented);
-        let is_structured = least >= STRUCTURED
-            && least * this.torque_std >= STRUCTURED_ABOVE_NOISE * this.noise
-            && this.residual_autocorrelation > REMEMBERS;
-        if is_known || !(is_poor || is_structured) {
+        if is_known || !(is_poor || structured(this).is_some()) {
             continue;
         }
         let was_fitted = !study.training_rows(joint).is_empty();

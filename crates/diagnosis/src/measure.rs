@@ -2,7 +2,7 @@
 
 use arm::{Inertia, Matrix3, Vector3};
 
-use crate::candidate::{Cause, GAPS};
+use crate::candidate::{Cause, GAPS, STOP_RATIOS};
 use crate::columns::Scales;
 use crate::motion::{Chunk, Motions};
 use crate::rigid::Rigid;
@@ -64,11 +64,12 @@ pub fn drives(
             };
             list.push((Cause::Elasticity, Some(joint), vec![elastic, Term::Acceleration(joint)]));
         }
-        for share in GAPS {
+        for (share, ratio) in GAPS.iter().flat_map(|&share| STOP_RATIOS.map(|ratio| (share, ratio))) {
             let gap = Term::Gap {
                 joint,
                 halfgap: share * scales.range[joint].min(1.5),
                 stop: mass * (2.0 * std::f64::consts::PI * STOP_FREQUENCY).powi(2),
+                ratio,
             };
             list.push((Cause::Backlash, Some(joint), vec![gap, Term::Acceleration(joint)]));
         }

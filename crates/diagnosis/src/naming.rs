@@ -1,5 +1,6 @@
 //! From columns and coefficients to effects with parameters in SI units.
 
+mod onset;
 mod parts;
 
 use std::collections::BTreeMap;
@@ -88,13 +89,6 @@ impl Reader<'_> {
             let size = size.map_or(0.0, |at| draw[at]);
             value(drawn, size)
         })
-    }
-
-    /// Notes when the candidate sets in, if it does not always act.
-    fn onset(&mut self) -> Option<f64> {
-        let onset = self.study.terms(self.candidate).first()?.onset()?;
-        self.note("onset", "s", |_| onset);
-        Some(onset)
     }
 
     /// Notes a size at its corrected value.
@@ -336,11 +330,10 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
             reader.note("force", "N", |draw| {
                 (draw[x].powi(2) + draw[y].powi(2) + draw[z].powi(2)).sqrt()
             });
-            reader.note("start", "s", |_| from);
-            reader.size_of_form("duration", "s", Size::Duration, to - from);
+            reader.start(from, to - from);
             Effect::ExternalContact {
                 start: from,
-                duration: to - from,
+                duration: reader.size_of_form("duration", "s", Size::Duration, to - from),
                 force: [
                     reader.coefficient("force_x", "N", Some(x), 1.0),
                     reader.coefficient("force_y", "N", Some(y), 1.0),

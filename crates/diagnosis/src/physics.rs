@@ -2,7 +2,7 @@
 
 use arm::Arm;
 
-use crate::candidate::{Candidate, Cause, FASTEST_WARMING};
+use crate::candidate::{Candidate, Cause, FASTEST_WARMING, LONGEST_DELAY};
 use crate::fit::Fit;
 use crate::table::Table;
 use crate::term::Term;
@@ -56,8 +56,9 @@ pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -
         // A drive spends no more than part of its time at its limit.
         Cause::Saturation => CUT_OFF.contains(&value(0)) && acting(candidate, table) < MOST_CLIPPED,
         // Beside a resonance the coefficient is soon small: until its size is refined, it says little.
-        Cause::Elasticity if !candidate.is_trial => COARSE_UNIT.contains(&value(0)),
-        Cause::Delay | Cause::Elasticity | Cause::Backlash => UNIT.contains(&value(0)),
+        Cause::Elasticity | Cause::Backlash if !candidate.is_trial => COARSE_UNIT.contains(&value(0)),
+        Cause::Delay => UNIT.contains(&value(0)) && is_short(candidate, table),
+        Cause::Elasticity | Cause::Backlash => UNIT.contains(&value(0)),
         Cause::Payload => {
             let mass = value(0);
             let reach = PAYLOAD_REACH * reach(arm);
@@ -97,6 +98,14 @@ fn moving_mass(arm: &Arm) -> f64 {
 fn weight(arm: &Arm) -> f64 {
     const GRAVITY: f64 = 9.81;
     GRAVITY * moving_mass(arm)
+}
+
+/// Whether it is a delay that a drive may have.
+fn is_short(candidate: &Candidate, table: &Table) -> bool {
+    candidate.columns.iter().all(|&column| match table.terms[column] {
+        Term::Late { delay, .. } => delay < 1.001 * LONGEST_DELAY,
+        _ => true,
+    })
 }
 
 /// Whether Stribeck's part has faded to less than half on most of the moving rows: it is friction of low speeds.

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use crate::candidate::STOP_RATIOS;
 use crate::measure::mean;
 use crate::search::Chosen;
 use crate::study::Study;
@@ -92,6 +93,10 @@ fn forms(terms: &[Term]) -> Vec<Vec<Term>> {
                     *velocity *= factor;
                     changed = true;
                 }
+                Term::Gap { stop, ratio, .. } if stop.is_finite() => {
+                    *ratio *= factor.powi(2);
+                    changed |= factor != 1.0;
+                }
                 Term::Force { from, to, round, .. } => {
                     *round = !*round;
                     let (middle, half) = (0.5 * (*from + *to), 0.5 * factor * (*to - *from));
@@ -113,16 +118,20 @@ const FIRST_STOPS: [f64; 3] = [12.0, 20.0, 32.0];
 
 /// The same terms with each of the first stiffnesses of a gap's ends, if they are rigid; `mass` is of the link (kg m²).
 fn softened(terms: &[Term], mass: f64) -> Vec<Vec<Term>> {
-    let soften = |hertz: f64| -> Option<Vec<Term>> {
+    let soften = |(hertz, first): (f64, f64)| -> Option<Vec<Term>> {
         let mut terms = terms.to_vec();
-        let stop = terms.iter_mut().find_map(|term| match term {
-            Term::Gap { stop, .. } if stop.is_infinite() => Some(stop),
+        let (stop, ratio) = terms.iter_mut().find_map(|term| match term {
+            Term::Gap { stop, ratio, .. } if stop.is_infinite() => Some((stop, ratio)),
             _ => None,
         })?;
         *stop = mass * (2.0 * std::f64::consts::PI * hertz).powi(2);
+        *ratio = first;
         Some(terms)
     };
-    FIRST_STOPS.into_iter().filter_map(soften).collect()
+    let first = FIRST_STOPS
+        .iter()
+        .flat_map(|&hertz| STOP_RATIOS.map(|ratio| (hertz, ratio)));
+    first.filter_map(soften).collect()
 }
 
 /// Variants of a candidate's terms in a round of refinement; `mass` is the inertia of its link (kg m² or kg).

@@ -303,6 +303,30 @@ impl Problem<'_> {
             .collect()
     }
 
+    /// `chosen` with other wrong masses than its own: one of them alone or two together, whatever they are. Masses hang
+    /// together along the arm, so that two wrong ones may look like a third, and one like two others; no exchange of one for
+    /// one leads from these to the true ones.
+    fn other_masses(&self, chosen: &Chosen, allowed: &[usize]) -> Vec<Chosen> {
+        let is_mass = |c: &usize| self.candidates[*c].cause.is_wrong_mass();
+        let rest: Vec<usize> = chosen.set.iter().copied().filter(|c| !is_mass(c)).collect();
+        if rest.len() == chosen.set.len() {
+            return Vec::new();
+        }
+        let masses: Vec<usize> = allowed.iter().copied().filter(is_mass).collect();
+        let alone = masses.iter().map(|&one| vec![one]);
+        let pairs = masses.iter().enumerate().flat_map(|(k, &one)| {
+            let others = masses[k + 1..].iter().filter(move |&&two| !self.exclude(one, two));
+            others.map(move |&two| vec![one, two])
+        });
+        let sets: Vec<Vec<usize>> = alone.chain(pairs).collect();
+        sets.into_par_iter()
+            .filter_map(|new| {
+                let next = self.choose([rest.clone(), new.clone()].concat(), &chosen.fit.weights);
+                new.iter().all(|&c| self.is_possible(c, &next.fit)).then_some(next)
+            })
+            .collect()
+    }
+
     /// `chosen` without one of its members; what is a form of something simpler gives way to that, if it pays.
     pub fn without(&self, chosen: &Chosen, member: usize) -> Chosen {
         let set = chosen.others(member);
@@ -362,7 +386,10 @@ impl Problem<'_> {
                     self.grow(&without, &others, &mut Vec::new())
                 })
                 .collect();
-            let trials = trials.into_iter().chain(self.arm_wide(&chosen, allowed));
+            let trials = trials
+                .into_iter()
+                .chain(self.arm_wide(&chosen, allowed))
+                .chain(self.other_masses(&chosen, allowed));
             match trials.min_by(|a, b| a.score.total_cmp(&b.score)) {
                 Some(next) if next.score < chosen.score - 0.5 => chosen = self.prune(next),
                 _ => break,

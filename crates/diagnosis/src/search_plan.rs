@@ -23,15 +23,16 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
     for round in 1..=SUGGESTIONS {
         progress(&format!("looking for causes, round {round}"));
         let before = chosen.set.clone();
-        // What has no name must not hide what the residual suggests, nor a ripple of a period that was suggested when little
-        // else was known.
+        // What has no name must not hide what the residual suggests, nor what was suggested when little else was known: a
+        // ripple's period, a push, an onset, of which the one may have stood for the beginning of the other.
         let products = study.products(|r| fitted[r]);
         let named = before
             .iter()
             .copied()
             .filter(|&c| {
                 let cause = study.candidates[c].cause;
-                cause.name().is_some() && cause != Cause::Ripple
+                let sets_in = study.terms(c).iter().any(|term| term.onset().is_some());
+                cause.name().is_some() && !sets_in && !matches!(cause, Cause::Ripple | Cause::Contact)
             })
             .collect();
         chosen = study.problem(&products).choose(named, &chosen.fit.weights);

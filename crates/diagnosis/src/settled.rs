@@ -3,8 +3,10 @@
 use torque::Corrected;
 
 use crate::bootstrap::{Resampled, resample};
+use crate::candidate::Cause;
 use crate::found::useless;
 use crate::judge::{self, Judged};
+use crate::left_over::structured;
 use crate::naming::{Named, name};
 use crate::predict::{augmented, errors};
 use crate::search::{Chosen, Problem};
@@ -109,7 +111,7 @@ fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<usiz
         let named = name(study, resampled, member.candidate);
         // With its sizes corrected it may be no physics any more: a level below zero.
         let is_impossible = |named: &Named| Corrected::new(&study.arm, std::slice::from_ref(&named.effect)).is_err();
-        if named.iter().any(is_impossible) {
+        if named.iter().any(is_impossible) || is_mean_of_the_rest(study, judged, member) {
             return true;
         }
         named.first().is_some_and(|named| {
@@ -123,6 +125,16 @@ fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<usiz
     let unclear = judged.members.iter().filter(is_unclear);
     let weakest = unclear.min_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
     Some(weakest.candidate)
+}
+
+/// Whether it is a constant smaller than what is left beside it with structure: that has a mean too.
+fn is_mean_of_the_rest(study: &Study, judged: &Judged, member: &judge::Member) -> bool {
+    let candidate = &study.candidates[member.candidate];
+    let Some(joint) = candidate.joint.filter(|_| candidate.cause == Cause::TorqueOffset) else {
+        return false;
+    };
+    let left = structured(&errors(study, joint, &augmented(study, &judged.named, joint)));
+    left.is_some_and(|left| left > member.shares[joint])
 }
 
 /// The parameter that says how large an effect is.

@@ -97,6 +97,8 @@ pub enum Term {
         halfgap: f64,
         /// The stiffness of its ends, N m/rad; infinite: they stop the link at once.
         stop: f64,
+        /// The damping ratio of its ends against the link: from 1 on it does not bounce.
+        ratio: f64,
     },
     /// Each of two joints feels the other's q̇: a drive that both turn, and its reaction.
     PairVelocity(usize, usize),
@@ -132,7 +134,7 @@ pub enum Term {
         /// Half a sine instead of constant.
         round: bool,
     },
-    /// A tent on the joint's own position.
+    /// A tent on a joint's position.
     Tent {
         /// The joint that feels it.
         joint: usize,
@@ -142,6 +144,8 @@ pub enum Term {
         centre: f64,
         /// Half its foot (rad or m).
         width: f64,
+        /// What it is multiplied with.
+        times: Times,
     },
     /// |q̇|, q̇², q̇ |q̇| of another joint.
     OtherSpeed(usize, usize, usize),
@@ -191,6 +195,17 @@ impl Onset {
             Self::Payload(parameter) => Term::Payload(parameter),
         }
     }
+}
+
+/// What a function of a position is multiplied with, of the joint that feels it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Times {
+    /// One.
+    One,
+    /// q̇.
+    Velocity,
+    /// |q̇|.
+    Speed,
 }
 
 impl Term {

@@ -189,7 +189,12 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
         };
         if share > HIDDEN {
             let because = "other effects found explain the same torque in these motions";
-            add(cause, because.into(), least.is_finite().then_some((key, least)), None);
+            // What warms is a part of the dry friction; without that it has no size.
+            let size = match cause {
+                Cause::Thermal => least / chosen.fit.coefficient(candidate.columns[0]).max(0.0),
+                _ => least,
+            };
+            add(cause, because.into(), size.is_finite().then_some((key, size)), None);
         }
     }
     list

@@ -174,6 +174,17 @@ fn transmission_coupling() {
 }
 
 #[test]
+fn transmission_coupling_of_joints_one_apart() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        ordinary(motion, tau);
+        tau[ELBOW] += 1.1 * motion.qd[0] + 0.12 * motion.qdd[0];
+        tau[0] += 1.1 * motion.qd[ELBOW] + 0.12 * motion.qdd[ELBOW];
+    };
+    let truth = [("viscous", 1.1), ("inertia", 0.12)];
+    check(&trio(), &concealed, "transmission_coupling", Some("elbow"), &truth, 0.1);
+}
+
+#[test]
 fn torque_scale() {
     let concealed = |motion: &mut Motion, tau: &mut [f64]| {
         ordinary(motion, tau);

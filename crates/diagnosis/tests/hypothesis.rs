@@ -19,6 +19,7 @@ fn wanted(list: &[(&str, Option<&str>)]) -> Vec<Wanted> {
         .map(|(effect, joint)| Wanted {
             effect: (*effect).to_owned(),
             joint: joint.map(str::to_owned),
+            ..Wanted::default()
         })
         .collect()
 }

@@ -3,7 +3,8 @@
 mod support;
 
 use arm::Vector3;
-use support::{ELBOW, Motion, diagnosed, ordinary, sentences, trio};
+use diagnosis::{Options, Wanted};
+use support::{ELBOW, Motion, diagnosed, diagnosed_with, ordinary, sentences, trio};
 
 /// What sets in halfway is named with its onset, whatever it is.
 #[test]
@@ -26,8 +27,11 @@ fn what_sets_in_has_its_onset() {
         let left = &diagnosis.report.unexplained;
         let finding = finding.unwrap_or_else(|| panic!("{effect}: {:?} {left:?}", sentences(&diagnosis)));
         assert_eq!(finding.joint.as_deref(), Some(name.as_str()));
-        let found = finding.parameters["onset"].value;
-        assert!((found - onset).abs() < 0.1, "{effect}: {found}");
+        let found = &finding.parameters["onset"];
+        assert!((found.value - onset).abs() < 0.1, "{effect}: {found:?}");
+        // What the recordings say of the time, not a part of the clock.
+        let [low, high] = found.ci95;
+        assert!(low <= onset && onset <= high && high - low < 1.0, "{effect}: {found:?}");
         assert!(finding.sentence.contains("from 1006 s on"), "{}", finding.sentence);
         let again = diagnosed(&trio(), &trio(), &concealed, diagnosis.effects.clone());
         assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
@@ -66,4 +70,37 @@ fn a_payload_picked_up_has_its_onset() {
     assert!((parameters["onset"].value - 1006.0).abs() < 0.1, "{parameters:?}");
     let again = diagnosed(&empty, &empty, &concealed, diagnosis.effects.clone());
     assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
+}
+
+/// An effect that is wanted as one that sets in halfway is fitted so, and not as always acting.
+#[test]
+fn what_is_wanted_from_an_onset_on_is_fitted_so() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        if motion.clock >= 1006.0 {
+            tau[ELBOW] += 1.5;
+        }
+    };
+    let offset_of = |sets_in: Option<bool>| {
+        let offset = Wanted {
+            effect: "torque_offset".to_owned(),
+            joint: Some(trio().joints()[ELBOW].name.clone()),
+            sets_in,
+            ..Wanted::default()
+        };
+        let options = Options {
+            only: Some(vec![offset]),
+            ..Options::default()
+        };
+        let diagnosis = diagnosed_with(&trio(), &trio(), &concealed, &options).expect("it can be fitted");
+        let parameters = diagnosis.report.findings[0].parameters.clone();
+        let onset = parameters.get("onset").map(|onset| onset.value);
+        (onset, parameters["offset"].value)
+    };
+    for open_or_late in [None, Some(true)] {
+        let (onset, offset) = offset_of(open_or_late);
+        assert!(onset.is_some_and(|onset| (onset - 1006.0).abs() < 0.1), "{onset:?}");
+        assert!((offset - 1.5).abs() < 0.05, "{offset}");
+    }
+    let (onset, offset) = offset_of(Some(false));
+    assert!(onset.is_none() && offset < 1.4, "{onset:?} {offset}");
 }

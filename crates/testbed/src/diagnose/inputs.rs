@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail};
+use anyhow::{Context, bail, ensure};
 use arm::Arm;
 use diagnosis::Wanted;
 use indicatif::ProgressBar;
@@ -76,6 +76,11 @@ pub fn only(args: &DiagnoseArgs, arm: &Arm) -> anyhow::Result<Option<Vec<Wanted>
         let wanted = effects.iter().map(|effect| Wanted {
             effect: effect.name().to_owned(),
             joint: effect.joint().map(str::to_owned),
+            other: match effect {
+                Effect::TransmissionCoupling { other, .. } => Some(other.clone()),
+                _ => None,
+            },
+            sets_in: Some(effect.onset().is_some()),
         });
         return Ok(Some(wanted.collect()));
     }
@@ -84,10 +89,18 @@ pub fn only(args: &DiagnoseArgs, arm: &Arm) -> anyhow::Result<Option<Vec<Wanted>
             Some((effect, joint)) => (effect, Some(joint.to_owned())),
             None => (word, None),
         };
-        let effect = effect.to_owned();
-        Wanted { effect, joint }
+        Wanted {
+            effect: effect.to_owned(),
+            joint,
+            ..Wanted::default()
+        }
     });
-    Ok(Some(wanted.collect()))
+    let wanted: Vec<Wanted> = wanted.collect();
+    ensure!(
+        !wanted.is_empty(),
+        "--only {only:?}: names no effect; give effect:joint, or a file that --model wrote"
+    );
+    Ok(Some(wanted))
 }
 
 /// Whether a moving stretch of `b` is in `a`, sample for sample: a part of a recording under another name.
