@@ -146,6 +146,12 @@ fn what_cannot_be_concealed_is_refused_with_its_line() {
     );
     refuse(&EFFECTS.replace("elbow", "axis4").replace("mass = 1.0\n", ""), "mass");
     refuse(&EFFECTS.replace("stiffness", "stifness"), "effects.toml:6");
+    let onset = |time: &str| EFFECTS.replace("elbow", "axis4").replace("12.0", time);
+    refuse(&onset("nan"), "onset is nan; give a number");
+    refuse(&onset("1e9"), "the recordings are from 0 to 115 s");
+    refuse(&onset("-1.0"), "the recordings are from 0 to 115 s");
+    let twice = "\n[[effects]]\neffect = \"payload\"\nmass = 1.0\ncom = [0.0, 0.0, 0.1]\nonset = 13.0\n";
+    refuse(&(onset("12.0") + twice), "given twice");
     let error = sandbox.refuse(&["conceal", "--out", "cases"]);
     assert!(error.contains("--seed") || error.contains("--effects"), "{error}");
     let error = sandbox.refuse(&["conceal", "--robot", "puma650", "--seed", "1", "--out", "cases"]);

@@ -150,3 +150,27 @@ fn shares_merged_are_the_whole() {
         assert!(whole == merged, "{name} differs");
     }
 }
+
+#[test]
+fn a_truth_that_cannot_be_read_is_told_before_anything_is_diagnosed() {
+    let sandbox = cases();
+    sandbox.write("given/truth/case_b.json", "{\"case\": \"case_b\"}");
+    let refused = sandbox.refuse(&COMMAND);
+    assert!(
+        refused.contains("case_b.json") && refused.contains("missing field"),
+        "{refused}"
+    );
+    assert_eq!(sandbox.list("proof/diagnoses"), [""; 0]);
+}
+
+#[test]
+fn a_folder_begun_for_another_campaign_is_refused() {
+    let sandbox = cases();
+    sandbox.succeed(&COMMAND);
+    let before = bytes(&sandbox, "proof/score.json");
+    let refused = sandbox.refuse(&["prove", "--cases", "1", "--seed", "3", "--out", "proof"]);
+    assert!(refused.contains("was begun for cases that were given"), "{refused}");
+    assert!(refused.contains("give another --out"), "{refused}");
+    assert_eq!(bytes(&sandbox, "proof/score.json"), before);
+    assert_eq!(sandbox.list("proof/cases"), [""; 0]);
+}

@@ -167,13 +167,14 @@ impl Motions {
         let used = |held_out: bool| (MOST_SECONDS / seconds(held_out)).min(1.0);
         let total: f64 = [false, true].map(|role| used(role) * seconds(role)).iter().sum();
         let thin = (total * ROWS * cutoff / MOST_ROWS).max(1.0);
+        let overlap = overlapping(inputs);
         let mut motions = Self {
             dof: inputs.first().map_or(0, |input| input.recording.joints.len()),
             chunks: Vec::new(),
             sources: Vec::new(),
             cutoff,
             tempo: Vec::new(),
-            one_clock: has_one_clock(inputs),
+            one_clock: overlap.is_none(),
             remarks: [(false, "to be fitted"), (true, "held out")]
                 .into_iter()
                 .filter(|&(role, _)| used(role) < 1.0)
@@ -185,6 +186,12 @@ impl Motions {
                 })
                 .collect(),
         };
+        if let Some([a, b]) = overlap {
+            motions.remarks.push(format!(
+                "{a} and {b} overlap in time: what warms, what sets in and what was before is not asked; if the one was made \
+                 after the other, let its times follow the other's"
+            ));
+        }
         let mut end = 0.0;
         for (index, input) in inputs.iter().enumerate() {
             let recording = input.recording;
@@ -306,15 +313,19 @@ impl Motions {
     }
 }
 
-/// Whether the recordings' times follow one another: no two overlap.
-fn has_one_clock(inputs: &[Input<'_>]) -> bool {
-    let mut spans: Vec<(f64, f64)> = inputs
+/// Two recordings that overlap in time, if there are any: they are not on one clock.
+fn overlapping<'a>(inputs: &[Input<'a>]) -> Option<[&'a str; 2]> {
+    let mut spans: Vec<(f64, f64, &str)> = inputs
         .iter()
         .filter(|input| !input.recording.is_empty())
-        .map(|input| (input.recording.time(0), input.recording.time(input.recording.len() - 1)))
+        .map(|input| {
+            let last = input.recording.len() - 1;
+            (input.recording.time(0), input.recording.time(last), input.name)
+        })
         .collect();
     spans.sort_by(|a, b| a.0.total_cmp(&b.0));
-    spans.windows(2).all(|pair| pair[1].0 >= pair[0].1)
+    let pair = spans.windows(2).find(|pair| pair[1].0 < pair[0].1)?;
+    Some([pair[0].2, pair[1].2])
 }
 
 /// The strength of a signal's white noise: its third differences have 20 times the variance.

@@ -26,6 +26,10 @@ pub fn of(finding: &Finding, fit: &BTreeMap<String, JointFit>) -> String {
                 .to_owned()
         })
     };
+    let scaled = |key: &str, factor: f64| -> String {
+        let parameter = finding.parameters.get(key);
+        parameter.map_or_else(String::new, |p| number(factor * p.value))
+    };
     let what = match finding.effect {
         "viscous_friction" => format!("viscous friction of {}", value("coefficient")),
         "coulomb_friction" => format!("dry friction of {}", value("level")),
@@ -68,8 +72,8 @@ pub fn of(finding: &Finding, fit: &BTreeMap<String, JointFit>) -> String {
         ),
         "payload" => format!("a payload of {} at the tool", value("mass")),
         "link_inertial_error" => format!(
-            "a link whose mass and inertia are off by a factor {}",
-            value("relative")
+            "a link whose mass and inertia are off by {} %",
+            scaled("relative", 100.0)
         ),
         "inertial_scale" => format!("all masses and inertias {} times the model's", value("factor")),
         "gravity_misalignment" => format!("a base tilted by {}", value("angle")),

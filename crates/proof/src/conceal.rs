@@ -281,11 +281,23 @@ pub fn conceal_effects(
     stage.sensors.jitter = settings.jitter;
     stage.sensors.lost = settings.lost;
     let mut effects = effects.to_vec();
-    for effect in &effects {
+    let last = stage.held_out.time(stage.held_out.ticks());
+    for (k, effect) in effects.iter().enumerate() {
+        let fail = |reason: String| {
+            let effect = effect.effect.clone();
+            Err(ProofError::Effect { effect, reason })
+        };
         effect.check(&robot.driven())?;
+        if let Some(onset) = effect.onset.filter(|onset| !(0.0..last).contains(onset)) {
+            return fail(format!(
+                "its onset is {onset} s; the recordings are from 0 to {last:.0} s: give a time in them, or none"
+            ));
+        }
+        if effects[..k].iter().any(|other| other.is_again(effect)) {
+            return fail("is given twice on one joint; one is one effect".into());
+        }
         if effect.number("delay").is_some_and(|delay| delay > LONGEST_DELAY) {
-            let (effect, reason) = (effect.effect.clone(), format!("its delay is above {LONGEST_DELAY} s"));
-            return Err(ProofError::Effect { effect, reason });
+            return fail(format!("its delay is above {LONGEST_DELAY} s"));
         }
     }
     let (runs, torques) = stage.run_all(&effects)?;

@@ -61,6 +61,17 @@ impl Concealed {
         }
     }
 
+    /// Whether `other` is the same effect on the same joint (with the same other joint), from the start or from an onset on as it is.
+    /// Pushes and ripples there may be several.
+    pub(crate) fn is_again(&self, other: &Self) -> bool {
+        let about = |effect: &Self| {
+            let (joint, with) = (effect.joint.clone(), effect.parameters.get("other").cloned());
+            (effect.name().to_owned(), joint, with, effect.onset.is_some())
+        };
+        let several = ["external_contact", "torque_ripple"].contains(&self.name()) || self.is_outside_the_catalogue();
+        !several && about(self) == about(other)
+    }
+
     /// Whether no name of the catalogue fits it.
     pub fn is_outside_the_catalogue(&self) -> bool {
         self.effect.ends_with("_unknown")

@@ -73,6 +73,15 @@ pub enum RecordingError {
         /// The rows it takes.
         needed: usize,
     },
+    /// Rows follow one another faster than any drive records them.
+    #[error(
+        "its rows are {period:.1e} s apart, and no drive records so fast: are its stamps in another unit? Give the unit of the \
+         time in a column map"
+    )]
+    Period {
+        /// From row to row (s).
+        period: f64,
+    },
     /// Time stamps that a program gave do not increase.
     #[error("sample {row}: time goes from {before} s to {after} s; it must increase")]
     Time {

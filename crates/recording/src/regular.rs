@@ -8,6 +8,8 @@ use crate::{PartialSignal, Quantity, Recording, RecordingError, Signal, Warning,
 
 /// As many missing ticks in a row are interpolated; more part the recording.
 const FILLED: i64 = 5;
+/// No drive records faster (s).
+const SHORTEST_PERIOD: f64 = 5e-6;
 /// Stamps closer to the clock than this share of the period are not worth a word.
 const QUIET: f64 = 0.01;
 
@@ -107,7 +109,8 @@ impl Recording {
     /// are interpolated. Stamps without a regular clock are taken at their word, and the rows resampled.
     ///
     /// # Errors
-    /// [`RecordingError::TooShort`] below two samples, [`RecordingError::Time`] if stamps do not increase.
+    /// [`RecordingError::TooShort`] below two samples, [`RecordingError::Time`] if stamps do not increase,
+    /// [`RecordingError::Period`] if they are less than 5 µs apart.
     pub fn regular(&self) -> Result<(RegularRecording, Vec<Warning>), RecordingError> {
         let rows = self.len();
         if rows < 2 {
@@ -119,6 +122,10 @@ impl Recording {
             return Err(RecordingError::Time { row, before, after });
         }
         let clock = clock::find(&self.time, &self.breaks);
+        if clock.period < SHORTEST_PERIOD {
+            let period = clock.period;
+            return Err(RecordingError::Period { period });
+        }
         let mut warnings = Vec::new();
         let stretches = self.stretches(&clock, &mut warnings);
         let mut segments = Vec::new();

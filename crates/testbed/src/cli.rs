@@ -188,7 +188,7 @@ pub struct ProveArgs {
     pub cases_from: Option<PathBuf>,
 
     /// Where the truths of --cases-from are (case_*.json) [default: truth/ beside the cases]
-    #[arg(long, value_name = "DIR", requires = "cases_from")]
+    #[arg(long, value_name = "DIR", requires = "cases_from", conflicts_with_all = ["robot", "cases", "seed"])]
     pub truth: Option<PathBuf>,
 
     /// Take real robots' recordings instead, with what their publishers say as the truth (.toml, such as docs/published.toml)

@@ -31,6 +31,13 @@ pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Vec<Concealed>> {
         let span = table.span();
         let fail = |reason: String| anyhow!("{}: {reason}", source.place(span.clone()));
         let mut table = table.into_inner();
+        // JSON has no such numbers, and would leave the key out.
+        if let Some((key, value)) = table
+            .iter()
+            .find(|(_, value)| value.as_float().is_some_and(|v| !v.is_finite()))
+        {
+            return Err(fail(format!("{key} is {value}; give a number")));
+        }
         let json = serde_json::to_value(&table).map_err(|error| fail(error.to_string()))?;
         let effect: Concealed = serde_json::from_value(json).map_err(|error| fail(error.to_string()))?;
         if !effect.effect.ends_with("_unknown") {

@@ -146,7 +146,7 @@ fn remark(effects: &[Effect]) -> anyhow::Result<String> {
         held.len()
     )];
     if !left.is_empty() {
-        lines.push("What a URDF cannot hold (testbed reads it from corrected.toml):".into());
+        lines.push("What a URDF cannot hold (it is in the file that --model writes, which testbed reads):".into());
     }
     for effect in left {
         let table = toml::to_string(effect)?;

@@ -275,10 +275,10 @@ pub fn verdict(report: &Report) -> String {
             format!("The model leaves out {effects} on {on}, and something without a name on {left}.")
         }
         Verdict::Unexplained if left.is_empty() => {
-            "Robot and model differ, and no effect of the catalogue explains how.".into()
+            "Robot and model differ, and no effect that was tried explains how.".into()
         }
         Verdict::Unexplained => {
-            format!("Robot and model differ on {left}, and no effect of the catalogue explains how.")
+            format!("Robot and model differ on {left}, and no effect that was tried explains how.")
         }
         Verdict::NotEnoughData => "These recordings do not say enough for a diagnosis.".into(),
     }

@@ -90,6 +90,15 @@ impl Source {
         }
     }
 
+    /// The URDFs of the robots that cases are drawn on.
+    pub fn urdfs(&self) -> impl Iterator<Item = &str> {
+        let robots = match self {
+            Self::Drawn { robots, .. } => robots.as_slice(),
+            Self::Given { .. } => &[],
+        };
+        robots.iter().map(Robot::urdf)
+    }
+
     /// The command that makes the proof again, without paths.
     pub fn command(&self) -> String {
         match self {

@@ -65,6 +65,7 @@ pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
     let deferred = interrupt::Deferred::start();
     let source = Source::new(args)?;
     let vault = Vault::new(&out)?;
+    vault.begin(&source)?;
     let mut places = source.places(&vault.out)?;
     if let Some(shard) = args.shard {
         places.retain(|place| shard.has(place.number));
@@ -93,6 +94,13 @@ fn protocol(
     jobs: usize,
     times: &mut Times,
 ) -> anyhow::Result<(Seal, Vec<Row>)> {
+    if let Source::Given { .. } = source {
+        // A truth that cannot be read is better known before hours of diagnosis than after.
+        for Place { name, truth, .. } in places {
+            let text = std::fs::read_to_string(truth).with_context(|| truth.display().to_string())?;
+            rows::truth(name, &text).with_context(|| format!("{}: mend it, or take it away", truth.display()))?;
+        }
+    }
     times.of("conceal", || {
         work::all("concealing", places, jobs, |place| source.make(place))
     })?;

@@ -6,7 +6,7 @@ use anyhow::{Context, ensure};
 use proof::{Program, Seal, SealedCase, sha256, sha256_of};
 use serde::{Deserialize, Serialize};
 
-use super::cases::{Files, Place};
+use super::cases::{Files, Place, Source};
 use super::child::{self, Ended, Task};
 use crate::output;
 
@@ -28,6 +28,16 @@ pub struct Record {
     pub next: Option<String>,
     /// What it said instead.
     pub error: Option<String>,
+}
+
+/// What a folder was begun for: cases that are concealed in it already are of this campaign.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct Begun {
+    program: Program,
+    /// A seed and the robots' names, or that the cases were given.
+    source: String,
+    /// SHA-256 of the robots' URDFs.
+    robots: Vec<String>,
 }
 
 /// The folder of a proof.
@@ -60,6 +70,41 @@ impl Vault {
             executable,
             program,
         })
+    }
+
+    /// Notes for which campaign the folder is, or checks that it is this one.
+    ///
+    /// # Errors
+    /// If it was begun for another, or by another program.
+    pub fn begin(&self, source: &Source) -> anyhow::Result<()> {
+        let begun = Begun {
+            program: self.program.clone(),
+            source: source.describe(),
+            robots: source.urdfs().map(|urdf| sha256(urdf.as_bytes())).collect(),
+        };
+        let path = self.out.join("campaign.json");
+        if !path.is_file() {
+            return output::write_json(&path, &begun);
+        }
+        let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+        let there: Begun = serde_json::from_str(&text).with_context(|| path.display().to_string())?;
+        let what = |begun: &Begun| {
+            let Program { version, sha256 } = &begun.program;
+            let program = format!("testbed {version} ({}…)", sha256.get(..12).unwrap_or_default());
+            format!("{}, by {program}", begun.source)
+        };
+        let (there_is, this_is) = (what(&there), what(&begun));
+        ensure!(
+            there == begun,
+            "{}: was begun for {there_is}; this is {}; give another --out",
+            self.out.display(),
+            if there_is == this_is {
+                "the same with another URDF".to_owned()
+            } else {
+                this_is
+            }
+        );
+        Ok(())
     }
 
     /// Seals `places`, or checks that what is sealed already is this.
