@@ -8,14 +8,14 @@ use std::collections::BTreeSet;
 
 use arm::Arm;
 use rayon::prelude::*;
-use torque::{Corrected, Effect, Reference};
+use torque::{Effect, Reference};
 
 use crate::candidate::Cause;
 use crate::fit::Products;
 use crate::report::{Confusable, Finding, NotObservable, Unexplained};
 use crate::search::Chosen;
 use crate::study::Study;
-use crate::unseen;
+use crate::{rivals, unseen};
 
 mod advice;
 mod designs;
@@ -25,7 +25,7 @@ mod report;
 
 pub use report::{JointLimits, Left, NextExperiment, Separation, Shows, Untold};
 
-use designs::{DURATION, Design};
+use designs::{DURATION, Design, FINE};
 use limits::Limits;
 use prospect::{Outlook, Pair, Prospect};
 
@@ -37,8 +37,6 @@ const COUNTED: (f64, f64) = (0.05, 4.0);
 const SECOND: f64 = 0.1;
 /// What would be seen from this part of the size on is shown better.
 const BETTER: f64 = 0.8;
-/// The motion chosen is looked at so many times a second for what it needs (Hz).
-const FINE: f64 = 500.0;
 /// Joints beside those in question take this part of the speed and the room, in some of the motions tried.
 const ASIDE: [f64; 2] = [0.2, 0.5];
 
@@ -74,6 +72,8 @@ struct Hidden<'a> {
 /// A motion that was tried.
 struct Tried {
     design: Design,
+    /// The parts of speed and room that it has of what its joints may.
+    parts: [f64; 2],
     motion: Reference,
     separations: Vec<[f64; 2]>,
     shows: Vec<Option<f64>>,
@@ -114,12 +114,12 @@ pub fn propose(
     let Some(prospect) = Prospect::new(study, products, chosen, columns.collect()) else {
         return Ok(nothing);
     };
-    let limits = Limits::new(study, Corrected::new(arm, effects)?, unexplained.is_empty());
+    let limits = Limits::new(study, (arm, effects), unexplained.is_empty())?;
     let now = prospect.now();
     let before: Vec<[f64; 2]> = confusions.iter().map(|c| prospect.separation(&now, &c.pair)).collect();
     let attempt = |design: Design| -> Option<Tried> {
-        let motion = design.within(&limits)?;
-        Some(tried(&prospect, &confusions, &hidden, design, motion))
+        let (motion, parts) = design.within(&limits)?;
+        Some(tried(&prospect, &confusions, &hidden, (design, parts), motion))
     };
     let mut list: Vec<Tried> = designs::all().into_par_iter().filter_map(attempt).collect();
     if let Some(best) = best(&list) {
@@ -134,10 +134,20 @@ pub fn propose(
             list.extend(more);
         }
     }
-    let Some(best) = best(&list) else {
-        return Ok(nothing);
-    };
-    Ok(described(&limits, &confusions, &hidden, &before, &list, best))
+    // What goes a little beyond the limits between two looks is made smaller, and predicted anew; it may be the best no more.
+    while let Some(best) = best(&list) {
+        let (design, parts) = (list[best].design.clone(), list[best].parts);
+        match design.surely_within(&limits, parts) {
+            Some((_, within)) if within == parts => {
+                return Ok(described(&limits, &confusions, &hidden, &before, &list, best));
+            }
+            Some((motion, within)) => {
+                list[best] = tried(&prospect, &confusions, &hidden, (design, within), motion);
+            }
+            None => drop(list.remove(best)),
+        }
+    }
+    Ok(nothing)
 }
 
 /// The first of those that are worth most.
@@ -149,7 +159,7 @@ fn tried(
     prospect: &Prospect<'_>,
     confusions: &[Confusion],
     hidden: &[Hidden<'_>],
-    design: Design,
+    (design, parts): (Design, [f64; 2]),
     motion: Reference,
 ) -> Tried {
     let outlook = prospect.with(&motion);
@@ -173,6 +183,7 @@ fn tried(
     let worth = apart.sum::<f64>() + SECOND * seen.sum::<f64>();
     Tried {
         design,
+        parts,
         motion,
         separations,
         shows,
@@ -215,7 +226,8 @@ fn confusions(
     for (finding, member) in findings {
         let Some(member) = *member else { continue };
         let this = &study.candidates[member];
-        let set = crate::rivals::beside(study, chosen, member);
+        let set = rivals::beside(study, chosen, member);
+        let alias = rivals::alias(study, chosen, member, &set);
         let with = |added: &[usize]| columns_of(&[&set, added].concat());
         for rival in &finding.confusable_with {
             let joint = rival.joint.as_deref().and_then(index);
@@ -225,14 +237,17 @@ fn confusions(
                 other.cause.name() == Some(rival.effect) && !finer && (other.joint == joint)
             };
             let forms: Vec<usize> = (0..study.candidates.len()).filter(is_it).collect();
-            let instead: Vec<(Vec<usize>, Vec<usize>)> =
-                if this.cause == Cause::InertialScale && rival.effect == "torque_scale" {
-                    let is_factor = |c: &usize| study.candidates[*c].cause == Cause::TorqueScale;
-                    let all: Vec<usize> = (0..study.candidates.len()).filter(is_factor).collect();
-                    vec![(with(&all), all)]
-                } else {
-                    forms.iter().map(|&form| (with(&[form]), vec![form])).collect()
-                };
+            let is_alias = alias.is_some_and(|(cause, place)| cause.name() == Some(rival.effect) && place == joint);
+            let instead: Vec<(Vec<usize>, Vec<usize>)> = if is_alias {
+                // Fitted in the finding's place it is the finding itself.
+                vec![(chosen.fit.columns.clone(), Vec::new())]
+            } else if this.cause == Cause::InertialScale && rival.effect == "torque_scale" {
+                let is_factor = |c: &usize| study.candidates[*c].cause == Cause::TorqueScale;
+                let all: Vec<usize> = (0..study.candidates.len()).filter(is_factor).collect();
+                vec![(with(&all), all)]
+            } else {
+                forms.iter().map(|&form| (with(&[form]), vec![form])).collect()
+            };
             if instead.is_empty() {
                 continue;
             }
@@ -307,7 +322,13 @@ fn described(
     for (k, confusion) in confusions.iter().enumerate() {
         let [after, needed] = chosen.separations[k];
         let (finding, rival) = (confusion.finding.clone(), confusion.rival.clone());
-        if after >= SURE * needed && confusion.is_explained {
+        let barred = if !confusion.is_explained {
+            Some(Left::Unexplained)
+        } else {
+            // What is told already could not be confused.
+            (before[k][0] >= before[k][1].min(needed)).then_some(Left::NotForetold)
+        };
+        if after >= SURE * needed && barred.is_none() {
             separates.push(Separation {
                 finding,
                 rival,
@@ -320,13 +341,7 @@ fn described(
         let all = list.iter().map(|tried| tried.separations[k]);
         let furthest = all.max_by(|a, b| (a[0] / a[1]).total_cmp(&(b[0] / b[1])));
         let furthest = furthest.unwrap_or([after, needed]);
-        not_separated.push(advice::untold(
-            finding,
-            rival,
-            furthest,
-            SURE * furthest[1],
-            confusion.is_explained,
-        ));
+        not_separated.push(advice::untold(finding, rival, furthest, SURE * furthest[1], barred));
     }
     let shows: Vec<Shows> = hidden
         .iter()

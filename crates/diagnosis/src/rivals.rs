@@ -63,6 +63,21 @@ pub fn beside(study: &Study, chosen: &Chosen, member: usize) -> Vec<usize> {
     set
 }
 
+/// The other name of the machine that `member` says, if it has one: dry friction that from some time on differs by direction is
+/// the same level, and a constant from then on. No motion tells the two apart. `set` is what stands [`beside`] it.
+pub fn alias(study: &Study, chosen: &Chosen, member: usize, set: &[usize]) -> Option<(Cause, Option<usize>)> {
+    let finding = &study.candidates[member];
+    let constant = *finding.columns.first()?;
+    let sets_in = finding.cause == Cause::TorqueOffset && study.table.terms[constant].onset().is_some();
+    let is_larger_friction = |&c: &usize| {
+        let other = &study.candidates[c];
+        other.cause == Cause::Coulomb
+            && other.joint == finding.joint
+            && chosen.fit.coefficient(other.columns[0]) > chosen.fit.coefficient(constant).abs()
+    };
+    (sets_in && set.iter().any(is_larger_friction)).then_some((Cause::Asymmetry, finding.joint))
+}
+
 /// Tries everything else in the place of `member`.
 pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: usize) -> Standing {
     let finding = &study.candidates[member];
@@ -118,19 +133,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         }
     }
     let explained = without.fit.loss - chosen.fit.loss;
-    let mut identical = Vec::new();
-    if finding.cause == Cause::TorqueOffset
-        && problem.onset(finding).is_some()
-        && set.iter().any(|&c| {
-            let other = &study.candidates[c];
-            other.cause == Cause::Coulomb
-                && other.joint == finding.joint
-                && chosen.fit.coefficient(other.columns[0]) > chosen.fit.coefficient(finding.columns[0]).abs()
-        })
-    {
-        // Dry friction that from then on differs by direction: the same level, and the same constant.
-        identical.push((0.0, 0.0, Cause::Asymmetry, finding.joint));
-    }
+    let identical = alias(study, chosen, member, &set).map(|(cause, joint)| (0.0, 0.0, cause, joint));
     let allowance = allowance(explained);
     let mut results: Vec<(f64, f64, Cause, Option<usize>)> = sets
         .into_par_iter()

@@ -115,7 +115,7 @@ fn a_motion_stays_within_the_limits() {
     for joint in &next.limits {
         assert!(joint.position_allowed[0] <= joint.position[0] && joint.position[1] <= joint.position_allowed[1]);
         assert!(
-            joint.velocity <= 1.03 * joint.velocity_allowed && joint.torque <= 1.03 * joint.torque_allowed,
+            joint.velocity <= joint.velocity_allowed && joint.torque <= joint.torque_allowed,
             "{joint:?}"
         );
     }
@@ -170,4 +170,60 @@ fn the_proposal_does_not_depend_on_the_threads() {
         pool.install(|| proposed(&friction).0.next)
     };
     assert_eq!(of(1), of(3));
+}
+
+/// Friction that sets in with a direction is an offset that sets in, in every motion: nothing is promised of the two.
+#[test]
+fn no_motion_is_promised_to_tell_an_offset_that_sets_in() {
+    let later = |motion: &mut Motion, tau: &mut [f64]| {
+        support::ordinary(motion, tau);
+        if motion.clock >= 1006.0 {
+            tau[ELBOW] += 0.4;
+        }
+    };
+    let (diagnosis, next) = proposed(&later);
+    let is_it = |finding: &diagnosis::Confusable, rival: &diagnosis::Confusable| {
+        (finding.effect, rival.effect) == ("torque_offset", "friction_asymmetry")
+    };
+    assert!(
+        is_confused(&diagnosis, "torque_offset", "friction_asymmetry"),
+        "{:?}",
+        support::sentences(&diagnosis)
+    );
+    assert!(!next.separates.iter().any(|pair| is_it(&pair.finding, &pair.rival)));
+    let untold = next.not_separated.iter().find(|pair| is_it(&pair.finding, &pair.rival));
+    let untold = untold.expect("it is said");
+    assert_eq!((untold.kind, untold.best), (Left::SameTorque, 0.0));
+    // And of nothing else that is told already.
+    for pair in &next.separates {
+        assert!(pair.before < pair.needed, "{pair:?}");
+    }
+}
+
+/// A torque limit that was found bounds the motion, and is no part of what the motion is predicted to need.
+#[test]
+fn a_motion_stays_within_a_torque_limit_that_was_found() {
+    let (_, unlimited) = proposed(&friction);
+    let limit = 36.0;
+    assert!(unlimited.limits[SHOULDER].torque > 1.1 * limit, "{unlimited:#?}");
+    let options = Options {
+        next: true,
+        known: vec![torque::Effect::TorqueSaturation {
+            joint: "shoulder".into(),
+            limit,
+        }],
+        ..Options::default()
+    };
+    let diagnosis = diagnosed_with(&trio(), &trio(), &friction, &options).expect("it can be diagnosed");
+    let next = diagnosis.report.next_experiment.expect("it was asked for");
+    let motion = diagnosis.next.expect("a motion");
+    assert!(next.limits[SHOULDER].torque_allowed <= limit, "{:?}", next.limits);
+    let arm = trio();
+    let (mut at, mut tau) = (torque::Motion::new(3), vec![0.0; 3]);
+    let mut workspace = arm::Workspace::new(&arm);
+    for k in 0..5000 {
+        motion.at(f64::from(k) / 200.0, &mut at);
+        arm.inverse_dynamics(&mut workspace, &at.q, &at.qd, &at.qdd, &mut tau);
+        assert!(tau[SHOULDER].abs() <= limit, "{k}: {}", tau[SHOULDER]);
+    }
 }

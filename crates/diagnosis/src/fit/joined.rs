@@ -33,8 +33,11 @@ impl Products {
         }
     }
 
-    /// The root mean square of a column on a joint, where it stands in place `place`.
-    pub fn size(&self, joint: usize, place: usize) -> f64 {
-        (self.gram[joint].of(place, place) / self.count[joint].max(1.0)).sqrt()
+    /// The standard deviation of a column on a joint, where it stands in place `place`.
+    pub fn spread(&self, joint: usize, place: usize) -> f64 {
+        let (gram, n) = (&self.gram[joint], self.count[joint].max(1.0));
+        (gram.of(place, place) / n - (gram.sum_of(place) / n).powi(2))
+            .max(0.0)
+            .sqrt()
     }
 }

@@ -7,18 +7,18 @@ use crate::report::Confusable;
 const ALIAS: (f64, f64) = (1.0, 0.1);
 
 /// The confusion of `finding` with `rival`, which the best motion for it sets `best` apart (nats), where `needed` would tell.
-/// `sure` is the distance from which it is promised, where the findings explain what they are about.
+/// `sure` is the distance from which it is promised, unless it is `barred` for a reason.
 pub fn untold(
     finding: Confusable,
     rival: Confusable,
     [best, needed]: [f64; 2],
     sure: f64,
-    is_explained: bool,
+    barred: Option<Left>,
 ) -> Untold {
     let kind = if best.abs() < ALIAS.0.max(ALIAS.1 * needed) {
         Left::SameTorque
-    } else if !is_explained {
-        Left::Unexplained
+    } else if let Some(reason) = barred {
+        reason
     } else if best < sure {
         Left::OutOfReach
     } else {
@@ -32,6 +32,10 @@ pub fn untold(
         ),
         Left::Unexplained => {
             "something without a name is left there, so that what a motion would tell cannot be foretold".to_owned()
+        }
+        Left::NotForetold => {
+            "by this prediction the recordings tell the two apart already, and they do not: what a motion would tell cannot be foretold"
+                .to_owned()
         }
         Left::AnotherMotion => {
             "another motion would tell, but this one serves the others better: propose again after it".to_owned()

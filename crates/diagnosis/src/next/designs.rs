@@ -4,10 +4,12 @@ use std::f64::consts::TAU;
 
 use torque::{Fade, Reference, Sine};
 
-use super::limits::{Limits, taken};
+use super::limits::{Limits, rounded, taken};
 
 /// How long a motion takes (s).
 pub const DURATION: f64 = 25.0;
+/// The motion proposed is looked at so many times a second for what it needs (Hz).
+pub const FINE: f64 = 500.0;
 /// It begins and ends at rest, and fades within (s).
 const FADE: f64 = 3.0;
 /// The slowest and the fastest sine (Hz).
@@ -18,11 +20,12 @@ const GOLDEN: f64 = 0.618_033_988_749_895;
 const DETUNED: f64 = 0.17;
 /// What is slow moves at this part of the speed.
 const SLOW: f64 = 0.25;
-/// A motion that needs too much is slowed down and made smaller by this factor, so often at most.
-const STEP: f64 = 0.85;
+/// A motion that needs too much is slowed down and made smaller by a factor, so often at most.
 const STEPS: usize = 12;
-/// Limits are looked at so many times a second while designs are compared (Hz).
-const COARSE: f64 = 25.0;
+/// Limits are looked at so many times a second while designs are compared, and a motion is slowed down by this factor …
+const COMPARED: (f64, f64) = (25.0, 0.85);
+/// … and so many times a second before one is proposed, by that factor.
+const PROPOSED: (f64, f64) = (FINE, 0.97);
 
 /// How a joint's motion is made up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,19 +75,33 @@ pub fn all() -> Vec<Design> {
 }
 
 impl Design {
-    /// The motion, slowed down and made smaller until it is within `limits`; `None` if it cannot be.
-    pub fn within(&self, limits: &Limits) -> Option<Reference> {
-        let (mut speed, mut amplitude) = (self.speed, self.amplitude);
+    /// The motion, slowed down and made smaller until it is within `limits` as far as a look now and then tells, to be compared
+    /// with others; and the parts of speed and room that it has then. `None` if it cannot be.
+    pub fn within(&self, limits: &Limits) -> Option<(Reference, [f64; 2])> {
+        self.shrunk(limits, [self.speed, self.amplitude], COMPARED)
+    }
+
+    /// The same for a motion to be proposed, looked at closely, with the parts that [`Self::within`] gave or less.
+    pub fn surely_within(&self, limits: &Limits, parts: [f64; 2]) -> Option<(Reference, [f64; 2])> {
+        self.shrunk(limits, parts, PROPOSED)
+    }
+
+    fn shrunk(
+        &self,
+        limits: &Limits,
+        [mut speed, mut amplitude]: [f64; 2],
+        (hertz, step): (f64, f64),
+    ) -> Option<(Reference, [f64; 2])> {
         for _ in 0..STEPS {
             let reference = self.reference(limits, speed, amplitude);
-            let [fast, strong] = taken(&limits.needed(&reference, DURATION, COARSE));
-            if fast <= 1.0 && strong <= 1.0 {
-                return Some(reference);
+            let [far, fast, strong] = taken(&limits.needed(&reference, DURATION, hertz));
+            if far <= 1.0 && fast <= 1.0 && strong <= 1.0 {
+                return Some((reference, [speed, amplitude]));
             }
-            speed *= STEP;
-            if strong > 1.0 && speed < 0.5 * self.speed {
+            speed *= step;
+            if far > 1.0 || (strong > 1.0 && speed < 0.5 * self.speed) {
                 // What it costs to hold the arm there does not fall with the speed.
-                amplitude *= STEP;
+                amplitude *= step;
             }
         }
         None
@@ -127,12 +144,12 @@ impl Design {
                 let wanted = fast / (TAU * room) * (1.0 - DETUNED * turn);
                 let frequency = wanted.clamp(FREQUENCIES.0, FREQUENCIES.1);
                 sine.frequency[j] = rounded(frequency);
-                sine.amplitude[j] = rounded(room.min(fast / (TAU * frequency)));
+                sine.amplitude[j] = rounded_down(room.min(fast / (TAU * sine.frequency[j])));
                 sine.phase[j] = rounded(TAU * (GOLDEN * (dof * tone + j + 3) as f64).fract());
             }
         }
         Reference {
-            centre: limits.middle.iter().map(|&middle| rounded(middle)).collect(),
+            centre: limits.middle.clone(),
             sines,
             fade: Some(Fade {
                 seconds: FADE,
@@ -142,7 +159,7 @@ impl Design {
     }
 }
 
-/// To four decimals, as the scenario's file has it.
-fn rounded(value: f64) -> f64 {
-    (1e4 * value).round() / 1e4
+/// To four decimals as [`rounded`], and never more.
+fn rounded_down(value: f64) -> f64 {
+    (1e4 * value).floor() / 1e4
 }

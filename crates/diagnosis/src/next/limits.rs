@@ -1,6 +1,7 @@
 //! What a motion may ask of the joints, and whether it stays within.
 
-use torque::{Corrected, Motion, Prediction, Reference, Workspace};
+use arm::Arm;
+use torque::{Corrected, Effect, Motion, Prediction, Reference, TorqueError, Workspace};
 
 use super::report::JointLimits;
 use crate::study::Study;
@@ -34,10 +35,17 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Of the arm of `study`; torques are those of `model`, which has what is known and what was found, and which `explains` the
-    /// recordings or not.
-    pub fn new(study: &Study, model: Corrected, explains: bool) -> Self {
-        let (wider, faster) = if explains { BEYOND } else { BEYOND_UNEXPLAINED };
+    /// Of the arm `arm` of `study`; torques are those of `arm` with `effects`, which are what is known and what was found, and which
+    /// `explain` the recordings or not. Torque limits among them bound what a motion may need, and not what it needs.
+    ///
+    /// # Errors
+    /// If the effects cannot be put into the model.
+    pub fn new(study: &Study, (arm, effects): (&Arm, &[Effect]), explain: bool) -> Result<Self, TorqueError> {
+        let is_limit = |effect: &&Effect| matches!(effect, Effect::TorqueSaturation { .. });
+        let (found, others): (Vec<&Effect>, Vec<&Effect>) = effects.iter().partition(is_limit);
+        let with = |effects: Vec<&Effect>| Corrected::new(arm, &effects.into_iter().cloned().collect::<Vec<_>>());
+        let (found, model) = (with(found)?, with(others)?);
+        let (wider, faster) = if explain { BEYOND } else { BEYOND_UNEXPLAINED };
         let joints = study.arm.joints();
         let scales = &study.scales;
         let typical = {
@@ -48,7 +56,7 @@ impl Limits {
         };
         let mut limits = Self {
             names: joints.iter().map(|joint| joint.name.clone()).collect(),
-            middle: scales.middle.clone(),
+            middle: scales.middle.iter().map(|&middle| rounded(middle)).collect(),
             room: Vec::new(),
             speed: Vec::new(),
             torque: Vec::new(),
@@ -62,7 +70,7 @@ impl Limits {
             } else {
                 0.0
             };
-            let middle = scales.middle[j];
+            let middle = limits.middle[j];
             let to_a_limit = (upper - free - middle).min(middle - lower - free).max(0.0);
             // A joint that was held still may move as the others do.
             let recorded = 0.5 * scales.range[j];
@@ -78,14 +86,15 @@ impl Limits {
                 FASTER_UNLIMITED.min(faster) * speed
             });
             let torque = study.measured[j].iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
-            limits.torque.push(if joint.limits.effort.is_finite() {
+            let allowed = if joint.limits.effort.is_finite() {
                 // What it gave already it can give again.
                 (WITHIN * joint.limits.effort).max(torque.min(joint.limits.effort))
             } else {
                 STRONGER_UNLIMITED * torque
-            });
+            };
+            limits.torque.push(allowed.min(found.torque_limits()[j]));
         }
-        limits
+        Ok(limits)
     }
 
     /// What `reference` needs of each joint over `duration` (s), looked at `hertz` times a second.
@@ -123,11 +132,25 @@ impl Limits {
     }
 }
 
-/// The largest share of what a joint may that `needed` takes: of speed, and of torque. Positions are within by design.
-pub fn taken(needed: &[JointLimits]) -> [f64; 2] {
+/// To four decimals, as the scenario's file has it.
+pub fn rounded(value: f64) -> f64 {
+    (1e4 * value).round() / 1e4
+}
+
+/// The largest share of what a joint may that `needed` takes: of room, of speed, and of torque.
+pub fn taken(needed: &[JointLimits]) -> [f64; 3] {
     let share = |of: f64, allowed: f64| if of > 0.0 { of / allowed.max(1e-300) } else { 0.0 };
     let most = |pick: &dyn Fn(&JointLimits) -> f64| needed.iter().map(pick).fold(0.0, f64::max);
+    let room = |joint: &JointLimits| {
+        let [low, high] = joint.position_allowed;
+        let middle = 0.5 * (low + high);
+        share(
+            (joint.position[1] - middle).max(middle - joint.position[0]),
+            0.5 * (high - low),
+        )
+    };
     [
+        most(&room),
         most(&|joint| share(joint.velocity, joint.velocity_allowed)),
         most(&|joint| share(joint.torque, joint.torque_allowed)),
     ]

@@ -48,7 +48,9 @@ pub struct Prospect<'a> {
     grid: (f64, Kernel, usize),
     /// When the motion would begin (s).
     start: f64,
+    /// Integrals over the recordings, one a joint: of [`moments`] …
     torque: Vec<[f64; 3]>,
+    /// … and of [`powers`].
     speed: Vec<[f64; 2]>,
 }
 
@@ -82,8 +84,8 @@ impl<'a> Prospect<'a> {
         let mut speed = vec![[0.0; 2]; dof];
         for chunk in fitted() {
             for j in 0..dof {
-                moments(&mut torque[j], &chunk.tau[j]);
-                powers(&mut speed[j], &chunk.qd[j], &chunk.qdd[j]);
+                moments(&mut torque[j], &chunk.tau[j], chunk.period);
+                powers(&mut speed[j], &chunk.qd[j], &chunk.qdd[j], chunk.period);
             }
         }
         Some(Self {
@@ -129,11 +131,11 @@ impl<'a> Prospect<'a> {
         let (mut torque, mut tempo, mut rates) = (Vec::new(), Vec::new(), Vec::new());
         for j in 0..dof {
             let mut sums = self.torque[j];
-            moments(&mut sums, &chunk.tau[j]);
-            let n = sums[0].max(1.0);
-            torque.push((sums[2] / n - (sums[1] / n).powi(2)).max(0.0).sqrt());
+            moments(&mut sums, &chunk.tau[j], chunk.period);
+            let seconds = sums[0].max(f64::MIN_POSITIVE);
+            torque.push((sums[2] / seconds - (sums[1] / seconds).powi(2)).max(0.0).sqrt());
             let mut power = self.speed[j];
-            powers(&mut power, &chunk.qd[j], &chunk.qdd[j]);
+            powers(&mut power, &chunk.qd[j], &chunk.qdd[j], chunk.period);
             tempo.push((power[1] / power[0].max(1e-300)).sqrt() / std::f64::consts::TAU);
             rates.push(evidence_rate(study.motions.tempo[j]));
         }
@@ -214,16 +216,16 @@ impl<'a> Prospect<'a> {
     fn add_torques(&self, chunk: &mut Chunk, rigid: &Rigid) {
         let fit = &self.chosen.fit;
         let is_carried = |term: Term| self.about.carried.iter().any(|(carried, _)| *carried == term);
-        let depends = |term: Term| matches!(term, Term::Late { .. } | Term::Excess { .. });
         let scales = &self.study.scales;
         let mut free = rigid.tau.clone();
         let mut own = Vec::new();
         for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
             let term = self.study.table.terms[column];
-            if is_carried(term) {
+            // A motion within a limit that was found has nothing beyond it.
+            if is_carried(term) || matches!(term, Term::Excess { .. }) {
                 continue;
             }
-            if depends(term) {
+            if matches!(term, Term::Late { .. }) {
                 own.push((term, value));
                 continue;
             }
@@ -279,7 +281,7 @@ impl<'a> Prospect<'a> {
             let place = self.columns.binary_search(&column).ok()?;
             Some(Visibility {
                 own: products.drop_of(&self.bare, &fit, place),
-                spread: products.size(joint, place),
+                spread: products.spread(joint, place),
                 count: products.count[joint],
                 evidence: products.evidence[joint],
                 torque: outlook.torque[joint],
@@ -295,13 +297,33 @@ fn add(sum: &mut [f64], factor: f64, values: Option<Vec<f64>>) {
     }
 }
 
-fn moments(sums: &mut [f64; 3], signal: &[f64]) {
-    sums[0] += signal.len() as f64;
-    sums[1] += signal.iter().sum::<f64>();
-    sums[2] += signal.iter().map(|v| v * v).sum::<f64>();
+/// Adds the integrals over time of 1, of a signal and of its square; ticks are `period` (s) apart.
+fn moments(sums: &mut [f64; 3], signal: &[f64], period: f64) {
+    sums[0] += period * signal.len() as f64;
+    sums[1] += period * signal.iter().sum::<f64>();
+    sums[2] += period * signal.iter().map(|v| v * v).sum::<f64>();
 }
 
-fn powers(sums: &mut [f64; 2], speed: &[f64], acceleration: &[f64]) {
-    sums[0] += speed.iter().map(|v| v * v).sum::<f64>();
-    sums[1] += acceleration.iter().map(|v| v * v).sum::<f64>();
+/// The same of the squares of speed and acceleration.
+fn powers(sums: &mut [f64; 2], speed: &[f64], acceleration: &[f64], period: f64) {
+    sums[0] += period * speed.iter().map(|v| v * v).sum::<f64>();
+    sums[1] += period * acceleration.iter().map(|v| v * v).sum::<f64>();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A motion counts by how long it lasts, on whatever grid.
+    #[test]
+    fn a_coarser_grid_counts_as_much() {
+        let (mut fine, mut coarse) = ([0.0; 3], [0.0; 3]);
+        moments(&mut fine, &[2.0; 8], 0.5);
+        moments(&mut coarse, &[2.0; 4], 1.0);
+        assert_eq!((fine, coarse), ([4.0, 8.0, 16.0], fine));
+        let (mut fine, mut coarse) = ([0.0; 2], [0.0; 2]);
+        powers(&mut fine, &[2.0; 8], &[3.0; 8], 0.5);
+        powers(&mut coarse, &[2.0; 4], &[3.0; 4], 1.0);
+        assert_eq!((fine, coarse), ([16.0, 36.0], fine));
+    }
 }

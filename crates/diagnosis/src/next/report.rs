@@ -66,6 +66,8 @@ pub enum Left {
     AnotherMotion,
     /// What the joint does is not explained, so that nothing can be said of a motion nobody made.
     Unexplained,
+    /// On paper the recordings tell the two apart already, and they did not: the paper cannot be trusted on these two.
+    NotForetold,
 }
 
 /// An effect that the motion shows at a smaller size than the recordings do.

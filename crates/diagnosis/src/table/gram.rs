@@ -56,6 +56,7 @@ impl Stretch {
         for x in &x[known..] {
             let x = pick(x);
             self.gram.right.push(x.iter().zip(&y).map(|(x, y)| x * y).sum());
+            self.gram.sums.push(x.iter().sum());
             self.packed.extend(x);
         }
         let all = MatRef::from_column_major_slice(&self.packed, y.len(), total);
@@ -83,6 +84,8 @@ pub struct Gram {
     right: Vec<f64>,
     /// y with itself.
     square: f64,
+    /// Of each column.
+    sums: Vec<f64>,
 }
 
 impl Gram {
@@ -106,6 +109,11 @@ impl Gram {
         self.square
     }
 
+    /// The sum of a column.
+    pub fn sum_of(&self, i: usize) -> f64 {
+        self.sums[i]
+    }
+
     /// That of columns at these places, in this order; nothing where there is none.
     pub fn picked(&self, places: &[Option<usize>]) -> Gram {
         let of = |i: Option<usize>, k: Option<usize>| match (i, k) {
@@ -121,6 +129,7 @@ impl Gram {
                 .map(|place| place.map_or(0.0, |i| self.right[i]))
                 .collect(),
             square: self.square,
+            sums: places.iter().map(|place| place.map_or(0.0, |i| self.sums[i])).collect(),
         }
     }
 
@@ -136,6 +145,7 @@ impl Gram {
             rows: (0..columns).map(|k| vec![0.0; k + 1]).collect(),
             right: vec![0.0; columns],
             square: 0.0,
+            sums: vec![0.0; columns],
         };
         for gram in grams {
             for (row, more) in sum.rows.iter_mut().zip(&gram.rows) {
@@ -143,8 +153,10 @@ impl Gram {
                     *value += more;
                 }
             }
-            for (value, more) in sum.right.iter_mut().zip(&gram.right) {
-                *value += more;
+            for (values, more) in [(&mut sum.right, &gram.right), (&mut sum.sums, &gram.sums)] {
+                for (value, more) in values.iter_mut().zip(more) {
+                    *value += more;
+                }
             }
             sum.square += gram.square;
         }

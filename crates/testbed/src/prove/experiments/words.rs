@@ -22,6 +22,7 @@ pub fn blocks(experiments: &Experiments) -> Vec<Block> {
         "no motion tells",
         "out of reach",
         "joint unexplained",
+        "not foretold",
     ];
     let mut list = vec![
         Block::Heading("The next experiment"),
@@ -44,7 +45,8 @@ pub fn blocks(experiments: &Experiments) -> Vec<Block> {
         text(
             "No motion tells: predicted to be the same torque in every motion tried, as with masses all too large and torques all measured too large. The \
              diagnosis says which other experiment would tell. Out of reach: no motion tried within the limits sets them far enough apart. Joint unexplained: \
-             something without a name is left there, and nothing is promised.",
+             something without a name is left there, and nothing is promised. Not foretold: the same prediction says that the recordings tell already what they \
+             do not, and nothing is promised.",
         ),
     ];
     let failed: Vec<Vec<String>> = experiments.confusions.iter().filter_map(unresolved).collect();
@@ -98,6 +100,7 @@ fn kinds(confusions: &[Confusion]) -> Vec<Vec<String>> {
             count(&|c| left(c, "same_torque")),
             count(&|c| left(c, "out_of_reach")),
             count(&|c| left(c, "unexplained")),
+            count(&|c| left(c, "not_foretold")),
         ]
     };
     kinds.into_iter().map(row).collect()
