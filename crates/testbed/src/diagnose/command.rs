@@ -71,11 +71,17 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
     for remark in remarks {
         eprintln!("note: simulation: {remark}");
     }
-    write(args, &arm, &urdf_path, &diagnosis, effects)?;
+    let removed = write(args, &arm, &urdf_path, &diagnosis, effects)?;
     output::print(&terminal::table(&diagnosis.report))?;
     let is_written = |path: &&Path| args.next.as_deref() != Some(*path) || diagnosis.next.is_some();
     for path in args.outputs().into_iter().filter(is_written) {
         output::print(&format!("written: {}\n", path.display()))?;
+    }
+    if let Some(path) = removed {
+        let path = path.display();
+        output::print(&format!(
+            "removed: {path}, of an earlier diagnosis: this one proposes no motion\n"
+        ))?;
     }
     Ok(())
 }
@@ -186,13 +192,14 @@ fn simulate(
     }
 }
 
-fn write(
-    args: &DiagnoseArgs,
+/// Writes what `args` ask for; the earlier proposal that was removed, if none took its place.
+fn write<'a>(
+    args: &'a DiagnoseArgs,
     arm: &Arm,
     urdf_path: &Path,
     diagnosis: &Diagnosis,
     effects: Vec<torque::Effect>,
-) -> anyhow::Result<()> {
+) -> anyhow::Result<Option<&'a Path>> {
     if let Some(path) = &args.urdf {
         let text = library::urdf_text(&args.robot, urdf_path)?;
         let corrected = urdf_file::corrected_urdf(&text, arm, &effects)?;
@@ -205,8 +212,12 @@ fn write(
         };
         file.write(path)?;
     }
-    if let (Some(path), Some(motion), Some(next)) = (&args.next, &diagnosis.next, &diagnosis.report.next_experiment) {
-        next_file::write(path, &args.robot, urdf_path, next, motion)?;
+    let mut removed = None;
+    if let Some(path) = &args.next {
+        match (&diagnosis.next, &diagnosis.report.next_experiment) {
+            (Some(motion), Some(next)) => next_file::write(path, &args.robot, urdf_path, next, motion)?,
+            _ => removed = next_file::remove_earlier(path)?.then_some(path.as_path()),
+        }
     }
     if let Some(path) = &args.report {
         page::write(path, &diagnosis.report, &diagnosis.traces, arm)?;
@@ -214,7 +225,8 @@ fn write(
     if let Some(path) = &args.json {
         output::write_json(path, &diagnosis.report)?;
     }
-    show(args, arm, urdf_path, diagnosis)
+    show(args, arm, urdf_path, diagnosis)?;
+    Ok(removed)
 }
 
 #[cfg(feature = "viewer")]

@@ -10,6 +10,7 @@ use recording::{ColumnMap, FindingKind, Quality, Recording, RegularRecording, Si
 use torque::Effect;
 
 use super::effect_file::EffectFile;
+use super::next_file;
 use crate::cli::{DiagnoseArgs, Rerun};
 use crate::inspect::{model_check, shortened};
 use crate::output;
@@ -36,6 +37,7 @@ pub fn check_outputs(args: &DiagnoseArgs) -> anyhow::Result<()> {
     for path in &outputs {
         output::check_writable(path)?;
     }
+    args.next.as_deref().map_or(Ok(()), next_file::check_replaceable)?;
     let robot = Path::new(&args.robot);
     for output in &outputs {
         // A model of effects may be read, added to and written in one go.

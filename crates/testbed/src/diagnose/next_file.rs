@@ -3,13 +3,47 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use anyhow::Context;
+use anyhow::{Context, ensure};
 use diagnosis::NextExperiment;
 use torque::Reference;
 
 use super::next_words::name;
 use super::{numbers, words};
 use crate::library;
+
+/// How a file begins that is ours to replace and to remove.
+const FIRST_LINE: &str = "# The next experiment, proposed by testbed diagnose.\n";
+
+/// Refuses a `path` that has something else than an earlier proposal.
+///
+/// # Errors
+/// If it is there and begins otherwise, or cannot be read.
+pub fn check_replaceable(path: &Path) -> anyhow::Result<()> {
+    ensure!(
+        !path.is_file() || std::fs::metadata(path)?.len() == 0 || is_earlier(path)?,
+        "--next {}: is there, and is no proposal of an earlier diagnosis; give another file",
+        path.display()
+    );
+    Ok(())
+}
+
+/// Removes the proposal of an earlier diagnosis from `path`, where this one proposes nothing: its motion would be run in vain. Whether
+/// there was one.
+///
+/// # Errors
+/// If it cannot be read or removed.
+pub fn remove_earlier(path: &Path) -> anyhow::Result<bool> {
+    if !path.is_file() || !is_earlier(path)? {
+        return Ok(false);
+    }
+    std::fs::remove_file(path).with_context(|| path.display().to_string())?;
+    Ok(true)
+}
+
+fn is_earlier(path: &Path) -> anyhow::Result<bool> {
+    let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+    Ok(bytes.starts_with(FIRST_LINE.as_bytes()))
+}
 
 /// Writes `motion` to `path`, whole or not at all, with what it is for in comments; `robot` is as it was given.
 ///
@@ -36,7 +70,7 @@ fn beside(path: &Path, urdf: &Path) -> anyhow::Result<String> {
 }
 
 fn text(robot: &str, next: &NextExperiment, motion: &Reference) -> String {
-    let mut text = String::from("# The next experiment, proposed by testbed diagnose.\n#\n");
+    let mut text = format!("{FIRST_LINE}#\n");
     let mut line = |words: &str| {
         let _ = writeln!(text, "# {words}");
     };
@@ -86,7 +120,6 @@ fn text(robot: &str, next: &NextExperiment, motion: &Reference) -> String {
         let words: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
         format!("[{}]", words.join(", "))
     };
-    // Debug of a string is TOML's basic string, but for rare control characters.
     let _ = writeln!(
         text,
         "\ntitle = \"The next experiment\"\nrobot = {}\nduration = {:?}\n\n[model]\nkind = \"rigid-body\"\n\n[controller]\nkp = 10000.0\nkd = 200.0\n\n[reference]\ncentre = {}",
@@ -113,6 +146,28 @@ mod tests {
 
     use super::*;
     use crate::scenario::Scenario;
+
+    /// A proposal of an earlier diagnosis is replaced and removed; what the user wrote is neither.
+    #[test]
+    fn only_a_proposal_is_removed() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let at = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, text).expect("it writes");
+            path
+        };
+        let earlier = at("next.toml", &format!("{FIRST_LINE}#\nduration = 25.0\n"));
+        assert!(check_replaceable(&earlier).is_ok());
+        assert!(remove_earlier(&earlier).expect("it can be removed") && !earlier.exists());
+        assert!(check_replaceable(&earlier).is_ok() && !remove_earlier(&earlier).expect("it is gone"));
+        let own = at("task.toml", "title = \"mine\"\n");
+        let refusal = check_replaceable(&own).expect_err("it is the user's").to_string();
+        assert!(
+            refusal.contains("task.toml") && refusal.contains("another file"),
+            "{refusal}"
+        );
+        assert!(!remove_earlier(&own).expect("it can be read") && own.exists());
+    }
 
     /// What is written is what a scenario loads, to the last bit, beside its URDF or elsewhere.
     #[test]
