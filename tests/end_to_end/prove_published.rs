@@ -126,6 +126,9 @@ fn recordings_are_sealed_diagnosed_and_held_against_what_is_published() {
             "The drag is ours.",
             "chapter 3",
             recording,
+            "only 1 names",
+            "without these 1 of 2 were named",
+            "--published published.toml --recordings data",
         ] {
             assert!(text.contains(needed), "there is no {needed}");
         }
@@ -199,6 +202,11 @@ fn what_cannot_be_is_refused_with_line_and_remedy() {
             "train = [\"a.csv\", \"b.csv\"]",
             "train = [\"a.csv\", \"c.csv\"]",
             "\"c.csv\" is given twice",
+        ),
+        (
+            "train = [\"a.csv\", \"b.csv\"]",
+            "train = [\"a.csv\", \"b.txt\"]",
+            "published.toml:3: recording \"b.txt\" does not end in .csv, and would be neither sealed nor fitted; rename it",
         ),
         (
             "testbed.published/1",

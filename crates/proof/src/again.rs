@@ -35,16 +35,7 @@ pub fn record_again(
     }
     // After the training recordings and the one held out.
     let reference = Reference::new(robot.arm(), start(TRAINING[usize::from(plan.hard)] + 1), q);
-    // The robot brings its drives' inertias itself.
-    let is_own = |effect: &&Concealed| {
-        let joints = robot.arm().joints().iter().zip(robot.rotor_inertias());
-        effect.effect == "rotor_inertia"
-            && effect.expressed_share.is_none()
-            && joints.into_iter().any(|(joint, rotor)| {
-                effect.joint.as_deref() == Some(&joint.name) && effect.number("inertia") == Some(*rotor)
-            })
-    };
-    let effects: Vec<&Concealed> = truth.concealed.iter().filter(|effect| !is_own(effect)).collect();
+    let effects: Vec<&Concealed> = truth.concealed.iter().filter(|effect| !robot.brings(effect)).collect();
     let run = Machine::new(robot, &effects, None)?.run(&reference, truth.encoder_quantum)?;
     let sensors = Sensors {
         ticks: (truth.period / TICK).round() as usize,

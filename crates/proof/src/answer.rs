@@ -104,6 +104,14 @@ pub struct Number {
     pub ci95: [Option<f64>; 2],
 }
 
+impl Number {
+    /// Whether the interval holds `value`; one that is open at both ends says nothing, and holds nothing.
+    pub fn holds(&self, value: f64) -> bool {
+        let [low, high] = self.ci95;
+        (low.is_some() || high.is_some()) && low.is_none_or(|low| low <= value) && high.is_none_or(|high| value <= high)
+    }
+}
+
 /// Structure that was given no name.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Refused {

@@ -1,6 +1,6 @@
 //! What the proposed experiment is worth: confusions before it and after it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
@@ -54,6 +54,15 @@ pub struct Confusion {
     pub after: Option<After>,
 }
 
+impl Confusion {
+    /// The two effects, in the order of their names.
+    fn pair(&self) -> [String; 2] {
+        let mut pair = [self.finding.0.clone(), self.rival.0.clone()];
+        pair.sort();
+        pair
+    }
+}
+
 /// A name in a case.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct InCase {
@@ -74,6 +83,13 @@ pub struct Experiments {
     pub resolved: Counted,
     /// The same of those in the cases tried again for which none was proposed.
     pub resolved_unasked: Counted,
+    /// Of all in the cases tried again, whether a motion was proposed for them or not: resolved. The diagnosis chooses what it
+    /// proposes for; this is without its choice.
+    pub resolved_of_all: Counted,
+    /// The two effects, in the order of their names, of which most of those that `resolved` counts are.
+    pub most_frequent: Option<[String; 2]>,
+    /// What `resolved` is without these.
+    pub resolved_of_rarer: Counted,
     /// Of what the first diagnosis declared not observable, in the cases tried again: named in the second.
     pub unseen_named: Counted,
     /// Concealed, and named in the second diagnosis alone.
@@ -89,7 +105,7 @@ pub struct Experiments {
 /// Compares first and second diagnoses.
 pub fn experiments(cases: &[Tried]) -> Experiments {
     let mut all = Experiments::default();
-    let (mut resolved, mut unasked, mut unseen) = (Vec::new(), Vec::new(), Vec::new());
+    let mut unseen = Vec::new();
     for case in cases {
         let Some(first) = &case.answer else { continue };
         let key = Key::new(&case.truth);
@@ -100,14 +116,6 @@ pub fn experiments(cases: &[Tried]) -> Experiments {
         all.cases += usize::from(case.again.is_some());
         for mut confusion in confusions(&case.truth.case, first, &key) {
             confusion.after = case.again.as_ref().map(|_| after(&confusion, second, &key));
-            if let Some(after) = confusion.after {
-                let list = if confusion.proposed {
-                    &mut resolved
-                } else {
-                    &mut unasked
-                };
-                list.push(after == After::Resolved);
-            }
             all.confusions.push(confusion);
         }
         let Some(second) = second else { continue };
@@ -134,8 +142,33 @@ pub fn experiments(cases: &[Tried]) -> Experiments {
         all.false_dropped
             .extend(list(&mut before.difference(&now).filter(is_false)));
     }
-    all.resolved = Counted::of(resolved);
-    all.resolved_unasked = Counted::of(unasked);
+    let mut pairs: BTreeMap<[String; 2], usize> = BTreeMap::new();
+    for confusion in all.confusions.iter().filter(|c| c.proposed && c.after.is_some()) {
+        *pairs.entry(confusion.pair()).or_default() += 1;
+    }
+    // The first of as many.
+    all.most_frequent = pairs
+        .into_iter()
+        .rev()
+        .max_by_key(|&(_, count)| count)
+        .map(|(pair, _)| pair);
+    let resolved = |counts: &dyn Fn(&Confusion) -> bool| {
+        let made = all.confusions.iter().filter(|confusion| counts(confusion));
+        Counted::of(made.filter_map(|confusion| Some(confusion.after? == After::Resolved)))
+    };
+    let is_frequent = |c: &Confusion| all.most_frequent.as_ref() == Some(&c.pair());
+    let counted = [
+        resolved(&|c| c.proposed),
+        resolved(&|c| !c.proposed),
+        resolved(&|_| true),
+        resolved(&|c| c.proposed && !is_frequent(c)),
+    ];
+    [
+        all.resolved,
+        all.resolved_unasked,
+        all.resolved_of_all,
+        all.resolved_of_rarer,
+    ] = counted;
     all.unseen_named = Counted::of(unseen);
     all
 }
@@ -235,6 +268,7 @@ mod tests {
             )),
             true_terms: None,
             tracking_over_exact: None,
+            tracking_over_exact_without_lag: None,
             wrong_term: None,
             again: second.map(|text| Again::Answer(Box::new(answer(text)))),
         }
@@ -262,6 +296,38 @@ mod tests {
             let hits = usize::from(expected == After::Resolved);
             assert_eq!((result.resolved.hits, result.resolved.of), (hits, 1));
         }
+    }
+
+    /// The diagnosis chooses what it proposes for; counts without its choice, and without the most frequent pair, stand beside.
+    #[test]
+    fn the_figure_is_shown_without_what_flatters_it() {
+        let mut case = tried(Some(r#"{"findings": [{"effect": "viscous_friction", "joint": "a"}]}"#));
+        let of = |extra: &str| {
+            answer(&format!(
+                r#"{{"findings": [{{"effect": "quadratic_drag", "joint": "a", "confusable_with": [{{"effect": "viscous_friction", "joint": "a"}}]}}{extra}],
+                   "next_experiment": {{"separates": [{{"finding": {{"effect": "quadratic_drag", "joint": "a"}},
+                     "rival": {{"effect": "viscous_friction", "joint": "a"}}}}], "not_separated": []}}}}"#
+            ))
+        };
+        // One confusion more, for which nothing is proposed: an offset that is not named afterwards.
+        case.truth
+            .concealed
+            .push(crate::truth::Concealed::new("torque_offset", Some("a")).with("offset", 1.0));
+        case.answer = Some(of(
+            r#", {"effect": "torque_offset", "joint": "a", "confusable_with": [{"effect": "spring", "joint": "a"}]}"#,
+        ));
+        let result = experiments(&[case]);
+        let counts = |counted: Counted| (counted.hits, counted.of);
+        assert_eq!(
+            (counts(result.resolved), counts(result.resolved_unasked)),
+            ((1, 1), (0, 1))
+        );
+        assert_eq!(counts(result.resolved_of_all), (1, 2));
+        assert_eq!(
+            result.most_frequent,
+            Some(["quadratic_drag".to_owned(), "viscous_friction".to_owned()])
+        );
+        assert_eq!(counts(result.resolved_of_rarer), (0, 0));
     }
 
     /// What is named anew, and what is lost, is told.

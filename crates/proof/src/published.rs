@@ -365,7 +365,6 @@ fn compared(key: &str, number: &PublishedNumber, reading: &Reading) -> Compared 
     let found = reading.parameters.get(key);
     let value = found.and_then(|found| found.value);
     let ci95 = found.map_or([None; 2], |found| found.ci95);
-    let [low, high] = ci95;
     let published = number.value;
     Compared {
         parameter: key.to_owned(),
@@ -376,7 +375,7 @@ fn compared(key: &str, number: &PublishedNumber, reading: &Reading) -> Compared 
         difference: value
             .filter(|_| published != 0.0)
             .map(|value| (value - published) / published.abs()),
-        covered: value.is_some() && low.is_none_or(|low| low <= published) && high.is_none_or(|high| published <= high),
+        covered: value.is_some() && found.is_some_and(|found| found.holds(published)),
     }
 }
 

@@ -7,6 +7,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::error::ProofError;
+use crate::truth::Concealed;
 
 /// At how many poses the mass matrix is looked at.
 const POSES: usize = 20;
@@ -82,6 +83,16 @@ impl Robot {
     /// Whether its drives have inertias that the URDF leaves out.
     pub fn has_rotors(&self) -> bool {
         self.rotors.iter().any(|&rotor| rotor > 0.0)
+    }
+
+    /// Whether what a truth has is one of its drives' ordinary inertias, which the robot brings itself.
+    pub(crate) fn brings(&self, effect: &Concealed) -> bool {
+        let joints = self.arm.joints().iter().zip(&self.rotors);
+        effect.effect == "rotor_inertia"
+            && effect.expressed_share.is_none()
+            && joints.into_iter().any(|(joint, &rotor)| {
+                effect.joint.as_deref() == Some(&joint.name) && effect.number("inertia") == Some(rotor)
+            })
     }
 
     /// The arm with its drives' inertias.

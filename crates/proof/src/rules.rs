@@ -37,7 +37,7 @@ pub fn same_machine(truth: &Truth, concealed: &Concealed) -> Option<Name> {
         _ => return None,
     };
     let number = |of: &Concealed, key: &str| of.parameters.get(key).and_then(serde_json::Value::as_f64);
-    // Friction of another kind beside it tells. Setting in later does not: the level is there before.
+    // Friction of another kind beside it tells. That the constant sets in later does not, if the level is there by then.
     let beside: Vec<&Concealed> = truth
         .concealed
         .iter()
@@ -51,7 +51,12 @@ pub fn same_machine(truth: &Truth, concealed: &Concealed) -> Option<Name> {
         // A constant beyond the level of friction would push by itself.
         ("torque_offset", [friction]) => {
             let (offset, level) = (number(concealed, "offset")?, number(friction, "level")?);
-            is_plain && friction.name() == "coulomb_friction" && friction.form.is_none() && offset.abs() < level
+            let start = |of: &Concealed| of.onset.unwrap_or(f64::NEG_INFINITY);
+            is_plain
+                && friction.name() == "coulomb_friction"
+                && friction.form.is_none()
+                && offset.abs() < level
+                && start(friction) <= start(concealed)
         }
         _ => false,
     };

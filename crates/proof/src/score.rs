@@ -32,6 +32,8 @@ pub struct Tried {
     pub wrong_term: Option<Answer>,
     /// The tracking error of a task with the diagnosed causes over that with the exact model, where a task was tracked.
     pub tracking_over_exact: Option<f64>,
+    /// The same in a loop where nothing but the model is left between the two: without the velocity filter's lag.
+    pub tracking_over_exact_without_lag: Option<f64>,
     /// A second diagnosis, with the experiment that the first proposed; `None` if it was not tried.
     pub again: Option<Again>,
 }
@@ -41,8 +43,10 @@ pub struct Tried {
 pub struct Score {
     /// Cases scored.
     pub cases: usize,
-    /// Cases that got no answer; they count as if nothing was found in them.
+    /// Cases that got no answer: nothing was found in them. In shares of names given, in errors and in intervals they do not count.
     pub unanswered: Vec<String>,
+    /// Cases with nothing but the ordinary.
+    pub empty: usize,
     /// The figures that were asked for, and whether they are reached.
     pub targets: Vec<Target>,
     /// By family: the effects that are not ordinary, and have an expressed share above [`crate::LEAST_SHARE`].
@@ -55,16 +59,18 @@ pub struct Score {
     pub ordinary: Counted,
     /// Ordinary effects named where they were not concealed.
     pub ordinary_false: usize,
-    /// Cases with nothing but the ordinary in which something else was named.
+    /// Cases with nothing but the ordinary in which something else was named, of those answered.
     pub empty_with_a_false_name: Counted,
     /// Cases with something outside the catalogue that was refused on its joint.
     pub outside_refused: Counted,
-    /// Such cases in which a false name was given, on whatever joint.
+    /// Such cases in which a false name was given, on whatever joint, of those answered.
     pub outside_with_a_wrong_name: Counted,
-    /// Cases with nothing outside the catalogue in which a joint was said to be unexplained.
+    /// Cases with nothing outside the catalogue in which a joint was said to be unexplained, of those answered.
     pub refused_without_cause: Counted,
     /// Concealed effects that are a finding or in a finding's confusable set.
     pub covered: Counted,
+    /// The same if what was declared not observable counts as not covered.
+    pub covered_strict: Counted,
     /// Detection against the effect's size.
     pub detection: Vec<Curve>,
     /// Errors of the parameters of effects found, by effect and parameter.
@@ -79,6 +85,8 @@ pub struct Score {
     pub over_true_terms_by_joint: Errors,
     /// Tracking error with the diagnosed causes over the exact model's, of the cases in which a task was tracked.
     pub tracking_over_exact: Errors,
+    /// The same without the velocity filter's lag.
+    pub tracking_over_exact_without_lag: Errors,
     /// What was concealed (rows) against what it was called (columns).
     pub confusion: BTreeMap<String, BTreeMap<String, usize>>,
     /// Probability against outcome, of findings that are not ordinary.
@@ -169,6 +177,12 @@ pub fn score(cases: &[Tried]) -> Score {
             ))
         })
         .collect();
+    // A case without an answer names nothing, which is no merit of it.
+    let answered = || {
+        all.iter()
+            .zip(cases)
+            .filter_map(|(outcome, case)| case.answer.is_some().then_some(outcome))
+    };
     let asked: Vec<&Outcome> = concealed.iter().filter(|outcome| outcome.is_asked()).collect();
     let mut score = Score {
         cases: cases.len(),
@@ -177,6 +191,7 @@ pub fn score(cases: &[Tried]) -> Score {
             .filter(|c| c.answer.is_none())
             .map(|c| c.truth.case.clone())
             .collect(),
+        empty: all.iter().filter(|case| case.is_empty).count(),
         targets: Vec::new(),
         experiments: experiments(cases),
         macro_f1: mean(&|family| family.f1),
@@ -185,14 +200,23 @@ pub fn score(cases: &[Tried]) -> Score {
         ordinary: Counted::of(all.iter().flat_map(|case| case.ordinary.iter().copied())),
         ordinary_false: all.iter().map(|case| case.ordinary_false).sum(),
         empty_with_a_false_name: Counted::of(
-            all.iter()
+            answered()
                 .filter(|case| case.is_empty)
                 .map(|case| !case.false_names.is_empty()),
         ),
         outside_refused: Counted::of(outside.iter().map(|case| case.refused)),
-        outside_with_a_wrong_name: Counted::of(outside.iter().map(|case| !case.named.is_empty())),
-        refused_without_cause: Counted::new(refusals.len(), cases.len() - outside.len()),
+        outside_with_a_wrong_name: Counted::of(
+            answered()
+                .filter_map(|case| case.outside.as_ref())
+                .map(|case| !case.named.is_empty()),
+        ),
+        refused_without_cause: Counted::of(
+            answered()
+                .filter(|case| case.outside.is_none())
+                .map(|case| case.refused_without_cause.is_some()),
+        ),
         covered: Counted::of(asked.iter().map(|o| o.fate.is_covered())),
+        covered_strict: Counted::of(concealed.iter().filter(|o| o.counts).map(|o| o.fate.is_covered())),
         detection: curves(&concealed),
         parameters: parameter_scores(&sizes),
         main_parameters: errors(special.iter().filter(|s| s.main).map(|s| s.error)),
@@ -204,6 +228,7 @@ pub fn score(cases: &[Tried]) -> Score {
         ),
         over_true_terms_by_joint: errors(cases.iter().flat_map(by_joint)),
         tracking_over_exact: errors(cases.iter().filter_map(|case| case.tracking_over_exact)),
+        tracking_over_exact_without_lag: errors(cases.iter().filter_map(|case| case.tracking_over_exact_without_lag)),
         confusion: confusion(&concealed, &false_names, &outside),
         calibration: calibration(&all.iter().flat_map(|case| case.said.clone()).collect::<Vec<_>>()),
         calibration_of_all: calibration(&all.iter().flat_map(|case| case.said_of_all.clone()).collect::<Vec<_>>()),

@@ -128,7 +128,6 @@ pub fn sized(truth: &Truth, concealed: &Concealed, finding: &Named) -> Vec<Sized
         let Some(value) = number.value.filter(|_| scale > 0.0) else {
             continue;
         };
-        let [low, high] = number.ci95;
         list.push(Sized {
             case: truth.case.clone(),
             effect: concealed.name().to_owned(),
@@ -138,7 +137,7 @@ pub fn sized(truth: &Truth, concealed: &Concealed, finding: &Named) -> Vec<Sized
             truth: true_value,
             value,
             error: (value - true_value).abs() / scale,
-            covered: low.is_none_or(|low| low <= true_value) && high.is_none_or(|high| true_value <= high),
+            covered: number.holds(true_value),
         });
     }
     list

@@ -20,7 +20,7 @@ pub struct Target {
     pub counted: Option<Counted>,
     /// Over how many.
     pub of: usize,
-    /// Whether it is reached; `None` if nothing was there to count.
+    /// Whether it is reached; `None` if nothing was there to count, or nothing is wanted of it: it says more of the one above.
     pub reached: Option<bool>,
 }
 
@@ -33,7 +33,9 @@ fn target(what: &str, figure: Option<f64>, [at_least, at_most]: [Option<f64>; 2]
         at_most,
         counted: None,
         of,
-        reached: figure.map(is_within),
+        reached: figure
+            .map(is_within)
+            .filter(|_| at_least.is_some() || at_most.is_some()),
     }
 }
 
@@ -50,7 +52,12 @@ pub fn targets(score: &Score) -> Vec<Target> {
     let at_most = |value: f64| [None, Some(value)];
     let asked: usize = score.families.values().map(Family::asked).sum();
     let (main, over) = (score.main_parameters, score.over_true_terms);
-    let tracking = score.tracking_over_exact;
+    let (tracking, stricter) = (score.tracking_over_exact, score.tracking_over_exact_without_lag);
+    let experiments = &score.experiments;
+    let without = match &experiments.most_frequent {
+        Some([a, b]) => format!("… of those proposed for, without the most frequent pair, `{a}` and `{b}`"),
+        None => "… of those proposed for, without the most frequent pair".to_owned(),
+    };
     let (wrong, refused) = (score.outside_with_a_wrong_name, score.outside_refused);
     vec![
         target("macro F1 over the families", score.macro_f1, at_least(0.95), asked),
@@ -99,10 +106,22 @@ pub fn targets(score: &Score) -> Vec<Target> {
             at_most(1.5),
             tracking.count,
         ),
+        target(
+            "tracking error likewise, without the velocity filter’s lag, median",
+            stricter.median,
+            at_most(1.5),
+            stricter.count,
+        ),
         share(
-            "confusions resolved by the proposed experiment",
-            score.experiments.resolved,
+            "confusions resolved by the proposed experiment, of those for which the diagnosis proposed one",
+            experiments.resolved,
             at_least(0.70),
         ),
+        share(
+            "… of all in the cases tried, proposed for or not",
+            experiments.resolved_of_all,
+            [None, None],
+        ),
+        share(&without, experiments.resolved_of_rarer, [None, None]),
     ]
 }

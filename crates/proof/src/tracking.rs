@@ -36,11 +36,7 @@ impl<'a> CaseMachine<'a> {
             let reason = format!("{case} is of the robot \"{its}\", not of \"{name}\"; give the robot it was drawn on");
             return Err(ProofError::Setting(reason));
         }
-        // The drives' ordinary inertias are the robot's already; one that is concealed has an expressed share.
-        let is_known = |effect: &Concealed| {
-            robot.has_rotors() && effect.effect == "rotor_inertia" && effect.expressed_share.is_none()
-        };
-        let effects: Vec<&Concealed> = truth.concealed.iter().filter(|effect| !is_known(effect)).collect();
+        let effects: Vec<&Concealed> = truth.concealed.iter().filter(|effect| !robot.brings(effect)).collect();
         Ok(Self {
             machine: Machine::new(robot, &effects, None)?,
             robot,

@@ -23,6 +23,7 @@ fn scored(concealed: Value, answer: Answer) -> Score {
         true_terms: Some(answer.clone()),
         wrong_term: None,
         tracking_over_exact: None,
+        tracking_over_exact_without_lag: None,
         again: None,
         answer: Some(answer),
     }])
@@ -91,8 +92,21 @@ fn another_name_of_the_same_machine_is_right() {
     assert_eq!(score.concealed[0].fate, Fate::SameMachine);
     assert_eq!((score.macro_f1, score.macro_f1_strict), (Some(1.0), Some(0.0)));
     assert!(score.false_names.is_empty());
-    // One that is not admitted, or would push by itself, is another machine.
-    for score in [scored(truth(0.5), named(json!([]))), scored(truth(1.5), named(rival))] {
+    let from = |effect: usize, onset: f64| {
+        let mut later = truth(0.5);
+        later[effect]["onset"] = json!(onset);
+        later
+    };
+    assert_eq!(
+        scored(from(1, 30.0), named(rival.clone())).concealed[0].fate,
+        Fate::SameMachine
+    );
+    // One that is not admitted, would push by itself, or is there before the friction is another machine.
+    for score in [
+        scored(truth(0.5), named(json!([]))),
+        scored(truth(1.5), named(rival.clone())),
+        scored(from(0, 30.0), named(rival)),
+    ] {
         assert!(score.concealed[0].fate != Fate::SameMachine);
         assert_eq!((score.macro_f1, score.false_names.len()), (Some(0.0), 1));
     }
@@ -145,6 +159,12 @@ fn numbers_are_compared_in_parts_of_the_truth() {
     };
     assert!((of("torque_scale").error - 0.1).abs() < 1e-9 && of("torque_scale").covered);
     assert!((of("coulomb_friction").error - 0.1).abs() < 1e-9 && !of("coulomb_friction").covered);
+    // An interval that is open at both ends holds nothing.
+    let mut open = finding("torque_scale", "a", json!([]));
+    open["parameters"] = json!({"factor": {"value": 1.2, "ci95": [null, null]}});
+    let concealed = json!([{"effect": "torque_scale", "joint": "a", "factor": 1.2, "expressed_share": 0.2}]);
+    let wide = scored(concealed, answer(json!([open]), json!([]), json!([])));
+    assert_eq!((wide.intervals.hits, wide.intervals.of), (0, 1));
     // What is ordinary is not among the figures asked for.
     assert_eq!((score.main_parameters.count, score.intervals.of), (1, 1));
 }
@@ -175,6 +195,29 @@ fn outside_the_catalogue_is_refused_on_its_joint_or_not() {
         (1, 1)
     );
     assert_eq!(empty.over_true_terms.median, Some(1.0));
+}
+
+/// No answer is no merit: nothing is found, and no empty case is clean for it. What is declared not observable is not covered, strictly.
+#[test]
+fn no_answer_and_no_claim_are_no_merit() {
+    let tried = |concealed: Value, answer: Option<Answer>| Tried {
+        truth: truth(concealed),
+        joints: vec!["b".into(), "a".into()],
+        answer,
+        true_terms: None,
+        wrong_term: None,
+        tracking_over_exact: None,
+        tracking_over_exact_without_lag: None,
+        again: None,
+    };
+    let silent = score(&[tried(json!([]), None), tried(backlash(), None)]);
+    assert_eq!((silent.empty, silent.empty_with_a_false_name.of), (1, 0));
+    assert_eq!((silent.refused_without_cause.of, silent.macro_f1), (0, Some(0.0)));
+    assert_eq!(silent.unanswered.len(), 2);
+    let unseen = json!([{"effect": "backlash", "joint": "a", "would_be_seen_above": {}}]);
+    let declared = score(&[tried(backlash(), Some(answer(json!([]), json!([]), unseen)))]);
+    assert_eq!((declared.covered.of, declared.covered_strict.of), (0, 1));
+    assert_eq!(declared.covered_strict.hits, 0);
 }
 
 #[test]

@@ -116,6 +116,7 @@ fn compare(truths: &Path, answers: &Path) {
             true_terms: None,
             wrong_term: None,
             tracking_over_exact: None,
+            tracking_over_exact_without_lag: None,
             again: None,
         });
     }

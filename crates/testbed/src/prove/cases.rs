@@ -34,6 +34,8 @@ pub enum Source {
         seed: u64,
         /// Robots, in turn.
         robots: Vec<Robot>,
+        /// As they were given; empty: those that come with testbed.
+        named: Vec<String>,
         /// What each case is to be.
         plans: Vec<CasePlan>,
     },
@@ -70,6 +72,7 @@ impl Source {
             (None, _) => Self::Drawn {
                 seed: args.seed,
                 robots: conceal::robots(&args.robot)?,
+                named: args.robot.clone(),
                 plans: Campaign {
                     seed: args.seed,
                     cases: args.cases,
@@ -82,7 +85,7 @@ impl Source {
     /// In words, without paths: it is sealed.
     pub fn describe(&self) -> String {
         match self {
-            Self::Drawn { seed, robots, plans } => {
+            Self::Drawn { seed, robots, plans, .. } => {
                 let names: Vec<&str> = robots.iter().map(Robot::name).collect();
                 format!("{} cases drawn from seed {seed} on {}", plans.len(), names.join(", "))
             }
@@ -99,11 +102,15 @@ impl Source {
         robots.iter().map(Robot::urdf)
     }
 
-    /// The command that makes the proof again, without paths.
+    /// The command that makes the proof again, without the cases' paths.
     pub fn command(&self) -> String {
         match self {
-            Self::Drawn { seed, plans, .. } => {
-                format!("testbed prove --cases {} --seed {seed} --out proof/", plans.len())
+            Self::Drawn { seed, plans, named, .. } => {
+                let robots: String = named.iter().map(|robot| format!(" --robot {robot}")).collect();
+                format!(
+                    "testbed prove --cases {} --seed {seed}{robots} --out proof/",
+                    plans.len()
+                )
             }
             Self::Given { .. } => "testbed prove --cases-from CASES --truth TRUTHS --out proof/".to_owned(),
         }

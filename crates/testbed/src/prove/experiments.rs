@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use anyhow::Context;
-use proof::{Answer, ProofError, SealedCase, record_again};
+use proof::{Answer, ProofError, SealedCase, record_again, sha256, sha256_of};
+use serde::{Deserialize, Serialize};
 
 use super::cases::{Place, Source};
 use super::child::{MORE, NEXT, Task};
@@ -20,6 +21,17 @@ const LOOKED_AT: usize = 60;
 /// A motion that the position loop cannot hold the machine on is made smaller about its centre, as a user does whose drive
 /// trips: the model that it was proposed with may be wrong.
 const SIZES: [f64; 3] = [1.0, 0.7, 0.5];
+
+/// What making a motion left, beside its recording: enough to see that neither was changed since, and need not be made again.
+#[derive(Serialize, Deserialize)]
+struct Made {
+    /// SHA-256 of the hashes of what it was made of: program, recordings and URDF, truth, scenario.
+    made_of: String,
+    /// SHA-256 of the recording; `None` if there is none.
+    recording: Option<String>,
+    /// Why there is none.
+    failed: Option<String>,
+}
 
 /// The cases whose proposed experiment is made: of [`LOOKED_AT`] spread evenly, those whose diagnosis proposes one for a
 /// confusion. What a case's turn is depends on its number alone, not on the others in its share.
@@ -53,7 +65,8 @@ pub fn chosen<'a>(
     Ok(list)
 }
 
-/// Makes the proposed experiment of a case, whose truth is open, and diagnoses again with its recording, unless that is done.
+/// Makes the proposed experiment of a case, whose truth is open, and diagnoses again with its recording, unless that is done; what was
+/// changed since is made again.
 ///
 /// # Errors
 /// If a file cannot be read or written, the process cannot be started, or the user interrupts.
@@ -69,16 +82,28 @@ pub fn make(source: &Source, vault: &Vault, place: &Place, sealed: &SealedCase, 
         (vault.proposed(&first(place)), scenario.clone()),
         (place.folder.join("robot.urdf"), folder.join("robot.urdf")),
     ];
-    let mut is_new = false;
     for (from, to) in copies {
         let bytes = std::fs::read(&from).with_context(|| from.display().to_string())?;
         if std::fs::read(&to).ok().as_ref() != Some(&bytes) {
             recording::write_whole(&to, |file| file.write_all(&bytes))?;
-            is_new = true;
         }
     }
-    let failed = folder.join("failed.json");
-    if is_new || !(recording.is_file() || failed.is_file()) {
+    let hashes = [
+        &vault.program.sha256,
+        &sealed.inputs(),
+        &sealed.truth,
+        &sha256_of(&scenario)?,
+    ];
+    let made_of = sha256(hashes.map(String::as_str).join("\n").as_bytes());
+    let is_unchanged = |made: &Made| match &made.recording {
+        Some(hash) => sha256_of(&recording).is_ok_and(|is| is == *hash),
+        None => !recording.is_file(),
+    };
+    if !record(vault, place).is_some_and(|made| made.made_of == made_of && is_unchanged(&made)) {
+        if recording.is_file() {
+            std::fs::remove_file(&recording).with_context(|| recording.display().to_string())?;
+        }
+        let mut failed = None;
         let truth = rows::truth(&place.name, truth)?;
         let scenario = Scenario::load(&scenario.display().to_string())?;
         let plan = plans.get(place.number).context("there is no such case")?;
@@ -97,12 +122,18 @@ pub fn make(source: &Source, vault: &Vault, place: &Place, sealed: &SealedCase, 
                 }
                 // What cannot be recorded at any size is a result, too.
                 Err(error @ ProofError::Lost { .. }) if size == SIZES[SIZES.len() - 1] => {
-                    output::write_json(&failed, &error.to_string())?;
+                    failed = Some(error.to_string());
                 }
                 Err(ProofError::Lost { .. }) => {}
                 Err(error) => return Err(error.into()),
             }
         }
+        let made = Made {
+            made_of,
+            recording: failed.is_none().then(|| sha256_of(&recording)).transpose()?,
+            failed,
+        };
+        output::write_json(&record_path(vault, place), &made)?;
     }
     if !recording.is_file() {
         return Ok(());
@@ -119,13 +150,19 @@ pub fn make(source: &Source, vault: &Vault, place: &Place, sealed: &SealedCase, 
 /// # Errors
 /// If the diagnosis is not what its record says.
 pub fn result(vault: &Vault, place: &Place) -> anyhow::Result<(Option<String>, Option<String>)> {
-    let failed = folder(vault, place).join("failed.json");
-    if failed.is_file() {
-        let text = std::fs::read_to_string(&failed).with_context(|| failed.display().to_string())?;
-        return Ok((None, Some(serde_json::from_str(&text)?)));
+    if let Some(reason) = record(vault, place).and_then(|made| made.failed) {
+        return Ok((None, Some(reason)));
     }
     let (record, text) = vault.answer(&second(place))?;
     Ok((text, record.and_then(|record| record.error)))
+}
+
+fn record(vault: &Vault, place: &Place) -> Option<Made> {
+    serde_json::from_str(&std::fs::read_to_string(record_path(vault, place)).ok()?).ok()
+}
+
+fn record_path(vault: &Vault, place: &Place) -> PathBuf {
+    folder(vault, place).join("made.json")
 }
 
 fn folder(vault: &Vault, place: &Place) -> PathBuf {

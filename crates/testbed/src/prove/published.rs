@@ -51,17 +51,19 @@ pub struct Tried {
     pub robot: Robot,
     /// What the program said in place of a diagnosis.
     pub error: Option<String>,
+    /// How many names, effects on a joint or on the arm, what is published would contradict.
+    pub deniable: usize,
     /// The score.
     pub score: RobotScore,
 }
 
-/// Runs the protocol on the robots of `file` whose folders are in `recordings`; what is finished already is not done again.
+/// Runs the protocol on the robots of the file at `path` whose folders are in `recordings`; what is finished already is not done again.
 ///
 /// # Errors
 /// If the file says what cannot be, no robot's folder is there or a file of one is missing, a seal is broken, a process
 /// cannot be started, or the user interrupts.
-pub fn run(args: &ProveArgs, file: &Path, recordings: &Path) -> anyhow::Result<()> {
-    let file = File::load(file)?;
+pub fn run(args: &ProveArgs, path: &Path, recordings: &Path) -> anyhow::Result<()> {
+    let file = File::load(path)?;
     let (robots, absent) = robots::there(&file, recordings)?;
     let vault = Vault::new(&args.out)?;
     let deferred = interrupt::Deferred::start();
@@ -116,18 +118,25 @@ pub fn run(args: &ProveArgs, file: &Path, recordings: &Path) -> anyhow::Result<(
         tried.push(Tried {
             score: truth.score(answer.as_ref(), said.as_ref()),
             error: record.and_then(|record| record.error),
+            deniable: robot.deniable(),
             robot,
         });
     }
     let real = Real {
         schema: "testbed.published_proof/1",
-        command: "testbed prove --published docs/published.toml --recordings RECORDINGS --out proof-real/".to_owned(),
+        command: command(path, recordings),
         seal,
         answers,
         robots: tried,
         absent,
     };
     write(args, &vault.out, &real)
+}
+
+/// The command that makes the proof again; where it is written to does not matter.
+fn command(file: &Path, recordings: &Path) -> String {
+    let (file, recordings) = (file.display(), recordings.display());
+    format!("testbed prove --published {file} --recordings {recordings} --out proof-real/")
 }
 
 /// Where the fit of what is said goes.

@@ -5,6 +5,9 @@ use proof::{Counted, Fate, Name, Score};
 use super::command::{Proof, figure, percent, wanted};
 use super::{disturbance, experiments, reasons, results, tracking};
 
+/// What was declared not observable is listed from this expressed share on.
+const LARGE: f64 = 0.06;
+
 /// A piece of a report. Text may hold `code` between backticks.
 pub enum Block {
     /// A title.
@@ -131,11 +134,13 @@ fn opening(proof: &Proof) -> Vec<Block> {
         Block::Title("Concealed physics: what was found, what was not, and where it fails".into()),
         text(format!(
             "{} concealed effects in {} cases were diagnosed by processes that were given the recordings and a rigid URDF alone. {reached} of the \
-             {asked} figures that were asked for are reached.",
+             {asked} figures that were asked for are reached. {}",
             score.concealed.len(),
             score.cases,
+            unanswered(score),
         )),
         table(&head, 1, rows.collect()),
+        text(exempt(score)),
     ];
     for target in score.targets.iter().filter(|target| target.reached == Some(false)) {
         let reason = match target.what.starts_with("tracking") {
@@ -147,9 +152,52 @@ fn opening(proof: &Proof) -> Vec<Block> {
     list
 }
 
+/// How many cases have no answer, and what that does to the figures.
+fn unanswered(score: &Score) -> String {
+    match score.unanswered.as_slice() {
+        [] => "All cases got an answer.".to_owned(),
+        list => format!(
+            "{} cases got no answer ({}): nothing counts as found in them, and they are in no figure about what was named, about errors or about intervals.",
+            list.len(),
+            list.join(", ")
+        ),
+    }
+}
+
+/// What the diagnosis was let off: neither F1 nor coverage asks for it.
+fn exempt(score: &Score) -> String {
+    let exempt = || {
+        let counted = score.concealed.iter().filter(|o| o.counts);
+        counted.filter(|o| o.fate == Fate::NotObservable)
+    };
+    let mut large: Vec<_> = exempt()
+        .filter_map(|o| Some((o.share.filter(|&share| share > LARGE)?, o)))
+        .collect();
+    large.sort_by(|(a, x), (b, y)| b.total_cmp(a).then(x.case.cmp(&y.case)));
+    let largest = exempt().filter_map(|o| o.share).reduce(f64::max);
+    let words = large.iter().map(|(share, o)| {
+        let what = name(&(o.effect.clone(), o.joint.clone()));
+        format!("{what} in {} ({})", o.case, percent(*share))
+    });
+    let list = match words.collect::<Vec<_>>().as_slice() {
+        [] => String::new(),
+        list => format!(": {}", list.join(", ")),
+    };
+    format!(
+        "Neither F1 nor coverage asks for what a diagnosis declared not observable at its size: {} effects, the largest with an expressed share of {}, {} above {}{list}. \
+         If they count as missed and as not covered, macro F1 is {} and the truth is in the finding or its confusable set in {}.",
+        exempt().count(),
+        share(largest),
+        large.len(),
+        percent(LARGE),
+        number(score.macro_f1_strict),
+        counted(&score.covered_strict),
+    )
+}
+
 fn concealed(proof: &Proof) -> Vec<Block> {
     let score = &proof.score;
-    let empty = score.empty_with_a_false_name.of;
+    let empty = score.empty;
     let outside = score.outside.len();
     vec![
         Block::Heading("What was concealed, and from whom"),

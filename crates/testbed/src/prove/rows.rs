@@ -55,6 +55,7 @@ impl Row {
             text.as_ref().map(parse).transpose()
         };
         let again = answer(&self.again, "the diagnosis with the proposed motion")?.map(Box::new);
+        let tracked = self.tracked()?;
         let failed = self.again_error.clone().map(Again::Failed);
         Ok(Tried {
             truth: truth(&self.case, &self.truth)?,
@@ -62,7 +63,8 @@ impl Row {
             answer: answer(&self.diagnosis, "the diagnosis")?,
             true_terms: answer(&self.true_terms, "the true terms")?,
             wrong_term: answer(&self.wrong_term, "the wrong term")?,
-            tracking_over_exact: self.tracked()?.and_then(|tracking| tracking.over_exact()),
+            tracking_over_exact: tracked.as_ref().and_then(CaseTracking::over_exact),
+            tracking_over_exact_without_lag: tracked.as_ref().and_then(CaseTracking::over_exact_without_lag),
             again: again.map(Again::Answer).or(failed),
         })
     }

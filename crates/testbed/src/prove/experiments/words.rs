@@ -29,16 +29,17 @@ pub fn blocks(experiments: &Experiments) -> Vec<Block> {
         text(format!(
             "A confusion is a finding and one thing that it could be instead, one of the two concealed. The diagnosis proposes one motion for all of its \
              confusions (`--next`). Of {LOOKED_AT} cases spread evenly over the campaign (all, of fewer) those with a proposal for a confusion, {} cases, were \
-             recorded once more along that motion, within the URDF's limits, by whoever concealed (made .7 or .5 as large about its middle where the position loop could not hold the machine); a new \
-             process was given that recording beside the old \
-             ones. Resolved: what is concealed is named, and the other neither named nor among what it could be.",
+             recorded once more along that motion, within the URDF's limits, by whoever concealed (made .7 or .5 as large about its middle where the position \
+             loop could not hold the machine); a new process was given that recording beside the old ones. Resolved: what is concealed is named, and the other neither named nor among what it could be.",
             experiments.cases
         )),
         text(format!(
-            "Resolved of those for which a motion was proposed: {}. In the same cases, of those for which none was: {}. Named then of what was declared not \
-             observable: {}.",
+            "Resolved of those for which a motion was proposed: {}. In the same cases, of those for which none was: {}; of all of them: {}. The diagnosis \
+             chooses what it proposes for{}. Named then of what was declared not observable: {}.",
             counted(&experiments.resolved),
             counted(&experiments.resolved_unasked),
+            counted(&experiments.resolved_of_all),
+            rarer(experiments),
             counted(&experiments.unseen_named),
         )),
         table(&head, 2, kinds(&experiments.confusions)),
@@ -72,6 +73,14 @@ pub fn blocks(experiments: &Experiments) -> Vec<Block> {
         list.push(table(&["", "cases"], 2, changes));
     }
     list
+}
+
+/// What is left without the most frequent pair.
+fn rarer(experiments: &Experiments) -> String {
+    experiments.most_frequent.as_ref().map_or_else(String::new, |[a, b]| {
+        let rarer = counted(&experiments.resolved_of_rarer);
+        format!("; without the most frequent pair, `{a}` and `{b}`, it is {rarer}")
+    })
 }
 
 fn in_case(named: &InCase) -> String {

@@ -1,6 +1,6 @@
 //! The file that says what publishers say: robots, their recordings, sources, effects with numbers and where they are said.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::path::Path;
 
@@ -56,6 +56,9 @@ pub struct Robot {
     /// Notes of ours.
     #[serde(default)]
     pub notes: Vec<String>,
+    /// How many joints its URDF has; filled in with `published`.
+    #[serde(skip)]
+    pub dof: usize,
     /// In SI and checked against the URDF; filled in by [`File::published`].
     #[serde(skip)]
     pub published: Option<Published>,
@@ -156,6 +159,12 @@ impl File {
                 ensure!(
                     !file.is_empty() && !file.contains(['/', '\\']) && !files[..k].contains(file),
                     "{place}: \"{file}\" is given twice, or is no file of the robot's folder"
+                );
+            }
+            for file in robot.train.iter().chain(&robot.held_out) {
+                ensure!(
+                    file.ends_with(".csv"),
+                    "{place}: recording \"{file}\" does not end in .csv, and would be neither sealed nor fitted; rename it"
                 );
             }
             robots.push(robot);
@@ -310,6 +319,28 @@ impl File {
 }
 
 impl Robot {
+    /// How many names, effects on a joint or on the arm, what is published would contradict.
+    pub fn deniable(&self) -> usize {
+        let mut pairs: BTreeSet<(&str, Option<&str>, usize)> = BTreeSet::new();
+        for denies in &self.denies {
+            let denies = denies.get_ref();
+            for effect in denies.effects.iter().map(|effect| effect.get_ref().as_str()) {
+                if is_on_the_arm(effect) {
+                    pairs.insert((effect, None, 0));
+                } else if denies.joints.is_empty() {
+                    pairs.extend((0..self.dof).map(|joint| (effect, None, joint)));
+                } else {
+                    let joints = denies
+                        .joints
+                        .iter()
+                        .map(|joint| (effect, Some(joint.get_ref().as_str()), 0));
+                    pairs.extend(joints);
+                }
+            }
+        }
+        pairs.len()
+    }
+
     /// All its files.
     pub fn files(&self) -> impl Iterator<Item = &String> {
         [&self.urdf].into_iter().chain(&self.train).chain(&self.held_out)

@@ -106,9 +106,54 @@ fn opening(real: &Real) -> Vec<Block> {
              median difference is {median}. {contradicted} names contradict what is published.{absent}",
             real.robots.len()
         )),
+        text(how_hard(real)),
         table(&head, 1, rows),
         by_evidence(real),
     ]
+}
+
+/// How much the figures above could have failed.
+fn how_hard(real: &Real) -> String {
+    let either = |tried: &Tried, fates: &[SaidFate]| {
+        let said = tried.score.said.iter().filter(|said| said.said.effects.len() > 1);
+        said.filter(|said| fates.contains(&said.fate)).count()
+    };
+    let sum = |of: &dyn Fn(&Tried) -> usize| -> usize { real.robots.iter().map(of).sum() };
+    let all = sum(&|tried| tried.score.said.len());
+    let several = sum(&|tried| {
+        tried
+            .score
+            .said
+            .iter()
+            .filter(|said| said.said.effects.len() > 1)
+            .count()
+    });
+    let found = [SaidFate::Named, SaidFate::SameTorque];
+    let (named, named_of_several) = (sum(&|tried| count(tried, &found)), sum(&|tried| either(tried, &found)));
+    let deniable: Vec<(&str, usize)> = real
+        .robots
+        .iter()
+        .map(|tried| (tried.robot.name.as_str(), tried.deniable))
+        .filter(|(_, pairs)| *pairs > 0)
+        .collect();
+    let pairs: usize = deniable.iter().map(|(_, pairs)| pairs).sum();
+    let list: Vec<String> = deniable
+        .iter()
+        .map(|(robot, pairs)| format!("{robot} {pairs}"))
+        .collect();
+    let list = if list.is_empty() {
+        "none".to_owned()
+    } else {
+        list.join(", ")
+    };
+    format!(
+        "How much could have failed: publishers say of few effects that they are not there, so that only {pairs} names (an effect on a joint, or on the arm) could have been contradicted, on {} of {} \
+         robots ({list}). Of the {all} things said to be there {several} leave open which of several effects is meant (\u{201c}Coulomb or viscous\u{201d}); without these {} of {} were named, of these {named_of_several} of {several}.",
+        deniable.len(),
+        real.robots.len(),
+        named - named_of_several,
+        all - several,
+    )
 }
 
 fn row(tried: &Tried) -> Vec<String> {
@@ -240,7 +285,7 @@ fn origins(real: &Real) -> Vec<Block> {
     vec![
         Block::Heading("Where the recordings come from"),
         text(
-            "None of it is in this repository: each has its own licence. To repeat the proof make one folder a robot in a folder of your choice (`RECORDINGS` above), with `robot.urdf` and the recordings as CSV: `t` (s), `q_<joint>` (rad or m), `qd_<joint>` where \
+            "None of it is in this repository: each has its own licence. To repeat the proof make one folder a robot in a folder of your choice (`--recordings`), with `robot.urdf` and the recordings as CSV: `t` (s), `q_<joint>` (rad or m), `qd_<joint>` where \
              the robot gave it, `tau_<joint>` (N m or N at the joint); more columns are described in `docs/recordings.md`. Numbers at the joint, SI, nothing filtered, nothing resampled. How ours differ from the sources is what the notes that came with this collection of recordings, and the sources\u{2019} own programs, say; it was not checked against the originals number by number. The seal at the end has the SHA-256 of each of our files; files made anew, rounded in another way, have others. A robot whose folder is not there is left out, and said to be.",
         ),
         table(&head, 5, real.robots.iter().map(row).collect()),

@@ -34,6 +34,7 @@ pub fn there(file: &File, recordings: &Path) -> anyhow::Result<(Vec<Robot>, Vec<
         }
         let arm = Arm::from_urdf(folder.join(&robot.urdf))?;
         let mut robot = robot.clone();
+        robot.dof = arm.dof();
         robot.published = Some(file.published(&robot, &arm)?);
         robots.push(robot);
     }

@@ -28,8 +28,8 @@ pub fn blocks(cases: &[CaseTracking]) -> Vec<Block> {
         "On the true machine of each of these cases, with all that is concealed in it, a computed-torque controller tracks task D of the paper (10 s at \
          1 kHz, the gains of its scenario, encoders and velocity filter those of the recordings) under five models: the URDF; the URDF with what was named, \
          as `diagnose --model` wrote it; the URDF with Independent Joint Learning on the training recordings; both, the learning on top of the names; and \
-         the machine's own laws. Only the feed-forward differs. (A wrist's friction depends on the joint's own speed, which IJL's inputs do not tell.) Figures are the links' distance from the reference, root mean square over joints and time, \
-         in mrad.",
+         the machine's own laws. Only the feed-forward differs. (A wrist's friction depends on the joint's own speed, which IJL's inputs do not tell.) Figures \
+         are the links' distance from the reference, root mean square over joints and time, in mrad.",
     ));
     list.push(text(
         "Which cases: of those drawn on the PUMA 560 that conceal something, in their order, each that brings a family that none before it brought, two \
