@@ -85,7 +85,9 @@ impl Source {
     /// In words, without paths: it is sealed.
     pub fn describe(&self) -> String {
         match self {
-            Self::Drawn { seed, robots, plans, .. } => {
+            Self::Drawn {
+                seed, robots, plans, ..
+            } => {
                 let names: Vec<&str> = robots.iter().map(Robot::name).collect();
                 format!("{} cases drawn from seed {seed} on {}", plans.len(), names.join(", "))
             }

@@ -1,6 +1,6 @@
 //! The proposed experiments: made on the concealed machine, and diagnosed again.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use proof::{Answer, ProofError, SealedCase, record_again, sha256, sha256_of};
@@ -31,6 +31,17 @@ struct Made {
     recording: Option<String>,
     /// Why there is none.
     failed: Option<String>,
+}
+
+impl Made {
+    /// Whether it was made of what `made_of` stands for, and the file `recording` is what it left.
+    fn is_of(&self, made_of: &str, recording: &Path) -> bool {
+        let is_as_left = match &self.recording {
+            Some(hash) => sha256_of(recording).is_ok_and(|is| is == *hash),
+            None => !recording.exists(),
+        };
+        self.made_of == made_of && is_as_left
+    }
 }
 
 /// The cases whose proposed experiment is made: of [`LOOKED_AT`] spread evenly, those whose diagnosis proposes one for a
@@ -95,11 +106,7 @@ pub fn make(source: &Source, vault: &Vault, place: &Place, sealed: &SealedCase, 
         &sha256_of(&scenario)?,
     ];
     let made_of = sha256(hashes.map(String::as_str).join("\n").as_bytes());
-    let is_unchanged = |made: &Made| match &made.recording {
-        Some(hash) => sha256_of(&recording).is_ok_and(|is| is == *hash),
-        None => !recording.is_file(),
-    };
-    if !record(vault, place).is_some_and(|made| made.made_of == made_of && is_unchanged(&made)) {
+    if !record(vault, place).is_some_and(|made| made.is_of(&made_of, &recording)) {
         if recording.is_file() {
             std::fs::remove_file(&recording).with_context(|| recording.display().to_string())?;
         }
@@ -175,4 +182,32 @@ fn first(place: &Place) -> String {
 
 fn second(place: &Place) -> String {
     format!("next/{}/diagnosis", place.name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A recording is taken again only as it was left, and made of the same.
+    #[test]
+    fn a_changed_recording_is_made_again() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let recording = folder.path().join(MORE);
+        let made = |hash: Option<String>| Made {
+            made_of: "all of it".into(),
+            failed: hash.is_none().then(|| "lost".to_owned()),
+            recording: hash,
+        };
+        let lost = made(None);
+        assert!(lost.is_of("all of it", &recording), "there is none, as it was left");
+        std::fs::write(&recording, "t,q_a\n0,0\n").expect("it writes");
+        assert!(!lost.is_of("all of it", &recording), "both are left");
+        let there = made(Some(sha256_of(&recording).expect("it is there")));
+        assert!(there.is_of("all of it", &recording));
+        assert!(!there.is_of("another truth", &recording));
+        std::fs::write(&recording, "t,q_a\n0,1\n").expect("it writes");
+        assert!(!there.is_of("all of it", &recording), "it was changed");
+        std::fs::remove_file(&recording).expect("it is there");
+        assert!(!there.is_of("all of it", &recording), "it is gone");
+    }
 }
