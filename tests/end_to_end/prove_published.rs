@@ -126,7 +126,7 @@ fn recordings_are_sealed_diagnosed_and_held_against_what_is_published() {
             "The drag is ours.",
             "chapter 3",
             recording,
-            "only 1 names",
+            "for 1 of all (effect, joint) pairs alone",
             "without these 1 of 2 were named",
             "--published published.toml --recordings data",
         ] {

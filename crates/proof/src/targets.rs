@@ -55,7 +55,7 @@ pub fn targets(score: &Score) -> Vec<Target> {
     let (tracking, stricter) = (score.tracking_over_exact, score.tracking_over_exact_without_lag);
     let experiments = &score.experiments;
     let without = match &experiments.most_frequent {
-        Some([a, b]) => format!("… of those proposed for, without the most frequent pair, `{a}` and `{b}`"),
+        Some([a, b]) => format!("… of those proposed for, without `{a}` and `{b}`, the most frequent pair"),
         None => "… of those proposed for, without the most frequent pair".to_owned(),
     };
     let (wrong, refused) = (score.outside_with_a_wrong_name, score.outside_refused);
@@ -113,15 +113,11 @@ pub fn targets(score: &Score) -> Vec<Target> {
             stricter.count,
         ),
         share(
-            "confusions resolved by the proposed experiment, of those for which the diagnosis proposed one",
+            "confusions resolved by the proposed experiment, of those it was proposed for",
             experiments.resolved,
             at_least(0.70),
         ),
-        share(
-            "… of all in the cases tried, proposed for or not",
-            experiments.resolved_of_all,
-            [None, None],
-        ),
+        share("… of all in the cases tried", experiments.resolved_of_all, [None, None]),
         share(&without, experiments.resolved_of_rarer, [None, None]),
     ]
 }

@@ -147,8 +147,9 @@ fn how_hard(real: &Real) -> String {
         list.join(", ")
     };
     format!(
-        "How much could have failed: publishers say of few effects that they are not there, so that only {pairs} names (an effect on a joint, or on the arm) could have been contradicted, on {} of {} \
-         robots ({list}). Of the {all} things said to be there {several} leave open which of several effects is meant (\u{201c}Coulomb or viscous\u{201d}); without these {} of {} were named, of these {named_of_several} of {several}.",
+        "How much could have failed: publishers say of few effects that they are not there, so that a name could have contradicted them for {pairs} of all \
+         (effect, joint) pairs alone, on {} of {} robots ({list}). Of the {all} things said to be there {several} leave open which of several effects is \
+         meant (\u{201c}Coulomb or viscous\u{201d}); without these {} of {} were named, and of these {named_of_several} of {several}.",
         deniable.len(),
         real.robots.len(),
         named - named_of_several,
