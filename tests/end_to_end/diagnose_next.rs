@@ -1,6 +1,8 @@
 //! `testbed diagnose --next`: a scenario that the program runs as it is, whose recording can be diagnosed beside the others.
 
-use crate::diagnose_made::{Case, ELBOW, Motion, SHOULDER, trio};
+use serde_json::Value;
+
+use crate::diagnose_made::{Case, ELBOW, Motion, SHOULDER, URDF, arguments, trio};
 
 /// Friction that is told from drag by nothing but a wider range of speeds.
 fn friction(motion: &Motion, tau: &mut [f64]) {
@@ -33,4 +35,25 @@ fn the_proposed_motion_is_a_scenario_that_runs() {
     assert_eq!(recording.lines().count(), 25_001);
     // Not asked for, not there.
     assert!(case.json(&[]).get("next_experiment").is_none());
+}
+
+/// Where nothing is proposed, the motion of an earlier diagnosis does not stay to be run; a file of the user's is never replaced.
+#[test]
+fn an_earlier_motion_does_not_stay_and_a_users_file_does() {
+    let case = Case::new(&trio(), &friction);
+    let weak = URDF.replace("effort=\"200\"", "effort=\"0.01\"");
+    case.sandbox.write("robot.urdf", &weak);
+    let earlier = "# The next experiment, proposed by testbed diagnose.\n#\nduration = 25.0\n";
+    case.sandbox.write("next.toml", earlier);
+    let printed = case.diagnose(&["--json", "d.json", "--next", "next.toml"]);
+    assert_eq!(case.sandbox.json("d.json")["next_experiment"]["duration"], Value::Null);
+    assert!(
+        printed.contains("removed: next.toml, of an earlier diagnosis"),
+        "{printed}"
+    );
+    assert!(!printed.contains("written: next.toml") && !case.sandbox.path("next.toml").exists());
+    case.sandbox.write("task.toml", "title = \"mine\"\n");
+    let refused = case.sandbox.refuse(&arguments(&["--next", "task.toml"]));
+    assert!(refused.contains("task.toml: is there, and is no proposal"), "{refused}");
+    assert_eq!(case.text("task.toml"), "title = \"mine\"\n");
 }
