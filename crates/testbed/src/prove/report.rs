@@ -157,7 +157,7 @@ fn unanswered(score: &Score) -> String {
     match score.unanswered.as_slice() {
         [] => "All cases got an answer.".to_owned(),
         list => format!(
-            "{} cases got no answer ({}): nothing counts as found in them, and they are in no figure about what was named, about errors or about intervals.",
+            "Cases without an answer: {} ({}); nothing counts as found there, and they are in no figure about what was named, about errors or about intervals.",
             list.len(),
             list.join(", ")
         ),
