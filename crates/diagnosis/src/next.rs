@@ -325,8 +325,8 @@ fn described(
         let barred = if !confusion.is_explained {
             Some(Left::Unexplained)
         } else {
-            // What is told already, for the one or for the other, could not be confused.
-            (before[k][0].abs() >= before[k][1].min(needed)).then_some(Left::NotForetold)
+            // What is told already could not be confused.
+            (before[k][0] >= before[k][1].min(needed)).then_some(Left::NotForetold)
         };
         if after >= SURE * needed && barred.is_none() {
             separates.push(Separation {

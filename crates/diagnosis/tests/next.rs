@@ -194,9 +194,9 @@ fn no_motion_is_promised_to_tell_an_offset_that_sets_in() {
     let untold = next.not_separated.iter().find(|pair| is_it(&pair.finding, &pair.rival));
     let untold = untold.expect("it is said");
     assert_eq!((untold.kind, untold.best), (Left::SameTorque, 0.0));
-    // And of nothing else that is told already, for the one or for the other.
+    // And of nothing else that is told already.
     for pair in &next.separates {
-        assert!(pair.before.abs() < pair.needed, "{pair:?}");
+        assert!(pair.before < pair.needed, "{pair:?}");
     }
 }
 

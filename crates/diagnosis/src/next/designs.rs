@@ -25,7 +25,7 @@ const STEPS: usize = 12;
 /// Limits are looked at so many times a second while designs are compared, and a motion is slowed down by this factor …
 const COMPARED: (f64, f64) = (25.0, 0.85);
 /// … and so many times a second before one is proposed, by that factor.
-const PROPOSED: (f64, f64) = (FINE, 0.97);
+const PROPOSED: (f64, f64) = (FINE, 0.99);
 
 /// How a joint's motion is made up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

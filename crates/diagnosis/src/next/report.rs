@@ -66,8 +66,7 @@ pub enum Left {
     AnotherMotion,
     /// What the joint does is not explained, so that nothing can be said of a motion nobody made.
     Unexplained,
-    /// On paper the recordings tell the two apart already, for the one or for the other, and they did not: the paper cannot be trusted
-    /// on these two.
+    /// On paper the recordings tell the two apart already, and they did not: the paper cannot be trusted on these two.
     NotForetold,
 }
 
