@@ -159,7 +159,11 @@ pub fn diagnose(
     }
     let traces = traces(&study, &judged, &findings, &left);
     let not_observable = unseen::unseen(&study, &products, &judged.named);
-    let next = if options.next {
+    if options.next && !not_enough_data.is_empty() {
+        let remark = "no motion is proposed: what it would take cannot be told from so little";
+        study.motions.remarks.push(remark.to_owned());
+    }
+    let next = if options.next && not_enough_data.is_empty() {
         progress("what to record next");
         let corrects = |(finding, _): &&(Finding, Option<usize>)| finding.corrects;
         let found = findings.iter().filter(corrects).map(|(finding, _)| &finding.as_effect);

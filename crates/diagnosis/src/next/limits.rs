@@ -70,6 +70,10 @@ impl Limits {
             } else {
                 0.0
             };
+            // What was recorded may lie beyond what the URDF allows.
+            if upper - free >= lower + free {
+                limits.middle[j] = rounded_into(limits.middle[j], lower + free, upper - free);
+            }
             let middle = limits.middle[j];
             let to_a_limit = (upper - free - middle).min(middle - lower - free).max(0.0);
             // A joint that was held still may move as the others do.
@@ -137,6 +141,13 @@ pub fn rounded(value: f64) -> f64 {
     (1e4 * value).round() / 1e4
 }
 
+/// The nearest place between two others, to four decimals, which do not lead beyond these.
+fn rounded_into(value: f64, low: f64, high: f64) -> f64 {
+    rounded(value)
+        .max((1e4 * low).ceil() / 1e4)
+        .min((1e4 * high).floor() / 1e4)
+}
+
 /// The largest share of what a joint may that `needed` takes: of room, of speed, and of torque.
 pub fn taken(needed: &[JointLimits]) -> [f64; 3] {
     let share = |of: f64, allowed: f64| if of > 0.0 { of / allowed.max(1e-300) } else { 0.0 };
@@ -154,4 +165,17 @@ pub fn taken(needed: &[JointLimits]) -> [f64; 3] {
         most(&|joint| share(joint.velocity, joint.velocity_allowed)),
         most(&|joint| share(joint.torque, joint.torque_allowed)),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rounded_into;
+
+    /// What was recorded beyond a limit is brought within it, and rounding does not lead out again.
+    #[test]
+    fn a_middle_is_within_its_limits() {
+        assert_eq!(rounded_into(0.025_83, -3.0718, -0.219_94), -0.22);
+        assert_eq!(rounded_into(-4.0, -2.999_96, 1.0), -2.9999);
+        assert_eq!(rounded_into(0.123_456, f64::NEG_INFINITY, f64::INFINITY), 0.1235);
+    }
 }

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use anyhow::Context;
-use proof::{SealedCase, sha256};
+use proof::{SealedCase, sha256, sha256_of};
+use serde::{Deserialize, Serialize};
 
-use super::{Case, CaseTracking, made_of};
+use super::{Case, made_of};
 use crate::output;
 use crate::prove::cases::{Place, Source};
 use crate::prove::rows;
@@ -21,11 +22,14 @@ pub fn track(source: &Source, vault: &Vault, place: &Place, sealed: &SealedCase,
     let named = sha256(model.as_deref().unwrap_or_default().as_bytes());
     let made_of = made_of([&vault.program.sha256, &sealed.inputs(), &sealed.truth, &named]);
     let (path, timeline) = (file(vault, place, "json"), file(vault, place, "rrd"));
+    let done = file(vault, place, "done.json");
     let timeline = cfg!(feature = "viewer").then_some(timeline);
-    let is_done = || {
-        let text = std::fs::read_to_string(&path).ok()?;
-        let there: CaseTracking = serde_json::from_str(&text).ok()?;
-        Some(there.made_of == made_of && timeline.as_ref().is_none_or(|timeline| timeline.is_file()))
+    // What was changed since it was made is made again.
+    let is_done = || -> Option<bool> {
+        let there: Done = serde_json::from_str(&std::fs::read_to_string(&done).ok()?).ok()?;
+        let as_it_was = there.sha256 == sha256(&std::fs::read(&path).ok()?);
+        let is_drawn = timeline.as_ref().is_none_or(|timeline| timeline.is_file());
+        Some(there.made_of == made_of && as_it_was && is_drawn)
     };
     if is_done() == Some(true) {
         return Ok(());
@@ -45,8 +49,19 @@ pub fn track(source: &Source, vault: &Vault, place: &Place, sealed: &SealedCase,
         .num_threads(1)
         .build()
         .context("starting a thread")?;
-    let tracking = pool.install(|| case.track(made_of, timeline.as_deref()))?;
-    output::write_json(&path, &tracking)
+    let tracking = pool.install(|| case.track(made_of.clone(), timeline.as_deref()))?;
+    output::write_json(&path, &tracking)?;
+    let sha256 = sha256_of(&path)?;
+    output::write_json(&done, &Done { made_of, sha256 })
+}
+
+/// What a finished step leaves beside its file.
+#[derive(Deserialize, Serialize)]
+struct Done {
+    /// SHA-256 of what it was made of.
+    made_of: String,
+    /// SHA-256 of the file.
+    sha256: String,
 }
 
 /// What a finished step left.
