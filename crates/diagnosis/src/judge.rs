@@ -25,6 +25,8 @@ const BESIDE_LOADED_FRICTION: f64 = 0.3;
 /// Beside a link that is loose or sprung, a delay must be larger than this part of that: the link is late too, and what its
 /// simulation misses looks like more of it.
 const BESIDE_A_LOOSE_LINK: f64 = 0.5;
+/// A drive's inertia, which every drive has, must be this part of the joint's torque to be told.
+const LEAST_DRIVE: f64 = 0.01;
 /// Structure without a name must explain this much of a joint's torque spread …
 const LEAST_NAMELESS_SHARE: f64 = 0.012;
 /// … and this much of what the model as it was given misses …
@@ -269,7 +271,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
         let nameless = largest(&|m| !is_named(m), at);
         if cause(member).is_ordinary() {
             // Beside larger structure without a name a drive's inertia may be a part of that.
-            return cause(member) == Cause::RotorInertia && share < nameless;
+            return cause(member) == Cause::RotorInertia && share < nameless.max(LEAST_DRIVE);
         }
         let needed = if cause(member).plain().is_some() {
             LEAST_BEYOND

@@ -36,10 +36,9 @@ const PAYLOAD_REACH: f64 = 0.5;
 /// Whether `candidate` is possible at the coefficients of `fit`.
 pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bool {
     let value = |k: usize| fit.coefficient(candidate.columns[k]);
-    if !candidate
-        .joint
-        .is_none_or(|joint| torque_share(candidate, table, fit, joint) < LARGEST_SHARE)
-    {
+    // What every drive has may well be hidden by masses that are wrong the other way.
+    let cancels = |joint| torque_share(candidate, table, fit, joint) >= LARGEST_SHARE;
+    if !candidate.cause.is_ordinary() && candidate.joint.is_some_and(cancels) {
         return false;
     }
     match candidate.cause {

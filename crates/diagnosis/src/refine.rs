@@ -58,7 +58,8 @@ pub fn varied(terms: &[Term], size: Size, factor: f64) -> Vec<Term> {
                 | Term::Excess { limit: value, .. }
                 | Term::Late { delay: value, .. }
                 | Term::Elastic { stiffness: value, .. }
-                | Term::Gap { halfgap: value, .. },
+                | Term::Gap { halfgap: value, .. }
+                | Term::Memory(_, value, _),
             )
             | (Size::Damping, Term::Elastic { damping: value, .. })
             | (Size::Stop, Term::Gap { stop: value, .. })

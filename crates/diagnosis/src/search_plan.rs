@@ -12,6 +12,9 @@ const REFINEMENTS: usize = 2;
 /// Swaps in a row, at most.
 const SWAPS: usize = 4;
 
+/// Last additions, at most.
+const LAST: usize = 3;
+
 /// Finds the candidates that together explain the training recordings. `progress` is told what is going on.
 pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
     let fitted = study.fitted.clone();
@@ -67,14 +70,16 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
             break;
         }
     }
-    // With all sizes found, what did not pay before may do so.
-    let products = study.products(|r| fitted[r]);
-    let allowed: Vec<usize> = (0..study.candidates.len()).collect();
-    let before = chosen.set.clone();
-    chosen = study.problem(&products).forward(chosen, &allowed);
-    if chosen.set == before {
-        chosen
-    } else {
-        refine(study, chosen, false)
+    // With all sizes found, what did not pay before may do so, and with that what was not possible.
+    for _ in 0..LAST {
+        let products = study.products(|r| fitted[r]);
+        let allowed: Vec<usize> = (0..study.candidates.len()).collect();
+        let before = chosen.set.clone();
+        chosen = study.problem(&products).forward(chosen, &allowed);
+        if chosen.set == before {
+            break;
+        }
+        chosen = refine(study, chosen, false);
     }
+    chosen
 }

@@ -111,7 +111,7 @@ fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<usiz
         let named = name(study, resampled, member.candidate);
         // With its sizes corrected it may be no physics any more: a level below zero.
         let is_impossible = |named: &Named| Corrected::new(&study.arm, std::slice::from_ref(&named.effect)).is_err();
-        if named.iter().any(is_impossible) || is_mean_of_the_rest(study, judged, member) {
+        if named.iter().any(is_impossible) || is_part_of_the_rest(study, judged, member) {
             return true;
         }
         named.first().is_some_and(|named| {
@@ -127,14 +127,22 @@ fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<usiz
     Some(weakest.candidate)
 }
 
-/// Whether it is a constant smaller than what is left beside it with structure: that has a mean too.
-fn is_mean_of_the_rest(study: &Study, judged: &Judged, member: &judge::Member) -> bool {
+/// Beside structure that has no name a constant must be as large as that, and a drive's inertia larger by this: both may be a
+/// part of it.
+const BESIDE_THE_REST: f64 = 1.25;
+
+/// Whether it is a constant or a drive's inertia no larger than what is left beside it with structure.
+fn is_part_of_the_rest(study: &Study, judged: &Judged, member: &judge::Member) -> bool {
     let candidate = &study.candidates[member.candidate];
-    let Some(joint) = candidate.joint.filter(|_| candidate.cause == Cause::TorqueOffset) else {
-        return false;
+    let factor = match candidate.cause {
+        Cause::TorqueOffset => 1.0,
+        Cause::RotorInertia => BESIDE_THE_REST,
+        _ => return false,
     };
+    let Some(joint) = candidate.joint else { return false };
+    let nameless = judged.nameless.iter().map(|member| member.shares[joint]);
     let left = structured(&errors(study, joint, &augmented(study, &judged.named, joint)));
-    left.is_some_and(|left| left > member.shares[joint])
+    factor * nameless.chain(left).fold(0.0, f64::max) > member.shares[joint]
 }
 
 /// The parameter that says how large an effect is.

@@ -1,0 +1,44 @@
+//! Wrong masses in company of a drive that hides them.
+
+mod support;
+
+use arm::{Arm, Workspace};
+use support::{Concealed, diagnosed, sentences, trio};
+
+/// What is named beside plain friction: effect and joint.
+fn named(robot: &Arm, concealed: Concealed<'_>) -> Vec<(String, Option<String>)> {
+    let diagnosis = diagnosed(&trio(), robot, concealed, Vec::new());
+    let plain = ["viscous_friction", "coulomb_friction"];
+    let special = diagnosis.report.findings.iter();
+    let mut special: Vec<_> = special
+        .filter(|finding| !plain.contains(&finding.effect))
+        .map(|finding| (finding.effect.to_owned(), finding.joint.clone()))
+        .collect();
+    special.sort();
+    assert!(diagnosis.report.unexplained.is_empty(), "{:?}", sentences(&diagnosis));
+    special
+}
+
+fn of(effect: &str, joint: Option<&str>) -> (String, Option<String>) {
+    (effect.to_owned(), joint.map(str::to_owned))
+}
+
+/// About the base axis a drive's inertia weighs as much as the links are too light: the model is right there as it is, and
+/// wrong in both.
+#[test]
+fn a_drive_that_makes_up_for_light_links_is_named_with_them() {
+    let light = trio().with_scaled_inertias(0.8);
+    let mut workspace = Workspace::new(&light);
+    let mut torque = |robot: &Arm, qdd: f64| {
+        let mut tau = vec![0.0; 3];
+        robot.inverse_dynamics(&mut workspace, &[0.0, -0.5, 0.7], &[0.0; 3], &[qdd, 0.0, 0.0], &mut tau);
+        tau[0]
+    };
+    let missing = [trio(), light.clone()].map(|robot| torque(&robot, 1.0) - torque(&robot, 0.0));
+    let robot = light.with_rotor_inertias(&[missing[0] - missing[1], 0.05, 0.03]);
+    let found = named(&robot, &|_, _| {});
+    assert!(found.contains(&of("inertial_scale", None)), "{found:?}");
+    let name = trio().joints()[0].name.clone();
+    assert!(found.contains(&of("rotor_inertia", Some(&name))), "{found:?}");
+    assert!(found.iter().all(|(effect, _)| !effect.contains("link")), "{found:?}");
+}
