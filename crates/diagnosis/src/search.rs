@@ -1,5 +1,7 @@
 //! The joint search: which candidates together explain the residual.
 
+use std::collections::HashMap;
+
 use arm::Arm;
 use rayon::prelude::*;
 
@@ -13,6 +15,8 @@ mod exclusion;
 
 /// So many of the most promising candidates are fitted in full each round.
 const TRIED: usize = 8;
+/// … and of one cause on one joint so many, before others have been.
+const AT_ONCE: usize = 3;
 /// More candidates than this are not taken.
 const MOST: usize = 60;
 
@@ -155,22 +159,21 @@ impl Problem<'_> {
             .par_iter()
             .map(|&candidate| (self.promise(chosen, candidate), candidate))
             .collect();
+        promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         promises.retain(|(promise, _)| *promise > 0.0);
-        // What contains something simpler promises as much as that, in all its sizes: the simpler goes first.
-        let paying: Vec<usize> = promises.iter().map(|&(_, c)| c).collect();
-        let waits = |c: usize| {
-            let candidate = &self.candidates[c];
-            let is_contained = |&other: &usize| {
-                let plain = &self.candidates[other];
-                candidate.cause.plain() == Some(plain.cause)
-                    && !self.exclude(c, other)
-                    && plain.columns.iter().all(|column| candidate.columns.contains(column))
-            };
-            paying.iter().any(is_contained)
-        };
-        let mut promises: Vec<(bool, f64, usize)> = promises.into_iter().map(|(p, c)| (waits(c), p, c)).collect();
-        promises.sort_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)).then(a.2.cmp(&b.2)));
-        let mut waiting = promises.into_iter().map(|(_, _, candidate)| candidate);
+        // Of each kind the most promising first: what contains something simpler promises as much as that, in all its sizes.
+        let kind = |c: usize| (self.candidates[c].joint, self.candidates[c].cause);
+        let mut of_kind: HashMap<(Option<usize>, Cause), usize> = HashMap::new();
+        let mut turns: Vec<(usize, usize)> = promises
+            .into_iter()
+            .map(|(_, candidate)| {
+                let before = of_kind.entry(kind(candidate)).or_default();
+                *before += 1;
+                ((*before - 1) / AT_ONCE, candidate)
+            })
+            .collect();
+        turns.sort_by_key(|&(turn, _)| turn);
+        let mut waiting = turns.into_iter().map(|(_, candidate)| candidate);
         for _ in 0..BATCHES {
             let mut batch = Vec::with_capacity(TRIED);
             for candidate in waiting.by_ref() {

@@ -126,6 +126,10 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "FILE")]
     pub known: Option<PathBuf>,
 
+    /// Leave out what the diagnosis is compared with, the simulation and the learned correction: quicker
+    #[arg(long)]
+    pub torques_only: bool,
+
     /// Fit these effects and no others, to try a hypothesis: effect:joint or, of the whole arm, effect; or a file (.toml, as
     /// --model writes), whose sizes do not matter
     #[arg(long, value_name = "EFFECT:JOINT,…|FILE", conflicts_with = "known")]

@@ -55,13 +55,16 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
     // What is known is part of the model that the findings come on top of.
     let mut effects = options.known.clone();
     effects.extend(diagnosis.effects.iter().cloned());
-    spinner.set_message("learning a correction to compare with");
-    learn(&arm, &mut diagnosis)?;
+    if !args.torques_only {
+        spinner.set_message("learning a correction to compare with");
+        learn(&arm, &mut diagnosis)?;
+    }
     spinner.set_message("driving the simulated arm");
     let simulated = recordings
         .iter()
         .rfind(|recording| recording.held_out)
         .or(recordings.last())
+        .filter(|_| !args.torques_only)
         .map(|recording| &recording.regular);
     let remarks = match simulated {
         Some(recording) => simulate(&arm, &options.known, &effects, recording, &mut diagnosis),

@@ -66,7 +66,8 @@ pub fn diagnose(program: &Path, folder: &Path, files: &Files, task: Task<'_>) ->
     command.arg("--held-out").args(&files.held_out);
     command.args(["--json", "out.json", "--jobs", "1"]);
     match task.only {
-        Some(only) => command.args(["--only", only]),
+        // Of a hypothesis nothing is scored but the torques.
+        Some(only) => command.args(["--only", only, "--torques-only"]),
         None => command.args(["--model", "model.toml"]),
     };
     if task.next {
