@@ -16,6 +16,8 @@ const ROUNDS: [[f64; 4]; 4] = [
     [0.988, 0.994, 1.006, 1.012],
 ];
 
+/// The shortest memory that is none of friction (s).
+const SHORTEST_MEMORY: f64 = 0.1;
 /// The first step about an onset (s).
 const ONSET_STEP: f64 = 0.4;
 
@@ -58,13 +60,14 @@ pub fn varied(terms: &[Term], size: Size, factor: f64) -> Vec<Term> {
                 | Term::Excess { limit: value, .. }
                 | Term::Late { delay: value, .. }
                 | Term::Elastic { stiffness: value, .. }
-                | Term::Gap { halfgap: value, .. }
-                | Term::Memory(_, value, _),
+                | Term::Gap { halfgap: value, .. },
             )
             | (Size::Damping, Term::Elastic { damping: value, .. })
             | (Size::Stop, Term::Gap { stop: value, .. })
             | (Size::Periods, Term::Ripple { periods: value, .. })
             | (Size::Exponent, Term::Drag { exponent: value, .. }) => *value *= factor,
+            // What is forgotten sooner is the velocity itself.
+            (Size::Main, Term::Memory(_, value, _)) => *value = (*value * factor).max(SHORTEST_MEMORY),
             (Size::Duration, Term::Force { from, to, .. }) => *to = *from + factor * (*to - *from),
             _ => {}
         }
