@@ -161,27 +161,25 @@ fn load_dependent_friction() {
     );
 }
 
-#[test]
-fn transmission_coupling() {
-    // Gears that turn two joints' drives together act on both.
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+/// Gears that turn the elbow's drive and another's together act on both.
+fn coupled(other: usize) {
+    let concealed = move |motion: &mut Motion, tau: &mut [f64]| {
         ordinary(motion, tau);
-        tau[ELBOW] += 1.1 * motion.qd[SHOULDER] + 0.12 * motion.qdd[SHOULDER];
-        tau[SHOULDER] += 1.1 * motion.qd[ELBOW] + 0.12 * motion.qdd[ELBOW];
+        tau[ELBOW] += 1.1 * motion.qd[other] + 0.12 * motion.qdd[other];
+        tau[other] += 1.1 * motion.qd[ELBOW] + 0.12 * motion.qdd[ELBOW];
     };
     let truth = [("viscous", 1.1), ("inertia", 0.12)];
     check(&trio(), &concealed, "transmission_coupling", Some("elbow"), &truth, 0.1);
 }
 
 #[test]
+fn transmission_coupling() {
+    coupled(SHOULDER);
+}
+
+#[test]
 fn transmission_coupling_of_joints_one_apart() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
-        ordinary(motion, tau);
-        tau[ELBOW] += 1.1 * motion.qd[0] + 0.12 * motion.qdd[0];
-        tau[0] += 1.1 * motion.qd[ELBOW] + 0.12 * motion.qdd[ELBOW];
-    };
-    let truth = [("viscous", 1.1), ("inertia", 0.12)];
-    check(&trio(), &concealed, "transmission_coupling", Some("elbow"), &truth, 0.1);
+    coupled(0);
 }
 
 #[test]
