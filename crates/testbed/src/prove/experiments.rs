@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use proof::{Answer, ProofError, SealedCase, record_again, sha256, sha256_of};
+use proof::{Answer, ProofError, SealedCase, record_again, sha256_of};
 use serde::{Deserialize, Serialize};
 
 use super::cases::{Place, Source};
 use super::child::{MORE, NEXT, Task};
 use super::rows;
-use super::vault::Vault;
+use super::vault::{Vault, made_of};
 use crate::output;
 use crate::scenario::Scenario;
 
@@ -105,7 +105,7 @@ pub fn make(source: &Source, vault: &Vault, place: &Place, sealed: &SealedCase, 
         &sealed.truth,
         &sha256_of(&scenario)?,
     ];
-    let made_of = sha256(hashes.map(String::as_str).join("\n").as_bytes());
+    let made_of = made_of(hashes.map(String::as_str));
     if !record(vault, place).is_some_and(|made| made.is_of(&made_of, &recording)) {
         if recording.is_file() {
             std::fs::remove_file(&recording).with_context(|| recording.display().to_string())?;

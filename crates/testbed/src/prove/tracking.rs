@@ -13,7 +13,7 @@ pub mod words;
 use std::path::Path;
 
 use anyhow::Context;
-use proof::{CaseMachine, DURATION, Name, PAUSE, Robot, Truth, sha256};
+use proof::{CaseMachine, DURATION, Name, PAUSE, Robot, Truth};
 use serde::{Deserialize, Serialize};
 
 use self::closed_loop::Rate;
@@ -233,11 +233,6 @@ impl Case<'_> {
     fn show(&self, path: &Path, _: &Scenario, _: &Course, _: &[closed_loop::Run]) -> anyhow::Result<()> {
         anyhow::bail!("{}: this testbed was built without the viewer", path.display())
     }
-}
-
-/// One number for what a tracking is made of.
-fn made_of(hashes: [&str; 4]) -> String {
-    sha256(hashes.join("\n").as_bytes())
 }
 
 #[cfg(test)]

@@ -40,6 +40,11 @@ struct Begun {
     robots: Vec<String>,
 }
 
+/// One number for what a step is made of.
+pub fn made_of(hashes: [&str; 4]) -> String {
+    sha256(hashes.join("\n").as_bytes())
+}
+
 /// The folder of a proof.
 pub struct Vault {
     /// Where.

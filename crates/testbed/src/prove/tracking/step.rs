@@ -6,11 +6,11 @@ use anyhow::Context;
 use proof::{SealedCase, sha256, sha256_of};
 use serde::{Deserialize, Serialize};
 
-use super::{Case, made_of};
+use super::Case;
 use crate::output;
 use crate::prove::cases::{Place, Source};
 use crate::prove::rows;
-use crate::prove::vault::Vault;
+use crate::prove::vault::{Vault, made_of};
 
 /// Tracks the task on the machine of a case whose truth is `truth`, into `tracking/CASE.json` (and `CASE.rrd`, with the viewer), unless
 /// that is done.
