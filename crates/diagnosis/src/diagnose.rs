@@ -6,20 +6,27 @@ use arm::Arm;
 use rayon::prelude::*;
 use torque::{Effect, Reference};
 
-use crate::bursts;
-use crate::candidate::Cause;
+use crate::data::known;
+use crate::data::motion::Input;
 use crate::error::DiagnosisError;
-use crate::found::findings;
-use crate::given::{self, Wanted};
-use crate::judge;
-use crate::left_over::{leftover, not_enough, unexplained, verdict};
-use crate::locate::locate;
-use crate::motion::Input;
-use crate::predict::{augmented, errors};
-use crate::report::{Finding, RecordingNames, Report, Traces};
-use crate::study::Study;
-use crate::traces::traces;
-use crate::{known, next, search_plan, sentences, settings, settled, two_sides, unseen};
+use crate::findings::dual_sensor;
+use crate::findings::found::findings;
+use crate::findings::locate::locate;
+use crate::findings::observability;
+use crate::findings::report::{Finding, RecordingNames, Report, Traces};
+use crate::findings::sentences;
+use crate::findings::traces::traces;
+use crate::findings::transients;
+use crate::findings::verdict::{leftover, not_enough, unexplained, verdict};
+use crate::next;
+use crate::search::candidate::Cause;
+use crate::search::hypothesis::{self, Wanted};
+use crate::search::plan;
+use crate::search::study::Study;
+use crate::selection::final_fit;
+use crate::selection::judge;
+use crate::selection::predict::{augmented, errors};
+use crate::thresholds;
 
 /// How to diagnose.
 #[derive(Clone, Debug)]
@@ -38,7 +45,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            cutoff: settings::CUTOFF,
+            cutoff: thresholds::CUTOFF,
             known: Vec::new(),
             only: None,
             next: false,
@@ -91,18 +98,18 @@ pub fn diagnose(
     let (judged, resampled) = match &options.only {
         Some(wanted) => {
             progress("fitting the effects that were asked for");
-            let mut judged = given::fit(&mut study, wanted)?;
-            let resampled = settled::as_given(&mut study, &mut judged);
+            let mut judged = hypothesis::fit(&mut study, wanted)?;
+            let resampled = final_fit::as_given(&mut study, &mut judged);
             (judged, resampled)
         }
         None => {
-            let chosen = search_plan::search(&mut study, progress);
+            let chosen = plan::search(&mut study, progress);
             progress("judging names");
             let products = study.products(|r| fitted[r]);
             let held = fitted.iter().any(|f| !f).then(|| study.products(|r| !fitted[r]));
             let mut judged = judge::judge(&study, &products, held.as_ref(), chosen);
             progress("the last fit, and intervals");
-            let resampled = settled::settled(&mut study, &mut judged);
+            let resampled = final_fit::settled(&mut study, &mut judged);
             (judged, resampled)
         }
     };
@@ -115,14 +122,14 @@ pub fn diagnose(
         !arm_and_known.past.iter().any(same)
     });
     if options.only.is_none() {
-        let two_sided = two_sides::findings(&study, &judged.named, inputs);
+        let two_sided = dual_sensor::findings(&study, &judged.named, inputs);
         findings.extend(two_sided.into_iter().map(|finding| (finding, None)));
     }
     let left: Vec<Vec<f64>> = (0..arm.dof())
         .into_par_iter()
         .map(|joint| augmented(&study, &judged.named, joint))
         .collect();
-    let bursts = bursts::bursts(&study, &judged, &left);
+    let bursts = transients::bursts(&study, &judged, &left);
     if options.only.is_none() {
         findings.extend(bursts.contact.clone().map(|finding| (finding, None)));
     }
@@ -158,7 +165,7 @@ pub fn diagnose(
         finding.sentence = sentences::of(finding, &fit);
     }
     let traces = traces(&study, &judged, &findings, &left);
-    let not_observable = unseen::unseen(&study, &products, &judged.named);
+    let not_observable = observability::unseen(&study, &products, &judged.named);
     if options.next && !not_enough_data.is_empty() {
         let remark = "no motion is proposed: what it would take cannot be told from so little";
         study.motions.remarks.push(remark.to_owned());

@@ -2,7 +2,7 @@
 //!
 //! A motion nobody has made yet is added to the recordings on paper: the torque that the findings say it needs, the columns
 //! of the findings and of their rivals along it, an error as large as the recordings'. The rivals are then fitted in the
-//! findings' place as they are in the recordings ([`crate::rivals`]), with all else refitted.
+//! findings' place as they are in the recordings ([`crate::findings::rivals`]), with all else refitted.
 
 use std::collections::BTreeSet;
 
@@ -10,12 +10,13 @@ use arm::Arm;
 use rayon::prelude::*;
 use torque::{Effect, Reference};
 
-use crate::candidate::Cause;
-use crate::fit::Products;
-use crate::report::{Confusable, Finding, NotObservable, Unexplained};
-use crate::search::Chosen;
-use crate::study::Study;
-use crate::{rivals, unseen};
+use crate::findings::observability;
+use crate::findings::report::{Confusable, Finding, NotObservable, Unexplained};
+use crate::findings::rivals;
+use crate::regression::fit::Products;
+use crate::search::candidate::Cause;
+use crate::search::problem::Chosen;
+use crate::search::study::Study;
 
 mod advice;
 mod designs;
@@ -288,7 +289,7 @@ fn visible<'a>(study: &Study, chosen: &Chosen, hidden: &'a [NotObservable]) -> V
                 column: None,
             });
         }
-        let (cause, parameter) = unseen::LINEAR
+        let (cause, parameter) = observability::LINEAR
             .into_iter()
             .find(|(cause, _)| cause.name() == Some(entry.effect))?;
         let mut candidates = study.candidates.iter();
@@ -303,7 +304,7 @@ fn visible<'a>(study: &Study, chosen: &Chosen, hidden: &'a [NotObservable]) -> V
             parameter,
             before: entry.would_be_seen_above.values().next().copied(),
             joint,
-            column: Some((*column, unseen::needed(candidate))),
+            column: Some((*column, observability::needed(candidate))),
         })
     };
     hidden.iter().filter_map(of).collect()

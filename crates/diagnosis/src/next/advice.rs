@@ -1,7 +1,7 @@
 //! What would tell where no motion does.
 
 use super::report::{Left, Untold};
-use crate::report::Confusable;
+use crate::findings::report::Confusable;
 
 /// Less than this (nats), or than this part of what tells, is nothing: the two are one torque.
 const ALIAS: (f64, f64) = (1.0, 0.1);

@@ -4,7 +4,7 @@ use arm::Arm;
 use torque::{Corrected, Effect, Motion, Prediction, Reference, TorqueError, Workspace};
 
 use super::report::JointLimits;
-use crate::study::Study;
+use crate::search::study::Study;
 
 /// The part of a joint's range that is kept free at either end.
 const MARGIN: f64 = 0.05;

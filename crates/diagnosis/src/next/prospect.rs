@@ -3,18 +3,19 @@
 use torque::{Motion, Reference};
 
 use super::designs::DURATION;
-use crate::columns::values;
-use crate::fit::{Products, evidence_rate};
-use crate::motion::{Chunk, Motions};
-use crate::physics::is_possible;
-use crate::rigid::Rigid;
-use crate::search::Chosen;
-use crate::signal::Kernel;
-use crate::study::{About, Study};
-use crate::table::{Moving, Table};
-use crate::term::Term;
-use crate::unseen::Visibility;
-use crate::{rivals, settings};
+use crate::data::motion::{Chunk, Motions};
+use crate::data::rigid::Rigid;
+use crate::data::signal::Kernel;
+use crate::findings::observability::Visibility;
+use crate::findings::rivals;
+use crate::regression::columns::values;
+use crate::regression::fit::{Products, evidence_rate};
+use crate::regression::table::{Moving, Table};
+use crate::regression::term::Term;
+use crate::search::physics::is_possible;
+use crate::search::problem::Chosen;
+use crate::search::study::{About, Study};
+use crate::thresholds;
 
 /// Between the last recording and the motion (s).
 const BETWEEN: f64 = 10.0;
@@ -173,7 +174,7 @@ impl<'a> Prospect<'a> {
             })
             .collect();
         let floor = (0..dof)
-            .map(|j| study.noise[j] + (settings::TOLERANCE * torque[j]).powi(2))
+            .map(|j| study.noise[j] + (thresholds::TOLERANCE * torque[j]).powi(2))
             .collect();
         Outlook {
             products: self.old.joined(&new, &left, evidence, floor),

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::report::Confusable;
+use crate::findings::report::Confusable;
 
 /// The motion that tells most, and what it would tell.
 #[derive(Clone, Debug, PartialEq, Serialize)]

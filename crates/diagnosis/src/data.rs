@@ -1,0 +1,8 @@
+//! Phase 1, data: recordings filtered and differentiated alike, the rigid model along them, scales and noise.
+
+pub mod known;
+pub mod measure;
+pub mod motion;
+pub mod rigid;
+pub mod signal;
+pub mod units;

@@ -1,0 +1,74 @@
+//! Effects that the user has already.
+
+use arm::Arm;
+use torque::{Corrected, Effect, Prediction, Workspace};
+
+use crate::data::motion::Motions;
+use crate::error::DiagnosisError;
+
+/// The model with what is known in it.
+pub struct Known {
+    /// The arm, with known payloads, link errors, drives and gravity.
+    pub arm: Arm,
+    model: Option<Corrected>,
+    /// Known effects that no torque at one time tells: they are found again, and not reported.
+    pub past: Vec<Effect>,
+}
+
+impl Known {
+    /// `arm` with `effects`.
+    ///
+    /// # Errors
+    /// [`DiagnosisError`], if an effect does not fit the arm.
+    pub fn new(arm: &Arm, effects: &[Effect]) -> Result<Self, DiagnosisError> {
+        if effects.is_empty() {
+            return Ok(Self {
+                arm: arm.clone(),
+                model: None,
+                past: Vec::new(),
+            });
+        }
+        let (past, now): (Vec<Effect>, Vec<Effect>) = effects.iter().cloned().partition(has_memory);
+        let model = Corrected::new(arm, &now)?;
+        Ok(Self {
+            arm: model.arm().clone(),
+            model: Some(model),
+            past,
+        })
+    }
+
+    /// Takes what is known off the torques, and puts the positions where the joints stand.
+    pub fn take_off(&self, motions: &mut Motions) {
+        let Some(model) = &self.model else { return };
+        let dof = self.arm.dof();
+        let mut workspace = Workspace::new(dof);
+        let mut prediction = Prediction::new(dof);
+        let mut scratch = arm::Workspace::new(&self.arm);
+        let mut rigid = vec![0.0; dof];
+        for chunk in &mut motions.chunks {
+            for tick in 0..chunk.ticks() {
+                let at = |signal: &[Vec<f64>]| -> Vec<f64> { signal.iter().map(|joint| joint[tick]).collect() };
+                let (q, qd, qdd) = (at(&chunk.q), at(&chunk.qd), at(&chunk.qdd));
+                model.predict_at(chunk.time(tick), &mut workspace, &q, &qd, &qdd, &mut prediction);
+                let standing: Vec<f64> = q.iter().zip(model.encoder_offsets()).map(|(q, o)| q + o).collect();
+                self.arm
+                    .inverse_dynamics(&mut scratch, &standing, &qd, &qdd, &mut rigid);
+                for joint in 0..dof {
+                    chunk.q[joint][tick] = standing[joint];
+                    chunk.tau[joint][tick] -= prediction.torque(joint) - rigid[joint];
+                }
+            }
+        }
+    }
+}
+
+/// Whether an effect depends on the past of the motion or on the commanded torque.
+fn has_memory(effect: &Effect) -> bool {
+    matches!(
+        effect,
+        Effect::ActuationDelay { .. }
+            | Effect::JointElasticity { .. }
+            | Effect::Backlash { .. }
+            | Effect::TorqueSaturation { .. }
+    )
+}

@@ -1,0 +1,351 @@
+//! Recordings, filtered: positions, their derivatives and torques on a grid fine enough for nonlinear functions of them.
+
+use recording::RegularRecording;
+
+use crate::data::signal::{Kernel, outputs};
+
+/// The first filter passes this many times more than the second: nonlinear functions are formed between them.
+const WIDER: f64 = 3.0;
+/// The first filter's cut-off is at most this share of the sampling rate: a width of one sample.
+const NARROWEST: f64 = 0.235;
+/// Samples of the fine grid in a period of the second cut-off.
+const FINE: f64 = 8.0;
+/// Rows in a period of the second cut-off.
+const ROWS: f64 = 2.5;
+/// Longer stretches are cut, so that memory is bounded (s).
+const LONGEST: f64 = 60.0;
+/// Of longer recordings to be fitted, or held out, stretches spread evenly are used (s) …
+const MOST_SECONDS: f64 = 900.0;
+/// … so long, if the recording allows (s).
+const WINDOW: f64 = 20.0;
+/// Multiples of it, less their whole parts, are spread evenly.
+const GOLDEN: f64 = 0.618_033_988_749_895;
+/// More rows than this in all are thinned out.
+const MOST_ROWS: f64 = 12_000.0;
+
+/// The second filter passes this many times the frequency of the motion.
+const PERIODS: f64 = 22.0;
+/// … but no more than this (Hz).
+const HIGHEST_CUTOFF: f64 = 40.0;
+/// A joint whose speed is less than so many times its noise holds still.
+const STILL: f64 = 20.0;
+/// Between recordings without a common clock (s).
+const BETWEEN: f64 = 10.0;
+
+/// A recording to be diagnosed, with its name and role.
+#[derive(Clone, Copy, Debug)]
+pub struct Input<'a> {
+    /// As the user named it.
+    pub name: &'a str,
+    /// On its regular clock, joints in the arm's order.
+    pub recording: &'a RegularRecording,
+    /// Not to be fitted.
+    pub held_out: bool,
+}
+
+/// A stretch of a recording on the fine grid, all signals through the first filter: `[joint][tick]`.
+#[derive(Clone, Debug)]
+pub struct Chunk {
+    /// The recording it is of.
+    pub recording: usize,
+    /// The time of the first tick (s).
+    pub start: f64,
+    /// From tick to tick (s).
+    pub period: f64,
+    /// Positions (rad or m).
+    pub q: Vec<Vec<f64>>,
+    /// Velocities (rad/s or m/s).
+    pub qd: Vec<Vec<f64>>,
+    /// Accelerations (rad/s² or m/s²).
+    pub qdd: Vec<Vec<f64>>,
+    /// Torques (N m or N).
+    pub tau: Vec<Vec<f64>>,
+    /// The second filter, from ticks to rows.
+    pub kernel: Kernel,
+    /// Ticks from row to row.
+    pub stride: usize,
+}
+
+impl Chunk {
+    /// The number of ticks.
+    pub fn ticks(&self) -> usize {
+        self.q[0].len()
+    }
+
+    /// The number of rows.
+    pub fn rows(&self) -> usize {
+        outputs(self.ticks(), self.kernel.reach(), self.stride)
+    }
+
+    /// The time of a tick (s).
+    pub fn time(&self, tick: usize) -> f64 {
+        self.start + tick as f64 * self.period
+    }
+
+    /// The tick that a row is centred on.
+    pub fn tick_of(&self, row: usize) -> usize {
+        row * self.stride + self.kernel.reach()
+    }
+
+    /// A signal on the ticks, through the second filter.
+    pub fn filter(&self, signal: &[f64]) -> Vec<f64> {
+        self.kernel.smooth(signal, self.stride)
+    }
+}
+
+/// What is known of one recording.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// As the user named it.
+    pub name: String,
+    /// Not to be fitted.
+    pub held_out: bool,
+    /// What the clock of the diagnosis is ahead of the recording's own (s).
+    pub shift: f64,
+    /// Noise of the filtered torque, one a joint (N m or N).
+    pub torque_noise: Vec<f64>,
+    /// Noise of the twice filtered acceleration, one a joint (rad/s² or m/s²).
+    pub acceleration_noise: Vec<f64>,
+    /// Noise of the velocity after the first filter, one a joint (rad/s or m/s).
+    pub velocity_noise: Vec<f64>,
+}
+
+/// All recordings.
+#[derive(Clone, Debug)]
+pub struct Motions {
+    /// The number of joints.
+    pub dof: usize,
+    /// In order of the recordings and of time.
+    pub chunks: Vec<Chunk>,
+    /// One a recording.
+    pub sources: Vec<Source>,
+    /// The half-power frequency of the second filter (Hz).
+    pub cutoff: f64,
+    /// The frequency of each joint's motion in the recordings to be fitted: that of a sinusoid with its speed and
+    /// acceleration (Hz); zero without motion.
+    pub tempo: Vec<f64>,
+    /// Whether one clock runs through all recordings. If not, each begins where the one before it ended.
+    pub one_clock: bool,
+    /// What was left out, in sentences.
+    pub remarks: Vec<String>,
+}
+
+impl Motions {
+    /// Filters `inputs` with the second filter at `cutoff` (Hz), more if the motion is quick, or at what the slowest
+    /// recording allows.
+    pub fn new(inputs: &[Input<'_>], cutoff: f64) -> Self {
+        let mut motions = Self::at(inputs, cutoff);
+        if motions.cutoff < cutoff {
+            motions.remarks.push(format!(
+                "the slowest recording allows a filter at {:.1} Hz instead of {cutoff:.0} Hz: what is quicker is not seen",
+                motions.cutoff
+            ));
+        }
+        let mut moving: Vec<f64> = motions.tempo.iter().copied().filter(|&tempo| tempo > 0.0).collect();
+        moving.sort_by(f64::total_cmp);
+        let tempo = moving.get(moving.len() / 2).copied().unwrap_or(0.0);
+        let wanted = (PERIODS * tempo).min(HIGHEST_CUTOFF);
+        if wanted > 1.15 * motions.cutoff {
+            Self::at(inputs, wanted)
+        } else {
+            motions
+        }
+    }
+
+    fn at(inputs: &[Input<'_>], wanted: f64) -> Self {
+        let slowest = inputs
+            .iter()
+            .map(|input| 1.0 / input.recording.period)
+            .fold(f64::INFINITY, f64::min);
+        let cutoff = wanted.min(NARROWEST * slowest);
+        let seconds = |held_out: bool| -> f64 {
+            let of_role = inputs.iter().filter(|input| input.held_out == held_out);
+            of_role
+                .map(|input| input.recording.len() as f64 * input.recording.period)
+                .sum()
+        };
+        let used = |held_out: bool| (MOST_SECONDS / seconds(held_out)).min(1.0);
+        let total: f64 = [false, true].map(|role| used(role) * seconds(role)).iter().sum();
+        let thin = (total * ROWS * cutoff / MOST_ROWS).max(1.0);
+        let overlap = overlapping(inputs);
+        let mut motions = Self {
+            dof: inputs.first().map_or(0, |input| input.recording.joints.len()),
+            chunks: Vec::new(),
+            sources: Vec::new(),
+            cutoff,
+            tempo: Vec::new(),
+            one_clock: overlap.is_none(),
+            remarks: [(false, "to be fitted"), (true, "held out")]
+                .into_iter()
+                .filter(|&(role, _)| used(role) < 1.0)
+                .map(|(role, what)| {
+                    format!(
+                        "{:.0} s are {what}; of these {MOST_SECONDS:.0} s are used, in stretches of {WINDOW:.0} s spread evenly",
+                        seconds(role)
+                    )
+                })
+                .collect(),
+        };
+        if let Some([a, b]) = overlap {
+            motions.remarks.push(format!(
+                "{a} and {b} overlap in time: what warms, what sets in and what was before is not asked; if the one was made \
+                 after the other, let its times follow the other's"
+            ));
+        }
+        let mut end = 0.0;
+        for (index, input) in inputs.iter().enumerate() {
+            let recording = input.recording;
+            let shift = if motions.one_clock {
+                0.0
+            } else {
+                end - recording.time(0)
+            };
+            end += recording.len() as f64 * recording.period + BETWEEN;
+            motions.add(index, input, used(input.held_out), thin, shift);
+        }
+        motions.tempo = motions.tempo();
+        motions
+    }
+
+    fn tempo(&self) -> Vec<f64> {
+        let fitted = |chunk: &&Chunk| !self.sources[chunk.recording].held_out;
+        let power = |signal: &dyn Fn(&Chunk) -> &Vec<f64>| -> f64 {
+            self.chunks.iter().filter(fitted).flat_map(signal).map(|v| v * v).sum()
+        };
+        (0..self.dof)
+            .map(|joint| {
+                let (speed, acceleration) = (power(&|chunk| &chunk.qd[joint]), power(&|chunk| &chunk.qdd[joint]));
+                // Of a joint that holds still only noise would be seen.
+                let noise = self
+                    .sources
+                    .iter()
+                    .map(|source| source.velocity_noise[joint])
+                    .fold(0.0, f64::max);
+                let ticks: usize = self.chunks.iter().filter(fitted).map(Chunk::ticks).sum();
+                if speed > (STILL * noise).powi(2) * ticks as f64 && speed > 0.0 {
+                    (acceleration / speed).sqrt() / (2.0 * std::f64::consts::PI)
+                } else {
+                    0.0
+                }
+            })
+            .collect()
+    }
+
+    /// Adds the part `used` of a recording.
+    fn add(&mut self, index: usize, input: &Input<'_>, used: f64, thin: f64, shift: f64) {
+        let recording = input.recording;
+        let rate = 1.0 / recording.period;
+        let first = Kernel::new((WIDER * self.cutoff).min(NARROWEST * rate), recording.period);
+        let decimation = (rate / (FINE * self.cutoff)).floor().max(1.0) as usize;
+        let period = recording.period * decimation as f64;
+        let kernel = Kernel::new(self.cutoff, period);
+        let stride = (thin / (period * ROWS * self.cutoff)).round().max(1.0) as usize;
+        for segment in &recording.segments {
+            let longest = if used < 1.0 { WINDOW / used } else { LONGEST };
+            let most = ((longest / recording.period) as usize).max(1);
+            let pieces = segment.ticks.len().div_ceil(most).max(1);
+            let length = segment.ticks.len().div_ceil(pieces);
+            for piece in 0..pieces {
+                let from = segment.ticks.start + piece * length;
+                let to = (from + length).min(segment.ticks.end);
+                // Where the stretch lies in its piece varies (by the golden ratio): pieces may be repetitions of one motion.
+                let kept = (used * (to - from) as f64).ceil() as usize;
+                let place = (GOLDEN * self.chunks.len() as f64).fract();
+                let from = from + (place * (to - from - kept) as f64) as usize;
+                let to = from + kept;
+                if outputs(outputs(to - from, first.reach(), decimation), kernel.reach(), stride) == 0 {
+                    continue;
+                }
+                let each = |signal: &[Vec<f64>], filter: fn(&Kernel, &[f64], usize) -> Vec<f64>| -> Vec<Vec<f64>> {
+                    signal
+                        .iter()
+                        .map(|values| filter(&first, &values[from..to], decimation))
+                        .collect()
+                };
+                self.chunks.push(Chunk {
+                    recording: index,
+                    start: shift + recording.time(from) + first.reach() as f64 * recording.period,
+                    period,
+                    q: each(&recording.q, Kernel::smooth),
+                    qd: each(&recording.q, Kernel::first),
+                    qdd: each(&recording.q, Kernel::second),
+                    tau: each(&recording.tau, Kernel::smooth),
+                    kernel: kernel.clone(),
+                    stride,
+                });
+            }
+        }
+        let both = Kernel::new(
+            1.0 / (1.0 / self.cutoff.powi(2) + (first.width() / kernel.width() / self.cutoff).powi(2)).sqrt(),
+            recording.period,
+        );
+        let (smooth, second) = both.noise_gains();
+        let slope = first.first_noise_gain();
+        let noise = |signal: &Vec<f64>| white_noise(signal, recording);
+        self.sources.push(Source {
+            name: input.name.to_owned(),
+            held_out: input.held_out,
+            shift,
+            torque_noise: recording.tau.iter().map(|tau| smooth * noise(tau)).collect(),
+            acceleration_noise: recording.q.iter().map(|q| second * noise(q)).collect(),
+            velocity_noise: recording.q.iter().map(|q| slope * noise(q)).collect(),
+        });
+    }
+
+    /// A time of the diagnosis' clock on the clock of a recording (s).
+    pub fn own_time(&self, recording: usize, time: f64) -> f64 {
+        time - self.sources[recording].shift
+    }
+
+    /// The training recording that a time of the diagnosis' clock is in.
+    pub fn recording_at(&self, time: f64) -> Option<usize> {
+        let inside = |chunk: &&Chunk| {
+            !self.sources[chunk.recording].held_out && chunk.start <= time && time <= chunk.time(chunk.ticks())
+        };
+        self.chunks.iter().find(inside).map(|chunk| chunk.recording)
+    }
+
+    /// The time of every row (s).
+    pub fn row_times(&self) -> Vec<f64> {
+        let times =
+            |chunk: &Chunk| -> Vec<f64> { (0..chunk.rows()).map(|row| chunk.time(chunk.tick_of(row))).collect() };
+        self.chunks.iter().flat_map(times).collect()
+    }
+}
+
+/// Two recordings that overlap in time, if there are any: they are not on one clock.
+fn overlapping<'a>(inputs: &[Input<'a>]) -> Option<[&'a str; 2]> {
+    let mut spans: Vec<(f64, f64, &str)> = inputs
+        .iter()
+        .filter(|input| !input.recording.is_empty())
+        .map(|input| {
+            let last = input.recording.len() - 1;
+            (input.recording.time(0), input.recording.time(last), input.name)
+        })
+        .collect();
+    spans.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let pair = spans.windows(2).find(|pair| pair[1].0 < pair[0].1)?;
+    Some([pair[0].2, pair[1].2])
+}
+
+/// The strength of a signal's white noise: its third differences have 20 times the variance.
+fn white_noise(signal: &[f64], recording: &RegularRecording) -> f64 {
+    let mut squares = Vec::new();
+    for segment in &recording.segments {
+        let values = &signal[segment.ticks.clone()];
+        let present = &recording.present[segment.ticks.clone()];
+        for (window, present) in values.windows(4).zip(present.windows(4)) {
+            if present.iter().all(|&p| p) {
+                squares.push((window[3] - 3.0 * window[2] + 3.0 * window[1] - window[0]).powi(2) / 20.0);
+            }
+        }
+    }
+    if squares.is_empty() {
+        return 0.0;
+    }
+    // The mean of the lower nine tenths: what jumps (a reversal, a contact) is not noise. A normal variable's
+    // squares up to their 90 % quantile average .6245 of its variance.
+    let keep = (squares.len() * 9 / 10).max(1);
+    squares.sort_by(f64::total_cmp);
+    (squares[..keep].iter().sum::<f64>() / keep as f64 / 0.6245).sqrt()
+}

@@ -1,0 +1,169 @@
+//! The rigid model along the recorded motion: torques, and their derivatives by what may be wrong with it.
+
+use arm::{Arm, PARAMETERS_PER_LINK, Workspace};
+use nalgebra::{DMatrix, Matrix6xX, Vector3};
+
+use crate::data::motion::Chunk;
+
+/// Step of the central differences (rad, rad/s, …): rounding 1e-16/1e-5, curvature 1e-10.
+const STEP: f64 = 1e-5;
+
+/// Signals on the ticks of one chunk; joint first where there are two.
+#[derive(Clone, Debug, Default)]
+pub struct Rigid {
+    /// τ (N m or N).
+    pub tau: Vec<Vec<f64>>,
+    /// Each link's share of τ: `[joint][link]`.
+    pub links: Vec<Vec<Vec<f64>>>,
+    /// The last link's ten columns of the torque regressor, in the tool's frame: `[joint][parameter]`.
+    pub payload: Vec<Vec<Vec<f64>>>,
+    /// ∂τ/∂q: `[joint][by]`.
+    pub by_position: Vec<Vec<Vec<f64>>>,
+    /// ∂τ/∂q̇, likewise.
+    pub by_velocity: Vec<Vec<Vec<f64>>>,
+    /// The mass matrix.
+    pub mass: Vec<Vec<Vec<f64>>>,
+    /// ∂τ/∂(turn of the base about its x, y axis).
+    pub tilt: Vec<[Vec<f64>; 2]>,
+    /// The torque of a unit force on the tool along x, y, z of the base.
+    pub force: Vec<[Vec<f64>; 3]>,
+}
+
+impl Rigid {
+    /// Of `arm` with joints that stand `offset` (rad or m) beyond their encoders, along `chunk`; the links' shares are those
+    /// of links with the inertial parameters `nominal`.
+    pub fn new(arm: &Arm, nominal: &[f64], offset: &[f64], chunk: &Chunk) -> Self {
+        Self::with_derivatives(arm, nominal, offset, chunk, true)
+    }
+
+    /// The same; without `derivatives` those by position and velocity, which cost most, stay zero.
+    pub fn with_derivatives(arm: &Arm, nominal: &[f64], offset: &[f64], chunk: &Chunk, derivatives: bool) -> Self {
+        let n = arm.dof();
+        let ticks = chunk.ticks();
+        let zeros = || vec![0.0; ticks];
+        let square = || (0..n).map(|_| (0..n).map(|_| zeros()).collect()).collect();
+        let mut rigid = Self {
+            tau: (0..n).map(|_| zeros()).collect(),
+            links: square(),
+            payload: (0..n).map(|_| (0..10).map(|_| zeros()).collect()).collect(),
+            by_position: square(),
+            by_velocity: square(),
+            mass: square(),
+            tilt: (0..n).map(|_| [zeros(), zeros()]).collect(),
+            force: (0..n).map(|_| [zeros(), zeros(), zeros()]).collect(),
+        };
+        let mut workspace = Workspace::new(arm);
+        let tool = arm.tool_frame();
+        let gravity = *arm.gravity();
+        // Turning the base by a small angle about x turns gravity by its opposite, seen from the base.
+        let turned = [Vector3::x(), Vector3::y()].map(|axis| arm.clone().with_gravity(-axis.cross(&gravity)));
+        let (mut q, mut qd, mut qdd) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        let (mut tau, mut plus, mut minus) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        let still = vec![0.0; n];
+        let mut regressor = DMatrix::zeros(n, PARAMETERS_PER_LINK * n);
+        let mut mass = DMatrix::zeros(n, n);
+        let mut jacobian = Matrix6xX::zeros(n);
+        let to_link = payload_to_link(arm);
+        for tick in 0..ticks {
+            for joint in 0..n {
+                q[joint] = chunk.q[joint][tick] + offset[joint];
+                qd[joint] = chunk.qd[joint][tick];
+                qdd[joint] = chunk.qdd[joint][tick];
+            }
+            arm.inverse_dynamics(&mut workspace, &q, &qd, &qdd, &mut tau);
+            for joint in 0..n {
+                rigid.tau[joint][tick] = tau[joint];
+            }
+            arm.torque_regressor(&mut workspace, &q, &qd, &qdd, &mut regressor);
+            for joint in 0..n {
+                for link in joint..n {
+                    let from = link * PARAMETERS_PER_LINK;
+                    rigid.links[joint][link][tick] = (from..from + PARAMETERS_PER_LINK)
+                        .map(|k| regressor[(joint, k)] * nominal[k])
+                        .sum();
+                }
+                let last = (n - 1) * PARAMETERS_PER_LINK;
+                for k in 0..10 {
+                    rigid.payload[joint][k][tick] = (0..10).map(|l| regressor[(joint, last + l)] * to_link[l][k]).sum();
+                }
+            }
+            for by in 0..if derivatives { n } else { 0 } {
+                let (at, speed) = (q[by], qd[by]);
+                q[by] = at + STEP;
+                arm.inverse_dynamics(&mut workspace, &q, &qd, &qdd, &mut plus);
+                q[by] = at - STEP;
+                arm.inverse_dynamics(&mut workspace, &q, &qd, &qdd, &mut minus);
+                q[by] = at;
+                for joint in 0..n {
+                    rigid.by_position[joint][by][tick] = (plus[joint] - minus[joint]) / (2.0 * STEP);
+                }
+                qd[by] = speed + STEP;
+                arm.inverse_dynamics(&mut workspace, &q, &qd, &qdd, &mut plus);
+                qd[by] = speed - STEP;
+                arm.inverse_dynamics(&mut workspace, &q, &qd, &qdd, &mut minus);
+                qd[by] = speed;
+                for joint in 0..n {
+                    rigid.by_velocity[joint][by][tick] = (plus[joint] - minus[joint]) / (2.0 * STEP);
+                }
+            }
+            arm.mass_matrix(&mut workspace, &q, &mut mass);
+            for joint in 0..n {
+                for by in 0..n {
+                    rigid.mass[joint][by][tick] = mass[(joint, by)];
+                }
+            }
+            for (axis, turned) in turned.iter().enumerate() {
+                turned.inverse_dynamics(&mut workspace, &q, &still, &still, &mut plus);
+                for joint in 0..n {
+                    rigid.tilt[joint][axis][tick] = plus[joint];
+                }
+            }
+            arm.forward_kinematics(&mut workspace, &q);
+            arm.jacobian(&mut workspace, &q, &tool, &mut jacobian);
+            for joint in 0..n {
+                for axis in 0..3 {
+                    // The Jacobian's linear rows come after its angular ones.
+                    rigid.force[joint][axis][tick] = jacobian[(3 + axis, joint)];
+                }
+            }
+        }
+        rigid
+    }
+}
+
+/// How the ten parameters of a body in the tool's frame become those in the last link's: `[link's][tool's]`.
+pub fn payload_to_link(arm: &Arm) -> [[f64; 10]; 10] {
+    let pose = arm.tool_frame().link_from_frame;
+    let (r, p) = (pose.rotation, pose.translation);
+    let mut matrix = [[0.0; 10]; 10];
+    for column in 0..10 {
+        let mut unit = [0.0; 10];
+        unit[column] = 1.0;
+        let [m, hx, hy, hz, xx, xy, yy, xz, yz, zz] = unit;
+        let h = Vector3::new(hx, hy, hz);
+        let tensor = nalgebra::Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        let turned = r * h;
+        let moved = turned + m * p;
+        // I' = R I Rᵀ + (2 p·Rh + m p²) 1 − (p Rhᵀ + Rh pᵀ) − m p pᵀ: the parallel axis theorem about a point that
+        // is not the centre of mass.
+        let about = r * tensor * r.transpose() + nalgebra::Matrix3::identity() * (2.0 * p.dot(&turned) + m * p.dot(&p))
+            - (p * turned.transpose() + turned * p.transpose())
+            - m * p * p.transpose();
+        let values = [
+            m,
+            moved.x,
+            moved.y,
+            moved.z,
+            about[(0, 0)],
+            about[(0, 1)],
+            about[(1, 1)],
+            about[(0, 2)],
+            about[(1, 2)],
+            about[(2, 2)],
+        ];
+        for (row, value) in values.into_iter().enumerate() {
+            matrix[row][column] = value;
+        }
+    }
+    matrix
+}

@@ -1,0 +1,12 @@
+//! Phase 5, findings: rivals, places, what is not testable with these recordings, what stays unexplained, the verdict.
+
+pub mod dual_sensor;
+pub mod found;
+pub mod locate;
+pub mod observability;
+pub mod report;
+pub mod rivals;
+pub mod sentences;
+pub mod traces;
+pub mod transients;
+pub mod verdict;

@@ -1,0 +1,310 @@
+//! What two sensors of one joint tell: an encoder on either side of a spring, a torque on either side of a gearbox.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+use torque::Effect;
+
+use crate::data::motion::Input;
+use crate::data::signal::Kernel;
+use crate::findings::report::{Finding, Parameter, Place};
+use crate::search::problem::Chosen;
+use crate::search::study::Study;
+
+/// A deflection must follow the torque to this part of its power, on recordings it was fitted to and on others.
+const FOLLOWS: f64 = 0.5;
+/// Beyond this part of the joint's range it is no deflection: the encoders measure different things.
+const LARGEST_DEFLECTION: f64 = 0.05;
+/// Friction between the sensors must explain this part of their difference's power, likewise.
+const FRICTION_EXPLAINS: f64 = 0.5;
+
+/// A regression on one joint over the recordings.
+#[derive(Clone, Debug, Default)]
+struct Rows {
+    x: Vec<Vec<f64>>,
+    y: Vec<f64>,
+    held_out: Vec<bool>,
+}
+
+/// Coefficients, their standard errors, and the part of the power explained in training and held-out rows.
+struct Regression {
+    coefficients: Vec<f64>,
+    errors: Vec<f64>,
+    train: f64,
+    held_out: Option<f64>,
+}
+
+/// Findings from second encoders and from motor currents beside torque sensors.
+pub fn findings(study: &Study, named: &Chosen, inputs: &[Input<'_>]) -> Vec<Finding> {
+    let mut list = Vec::new();
+    for joint in 0..study.motions.dof {
+        let already = named.set.iter().any(|&c| {
+            let candidate = &study.candidates[c];
+            candidate.joint == Some(joint) && candidate.cause == crate::search::candidate::Cause::Elasticity
+        });
+        if !already {
+            list.extend(deflection(study, joint, inputs));
+        }
+        list.extend(between_current_and_sensor(study, joint, inputs));
+    }
+    list
+}
+
+/// The signals of one joint through the study's filter, every tenth of a second or so, away from rest.
+fn gather(
+    study: &Study,
+    joint: usize,
+    inputs: &[Input<'_>],
+    mut row: impl FnMut(&Input<'_>, &mut dyn FnMut(&[f64], Order) -> Vec<f64>) -> Option<(Vec<Vec<f64>>, Vec<f64>)>,
+) -> Rows {
+    let mut rows = Rows::default();
+    for input in inputs {
+        let recording = input.recording;
+        for segment in &recording.segments {
+            let cutoff = study.motions.cutoff.min(0.235 / recording.period);
+            let kernel = Kernel::new(cutoff, recording.period);
+            let stride = ((0.4 / cutoff / recording.period) as usize).max(1);
+            if segment.ticks.len() < 2 * kernel.reach() + 10 * stride {
+                continue;
+            }
+            let mut filter = |signal: &[f64], order: Order| -> Vec<f64> {
+                let signal = &signal[segment.ticks.clone()];
+                match order {
+                    Order::Value => kernel.smooth(signal, stride),
+                    Order::First => kernel.first(signal, stride),
+                }
+            };
+            let speed = filter(&recording.q[joint], Order::First);
+            let Some((x, y)) = row(input, &mut filter) else {
+                continue;
+            };
+            for (k, y) in y.into_iter().enumerate() {
+                if speed[k].abs() > 2.0 * study.scales.rest[joint] {
+                    rows.x.push(x.iter().map(|column| column[k]).collect());
+                    rows.y.push(y);
+                    rows.held_out.push(input.held_out);
+                }
+            }
+        }
+    }
+    rows
+}
+
+/// Which derivative to take.
+#[derive(Clone, Copy)]
+enum Order {
+    Value,
+    First,
+}
+
+fn regress(rows: &Rows) -> Option<Regression> {
+    let p = rows.x.first()?.len();
+    let (mut a, mut b) = (DMatrix::zeros(p, p), DVector::zeros(p));
+    let mut count = 0.0;
+    for ((x, y), held_out) in rows.x.iter().zip(&rows.y).zip(&rows.held_out) {
+        if *held_out {
+            continue;
+        }
+        let x = DVector::from_column_slice(x);
+        a += &x * x.transpose();
+        b += *y * x;
+        count += 1.0;
+    }
+    if count < 10.0 * p as f64 {
+        return None;
+    }
+    let inverse = a.try_inverse()?;
+    let solution = &inverse * b;
+    // The part of the power about the mean that the regression explains.
+    let explained = |held_out: bool| -> Option<(f64, f64)> {
+        let mut values = Vec::new();
+        let mut left = 0.0;
+        for ((x, y), held) in rows.x.iter().zip(&rows.y).zip(&rows.held_out) {
+            if *held == held_out {
+                values.push(*y);
+                left += (y - solution.dot(&DVector::from_column_slice(x))).powi(2);
+            }
+        }
+        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        let power: f64 = values.iter().map(|y| (y - mean).powi(2)).sum();
+        (values.len() >= 10 && power > 0.0).then(|| (1.0 - left / power, left))
+    };
+    let (train, left) = explained(false)?;
+    let variance = left / (count - p as f64);
+    Some(Regression {
+        // Neighbouring rows are not independent: as if one in four were.
+        errors: (0..p).map(|k| 2.0 * (variance * inverse[(k, k)]).sqrt()).collect(),
+        coefficients: solution.as_slice().to_vec(),
+        train,
+        held_out: explained(true).map(|held| held.0),
+    })
+}
+
+impl Regression {
+    fn follows(&self, least: f64) -> bool {
+        self.train > least && self.held_out.is_none_or(|held| held > least)
+    }
+
+    fn parameter(&self, k: usize, unit: &'static str) -> Parameter {
+        let (value, half) = (self.coefficients[k], 1.96 * self.errors[k]);
+        Parameter {
+            value,
+            ci95: [value - half, value + half],
+            unit,
+        }
+    }
+
+    fn is_clear(&self, k: usize) -> bool {
+        self.coefficients[k].abs() > 3.0 * self.errors[k]
+    }
+}
+
+/// The spring between a joint's two encoders: their difference follows its torque.
+fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Finding> {
+    let rows = gather(study, joint, inputs, |input, filter| {
+        let secondary = input.recording.q_secondary.get(joint)?.as_ref()?;
+        let q = &input.recording.q[joint];
+        let difference: Vec<f64> = secondary.iter().zip(q).map(|(link, motor)| link - motor).collect();
+        let y = filter(&difference, Order::Value);
+        let ones = vec![1.0; y.len()];
+        // A gear ratio that is slightly off shows as a part of the position.
+        let place = filter(q, Order::Value);
+        let tau: Vec<f64> = filter(&input.recording.tau[joint], Order::Value);
+        let friction: Vec<f64> = filter(q, Order::First).iter().map(|v| v.signum()).collect();
+        Some((vec![ones, place, tau, friction], y))
+    });
+    let range = study.scales.range[joint];
+    let result = regress(&rows)?;
+    let spread = |k: usize| -> f64 {
+        let values: Vec<f64> = rows.x.iter().map(|x| x[k]).collect();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
+    };
+    let (compliance, error) = (-result.coefficients[2], result.errors[2]);
+    let bends = compliance * spread(2);
+    let total = {
+        let mean = rows.y.iter().sum::<f64>() / rows.y.len() as f64;
+        (rows.y.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / rows.y.len() as f64).sqrt()
+    };
+    let credible = result.follows(FOLLOWS)
+        && compliance > 4.0 * error
+        && total < LARGEST_DEFLECTION * range
+        && bends > 0.4 * total;
+    if !credible {
+        return None;
+    }
+    let revolute = study.arm.joints()[joint].kind == arm::JointKind::Revolute;
+    let unit = if revolute { "N m/rad" } else { "N/m" };
+    let stiffness = Parameter {
+        value: 1.0 / compliance,
+        ci95: [1.0 / (compliance + 1.96 * error), 1.0 / (compliance - 1.96 * error)],
+        unit,
+    };
+    let name = study.arm.joints()[joint].name.clone();
+    let effect = Effect::JointElasticity {
+        joint: name.clone(),
+        stiffness: stiffness.value,
+        damping: 0.0,
+    };
+    let gain = result.held_out.map(|explained| 1.0 - (1.0 - explained).max(0.0).sqrt());
+    Some(finding(
+        effect,
+        &name,
+        BTreeMap::from([("stiffness", stiffness)]),
+        total / range,
+        gain,
+        "between the two encoders",
+    ))
+}
+
+/// Friction between the motor's current and the torque sensor.
+fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Vec<Finding> {
+    let rows = gather(study, joint, inputs, |input, filter| {
+        let current = input.recording.tau_current.get(joint)?.as_ref()?;
+        let sensor = &input.recording.tau[joint];
+        let difference: Vec<f64> = current.iter().zip(sensor).map(|(a, b)| a - b).collect();
+        // Both columns the same signal: there is nothing between them.
+        if difference.iter().all(|d| d.abs() < 1e-9) {
+            return None;
+        }
+        let y = filter(&difference, Order::Value);
+        let speed = filter(&input.recording.q[joint], Order::First);
+        let sign = speed.iter().map(|v| v.signum()).collect();
+        let sensed = filter(sensor, Order::Value);
+        let ones = vec![1.0; y.len()];
+        Some((vec![sign, speed, ones, sensed], y))
+    });
+    let Some(result) = regress(&rows) else {
+        return Vec::new();
+    };
+    if !result.follows(FRICTION_EXPLAINS) {
+        return Vec::new();
+    }
+    let revolute = study.arm.joints()[joint].kind == arm::JointKind::Revolute;
+    let name = study.arm.joints()[joint].name.clone();
+    let torque = study.scales.torque[joint].max(1e-300);
+    let gain = result.held_out.map(|explained| 1.0 - (1.0 - explained).max(0.0).sqrt());
+    let place = "between the motor's current and the torque sensor";
+    let mut list = Vec::new();
+    if result.coefficients[0] > 0.0 && result.is_clear(0) {
+        let level = result.parameter(0, if revolute { "N m" } else { "N" });
+        let effect = Effect::CoulombFriction {
+            joint: name.clone(),
+            level: level.value,
+        };
+        let share = level.value / torque;
+        list.push(finding(
+            effect,
+            &name,
+            BTreeMap::from([("level", level)]),
+            share,
+            gain,
+            place,
+        ));
+    }
+    if result.coefficients[1] > 0.0 && result.is_clear(1) {
+        let coefficient = result.parameter(1, if revolute { "N m s/rad" } else { "N s/m" });
+        let effect = Effect::ViscousFriction {
+            joint: name.clone(),
+            coefficient: coefficient.value,
+        };
+        let share = coefficient.value * study.scales.speed[joint] / torque;
+        list.push(finding(
+            effect,
+            &name,
+            BTreeMap::from([("coefficient", coefficient)]),
+            share,
+            gain,
+            place,
+        ));
+    }
+    list
+}
+
+fn finding(
+    effect: Effect,
+    joint: &str,
+    parameters: BTreeMap<&'static str, Parameter>,
+    share: f64,
+    gain: Option<f64>,
+    place: &str,
+) -> Finding {
+    Finding {
+        effect: effect.name(),
+        joint: Some(joint.to_owned()),
+        other: None,
+        parameters,
+        probability: 0.95,
+        share,
+        share_by_joint: BTreeMap::from([(joint.to_owned(), share)]),
+        held_out_gain: gain,
+        confusable_with: Vec::new(),
+        place: Place {
+            state: Some(place.to_owned()),
+            ..Place::default()
+        },
+        sentence: String::new(),
+        corrects: false,
+        as_effect: effect,
+    }
+}

@@ -1,0 +1,231 @@
+//! From what was judged to findings: names, rivals, gains, places.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use crate::findings::report::{Confusable, Finding, Place};
+use crate::findings::rivals::{Standing, standing};
+use crate::regression::bootstrap::Resampled;
+use crate::regression::fit::{Fit, Products};
+use crate::regression::term::Term;
+use crate::search::candidate::Cause;
+use crate::search::problem::Problem;
+use crate::search::study::Study;
+use crate::selection::judge::{Judged, Member};
+use crate::selection::naming::name;
+
+/// Pieces of recordings (s) of which every other is fitted.
+const PIECE: f64 = 2.0;
+
+/// The findings, each with the candidate it was named from.
+pub fn findings(
+    study: &Study,
+    products: &Products,
+    held: Option<&Products>,
+    judged: &Judged,
+    resampled: &Resampled,
+) -> Vec<(Finding, Option<usize>)> {
+    let problem = study.problem(products);
+    judged
+        .members
+        .iter()
+        .flat_map(|member| {
+            let standing = standing(study, &problem, &judged.named, member.candidate);
+            let list = finding(study, &problem, held, judged, resampled, member, &standing);
+            list.into_iter()
+                .map(|finding| (finding, Some(member.candidate)))
+                .collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+/// The member of `judged` that helps least on recordings it was not fitted to, if it does not help at all.
+pub fn useless(study: &Study, products: &Products, held: &Products, judged: &Judged) -> Option<usize> {
+    let problem = study.problem(products);
+    let gains: Vec<(f64, usize)> = judged
+        .members
+        .par_iter()
+        .filter_map(|member| {
+            Some((
+                held_out_gain(study, &problem, Some(held), judged, member)?,
+                member.candidate,
+            ))
+        })
+        .collect();
+    let least = gains
+        .into_iter()
+        .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
+    (least.0 <= 0.0).then_some(least.1)
+}
+
+fn finding(
+    study: &Study,
+    problem: &Problem<'_>,
+    held: Option<&Products>,
+    judged: &Judged,
+    resampled: &Resampled,
+    member: &Member,
+    standing: &Standing,
+) -> Vec<Finding> {
+    let candidate = &study.candidates[member.candidate];
+    let joint_name = |joint: usize| study.arm.joints()[joint].name.clone();
+    let share_by_joint: BTreeMap<String, f64> = member
+        .shares
+        .iter()
+        .enumerate()
+        .filter(|(_, share)| **share > 1e-4)
+        .map(|(joint, share)| (joint_name(joint), *share))
+        .collect();
+    let place = place(study, candidate.cause, member.candidate);
+    let gain = held_out_gain(study, problem, held, judged, member);
+    let mut list = Vec::new();
+    for (k, named) in name(study, resampled, member.candidate).into_iter().enumerate() {
+        let share = if k == 0 {
+            member.share()
+        } else {
+            rotor_share(study, judged, member.candidate)
+        };
+        list.push(Finding {
+            effect: named.effect.name(),
+            joint: named.effect.joint().map(str::to_owned),
+            other: named.other,
+            parameters: named.parameters,
+            probability: standing.probability(member.evidence),
+            share,
+            share_by_joint: if k == 0 {
+                share_by_joint.clone()
+            } else {
+                candidate
+                    .joint
+                    .map(|joint| (joint_name(joint), share))
+                    .into_iter()
+                    .collect()
+            },
+            held_out_gain: gain,
+            confusable_with: if k == 0 {
+                let mut list: Vec<Confusable> = Vec::new();
+                for &(cause, joint) in &standing.rivals {
+                    let rival = Confusable {
+                        effect: cause.name().unwrap_or_default(),
+                        joint: joint.map(joint_name),
+                    };
+                    if !list.contains(&rival) {
+                        list.push(rival);
+                    }
+                }
+                list
+            } else {
+                Vec::new()
+            },
+            place: place.clone(),
+            sentence: String::new(),
+            corrects: true,
+            as_effect: named.effect,
+        });
+    }
+    list
+}
+
+/// The share of the drive's inertia that comes with a spring or a gap.
+fn rotor_share(study: &Study, judged: &Judged, candidate: usize) -> f64 {
+    let columns = &study.candidates[candidate].columns;
+    let Some(joint) = study.candidates[candidate].joint else {
+        return 0.0;
+    };
+    let rotor: Vec<usize> = columns
+        .iter()
+        .copied()
+        .filter(|&column| matches!(study.table.terms[column], Term::Acceleration(_)))
+        .collect();
+    let values: Vec<f64> = rotor
+        .iter()
+        .map(|&column| judged.named.fit.coefficient(column))
+        .collect();
+    let torque = study.table.torque(joint, &rotor, &values);
+    crate::selection::predict::deviation(&torque, &study.training_rows(joint)) / study.scales.torque[joint].max(1e-300)
+}
+
+/// The relative drop of the NRMSE on recordings it was not fitted to, on the joint where it is largest; `None` if that joint
+/// does not move in them. A contact is in one recording alone: its force is fitted to every other piece of its window and tried on the rest.
+fn held_out_gain(
+    study: &Study,
+    problem: &Problem<'_>,
+    held: Option<&Products>,
+    judged: &Judged,
+    member: &Member,
+) -> Option<f64> {
+    let table = &study.table;
+    let without = problem.choose(judged.named.others(member.candidate), &judged.named.fit.weights);
+    if study.candidates[member.candidate].cause == Cause::Contact {
+        let columns = &study.candidates[member.candidate].columns;
+        return Some(crate::search::scan::contact_gain(study, &without.fit, columns));
+    }
+    let joint = (0..table.dof()).max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b]))?;
+    let held = held?;
+    if crate::selection::judge::is_idle(study, &judged.named, member.candidate) {
+        let fit = &judged.named.fit;
+        return Some(gain_in_pieces(study, fit, &without.fit, member.candidate, joint));
+    }
+    let fit = &judged.named.fit;
+    let (with, without) = (
+        held.rss(table, &fit.columns, &fit.coefficients),
+        held.rss(table, &without.fit.columns, &without.fit.coefficients),
+    );
+    (held.count[joint] > 0.0).then(|| 1.0 - (with[joint].max(0.0) / without[joint].max(1e-300)).sqrt())
+}
+
+/// The relative drop of the error on `joint` where `candidate` was not fitted: its torque is scaled to what `without` leaves in
+/// every other piece of the training recordings, and tried on the rest.
+fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joint: usize) -> f64 {
+    let columns = &study.candidates[candidate].columns;
+    let values: Vec<f64> = columns.iter().map(|&column| fit.coefficient(column)).collect();
+    let torque = study.table.torque(joint, columns, &values);
+    let model = study.table.torque(joint, &without.columns, &without.coefficients);
+    let times = study.motions.row_times();
+    let rows = study.training_rows(joint);
+    let left = |row: usize| study.table.joints[joint].y[row] - model[row];
+    let (mut with, mut bare) = (0.0, 0.0);
+    for parity in [0, 1] {
+        let is_fitted = |row: &&usize| ((times[**row] / PIECE).floor() as i64 - parity) % 2 == 0;
+        let (mut power, mut product) = (0.0, 0.0);
+        for &row in rows.iter().filter(is_fitted) {
+            power += torque[row] * torque[row];
+            product += torque[row] * left(row);
+        }
+        let scale = product / f64::max(power, 1e-300);
+        for &row in rows.iter().filter(|row| !is_fitted(row)) {
+            with += (left(row) - scale * torque[row]).powi(2);
+            bare += left(row).powi(2);
+        }
+    }
+    1.0 - (with / f64::max(bare, 1e-300)).sqrt()
+}
+
+fn place(study: &Study, cause: Cause, candidate: usize) -> Place {
+    let terms = study.terms(candidate);
+    match (cause, terms.first()) {
+        (Cause::Contact, Some(&Term::Force { from, to, .. })) => {
+            let at = study.motions.recording_at(0.5 * (from + to));
+            let own = |time: f64| at.map_or(time, |at| study.motions.own_time(at, time));
+            let recording = at.map(|at| study.motions.sources[at].name.clone());
+            Place {
+                time: vec![[own(from), own(to)]],
+                recording,
+                state: None,
+            }
+        }
+        (Cause::Stribeck, _) => Place {
+            state: terms.iter().find_map(|term| match term {
+                Term::Stribeck { velocity, .. } => Some(format!("below about {:.3} rad/s", 2.0 * velocity)),
+                _ => None,
+            }),
+            ..Place::default()
+        },
+        (Cause::Saturation, Some(Term::Excess { limit, .. })) => Place {
+            state: Some(format!("where more than {limit:.3} N m are commanded")),
+            ..Place::default()
+        },
+        _ => Place::default(),
+    }
+}

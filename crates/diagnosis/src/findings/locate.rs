@@ -1,0 +1,187 @@
+//! Where the nominal model misses: per joint, in time and by region of state.
+
+use rayon::prelude::*;
+
+use crate::findings::report::{Located, Region, TimeWindow};
+use crate::search::study::Study;
+
+/// A joint is located where its nominal residual is so many times what noise and filtering leave.
+const OVER_NOISE: f64 = 2.0;
+/// Bins of an axis of state.
+const BINS: usize = 6;
+/// A region stands out if its residual is so many times the joint's.
+const STANDS_OUT: f64 = 1.3;
+/// The length of a stretch of time (s).
+const WINDOW: f64 = 1.0;
+/// Motions are the same within this part of each range.
+const SAME: f64 = 0.04;
+
+/// Locates the mismatch of `nominal` (`[joint][row]`), beside what `augmented` leaves.
+pub fn locate(study: &Study, augmented: &[Vec<f64>]) -> Vec<Located> {
+    let states = states(study);
+    (0..study.motions.dof)
+        .into_par_iter()
+        .filter_map(|joint| on_joint(study, &states[joint], joint, &study.nominal[joint], &augmented[joint]))
+        .collect()
+}
+
+/// q, q̇, load and time of one joint on all rows.
+struct State {
+    q: Vec<f64>,
+    qd: Vec<f64>,
+    qdd: Vec<f64>,
+    load: Vec<f64>,
+    time: Vec<f64>,
+    recording: Vec<usize>,
+}
+
+fn states(study: &Study) -> Vec<State> {
+    (0..study.motions.dof)
+        .map(|joint| {
+            let mut state = State {
+                q: Vec::new(),
+                qd: Vec::new(),
+                qdd: Vec::new(),
+                load: Vec::new(),
+                time: Vec::new(),
+                recording: Vec::new(),
+            };
+            for (chunk, rigid) in study.motions.chunks.iter().zip(&study.rigid) {
+                for row in 0..chunk.rows() {
+                    let tick = chunk.tick_of(row);
+                    state.q.push(chunk.q[joint][tick]);
+                    state.qd.push(chunk.qd[joint][tick]);
+                    state.qdd.push(chunk.qdd[joint][tick]);
+                    state.load.push(rigid.tau[joint][tick]);
+                    state.time.push(chunk.time(tick));
+                    state.recording.push(chunk.recording);
+                }
+            }
+            state
+        })
+        .collect()
+}
+
+fn rms(values: impl Iterator<Item = f64>) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for value in values {
+        sum += value * value;
+        count += 1.0;
+    }
+    if count > 0.0 { (sum / count).sqrt() } else { 0.0 }
+}
+
+fn on_joint(study: &Study, state: &State, joint: usize, nominal: &[f64], augmented: &[f64]) -> Option<Located> {
+    let rows: Vec<usize> = {
+        let moving = &study.table.joints[joint].moving;
+        (0..nominal.len()).filter(|&row| moving[row]).collect()
+    };
+    if rows.is_empty() {
+        return None;
+    }
+    let all = rms(rows.iter().map(|&row| nominal[row]));
+    let floor = study.floor[joint].sqrt().max(1e-300);
+    if all < OVER_NOISE * floor {
+        return None;
+    }
+    let torque = study.scales.torque[joint].max(1e-300);
+    let first = state.time.iter().copied().fold(f64::INFINITY, f64::min);
+    let axes: [(&'static str, Vec<f64>); 5] = [
+        ("near_reversal", state.qd.iter().map(|qd| qd.abs()).collect()),
+        ("speed", state.qd.clone()),
+        ("load", state.load.clone()),
+        ("angle", state.q.clone()),
+        ("elapsed_time", state.time.iter().map(|t| t - first).collect()),
+    ];
+    let mut regions = Vec::new();
+    for (axis, values) in axes {
+        let mut sorted: Vec<usize> = rows.clone();
+        sorted.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+        // Near a reversal is the slowest bin; the others are tried in turn.
+        let bins = if axis == "near_reversal" { 0..1 } else { 0..BINS };
+        let best = bins
+            .map(|bin| &sorted[sorted.len() * bin / BINS..sorted.len() * (bin + 1) / BINS])
+            .filter(|bin| !bin.is_empty())
+            .map(|bin| (rms(bin.iter().map(|&row| nominal[row])), bin))
+            .max_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((residual, bin)) = best
+            && residual > STANDS_OUT * all
+        {
+            regions.push(Region {
+                axis,
+                range: [values[bin[0]], values[bin[bin.len() - 1]]],
+                residual: residual / torque,
+                residual_augmented: rms(bin.iter().map(|&row| augmented[row])) / torque,
+            });
+        }
+    }
+    regions.sort_by(|a, b| b.residual.total_cmp(&a.residual));
+    Some(Located {
+        joint: study.arm.joints()[joint].name.clone(),
+        over_noise: all / floor,
+        repeatable: repeatable(study, state, joint, &rows, nominal),
+        regions,
+        time: windows(study, state, &rows, nominal, all),
+    })
+}
+
+/// The stretches of time with the largest residual, the worst three.
+fn windows(study: &Study, state: &State, rows: &[usize], nominal: &[f64], all: f64) -> Vec<TimeWindow> {
+    let mut stretches: Vec<(f64, usize, f64)> = Vec::new();
+    let mut from = 0;
+    while from < rows.len() {
+        let (recording, start) = (state.recording[rows[from]], state.time[rows[from]]);
+        let inside = |&&row: &&usize| state.recording[row] == recording && state.time[row] < start + WINDOW;
+        let length = rows[from..].iter().take_while(inside).count().max(1);
+        let residual = rms(rows[from..from + length].iter().map(|&row| nominal[row]));
+        if length >= 5 {
+            stretches.push((residual, recording, start));
+        }
+        from += length;
+    }
+    stretches.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.2.total_cmp(&b.2)));
+    let mut list: Vec<TimeWindow> = stretches
+        .into_iter()
+        .take_while(|(residual, ..)| *residual > 1.5 * all)
+        .take(3)
+        .map(|(_, recording, start)| TimeWindow {
+            recording: study.motions.sources[recording].name.clone(),
+            start: study.motions.own_time(recording, start),
+            end: study.motions.own_time(recording, start) + WINDOW,
+        })
+        .collect();
+    list.sort_by(|a, b| a.recording.cmp(&b.recording).then(a.start.total_cmp(&b.start)));
+    list
+}
+
+/// The part of the residual that comes again where the joint's own state does, in another recording.
+fn repeatable(study: &Study, state: &State, joint: usize, rows: &[usize], nominal: &[f64]) -> Option<f64> {
+    let torque = study.scales.torque[joint];
+    let acceleration = rms(rows.iter().map(|&row| state.qdd[row]));
+    let cell = |row: usize| {
+        let part = |value: f64, range: f64| (value / (SAME * range).max(1e-12)).floor() as i64;
+        (
+            part(state.q[row], study.scales.range[joint]),
+            part(state.qd[row], study.scales.speed[joint]),
+            part(state.load[row], 4.0 * torque),
+            part(state.qdd[row], 4.0 * acceleration),
+        )
+    };
+    let mut cells: std::collections::BTreeMap<_, Vec<usize>> = std::collections::BTreeMap::new();
+    for &row in rows {
+        cells.entry(cell(row)).or_default().push(row);
+    }
+    let (mut product, mut power, mut pairs) = (0.0, 0.0, 0);
+    for members in cells.values() {
+        for (k, &a) in members.iter().enumerate() {
+            for &b in &members[k + 1..] {
+                if state.recording[a] != state.recording[b] {
+                    product += nominal[a] * nominal[b];
+                    power += 0.5 * (nominal[a].powi(2) + nominal[b].powi(2));
+                    pairs += 1;
+                }
+            }
+        }
+    }
+    (pairs >= 30 && power > 0.0).then(|| (product / power).clamp(0.0, 1.0))
+}

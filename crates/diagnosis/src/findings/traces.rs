@@ -1,0 +1,110 @@
+//! What the figures are drawn from.
+
+use rayon::prelude::*;
+
+use crate::findings::report::{Finding, Trace, Traces};
+use crate::regression::term::Term;
+use crate::search::candidate::Cause;
+use crate::search::study::Study;
+use crate::selection::judge::Judged;
+
+/// All signals on the rows, `left` being what the named effects leave.
+pub fn traces(study: &Study, judged: &Judged, findings: &[(Finding, Option<usize>)], left: &[Vec<f64>]) -> Traces {
+    let dof = study.motions.dof;
+    let table = &study.table;
+    let torques: Vec<Vec<Vec<f64>>> = findings
+        .par_iter()
+        .map(|(finding, member)| {
+            let Some(member) = *member else {
+                return vec![Vec::new(); dof];
+            };
+            // A drive's inertia named with a spring or a gap has a column of its own.
+            let is_rotor = finding.effect == "rotor_inertia" && study.candidates[member].cause != Cause::RotorInertia;
+            let columns: Vec<usize> = study.candidates[member]
+                .columns
+                .iter()
+                .copied()
+                .filter(|&column| {
+                    let accelerates = matches!(table.terms[column], Term::Acceleration(_));
+                    let alone = study.candidates[member].columns.len() == 1;
+                    alone || accelerates == is_rotor
+                })
+                .collect();
+            let values: Vec<f64> = columns
+                .iter()
+                .map(|&column| judged.named.fit.coefficient(column))
+                .collect();
+            (0..dof)
+                .map(|joint| {
+                    let acts = columns.iter().any(|&column| table.place[joint][column].is_some());
+                    if acts {
+                        table.torque(joint, &columns, &values)
+                    } else {
+                        Vec::new()
+                    }
+                })
+                .collect()
+        })
+        .collect();
+    let times = study.motions.row_times();
+    let state = |pick: &dyn Fn(&crate::data::motion::Chunk, usize) -> f64| -> Vec<f64> {
+        let chunks = study.motions.chunks.iter();
+        chunks
+            .flat_map(|chunk| {
+                (0..chunk.rows())
+                    .map(|row| pick(chunk, chunk.tick_of(row)))
+                    .collect::<Vec<_>>()
+            })
+            .collect()
+    };
+    let each = |pick: &dyn Fn(&crate::data::motion::Chunk, usize, usize) -> f64| -> Vec<Vec<f64>> {
+        (0..dof)
+            .map(|joint| state(&|chunk, tick| pick(chunk, joint, tick)))
+            .collect()
+    };
+    let q = each(&|chunk, joint, tick| chunk.q[joint][tick]);
+    let qd = each(&|chunk, joint, tick| chunk.qd[joint][tick]);
+    let qdd = each(&|chunk, joint, tick| chunk.qdd[joint][tick]);
+    let recordings = study
+        .motions
+        .sources
+        .iter()
+        .zip(&table.rows)
+        .enumerate()
+        .map(|(recording, (source, rows))| {
+            let cut = |signals: &[Vec<f64>]| -> Vec<Vec<f64>> {
+                signals
+                    .iter()
+                    .map(|signal| {
+                        if signal.is_empty() {
+                            Vec::new()
+                        } else {
+                            signal[rows.clone()].to_vec()
+                        }
+                    })
+                    .collect()
+            };
+            Trace {
+                name: source.name.clone(),
+                held_out: source.held_out,
+                time: times[rows.clone()]
+                    .iter()
+                    .map(|&time| study.motions.own_time(recording, time))
+                    .collect(),
+                q: cut(&q),
+                qd: cut(&qd),
+                qdd: cut(&qdd),
+                tau: cut(&study.measured),
+                residual: cut(&study.nominal),
+                residual_augmented: cut(left),
+                effects: torques.iter().map(|torque| cut(torque)).collect(),
+                moving: table
+                    .joints
+                    .iter()
+                    .map(|joint| joint.moving[rows.clone()].to_vec())
+                    .collect(),
+            }
+        })
+        .collect();
+    Traces { recordings }
+}

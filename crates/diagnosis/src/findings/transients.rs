@@ -1,0 +1,289 @@
+//! Bursts in the held-out recordings: what pushed the tool there was in no recording that was fitted.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{Matrix3, Vector3};
+use torque::Effect;
+
+use crate::findings::report::{Finding, Parameter, Place, TimeWindow};
+use crate::search::candidate::Cause;
+use crate::search::scan;
+use crate::search::study::Study;
+use crate::selection::judge::Judged;
+
+/// A burst is so many times the median of all windows of its length, and of what the model leaves by itself.
+const OVER_THE_REST: f64 = 6.0;
+/// One force on the tool must explain this part of a burst's power, on pieces it was not fitted to.
+const ONE_FORCE: f64 = 0.8;
+/// More bursts than this in the held-out recordings are no bursts.
+const MOST_PUSHES: usize = 4;
+/// A joint that moved on fewer training rows is not known.
+const LEAST_ROWS: usize = 50;
+/// The stretches that are compared (s).
+const STRETCH: f64 = 0.4;
+/// Bursts looked for, at most.
+const MOST: usize = 12;
+
+/// What bursts were found.
+#[derive(Clone, Debug, Default)]
+pub struct Bursts {
+    /// Contacts: one force explains the joints' residuals.
+    pub contact: Option<Finding>,
+    /// Bursts that no force on the tool explains: the joint, its share, where.
+    pub unexplained: BTreeMap<usize, (f64, Vec<TimeWindow>)>,
+}
+
+/// A burst that one force on the tool explains.
+#[derive(Clone, Debug)]
+struct Push {
+    /// From when to when (s).
+    window: [f64; 2],
+    /// In which recording.
+    recording: String,
+    /// In the base (N).
+    force: Vector3<f64>,
+    /// The part of the burst's power that it explains.
+    explained: f64,
+}
+
+/// Looks for bursts in what the named effects leave (`[joint][row]`) of the held-out recordings.
+pub fn bursts(study: &Study, judged: &Judged, left: &[Vec<f64>]) -> Bursts {
+    let mut bursts = Bursts::default();
+    let held: Vec<bool> = study.fitted.iter().map(|fitted| !fitted).collect();
+    if !held.contains(&true) {
+        return bursts;
+    }
+    let times = study.motions.row_times();
+    let weights: Vec<f64> = (0..study.motions.dof)
+        .map(|joint| {
+            // What is usual of a joint that was never fitted is not known.
+            if study.training_rows(joint).len() < LEAST_ROWS {
+                return 0.0;
+            }
+            1.0 / usual(study, joint, left).powi(2).max(study.floor[joint]).max(1e-300)
+        })
+        .collect();
+    let windows = scan::contacts(&study.table, &times, left, &weights, study.force(), &held, MOST);
+    let already = judged
+        .named
+        .set
+        .iter()
+        .filter(|&&c| study.candidates[c].cause == Cause::Contact)
+        .count();
+    let mut pushes: Vec<Push> = Vec::new();
+    for (from, to) in windows {
+        let Some((recording, powers)) = power(study, &times, left, &weights, (from, to)) else {
+            continue;
+        };
+        // A push on the tool is felt by more than one joint, if there are more.
+        let felt = powers.iter().filter(|power| power.sqrt() > OVER_THE_REST).count();
+        if felt < study.motions.dof.min(2) {
+            continue;
+        }
+        let name = study.motions.sources[recording].name.clone();
+        let (force, explained) = force(study, &times, left, &weights, (from, to));
+        if explained > ONE_FORCE && already == 0 {
+            pushes.push(Push {
+                window: [from, to],
+                recording: name,
+                force,
+                explained,
+            });
+        } else {
+            // On the joint where it stands out most.
+            let window = (from, to);
+            let at = (0..study.motions.dof)
+                .map(|joint| {
+                    (
+                        joint_rms(study, &times, left, joint, window) * weights[joint].sqrt(),
+                        joint,
+                    )
+                })
+                .max_by(|a, b| a.0.total_cmp(&b.0));
+            if let Some((_, joint)) = at {
+                let rms = joint_rms(study, &times, left, joint, window) / study.scales.torque[joint].max(1e-300);
+                let entry = bursts.unexplained.entry(joint).or_default();
+                entry.0 = entry.0.max(rms);
+                entry.1.push(TimeWindow {
+                    recording: name,
+                    start: study.motions.own_time(recording, from),
+                    end: study.motions.own_time(recording, to),
+                });
+            }
+        }
+    }
+    // What comes again and again is the model's error, not somebody's push.
+    if pushes.len() + bursts.unexplained.values().map(|entry| entry.1.len()).sum::<usize>() > MOST_PUSHES {
+        return Bursts::default();
+    }
+    bursts.contact = contact(study, left, &pushes);
+    for (_, windows) in bursts.unexplained.values_mut() {
+        windows.sort_by(|a, b| a.recording.cmp(&b.recording).then(a.start.total_cmp(&b.start)));
+    }
+    bursts
+}
+
+/// What the model usually leaves on a joint: the median over stretches of all moving rows.
+fn usual(study: &Study, joint: usize, left: &[Vec<f64>]) -> f64 {
+    let moving = &study.table.joints[joint].moving;
+    let mut stretches = Vec::new();
+    for (recording, rows) in study.table.rows.iter().enumerate() {
+        let length = ((STRETCH / study.seconds[recording]) as usize).max(3);
+        let mut from = rows.start;
+        while from < rows.end {
+            let to = (from + length).min(rows.end);
+            let values: Vec<f64> = (from..to)
+                .filter(|&row| moving[row])
+                .map(|row| left[joint][row].powi(2))
+                .collect();
+            if values.len() * 2 > length {
+                stretches.push((values.iter().sum::<f64>() / values.len() as f64).sqrt());
+            }
+            from = to;
+        }
+    }
+    stretches.sort_by(f64::total_cmp);
+    stretches.get(stretches.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// Moving rows of a window, joint by joint.
+fn rows<'a>(
+    study: &'a Study,
+    times: &'a [f64],
+    window: (f64, f64),
+) -> impl Iterator<Item = (usize, usize, usize)> + 'a {
+    let held = study.table.rows.iter().enumerate().filter(|(r, _)| !study.fitted[*r]);
+    held.flat_map(move |(recording, rows)| {
+        rows.clone()
+            .filter(move |&row| times[row] >= window.0 && times[row] <= window.1)
+            .flat_map(move |row| (0..study.motions.dof).map(move |joint| (recording, row, joint)))
+    })
+    .filter(|&(_, row, joint)| study.table.joints[joint].moving[row])
+}
+
+/// The recording of a window, and each joint's mean weighted power there.
+fn power(
+    study: &Study,
+    times: &[f64],
+    left: &[Vec<f64>],
+    weights: &[f64],
+    window: (f64, f64),
+) -> Option<(usize, Vec<f64>)> {
+    let mut sums = vec![(0.0, 0.0); study.motions.dof];
+    let mut at = None;
+    for (recording, row, joint) in rows(study, times, window) {
+        at = Some(recording);
+        sums[joint].0 += weights[joint] * left[joint][row].powi(2);
+        sums[joint].1 += 1.0;
+    }
+    let powers = sums
+        .iter()
+        .map(|sum| if sum.1 > 0.0 { sum.0 / sum.1 } else { 0.0 })
+        .collect();
+    at.map(|recording| (recording, powers))
+}
+
+fn joint_rms(study: &Study, times: &[f64], left: &[Vec<f64>], joint: usize, window: (f64, f64)) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0_f64);
+    for (_, row, at) in rows(study, times, window) {
+        if at == joint {
+            sum += left[joint][row].powi(2);
+            count += 1.0;
+        }
+    }
+    (sum / count.max(1.0)).sqrt()
+}
+
+/// The force that explains a window best, fitted to every other piece, and the part of the power it explains on the rest.
+fn force(study: &Study, times: &[f64], left: &[Vec<f64>], weights: &[f64], window: (f64, f64)) -> (Vector3<f64>, f64) {
+    let columns = study.force();
+    let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    let mut tried: Vec<(f64, f64, Vector3<f64>)> = Vec::new();
+    for (_, row, joint) in rows(study, times, window) {
+        let this = &study.table.joints[joint];
+        let x = Vector3::from(
+            columns.map(|column| study.table.place[joint][column].map_or(0.0, |place| this.x[place][row])),
+        );
+        let (w, r) = (weights[joint], left[joint][row]);
+        if ((times[row] - window.0) / 0.1) as i64 % 2 == 0 {
+            matrix += w * x * x.transpose();
+            right += w * r * x;
+        } else {
+            tried.push((w, r, x));
+        }
+    }
+    let ridge = (1e-6 * matrix.trace()).max(1e-300);
+    let Some(factor) = (matrix + Matrix3::identity() * ridge).cholesky() else {
+        return (Vector3::zeros(), 0.0);
+    };
+    let force = factor.solve(&right);
+    let (mut before, mut after) = (0.0, 0.0);
+    for (w, r, x) in tried {
+        before += w * r * r;
+        after += w * (r - force.dot(&x)).powi(2);
+    }
+    (force, if before > 0.0 { 1.0 - after / before } else { 0.0 })
+}
+
+/// All contacts as one finding, with the parameters of the strongest.
+fn contact(study: &Study, left: &[Vec<f64>], pushes: &[Push]) -> Option<Finding> {
+    let strongest = pushes.iter().max_by(|a, b| a.force.norm().total_cmp(&b.force.norm()))?;
+    let Push {
+        window: [from, to],
+        recording,
+        force,
+        explained,
+    } = strongest.clone();
+    let same: Vec<[f64; 2]> = {
+        let mut list: Vec<[f64; 2]> = pushes
+            .iter()
+            .filter(|push| push.recording == recording)
+            .map(|push| push.window)
+            .collect();
+        list.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        list
+    };
+    let exactly = |value: f64, half: f64, unit: &'static str| Parameter {
+        value,
+        ci95: [value - half, value + half],
+        unit,
+    };
+    let spread = force.norm() * (1.0 - explained).max(0.0).sqrt();
+    let times = study.motions.row_times();
+    let share_by_joint: BTreeMap<String, f64> = (0..study.motions.dof)
+        .map(|joint| {
+            let rms = joint_rms(study, &times, left, joint, (from, to));
+            (
+                study.arm.joints()[joint].name.clone(),
+                rms / study.scales.torque[joint].max(1e-300),
+            )
+        })
+        .collect();
+    Some(Finding {
+        effect: "external_contact",
+        joint: None,
+        other: None,
+        parameters: BTreeMap::from([
+            ("force", exactly(force.norm(), spread, "N")),
+            ("start", exactly(from, 0.1, "s")),
+            ("duration", exactly(to - from, 0.2, "s")),
+        ]),
+        probability: 0.9,
+        share: share_by_joint.values().copied().fold(0.0, f64::max),
+        share_by_joint,
+        held_out_gain: Some(1.0 - (1.0 - explained).max(0.0).sqrt()),
+        confusable_with: Vec::new(),
+        place: Place {
+            time: same,
+            recording: Some(recording),
+            state: None,
+        },
+        sentence: String::new(),
+        corrects: false,
+        as_effect: Effect::ExternalContact {
+            start: from,
+            duration: to - from,
+            force: force.into(),
+        },
+    })
+}

@@ -1,0 +1,156 @@
+//! What is left over, and the verdict.
+
+use std::collections::BTreeMap;
+
+use crate::findings::locate::locate;
+use crate::findings::report::{Finding, JointFit, Located, TimeWindow, Unexplained, Verdict};
+use crate::findings::sentences;
+use crate::findings::transients::Bursts;
+use crate::regression::fit::Products;
+use crate::search::candidate::Cause;
+use crate::search::study::Study;
+use crate::selection::judge::Judged;
+
+/// What has structure and no name, on each joint.
+pub fn unexplained(study: &Study, judged: &Judged, bursts: &Bursts, left: &[Vec<f64>]) -> Vec<Unexplained> {
+    let mut by_joint: BTreeMap<usize, (f64, Vec<(f64, String)>)> = BTreeMap::new();
+    for member in &judged.nameless {
+        let candidate = &study.candidates[member.candidate];
+        let Some(joint) = candidate.joint else { continue };
+        let other = |joint: usize| format!("other_joint:{}", study.arm.joints()[joint].name);
+        let on = match candidate.cause {
+            Cause::OwnPosition => "own_position".to_owned(),
+            Cause::OtherPosition(of) | Cause::OtherSpeed(of) => other(of),
+            Cause::History => "history".to_owned(),
+            Cause::Product => "own_position_times_speed".to_owned(),
+            Cause::Periodic | Cause::Time => "time".to_owned(),
+            _ => continue,
+        };
+        let entry = by_joint.entry(joint).or_default();
+        entry.0 = entry.0.hypot(member.share());
+        if !entry.1.iter().any(|(_, known)| *known == on) {
+            entry.1.push((member.share(), on));
+        }
+    }
+    let mut in_bursts = bursts.unexplained.clone();
+    for (&joint, (share, _)) in &bursts.unexplained {
+        let entry = by_joint.entry(joint).or_default();
+        if !entry.1.iter().any(|(_, known)| known == "time") {
+            entry.0 = entry.0.max(*share);
+            entry.1.push((*share, "time".to_owned()));
+        }
+    }
+    let located = locate(study, left);
+    by_joint
+        .into_iter()
+        .map(|(joint, (share, mut on))| {
+            on.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+            let name = study.arm.joints()[joint].name.clone();
+            let bursts = in_bursts.remove(&joint).map(|(_, windows)| windows);
+            let time: Vec<TimeWindow> = bursts.unwrap_or_else(|| {
+                located
+                    .iter()
+                    .find(|located| located.joint == name && on.iter().any(|(_, on)| on == "time"))
+                    .map_or(Vec::new(), |located: &Located| located.time.clone())
+            });
+            let depends_on: Vec<String> = on.into_iter().map(|(_, on)| on).collect();
+            Unexplained {
+                next: sentences::next_experiment(&name, depends_on.first().map_or("", String::as_str)),
+                joint: name,
+                share,
+                depends_on,
+                time,
+            }
+        })
+        .collect()
+}
+
+/// An error (NRMSE) above this, on recordings held out if there are any, is not explained …
+const POOR: f64 = 0.35;
+/// … if it is more than so many times the noise.
+const ABOVE_NOISE: f64 = 3.0;
+/// Nor is an error above this, where the recordings were fitted and where they were held out …
+const STRUCTURED: f64 = 0.06;
+/// … if it is more than so many times the noise …
+const STRUCTURED_ABOVE_NOISE: f64 = 4.0;
+/// … and its autocorrelation from row to row is more than this: neither noise nor what filters leave has so long a memory.
+const REMEMBERS: f64 = 0.6;
+
+/// The error (NRMSE) that the findings leave on a joint, if it is too large and too regular to be noise.
+pub fn structured(fit: &JointFit) -> Option<f64> {
+    let error = fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented);
+    let least = error.min(fit.train_nrmse_augmented);
+    let is_structured = least >= STRUCTURED
+        && least * fit.torque_std >= STRUCTURED_ABOVE_NOISE * fit.noise
+        && fit.residual_autocorrelation > REMEMBERS;
+    is_structured.then_some(error)
+}
+
+/// Adds the joints that the findings leave poorly predicted.
+pub fn leftover(study: &Study, fit: &BTreeMap<String, JointFit>, unexplained: &mut Vec<Unexplained>) {
+    for (joint, name) in study.arm.joints().iter().map(|joint| &joint.name).enumerate() {
+        let Some(this) = fit.get(name) else { continue };
+        let error = this.held_out_nrmse_augmented.unwrap_or(this.train_nrmse_augmented);
+        let is_known = unexplained.iter().any(|left| left.joint == *name);
+        let is_poor = error >= POOR && error * this.torque_std >= ABOVE_NOISE * this.noise;
+        if is_known || !(is_poor || structured(this).is_some()) {
+            continue;
+        }
+        let was_fitted = !study.training_rows(joint).is_empty();
+        unexplained.push(Unexplained {
+            joint: name.clone(),
+            share: error,
+            depends_on: Vec::new(),
+            next: if was_fitted {
+                sentences::next_experiment(name, "")
+            } else {
+                format!("record {name} in motion among the recordings to be fitted")
+            },
+            time: Vec::new(),
+        });
+    }
+}
+
+/// The least time in motion (s) and of reversals that a diagnosis needs on some joint.
+const LEAST_MOTION: f64 = 4.0;
+
+/// Why these recordings do not say enough, if they do not.
+pub fn not_enough(study: &Study, products: &Products) -> Vec<String> {
+    let seconds = |joint: usize| -> f64 {
+        let counts = study.table.joints[joint]
+            .count
+            .iter()
+            .zip(&study.seconds)
+            .zip(&study.fitted);
+        counts
+            .filter(|(_, fitted)| **fitted)
+            .map(|((count, seconds), _)| *count as f64 * seconds)
+            .sum()
+    };
+    let longest = (0..study.motions.dof).map(seconds).fold(0.0, f64::max);
+    let mut reasons = Vec::new();
+    if products.count.iter().all(|&count| count == 0.0) {
+        reasons.push("no joint moves in the training recordings".to_owned());
+    } else if longest < LEAST_MOTION {
+        reasons.push(format!(
+            "the training recordings hold {longest:.1} s of motion; {LEAST_MOTION:.0} s and several reversals on each joint are the least"
+        ));
+    }
+    reasons
+}
+
+/// The verdict.
+pub fn verdict(
+    findings: &[Finding],
+    unexplained: &[Unexplained],
+    not_enough: &[String],
+    located: &[Located],
+) -> Verdict {
+    match (findings.is_empty(), unexplained.is_empty()) {
+        _ if !not_enough.is_empty() => Verdict::NotEnoughData,
+        (true, true) if located.is_empty() => Verdict::NoMismatch,
+        (true, _) => Verdict::Unexplained,
+        (false, true) => Verdict::Explained,
+        (false, false) => Verdict::PartlyExplained,
+    }
+}

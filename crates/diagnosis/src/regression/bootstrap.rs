@@ -1,0 +1,235 @@
+//! Intervals by resampling: blocks of time weighted at random again and again, each time fitted anew (Rubin 1981, The
+//! Bayesian bootstrap). No block is ever left out, so that what acts once, like a push, keeps its rows.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use crate::regression::term::Term;
+use crate::search::problem::Chosen;
+use crate::search::refine::{Size, sizes, varied};
+use crate::search::study::Study;
+
+/// Resamplings.
+const DRAWS: usize = 120;
+/// The shortest block (s): longer than what residuals remember.
+const BLOCK: f64 = 2.5;
+/// Blocks in all, at most.
+const MOST_BLOCKS: usize = 80;
+/// The step of a derivative by a size, as a part of it.
+const STEP: f64 = 0.02;
+
+/// Coefficients, and relative corrections of the sizes that columns are not linear in, resampled.
+#[derive(Clone, Debug)]
+pub struct Resampled {
+    /// The columns of the fit.
+    pub columns: Vec<usize>,
+    /// The estimate of each column's coefficient, then of each size's correction.
+    pub estimate: Vec<f64>,
+    /// The same for each draw.
+    pub draws: Vec<Vec<f64>>,
+    /// Which candidate and which of its sizes the corrections are of, in order.
+    pub sizes: Vec<(usize, Size)>,
+}
+
+impl Resampled {
+    /// The estimate and the 95 % interval of a function of the parameters.
+    pub fn interval(&self, f: impl Fn(&[f64]) -> f64) -> (f64, [f64; 2]) {
+        self.interval_within(SYSTEMATIC, f)
+    }
+
+    /// The same, where `systematic`, a part of the value, is what no repetition shows.
+    pub fn interval_within(&self, systematic: f64, f: impl Fn(&[f64]) -> f64) -> (f64, [f64; 2]) {
+        let value = f(&self.estimate);
+        let mut draws: Vec<f64> = self
+            .draws
+            .iter()
+            .map(|draw| f(draw))
+            .filter(|v| v.is_finite())
+            .collect();
+        if draws.len() < 3 {
+            return (value, [f64::NEG_INFINITY, f64::INFINITY]);
+        }
+        draws.sort_by(f64::total_cmp);
+        // Half the distance between the quartiles of a normal distribution is .6745 of its spread.
+        let at = |share: f64| draws[(share * (draws.len() - 1) as f64).round() as usize];
+        let spread = (at(0.75) - at(0.25)) / (2.0 * 0.6745);
+        let half = INFLATION * 1.96 * spread + systematic * value.abs();
+        (value, [value - half, value + half])
+    }
+
+    /// Where a column's coefficient stands.
+    pub fn column(&self, column: usize) -> Option<usize> {
+        self.columns.iter().position(|&c| c == column)
+    }
+
+    /// Where the correction of a candidate's size stands.
+    pub fn size(&self, candidate: usize, size: Size) -> Option<usize> {
+        let at = self.sizes.iter().position(|&known| known == (candidate, size))?;
+        Some(self.columns.len() + at)
+    }
+}
+
+/// Residuals remember longer than a block.
+const INFLATION: f64 = 1.25;
+/// What filtering and a form that is not quite right leave, as a part of the value.
+pub const SYSTEMATIC: f64 = 0.01;
+/// The same for what hangs on a form that recordings hardly show: how a gap ends, how friction falls near standstill, what else
+/// is late in a drive. Cases with a known truth err by this much.
+pub const OF_FORM: f64 = 0.05;
+
+/// Resamples the fit of `chosen`.
+pub fn resample(study: &mut Study, chosen: &Chosen) -> Resampled {
+    let mut all: Vec<(usize, Size)> = Vec::new();
+    let mut missing: Vec<Term> = Vec::new();
+    for &member in &chosen.set {
+        let terms = study.terms(member);
+        for size in sizes(&terms) {
+            for term in varied(&terms, size, 1.0 + STEP) {
+                if !study.table.terms.contains(&term) && !missing.contains(&term) {
+                    missing.push(term);
+                }
+            }
+            all.push((member, size));
+        }
+    }
+    study.extend(missing);
+    let columns = chosen.fit.columns.clone();
+    let p = columns.len() + all.len();
+    let systems = systems(study, chosen, &columns, &all);
+    let total = systems
+        .iter()
+        .fold((DMatrix::zeros(p, p), DVector::zeros(p)), |(a, b), (c, d)| {
+            (a + c, b + d)
+        });
+    let estimate = solve(&total.0, &total.1);
+    let draws: Vec<Vec<f64>> = (0..DRAWS)
+        .into_par_iter()
+        .map(|draw| {
+            // A generator of its own for each draw, so that threads do not matter (splitmix64).
+            let mut state = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(draw as u64 + 1);
+            let (mut a, mut b) = (DMatrix::zeros(p, p), DVector::zeros(p));
+            for (matrix, right) in &systems {
+                state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+                let mut z = state;
+                z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+                z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+                // Exponential weights: uniform in (0, 1], by the upper 53 bits.
+                let uniform = (((z ^ (z >> 31)) >> 11) + 1) as f64 / (1_u64 << 53) as f64;
+                let weight = -uniform.ln();
+                a += matrix * weight;
+                b += right * weight;
+            }
+            solve(&a, &b).as_slice().to_vec()
+        })
+        .collect();
+    Resampled {
+        columns,
+        estimate: estimate.as_slice().to_vec(),
+        draws,
+        sizes: all,
+    }
+}
+
+/// The weighted normal equations of each block.
+fn systems(
+    study: &Study,
+    chosen: &Chosen,
+    columns: &[usize],
+    sizes: &[(usize, Size)],
+) -> Vec<(DMatrix<f64>, DVector<f64>)> {
+    let table = &study.table;
+    let p = columns.len() + sizes.len();
+    // The columns of each joint, the derivatives by the sizes last.
+    let by_joint: Vec<Vec<Option<Vec<f64>>>> = (0..table.dof())
+        .into_par_iter()
+        .map(|joint| {
+            let mut list: Vec<Option<Vec<f64>>> = columns
+                .iter()
+                .map(|&column| table.place[joint][column].map(|place| table.joints[joint].x[place].clone()))
+                .collect();
+            for &(member, size) in sizes {
+                let terms = study.terms(member);
+                let mut derivative = vec![0.0; table.len()];
+                let mut acts = false;
+                for (old, new) in terms.iter().zip(varied(&terms, size, 1.0 + STEP)) {
+                    let find = |term: &Term| table.terms.iter().position(|known| known == term);
+                    let (Some(old), Some(new)) = (find(old), find(&new)) else {
+                        continue;
+                    };
+                    let coefficient = chosen.fit.coefficient(old);
+                    let (Some(a), Some(b)) = (table.place[joint][old], table.place[joint][new]) else {
+                        continue;
+                    };
+                    acts |= old != new;
+                    let (a, b) = (&table.joints[joint].x[a], &table.joints[joint].x[b]);
+                    for (row, sum) in derivative.iter_mut().enumerate() {
+                        *sum += coefficient * (b[row] - a[row]) / STEP;
+                    }
+                }
+                list.push(acts.then_some(derivative));
+            }
+            list
+        })
+        .collect();
+    let mut blocks = Vec::new();
+    let time: f64 = (0..table.rows.len())
+        .filter(|&r| study.fitted[r])
+        .map(|r| table.rows[r].len() as f64 * study.seconds[r])
+        .sum();
+    let length = BLOCK.max(time / MOST_BLOCKS as f64);
+    for (recording, rows) in table.rows.iter().enumerate().filter(|(r, _)| study.fitted[*r]) {
+        let count = ((rows.len() as f64 * study.seconds[recording] / length).round() as usize).max(1);
+        for block in 0..count {
+            let from = rows.start + rows.len() * block / count;
+            blocks.push(from..rows.start + rows.len() * (block + 1) / count);
+        }
+    }
+    blocks
+        .into_par_iter()
+        .map(|rows| {
+            let (mut a, mut b) = (DMatrix::zeros(p, p), DVector::zeros(p));
+            for (joint, list) in by_joint.iter().enumerate() {
+                let this = &table.joints[joint];
+                let weight = chosen.fit.weights[joint];
+                let acting: Vec<(usize, &Vec<f64>)> = list
+                    .iter()
+                    .enumerate()
+                    .filter_map(|(k, x)| x.as_ref().map(|x| (k, x)))
+                    .collect();
+                for row in rows.clone().filter(|&row| this.moving[row]) {
+                    for (at, &(i, x)) in acting.iter().enumerate() {
+                        let wx = weight * x[row];
+                        b[i] += wx * this.y[row];
+                        for &(k, y) in &acting[..=at] {
+                            a[(i, k)] += wx * y[row];
+                        }
+                    }
+                }
+            }
+            for i in 0..p {
+                for k in 0..i {
+                    a[(k, i)] = a[(i, k)];
+                }
+            }
+            (a, b)
+        })
+        .collect()
+}
+
+/// Least squares of scaled columns with a ridge far below them.
+fn solve(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
+    let p = b.len();
+    let scale: Vec<f64> = (0..p)
+        .map(|i| if a[(i, i)] > 0.0 { a[(i, i)].sqrt() } else { 1.0 })
+        .collect();
+    let mut matrix = DMatrix::from_fn(p, p, |i, k| a[(i, k)] / (scale[i] * scale[k]));
+    for i in 0..p {
+        matrix[(i, i)] += 1e-8;
+    }
+    let right = DVector::from_fn(p, |i, _| b[i] / scale[i]);
+    let solution = match matrix.clone().cholesky() {
+        Some(factor) => factor.solve(&right),
+        None => matrix.lu().solve(&right).unwrap_or_else(|| DVector::zeros(p)),
+    };
+    DVector::from_fn(p, |i, _| solution[i] / scale[i])
+}

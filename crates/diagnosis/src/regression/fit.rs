@@ -1,0 +1,290 @@
+//! Weighted least squares on inner products, all joints together.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use crate::regression::table::{Gram, Table};
+
+mod joined;
+mod left_out;
+
+/// Independent pieces of evidence a second of motion: residuals of a wrong model are correlated over longer than the filter …
+const EVIDENCE_RATE: f64 = 4.0;
+/// … and as long as the motion is slow: so many in a period of it.
+const EVIDENCE_PER_PERIOD: f64 = 8.0;
+/// No motion is so quick that it gives more pieces of evidence a second.
+const MOST_EVIDENCE_RATE: f64 = 10.0;
+/// Of the diagonal, so that aliases share a torque instead of fighting over it.
+const RIDGE: f64 = 1e-9;
+/// Weights are found anew as often.
+const REWEIGHTINGS: usize = 3;
+
+/// Pieces of evidence a second of a motion of frequency `tempo` (Hz).
+pub fn evidence_rate(tempo: f64) -> f64 {
+    (EVIDENCE_PER_PERIOD * tempo).clamp(EVIDENCE_RATE, MOST_EVIDENCE_RATE)
+}
+
+/// The inner products over some of the recordings.
+#[derive(Clone, Debug)]
+pub struct Products {
+    /// One a joint.
+    gram: Vec<Gram>,
+    /// Moving rows, one a joint.
+    pub count: Vec<f64>,
+    /// Pieces of evidence, one a joint.
+    pub evidence: Vec<f64>,
+    /// The variance that noise, filtering and small errors of the model leave, one a joint.
+    pub floor: Vec<f64>,
+    /// The recordings that it is over.
+    recordings: Vec<usize>,
+}
+
+/// A solution.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// The columns, in the table's numbers.
+    pub columns: Vec<usize>,
+    /// One coefficient a column.
+    pub coefficients: Vec<f64>,
+    /// The sum of squares that is left, one a joint.
+    pub rss: Vec<f64>,
+    /// The weight of each joint's rows: one over its variance.
+    pub weights: Vec<f64>,
+    /// Minus the logarithm of the likelihood (nats).
+    pub loss: f64,
+    /// The Cholesky factor of the scaled normal matrix.
+    factor: DMatrix<f64>,
+    scale: Vec<f64>,
+    /// L⁻¹ of the scaled right side.
+    reduced: DVector<f64>,
+}
+
+impl Fit {
+    /// The coefficient of a column; zero if it is not in.
+    pub fn coefficient(&self, column: usize) -> f64 {
+        self.columns
+            .iter()
+            .position(|&c| c == column)
+            .map_or(0.0, |k| self.coefficients[k])
+    }
+}
+
+impl Products {
+    /// Over the recordings that `chosen` picks; `seconds` is the time between rows, `tempo` the frequency of each joint's
+    /// motion (Hz).
+    pub fn new(table: &Table, chosen: impl Fn(usize) -> bool, seconds: &[f64], tempo: &[f64], floor: &[f64]) -> Self {
+        let recordings: Vec<usize> = (0..table.rows.len()).filter(|&r| chosen(r)).collect();
+        let sum = |joint: usize| -> Gram {
+            let this = &table.joints[joint];
+            let chosen = this
+                .stretches
+                .iter()
+                .filter(|stretch| recordings.contains(&stretch.recording));
+            Gram::sum(this.x.len(), chosen.map(|stretch| &stretch.gram))
+        };
+        let over = |joint: usize, weight: &dyn Fn(usize) -> f64| -> f64 {
+            recordings
+                .iter()
+                .map(|&r| table.joints[joint].count[r] as f64 * weight(r))
+                .sum()
+        };
+        Self {
+            gram: (0..table.dof()).map(sum).collect(),
+            count: (0..table.dof()).map(|joint| over(joint, &|_| 1.0)).collect(),
+            evidence: (0..table.dof())
+                .map(|joint| over(joint, &|r| seconds[r] * evidence_rate(tempo[joint])))
+                .collect(),
+            floor: floor.to_vec(),
+            recordings,
+        }
+    }
+
+    /// The mean square of y on a joint.
+    pub fn power(&self, joint: usize) -> f64 {
+        self.gram[joint].y_square() / self.count[joint].max(1.0)
+    }
+
+    fn variance(&self, joint: usize, rss: f64) -> f64 {
+        rss.max(0.0) / self.count[joint].max(1.0) + self.floor[joint]
+    }
+
+    /// Minus the logarithm of the likelihood, for what is left on each joint (nats).
+    pub fn loss(&self, rss: &[f64]) -> f64 {
+        (0..rss.len())
+            .map(|joint| 0.5 * self.evidence[joint] * self.variance(joint, rss[joint]).ln())
+            .sum()
+    }
+
+    /// One joint's part of [`Self::loss`].
+    fn joint_loss(&self, joint: usize, rss: f64) -> f64 {
+        0.5 * self.evidence[joint] * self.variance(joint, rss).ln()
+    }
+
+    /// The inner product of two columns, weighted; `None` stands for y.
+    fn product(&self, table: &Table, weights: &[f64], a: usize, b: Option<usize>) -> f64 {
+        let joints = match table.terms[a].joint() {
+            Some(joint) => joint..joint + 1,
+            None => 0..table.dof(),
+        };
+        let mut sum = 0.0;
+        for joint in joints {
+            let Some(i) = table.place[joint][a] else { continue };
+            let gram = &self.gram[joint];
+            let value = match b {
+                None => gram.with_y(i),
+                Some(b) => match table.place[joint][b] {
+                    Some(k) => gram.of(i, k),
+                    None => continue,
+                },
+            };
+            sum += weights[joint] * value;
+        }
+        sum
+    }
+
+    /// What `coefficients` leave on each joint (sum of squares).
+    pub fn rss(&self, table: &Table, columns: &[usize], coefficients: &[f64]) -> Vec<f64> {
+        (0..table.dof())
+            .map(|joint| {
+                let gram = &self.gram[joint];
+                let mine: Vec<(usize, f64)> = columns
+                    .iter()
+                    .zip(coefficients)
+                    .filter_map(|(&column, &value)| table.place[joint][column].map(|place| (place, value)))
+                    .collect();
+                let mut rss = gram.y_square();
+                for &(i, a) in &mine {
+                    let mut inner = -2.0 * gram.with_y(i);
+                    for &(k, b) in &mine {
+                        inner += gram.of(i, k) * b;
+                    }
+                    rss += a * inner;
+                }
+                rss
+            })
+            .collect()
+    }
+
+    /// Fits `columns`, the joints weighted by what is left on each, beginning with `weights`.
+    pub fn fit(&self, table: &Table, columns: &[usize], weights: &[f64]) -> Fit {
+        let mut weights = weights.to_vec();
+        let mut fit = self.solve(table, columns, &weights);
+        for _ in 1..REWEIGHTINGS {
+            weights = (0..table.dof())
+                .map(|joint| 1.0 / self.variance(joint, fit.rss[joint]))
+                .collect();
+            fit = self.solve(table, columns, &weights);
+        }
+        fit
+    }
+
+    /// The weights of joints of which nothing is explained.
+    pub fn first_weights(&self) -> Vec<f64> {
+        (0..self.gram.len())
+            .map(|joint| 1.0 / (self.power(joint) + self.floor[joint]).max(1e-300))
+            .collect()
+    }
+
+    /// Fits `columns` with fixed weights.
+    pub fn solve(&self, table: &Table, columns: &[usize], weights: &[f64]) -> Fit {
+        let p = columns.len();
+        let mut matrix = DMatrix::zeros(p, p);
+        let mut right = DVector::zeros(p);
+        for i in 0..p {
+            for k in 0..=i {
+                let value = self.product(table, weights, columns[i], Some(columns[k]));
+                matrix[(i, k)] = value;
+                matrix[(k, i)] = value;
+            }
+            right[i] = self.product(table, weights, columns[i], None);
+        }
+        let scale: Vec<f64> = (0..p)
+            .map(|i| {
+                if matrix[(i, i)] > 0.0 {
+                    matrix[(i, i)].sqrt()
+                } else {
+                    1.0
+                }
+            })
+            .collect();
+        for i in 0..p {
+            right[i] /= scale[i];
+            for k in 0..p {
+                matrix[(i, k)] /= scale[i] * scale[k];
+            }
+        }
+        let factor = cholesky(&matrix);
+        let reduced = factor
+            .solve_lower_triangular(&right)
+            .unwrap_or_else(|| DVector::zeros(p));
+        let scaled = factor
+            .tr_solve_lower_triangular(&reduced)
+            .unwrap_or_else(|| DVector::zeros(p));
+        let coefficients: Vec<f64> = (0..p).map(|i| scaled[i] / scale[i]).collect();
+        let rss = self.rss(table, columns, &coefficients);
+        Fit {
+            columns: columns.to_vec(),
+            loss: self.loss(&rss),
+            coefficients,
+            rss,
+            weights: weights.to_vec(),
+            factor,
+            scale,
+            reduced,
+        }
+    }
+
+    /// By how much `added` columns would lower the weighted sum of squares of `fit`, at its weights.
+    pub fn drop(&self, table: &Table, fit: &Fit, added: &[usize]) -> f64 {
+        let (p, c) = (fit.columns.len(), added.len());
+        let mut cross = DMatrix::zeros(p, c);
+        let mut own = DMatrix::zeros(c, c);
+        let mut right = DVector::zeros(c);
+        let mut size = vec![1.0; c];
+        for k in 0..c {
+            let diagonal = self.product(table, &fit.weights, added[k], Some(added[k]));
+            if diagonal > 0.0 {
+                size[k] = diagonal.sqrt();
+            }
+        }
+        for k in 0..c {
+            for i in 0..p {
+                cross[(i, k)] =
+                    self.product(table, &fit.weights, added[k], Some(fit.columns[i])) / (fit.scale[i] * size[k]);
+            }
+            for l in 0..=k {
+                let value = self.product(table, &fit.weights, added[k], Some(added[l])) / (size[k] * size[l]);
+                own[(k, l)] = value;
+                own[(l, k)] = value;
+            }
+            right[k] = self.product(table, &fit.weights, added[k], None) / size[k];
+        }
+        if p > 0 {
+            fit.factor.solve_lower_triangular_mut(&mut cross);
+            own -= cross.tr_mul(&cross);
+            right -= cross.tr_mul(&fit.reduced);
+        }
+        // What the columns in already span must not be gained again.
+        for k in 0..c {
+            own[(k, k)] += 1e-6;
+        }
+        let factor = cholesky(&own);
+        factor.solve_lower_triangular(&right).map_or(0.0, |z| z.norm_squared())
+    }
+
+    /// What a column, at a coefficient of one, adds to the weighted sum of squares beside the columns of `fit`.
+    pub fn drop_of(&self, table: &Table, fit: &Fit, column: usize) -> f64 {
+        let own = self.product(table, &fit.weights, column, Some(column));
+        let mut cross = DVector::from_fn(fit.columns.len(), |i, _| {
+            self.product(table, &fit.weights, column, Some(fit.columns[i])) / fit.scale[i]
+        });
+        fit.factor.solve_lower_triangular_mut(&mut cross);
+        (own - cross.norm_squared()).max(0.0)
+    }
+}
+
+/// The lower Cholesky factor of a matrix of unit diagonal that is positive semidefinite but for rounding.
+fn cholesky(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    let p = matrix.nrows();
+    let ridged = matrix + DMatrix::identity(p, p) * RIDGE;
+    Cholesky::new_with_substitute(ridged, RIDGE).map_or_else(|| DMatrix::identity(p, p), Cholesky::unpack)
+}

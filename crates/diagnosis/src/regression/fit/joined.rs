@@ -1,0 +1,43 @@
+//! Inner products of some columns, and of two sets of recordings together.
+
+use super::Products;
+use crate::regression::table::{Gram, Table};
+
+impl Products {
+    /// Those of `columns` alone, as [`Table::bare`] of their terms has them.
+    pub fn picked(&self, table: &Table, columns: &[usize]) -> Self {
+        let of = |joint: usize| {
+            let places: Vec<Option<usize>> = columns.iter().map(|&column| table.place[joint][column]).collect();
+            self.gram[joint].picked(&places)
+        };
+        Self {
+            gram: (0..self.gram.len()).map(of).collect(),
+            ..self.clone()
+        }
+    }
+
+    /// These and `more`, of the same columns, whose rows have an error of variance `left` on each joint; with the evidence and
+    /// the floor that both together have.
+    pub fn joined(&self, more: &Self, left: &[f64], evidence: Vec<f64>, floor: Vec<f64>) -> Self {
+        let of = |joint: usize| {
+            let grams = [&self.gram[joint], &more.gram[joint]];
+            let noise = left[joint] * more.count[joint];
+            Gram::sum(grams[0].len(), grams.into_iter()).with_noise(noise)
+        };
+        Self {
+            gram: (0..self.gram.len()).map(of).collect(),
+            count: self.count.iter().zip(&more.count).map(|(a, b)| a + b).collect(),
+            evidence,
+            floor,
+            recordings: self.recordings.clone(),
+        }
+    }
+
+    /// The standard deviation of a column on a joint, where it stands in place `place`.
+    pub fn spread(&self, joint: usize, place: usize) -> f64 {
+        let (gram, n) = (&self.gram[joint], self.count[joint].max(1.0));
+        (gram.of(place, place) / n - (gram.sum_of(place) / n).powi(2))
+            .max(0.0)
+            .sqrt()
+    }
+}

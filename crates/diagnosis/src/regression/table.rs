@@ -1,0 +1,285 @@
+//! All columns on all rows, and their inner products: what every fit is made from.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::data::motion::Motions;
+use crate::data::rigid::Rigid;
+use crate::regression::columns::{Scales, values};
+use crate::regression::compliance::Behind;
+use crate::regression::term::Term;
+use crate::thresholds;
+
+mod gram;
+
+pub use gram::{Gram, Stretch};
+
+/// Terms that are evaluated at a time: what is simulated for them is kept for so long.
+const BATCH: usize = 12;
+
+/// Which rows of a joint are fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Moving {
+    /// Those around which the joint does not rest: on them a sign of the velocity is beyond doubt.
+    Steadily,
+    /// Those near a quick reversal too: they tell most about dry friction.
+    ThroughReversals,
+}
+
+/// One joint's target and columns on the rows, through the second filter.
+#[derive(Clone, Debug)]
+pub struct JointTable {
+    /// Measured less rigid (N m or N).
+    pub y: Vec<f64>,
+    /// The columns that act on this joint.
+    pub x: Vec<Vec<f64>>,
+    /// Whether the joint moves: rows at rest are not fitted.
+    pub moving: Vec<bool>,
+    /// The recordings that move it, the only one cut into pieces.
+    pub stretches: Vec<Stretch>,
+    /// The moving rows of each recording.
+    pub count: Vec<usize>,
+}
+
+/// The columns of all joints.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// All terms.
+    pub terms: Vec<Term>,
+    /// Where a term stands in a joint's columns: `[joint][term]`.
+    pub place: Vec<Vec<Option<usize>>>,
+    /// One a joint.
+    pub joints: Vec<JointTable>,
+    /// The rows of each recording.
+    pub rows: Vec<Range<usize>>,
+}
+
+impl Table {
+    /// Evaluates `terms` along `motions` for the arm of `rigid` (one a chunk). What that arm has already of the
+    /// terms in `carried`, by their coefficients, is put back into y: a Gauss-Newton step about it. `moving`
+    /// tells which rows are fitted.
+    pub fn new(
+        motions: &Motions,
+        rigid: &[Rigid],
+        scales: &Scales,
+        terms: Vec<Term>,
+        carried: &[(Term, f64)],
+        moving: Moving,
+    ) -> Self {
+        let mut rows = vec![0..0; motions.sources.len()];
+        let mut from = 0;
+        for chunk in &motions.chunks {
+            let to = from + chunk.rows();
+            let range = &mut rows[chunk.recording];
+            *range = if range.start == range.end {
+                from..to
+            } else {
+                range.start..to
+            };
+            from = to;
+        }
+        let held_out: Vec<bool> = motions.sources.iter().map(|source| source.held_out).collect();
+        let joints: Vec<JointTable> = (0..motions.dof)
+            .into_par_iter()
+            .map(|joint| {
+                let mut y = Vec::new();
+                let mut moves = Vec::new();
+                for (chunk, rigid) in motions.chunks.iter().zip(rigid) {
+                    let mut difference: Vec<f64> = chunk.tau[joint]
+                        .iter()
+                        .zip(&rigid.tau[joint])
+                        .map(|(a, b)| a - b)
+                        .collect();
+                    for &(term, coefficient) in carried {
+                        let column = values(term, joint, chunk, rigid, scales).unwrap_or_default();
+                        for (sum, x) in difference.iter_mut().zip(column) {
+                            *sum += coefficient * x;
+                        }
+                    }
+                    y.extend(chunk.filter(&difference));
+                    let core = (thresholds::CORE * chunk.kernel.width() / chunk.period).ceil() as usize;
+                    let rest = scales.rest[joint];
+                    // A joint that only yields a little does not move.
+                    let (low, high) = chunk.q[joint]
+                        .iter()
+                        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &q| {
+                            (low.min(q), high.max(q))
+                        });
+                    let yields = high - low < thresholds::YIELDING * scales.range[joint];
+                    let is_dead = scales.torque[joint] == 0.0;
+                    moves.extend((0..chunk.rows()).map(|row| {
+                        let tick = chunk.tick_of(row);
+                        let qd = &chunk.qd[joint];
+                        if yields || is_dead {
+                            return false;
+                        }
+                        let window = &qd[tick.saturating_sub(core)..(tick + core + 1).min(qd.len())];
+                        match moving {
+                            Moving::Steadily => window.iter().all(|qd| qd.abs() > rest),
+                            Moving::ThroughReversals => {
+                                qd[tick].abs() > rest && window.iter().any(|qd| qd.abs() > thresholds::REVERSAL * rest)
+                            }
+                        }
+                    }));
+                }
+                let count = rows
+                    .iter()
+                    .map(|range| moves[range.clone()].iter().filter(|&&m| m).count())
+                    .collect();
+                let stretches = Stretch::of(&rows, &held_out, &moves);
+                JointTable {
+                    y,
+                    x: Vec::new(),
+                    moving: moves,
+                    stretches,
+                    count,
+                }
+            })
+            .collect();
+        let mut table = Self {
+            terms: Vec::new(),
+            place: vec![Vec::new(); motions.dof],
+            joints,
+            rows,
+        };
+        table.add(motions, rigid, scales, terms, None);
+        table
+    }
+
+    /// `terms` alone, without rows: for products that were formed elsewhere, term k of every joint that it acts on in place k.
+    pub fn bare(terms: Vec<Term>, dof: usize) -> Self {
+        let place = |joint: usize| -> Vec<Option<usize>> {
+            let acts = |term: &Term| term.joint().is_none_or(|only| only == joint);
+            let terms = terms.iter().enumerate();
+            terms.map(|(k, term)| acts(term).then_some(k)).collect()
+        };
+        let none = || JointTable {
+            y: Vec::new(),
+            x: Vec::new(),
+            moving: Vec::new(),
+            stretches: Vec::new(),
+            count: Vec::new(),
+        };
+        Self {
+            place: (0..dof).map(place).collect(),
+            joints: (0..dof).map(|_| none()).collect(),
+            rows: Vec::new(),
+            terms,
+        }
+    }
+
+    /// The same terms for another arm along the same motions; what depends on the motion alone is taken from `self`.
+    pub fn formed_anew(
+        &self,
+        motions: &Motions,
+        rigid: &[Rigid],
+        scales: &Scales,
+        terms: Vec<Term>,
+        carried: &[(Term, f64)],
+        moving: Moving,
+    ) -> Self {
+        let mut table = Self::new(motions, rigid, scales, Vec::new(), carried, moving);
+        table.add(motions, rigid, scales, terms, Some(self));
+        table
+    }
+
+    /// Evaluates more terms; those that depend on the motion alone are copied from `known` where it has them.
+    pub fn add(
+        &mut self,
+        motions: &Motions,
+        rigid: &[Rigid],
+        scales: &Scales,
+        terms: Vec<Term>,
+        known: Option<&Table>,
+    ) {
+        let copies: Vec<Option<usize>> = terms
+            .iter()
+            .map(|&term| {
+                let known = known.filter(|_| !term.is_dynamic())?;
+                known.terms.iter().position(|&other| other == term)
+            })
+            .collect();
+        for (terms, copies) in terms.chunks(BATCH).zip(copies.chunks(BATCH)) {
+            // What lies behind a joint that gives is simulated once, for all joints that feel it.
+            let behind: Vec<Vec<Behind>> = terms
+                .par_iter()
+                .map(|&term| {
+                    let along = motions.chunks.iter().zip(rigid);
+                    along
+                        .filter_map(|(chunk, rigid)| Behind::new(term, chunk, rigid))
+                        .collect()
+                })
+                .collect();
+            let places: Vec<Vec<Option<usize>>> = self
+                .joints
+                .par_iter_mut()
+                .enumerate()
+                .map(|(joint, table)| {
+                    let mut places = Vec::with_capacity(terms.len());
+                    for ((&term, &copy), behind) in terms.iter().zip(copies).zip(&behind) {
+                        if let (Some(copy), Some(known)) = (copy, known) {
+                            places.push(known.place[joint][copy].map(|place| {
+                                table.x.push(known.joints[joint].x[place].clone());
+                                table.x.len() - 1
+                            }));
+                            continue;
+                        }
+                        let mut column = Vec::new();
+                        for (c, (chunk, rigid)) in motions.chunks.iter().zip(rigid).enumerate() {
+                            let values = match behind.get(c) {
+                                Some(behind) => Some(behind.torque(joint, rigid)),
+                                None => values(term, joint, chunk, rigid, scales),
+                            };
+                            match values {
+                                Some(values) if values.iter().all(|&v| v == 0.0) => {
+                                    column.resize(column.len() + chunk.rows(), 0.0);
+                                }
+                                Some(values) => column.extend(chunk.filter(&values)),
+                                None => break,
+                            }
+                        }
+                        let acts = column.len() == table.y.len() && column.iter().any(|&v| v != 0.0);
+                        places.push(acts.then(|| {
+                            table.x.push(column);
+                            table.x.len() - 1
+                        }));
+                    }
+                    places
+                })
+                .collect();
+            for (place, more) in self.place.iter_mut().zip(places) {
+                place.extend(more);
+            }
+        }
+        self.joints.par_iter_mut().for_each(|table| {
+            for stretch in &mut table.stretches {
+                stretch.refresh(&table.x, &table.y);
+            }
+        });
+        self.terms.extend(terms);
+    }
+
+    /// The number of joints.
+    pub fn dof(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// The number of rows.
+    pub fn len(&self) -> usize {
+        self.joints[0].y.len()
+    }
+
+    /// The torque on `joint` of `coefficients` on the columns `columns`, on all rows.
+    pub fn torque(&self, joint: usize, columns: &[usize], coefficients: &[f64]) -> Vec<f64> {
+        let mut torque = vec![0.0; self.len()];
+        for (&column, &coefficient) in columns.iter().zip(coefficients) {
+            if let Some(place) = self.place[joint][column] {
+                for (sum, x) in torque.iter_mut().zip(&self.joints[joint].x[place]) {
+                    *sum += coefficient * x;
+                }
+            }
+        }
+        torque
+    }
+}

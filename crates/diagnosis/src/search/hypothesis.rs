@@ -1,0 +1,206 @@
+//! A hypothesis: the effects that were asked for, fitted together, with no search and no judgement.
+
+use crate::error::DiagnosisError;
+use crate::search::candidate::{Cause, FARTHEST_COUPLED};
+use crate::search::problem::{Chosen, Problem};
+use crate::search::refine::resize;
+use crate::search::study::Study;
+use crate::selection::judge::{self, Judged};
+
+/// Sweeps over the forms of all effects, at most.
+const SWEEPS: usize = 4;
+/// Rounds about the arm that the effects make.
+const ROUNDS: usize = 2;
+
+/// An effect to be fitted, by its name.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Wanted {
+    /// The catalogue's name.
+    pub effect: String,
+    /// The joint, or `None` for the whole arm.
+    pub joint: Option<String>,
+    /// The joint that turns the drive too, if it is to be a certain one.
+    pub other: Option<String>,
+    /// Whether it sets in halfway, at a time that is looked for; `None` if that is open.
+    pub sets_in: Option<bool>,
+}
+
+/// What is wanted, in the study's numbers.
+#[derive(Clone, Copy)]
+struct Place<'a> {
+    wanted: &'a Wanted,
+    joint: Option<usize>,
+    other: Option<usize>,
+}
+
+impl Wanted {
+    fn refused(&self, reason: &'static str) -> DiagnosisError {
+        DiagnosisError::Wanted {
+            effect: self.effect.clone(),
+            joint: self.joint.clone(),
+            reason,
+        }
+    }
+}
+
+/// Fits `wanted`, each in the form and at the size that explain the training recordings best.
+///
+/// # Errors
+/// [`DiagnosisError::Wanted`], if one is given twice, is not in the catalogue, or not on such a joint.
+pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisError> {
+    let mut waiting = check(study, wanted)?;
+    let mut placed: Vec<Place<'_>> = Vec::new();
+    let products = study.products(|r| study.fitted[r]);
+    let mut chosen = study.problem(&products).choose(Vec::new(), &products.first_weights());
+    // When something set in, where a contact was and which period a ripple has is told by what the others leave.
+    for suggest in [false, true] {
+        if suggest {
+            study.suggest(&chosen);
+        }
+        let products = study.products(|r| study.fitted[r]);
+        let problem = study.problem(&products);
+        waiting.retain(|&place| {
+            if !suggest && place.wanted.sets_in == Some(true) {
+                return true;
+            }
+            match best(&problem, &chosen, None, place) {
+                Some(next) => {
+                    chosen = next;
+                    placed.push(place);
+                    false
+                }
+                None => true,
+            }
+        });
+        chosen = swept(&problem, chosen, &placed);
+    }
+    for Place { wanted: one, .. } in waiting {
+        let place = one.joint.as_deref().unwrap_or("the whole arm");
+        let remark = format!(
+            "{} on {place}: these recordings do not try it; it is left out",
+            one.effect
+        );
+        study.motions.remarks.push(remark);
+    }
+    for round in 0..ROUNDS {
+        chosen = resize(study, chosen, round > 0);
+        let formed_anew = study.relinearise(&chosen.fit, &chosen.set);
+        let is_done = formed_anew.is_none();
+        let set = formed_anew.unwrap_or_else(|| chosen.set.clone());
+        let products = study.products(|r| study.fitted[r]);
+        chosen = study.problem(&products).choose(set, &chosen.fit.weights);
+        if is_done {
+            break;
+        }
+    }
+    let products = study.products(|r| study.fitted[r]);
+    let members = judge::describe(study, &study.problem(&products), &chosen);
+    Ok(Judged {
+        named: chosen,
+        members,
+        nameless: Vec::new(),
+    })
+}
+
+/// The joints' numbers.
+fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, DiagnosisError> {
+    let mut places = Vec::new();
+    for (k, one) in wanted.iter().enumerate() {
+        let number = |name: &String| study.arm.joints().iter().position(|joint| joint.name == *name);
+        let joint_of = |name: &Option<String>| match name {
+            Some(name) => number(name)
+                .map(Some)
+                .ok_or_else(|| one.refused("the robot has no such joint")),
+            None => Ok(None),
+        };
+        let (mut joint, mut other) = (joint_of(&one.joint)?, joint_of(&one.other)?);
+        // Of two joints that turn one drive, the catalogue has the effect on the later.
+        if other > joint && joint.is_some() {
+            (joint, other) = (other, joint);
+        }
+        if let (Some(joint), Some(other)) = (joint, other)
+            && !(1..=FARTHEST_COUPLED).contains(&(joint - other))
+        {
+            return Err(one.refused("is looked for between joints that are next to each other, or one apart"));
+        }
+        let on_arm = |effect: &str| Cause::ON_THE_ARM.iter().any(|cause| cause.name() == Some(effect));
+        let on_joint = |effect: &str| Cause::ON_A_JOINT.iter().any(|cause| cause.name() == Some(effect));
+        match (joint, on_arm(&one.effect), on_joint(&one.effect)) {
+            (_, false, false) => return Err(one.refused("no such effect is in the catalogue")),
+            (Some(_), true, _) => return Err(one.refused("is on the whole arm; leave the joint out")),
+            (None, false, _) => return Err(one.refused("is on a joint; give it as effect:joint")),
+            _ => {}
+        }
+        // Two pushes may be, and two ripples on a joint.
+        let may_repeat = ["external_contact", "torque_ripple"].contains(&one.effect.as_str());
+        if !may_repeat && wanted[..k].contains(one) {
+            return Err(one.refused("is given twice"));
+        }
+        let wanted = one;
+        places.push(Place { wanted, joint, other });
+    }
+    Ok(places)
+}
+
+/// `chosen` with the best form of an effect in the place of the member at `instead`, or added to it.
+fn best(
+    problem: &Problem<'_>,
+    chosen: &Chosen,
+    instead: Option<usize>,
+    Place { wanted, joint, other }: Place<'_>,
+) -> Option<Chosen> {
+    let mut others = chosen.set.clone();
+    if let Some(at) = instead {
+        others.remove(at);
+    }
+    let is_form = |&c: &usize| {
+        let candidate = &problem.candidates[c];
+        // What was asked for twice is there twice, not once in two sizes.
+        let is_twin = |&other: &usize| problem.candidates[other].cause == candidate.cause && problem.exclude(c, other);
+        let is_pair = match candidate.cause {
+            Cause::Coupling(with) => other.is_none_or(|other| other == with),
+            _ => true,
+        };
+        candidate.cause.name() == Some(wanted.effect.as_str())
+            && candidate.joint == joint
+            && is_pair
+            && !others.iter().any(is_twin)
+    };
+    // What has no form that sets in halfway is taken as always acting.
+    let is_as_wanted = |&c: &usize| {
+        let sets_in = problem.onset(&problem.candidates[c]).is_some();
+        wanted.sets_in.is_none_or(|wanted| wanted == sets_in)
+    };
+    let mut forms: Vec<usize> = (0..problem.candidates.len()).filter(is_form).collect();
+    if forms.iter().any(is_as_wanted) {
+        forms.retain(is_as_wanted);
+    }
+    let with = |c: usize| {
+        let mut set = others.clone();
+        set.insert(instead.unwrap_or(set.len()), c);
+        let next = problem.choose(set, &chosen.fit.weights);
+        (!problem.is_possible(c, &next.fit), next)
+    };
+    // What physics allows goes first, if any of the forms is.
+    let best = forms
+        .into_iter()
+        .map(with)
+        .min_by(|a, b| a.0.cmp(&b.0).then(a.1.score.total_cmp(&b.1.score)));
+    best.map(|(_, next)| next)
+}
+
+/// `chosen` with each effect in the form that is best beside the others' forms.
+fn swept(problem: &Problem<'_>, mut chosen: Chosen, placed: &[Place<'_>]) -> Chosen {
+    for _ in 0..SWEEPS {
+        let before = chosen.set.clone();
+        for (at, &place) in placed.iter().enumerate() {
+            if let Some(next) = best(problem, &chosen, Some(at), place) {
+                chosen = next;
+            }
+        }
+        if chosen.set == before {
+            break;
+        }
+    }
+    chosen
+}

@@ -1,0 +1,85 @@
+//! The order of the search: suggest, grow, refine, relinearise, swap.
+
+use crate::search::candidate::Cause;
+use crate::search::problem::Chosen;
+use crate::search::refine::refine;
+use crate::search::study::Study;
+
+/// Rounds of suggestion, at most.
+const SUGGESTIONS: usize = 3;
+/// Rounds of refinement, at most.
+const REFINEMENTS: usize = 2;
+/// Swaps in a row, at most.
+const SWAPS: usize = 4;
+
+/// Last additions, at most.
+const LAST: usize = 3;
+
+/// Finds the candidates that together explain the training recordings. `progress` is told what is going on.
+pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
+    let fitted = study.fitted.clone();
+    let ordinary: Vec<usize> = (0..study.candidates.len())
+        .filter(|&c| matches!(study.candidates[c].cause, Cause::Viscous | Cause::Coulomb))
+        .collect();
+    let products = study.products(|r| fitted[r]);
+    let mut chosen = study.problem(&products).choose(ordinary, &products.first_weights());
+    for round in 1..=SUGGESTIONS {
+        progress(&format!("looking for causes, round {round}"));
+        let before = chosen.set.clone();
+        // What has no name must not hide what the residual suggests, nor what was suggested when little else was known: a
+        // ripple's period, a push, an onset, of which the one may have stood for the beginning of the other.
+        let products = study.products(|r| fitted[r]);
+        let named = before
+            .iter()
+            .copied()
+            .filter(|&c| {
+                let cause = study.candidates[c].cause;
+                let sets_in = study.terms(c).iter().any(|term| term.onset().is_some());
+                cause.name().is_some() && !sets_in && !matches!(cause, Cause::Ripple | Cause::Contact)
+            })
+            .collect();
+        chosen = study.problem(&products).choose(named, &chosen.fit.weights);
+        study.suggest(&chosen);
+        let products = study.products(|r| fitted[r]);
+        let problem = study.problem(&products);
+        let allowed: Vec<usize> = (0..study.candidates.len()).collect();
+        chosen = problem.choose(chosen.set, &chosen.fit.weights);
+        chosen = problem.forward(chosen, &allowed);
+        let mut sets = [before, chosen.set.clone()];
+        sets.iter_mut().for_each(|set| set.sort_unstable());
+        if sets[0] == sets[1] {
+            break;
+        }
+    }
+    for round in 1..=REFINEMENTS {
+        progress(&format!("refining sizes, round {round}"));
+        chosen = refine(study, chosen, round > 1);
+        let formed_anew = study.relinearise(&chosen.fit, &chosen.set);
+        let again = formed_anew.is_some();
+        let set = formed_anew.unwrap_or_else(|| chosen.set.clone());
+        let products = study.products(|r| fitted[r]);
+        let problem = study.problem(&products);
+        let allowed: Vec<usize> = (0..study.candidates.len()).collect();
+        let before = set.clone();
+        chosen = problem.choose(set, &chosen.fit.weights);
+        chosen = problem.forward(problem.prune(chosen), &allowed);
+        chosen = problem.swap(chosen, &allowed, SWAPS);
+        if chosen.set != before {
+            chosen = refine(study, chosen, false);
+        } else if !again {
+            break;
+        }
+    }
+    // With all sizes found, what did not pay before may do so, and with that what was not possible.
+    for _ in 0..LAST {
+        let products = study.products(|r| fitted[r]);
+        let allowed: Vec<usize> = (0..study.candidates.len()).collect();
+        let before = chosen.set.clone();
+        chosen = study.problem(&products).forward(chosen, &allowed);
+        if chosen.set == before {
+            break;
+        }
+        chosen = refine(study, chosen, false);
+    }
+    chosen
+}

@@ -1,0 +1,334 @@
+//! The joint search: which candidates together explain the residual.
+
+use std::collections::HashMap;
+
+use arm::Arm;
+use rayon::prelude::*;
+
+use crate::regression::fit::{Fit, Products};
+use crate::regression::table::Table;
+use crate::search::candidate::{Candidate, Cause};
+use crate::search::physics::is_possible;
+
+mod exchange;
+mod exclusion;
+
+/// So many of the most promising candidates are fitted in full each round.
+const TRIED: usize = 8;
+/// … and of one cause on one joint so many, before others have been.
+const AT_ONCE: usize = 3;
+/// More candidates than this are not taken.
+const MOST: usize = 60;
+
+/// The spread of coefficients that should be one.
+const UNIT_SPREAD: f64 = 0.1;
+
+/// So many times the next most promising are tried, if the first do not pay.
+const BATCHES: usize = 6;
+/// Where so many drives' inertias are left out of a model, all drives' are likely to be …
+const TELLING_DRIVES: usize = 2;
+/// … and each further one needs so much less evidence (nats): beside a gap that is never crossed, which is an encoder's offset
+/// with a drive's inertia, the two then stand for themselves.
+const KNOWN_DRIVE: f64 = 3.0;
+/// What has no name must keep this much of its gain on recordings that were left out.
+const PREDICTED: f64 = 0.05;
+
+/// A choice of candidates with its fit.
+#[derive(Clone, Debug)]
+pub struct Chosen {
+    /// Indices into the candidates.
+    pub set: Vec<usize>,
+    /// All together.
+    pub fit: Fit,
+    /// Loss and costs (nats).
+    pub score: f64,
+}
+
+impl Chosen {
+    /// Its set without one member.
+    pub fn others(&self, member: usize) -> Vec<usize> {
+        self.set.iter().copied().filter(|&c| c != member).collect()
+    }
+}
+
+/// What the search needs to know.
+#[derive(Clone, Copy)]
+pub struct Problem<'a> {
+    /// All columns.
+    pub table: &'a Table,
+    /// Over the training recordings.
+    pub products: &'a Products,
+    /// All candidates.
+    pub candidates: &'a [Candidate],
+    /// The robot.
+    pub arm: &'a Arm,
+}
+
+impl Problem<'_> {
+    /// The columns of a set, each once.
+    pub fn columns(&self, set: &[usize]) -> Vec<usize> {
+        let mut columns: Vec<usize> = set
+            .iter()
+            .flat_map(|&c| self.candidates[c].columns.iter().copied())
+            .collect();
+        columns.sort_unstable();
+        columns.dedup();
+        columns
+    }
+
+    /// The cost of a set: what candidates share is paid once.
+    fn cost(&self, set: &[usize]) -> f64 {
+        let own: f64 = set.iter().map(|&c| self.candidates[c].cost).sum();
+        let counted: usize = set.iter().map(|&c| self.candidates[c].columns.len()).sum();
+        let drives = set
+            .iter()
+            .filter(|&&c| self.candidates[c].cause == Cause::RotorInertia)
+            .count();
+        own - crate::search::candidate::PER_COEFFICIENT * (counted - self.columns(set).len()) as f64
+            - KNOWN_DRIVE * drives.saturating_sub(TELLING_DRIVES) as f64
+    }
+
+    /// Fits a set, beginning with the weights of `near`.
+    pub fn choose(&self, set: Vec<usize>, near: &[f64]) -> Chosen {
+        let fit = self.products.fit(self.table, &self.columns(&set), near);
+        let score = fit.loss + self.cost(&set) + self.misfit(&set, &fit);
+        Chosen { set, fit, score }
+    }
+
+    /// What is simulated at its size should come out with a coefficient of one (nats).
+    fn misfit(&self, set: &[usize], fit: &Fit) -> f64 {
+        set.iter()
+            .map(|&c| &self.candidates[c])
+            .filter(|candidate| candidate.cause.is_unit())
+            .map(|candidate| {
+                let coefficient = fit.coefficient(candidate.columns[0]).max(1e-3);
+                0.5 * (coefficient.ln() / UNIT_SPREAD).powi(2)
+            })
+            .sum()
+    }
+
+    /// Whether `candidate` is possible in `fit`.
+    pub fn is_possible(&self, candidate: usize, fit: &Fit) -> bool {
+        is_possible(&self.candidates[candidate], self.table, fit, self.arm)
+    }
+
+    /// The gain of `candidate` on top of `chosen`, to first order (nats, costs taken off).
+    pub fn promise(&self, chosen: &Chosen, candidate: usize) -> f64 {
+        let new: Vec<usize> = {
+            let have = &chosen.fit.columns;
+            let columns = &self.candidates[candidate].columns;
+            columns
+                .iter()
+                .copied()
+                .filter(|c| have.binary_search(c).is_err())
+                .collect()
+        };
+        if new.is_empty() {
+            return f64::NEG_INFINITY;
+        }
+        let drop = self.products.drop(self.table, &chosen.fit, &new);
+        let cost = self.candidates[candidate].cost
+            - crate::search::candidate::PER_COEFFICIENT * (self.candidates[candidate].columns.len() - new.len()) as f64;
+        let log = |drop: f64, joint: usize| {
+            let count = self.products.count[joint].max(1.0);
+            -0.5 * self.products.evidence[joint] * (1.0 - (drop / count).min(0.999_999)).ln()
+        };
+        let gain = match self.candidates[candidate].joint {
+            Some(joint) => log(drop, joint),
+            // At least what the same drop spread evenly would bring.
+            None => {
+                let joints = self.products.count.len();
+                (0..joints).map(|joint| log(drop / joints as f64, joint)).sum::<f64>()
+            }
+        };
+        gain - cost
+    }
+
+    /// The best addition to `chosen` among `allowed`, if one pays.
+    fn grow(&self, chosen: &Chosen, allowed: &[usize], refused: &mut Vec<usize>) -> Option<Chosen> {
+        let free: Vec<usize> = allowed
+            .iter()
+            .copied()
+            .filter(|&c| {
+                !refused.contains(&c)
+                    && !chosen.set.contains(&c)
+                    && !chosen.set.iter().any(|&other| self.exclude(c, other))
+            })
+            .collect();
+        let mut promises: Vec<(f64, usize)> = free
+            .par_iter()
+            .map(|&candidate| (self.promise(chosen, candidate), candidate))
+            .collect();
+        promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        promises.retain(|(promise, _)| *promise > 0.0);
+        // Of each kind the most promising first: what contains something simpler promises as much as that, in all its sizes.
+        let kind = |c: usize| (self.candidates[c].joint, self.candidates[c].cause);
+        let mut of_kind: HashMap<(Option<usize>, Cause), usize> = HashMap::new();
+        let mut turns: Vec<(usize, usize)> = promises
+            .into_iter()
+            .map(|(_, candidate)| {
+                let before = of_kind.entry(kind(candidate)).or_default();
+                *before += 1;
+                ((*before - 1) / AT_ONCE, candidate)
+            })
+            .collect();
+        turns.sort_by_key(|&(turn, _)| turn);
+        let mut waiting = turns.into_iter().map(|(_, candidate)| candidate);
+        for _ in 0..BATCHES {
+            let mut batch = Vec::with_capacity(TRIED);
+            for candidate in waiting.by_ref() {
+                if self.predicts(chosen, candidate) {
+                    batch.push(candidate);
+                } else {
+                    refused.push(candidate);
+                }
+                if batch.len() == TRIED {
+                    break;
+                }
+            }
+            if batch.is_empty() {
+                break;
+            }
+            let tried: Vec<Chosen> = batch
+                .par_iter()
+                .map(|&candidate| self.choose(self.with(&chosen.set, candidate), &chosen.fit.weights))
+                .collect();
+            let best = tried
+                .into_iter()
+                .filter(|next| {
+                    let added = next.set[next.set.len() - 1];
+                    self.is_possible(added, &next.fit) && next.score < chosen.score
+                })
+                .min_by(|a, b| a.score.total_cmp(&b.score));
+            if best.is_some() {
+                return best;
+            }
+        }
+        None
+    }
+
+    /// `set` and, last, `candidate`. Structure without a name comes with ordinary friction: every drive has it, and a curve
+    /// over position or time must not stand for it.
+    fn with(&self, set: &[usize], candidate: usize) -> Vec<usize> {
+        let mut set = set.to_vec();
+        if self.is_nameless(candidate) {
+            let is_friction = |c: &usize| {
+                let other = &self.candidates[*c];
+                other.joint == self.candidates[candidate].joint && other.cause.is_friction()
+            };
+            for friction in (0..self.candidates.len()).filter(is_friction) {
+                if !set
+                    .iter()
+                    .any(|&other| other == friction || self.exclude(friction, other))
+                {
+                    set.push(friction);
+                }
+            }
+        }
+        set.push(candidate);
+        set
+    }
+
+    fn is_nameless(&self, candidate: usize) -> bool {
+        self.candidates[candidate].cause.name().is_none()
+    }
+
+    /// Whether a member of `set` may be taken out for its price: ordinary friction may not, beside what has no name.
+    fn may_go(&self, set: &[usize], member: usize) -> bool {
+        let this = &self.candidates[member];
+        !this.cause.is_friction()
+            || !set
+                .iter()
+                .any(|&c| self.is_nameless(c) && self.candidates[c].joint == this.joint)
+    }
+
+    /// Whether `candidate` helps to predict what it was not fitted to.
+    fn predicts(&self, chosen: &Chosen, candidate: usize) -> bool {
+        let candidate = &self.candidates[candidate];
+        if candidate.cause.is_passing() || candidate.cause.is_ordinary() {
+            return true;
+        }
+        let columns = &chosen.fit.columns;
+        let Some(joint) = candidate.joint else {
+            return self
+                .products
+                .arm_gain(self.table, columns, &candidate.columns, &chosen.fit.weights)
+                > 0.0;
+        };
+        let (inside, outside) = self.products.gains(self.table, joint, columns, &candidate.columns);
+        outside
+            > if candidate.cause.name().is_none() {
+                PREDICTED * inside
+            } else {
+                0.0
+            }
+    }
+
+    /// Takes out what does not pay, or is impossible, one by one.
+    pub fn prune(&self, mut chosen: Chosen) -> Chosen {
+        loop {
+            let best = (0..chosen.set.len())
+                .into_par_iter()
+                .filter_map(|k| {
+                    let mut set = chosen.set.clone();
+                    let removed = set.remove(k);
+                    let must = !self.is_possible(removed, &chosen.fit);
+                    let may = must || self.may_go(&set, removed);
+                    may.then(|| (must, self.without(&chosen, removed)))
+                })
+                .collect::<Vec<_>>()
+                .into_iter()
+                .min_by(|a, b| b.0.cmp(&a.0).then(a.1.score.total_cmp(&b.1.score)));
+            match best {
+                Some((must, next)) if must || next.score <= chosen.score => chosen = next,
+                _ => return chosen,
+            }
+        }
+    }
+
+    /// Adds what pays, from `allowed`, then takes out what no longer does.
+    pub fn forward(&self, mut chosen: Chosen, allowed: &[usize]) -> Chosen {
+        let mut refused = Vec::new();
+        while chosen.set.len() < MOST {
+            match self.grow(&chosen, allowed, &mut refused) {
+                Some(next) => chosen = next,
+                None => break,
+            }
+        }
+        self.prune(chosen)
+    }
+
+    /// `chosen` without one of its members; what is a form of something simpler gives way to that, if it pays.
+    pub fn without(&self, chosen: &Chosen, member: usize) -> Chosen {
+        let set = chosen.others(member);
+        let bare = self.choose(set.clone(), &chosen.fit.weights);
+        let candidate = &self.candidates[member];
+        let onset = |c: &Candidate| self.onset(c);
+        let is_plain = |&c: &usize| {
+            let plain = &self.candidates[c];
+            Some(plain.cause) == candidate.cause.plain()
+                && plain.joint == candidate.joint
+                && onset(plain).is_some() == onset(candidate).is_some()
+        };
+        // Of what sets in halfway, that which sets in at nearly the same time.
+        let apart = |&c: &usize| match (onset(&self.candidates[c]), onset(candidate)) {
+            (Some(a), Some(b)) => (a - b).abs(),
+            _ => 0.0,
+        };
+        let plain = (0..self.candidates.len()).filter(is_plain);
+        let Some(plain) = plain.min_by(|a, b| apart(a).total_cmp(&apart(b))) else {
+            return bare;
+        };
+        if set.contains(&plain) {
+            return bare;
+        }
+        let mut with = set;
+        with.push(plain);
+        let simpler = self.choose(with, &chosen.fit.weights);
+        if simpler.score < bare.score && self.is_possible(plain, &simpler.fit) {
+            simpler
+        } else {
+            bare
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Exchanging members of a choice for better ones.
+
+use rayon::prelude::*;
+
+use super::{Chosen, Problem};
+use crate::search::candidate::Cause;
+
+impl Problem<'_> {
+    /// `chosen` with one cause that acts on the whole arm, without what that then explains: on several joints at once other
+    /// causes may stand for it, of which none alone gives way.
+    fn arm_wide(&self, chosen: &Chosen, allowed: &[usize]) -> Vec<Chosen> {
+        let is_free = |c: &usize| {
+            let candidate = &self.candidates[*c];
+            candidate.joint.is_none()
+                && candidate.cause != Cause::Contact
+                && !chosen.set.iter().any(|&other| other == *c || self.exclude(*c, other))
+        };
+        let free: Vec<usize> = allowed.iter().copied().filter(is_free).collect();
+        free.par_iter()
+            .filter_map(|&candidate| {
+                let with = self.choose(self.with(&chosen.set, candidate), &chosen.fit.weights);
+                if !self.is_possible(candidate, &with.fit) {
+                    return None;
+                }
+                let pruned = self.prune(with);
+                pruned.set.contains(&candidate).then_some(pruned)
+            })
+            .collect()
+    }
+
+    /// `chosen` with other wrong masses than its own: one of them alone or two together, whatever they are. Masses hang
+    /// together along the arm, so that two wrong ones may look like a third, and one like two others; no exchange of one for
+    /// one leads from these to the true ones.
+    fn other_masses(&self, chosen: &Chosen, allowed: &[usize]) -> Vec<Chosen> {
+        let is_mass = |c: &usize| self.candidates[*c].cause.is_wrong_mass();
+        let rest: Vec<usize> = chosen.set.iter().copied().filter(|c| !is_mass(c)).collect();
+        if rest.len() == chosen.set.len() {
+            return Vec::new();
+        }
+        let masses: Vec<usize> = allowed.iter().copied().filter(is_mass).collect();
+        let alone = masses.iter().map(|&one| vec![one]);
+        let pairs = masses.iter().enumerate().flat_map(|(k, &one)| {
+            let others = masses[k + 1..].iter().filter(move |&&two| !self.exclude(one, two));
+            others.map(move |&two| vec![one, two])
+        });
+        let sets: Vec<Vec<usize>> = alone.chain(pairs).collect();
+        sets.into_par_iter()
+            .filter_map(|new| {
+                let next = self.choose([rest.clone(), new.clone()].concat(), &chosen.fit.weights);
+                new.iter().all(|&c| self.is_possible(c, &next.fit)).then_some(next)
+            })
+            .collect()
+    }
+
+    /// Replaces single members by better ones, until none is better.
+    pub fn swap(&self, mut chosen: Chosen, allowed: &[usize], rounds: usize) -> Chosen {
+        for _ in 0..rounds {
+            let trials: Vec<Chosen> = (0..chosen.set.len())
+                .into_par_iter()
+                .filter_map(|k| {
+                    let removed = chosen.set[k];
+                    let out = &self.candidates[removed];
+                    if out.cause.is_friction() {
+                        return None;
+                    }
+                    let without = self.without(&chosen, removed);
+                    // What takes its place acts where it did.
+                    let others: Vec<usize> = allowed
+                        .iter()
+                        .copied()
+                        .filter(|&c| c != removed)
+                        .filter(|&c| {
+                            let joint = self.candidates[c].joint;
+                            joint == out.joint || joint.is_none() || out.joint.is_none()
+                        })
+                        .collect();
+                    self.grow(&without, &others, &mut Vec::new())
+                })
+                .collect();
+            let trials = trials
+                .into_iter()
+                .chain(self.arm_wide(&chosen, allowed))
+                .chain(self.other_masses(&chosen, allowed));
+            match trials.min_by(|a, b| a.score.total_cmp(&b.score)) {
+                Some(next) if next.score < chosen.score - 0.5 => chosen = self.prune(next),
+                _ => break,
+            }
+        }
+        chosen
+    }
+}

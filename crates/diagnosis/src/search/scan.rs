@@ -1,0 +1,281 @@
+//! Candidates that the residual itself suggests: when a contact was, which period a ripple has.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::data::motion::Motions;
+use crate::regression::columns::Scales;
+use crate::regression::fit::Fit;
+use crate::regression::table::Table;
+use crate::regression::term::Term;
+use crate::search::study::Study;
+
+mod onsets;
+mod waves;
+
+pub use onsets::onsets;
+pub use waves::waves;
+
+/// Durations of contact that are tried (s).
+const DURATIONS: [f64; 7] = [0.2, 0.35, 0.6, 1.0, 1.6, 2.5, 4.0];
+/// The coarse scan for ripples takes so many samples at most.
+const MOST_SAMPLES: usize = 6000;
+
+/// What is left of every joint's y on all rows.
+pub fn residuals(table: &Table, fit: &Fit) -> Vec<Vec<f64>> {
+    (0..table.dof())
+        .map(|joint| {
+            let model = table.torque(joint, &fit.columns, &fit.coefficients);
+            table.joints[joint].y.iter().zip(&model).map(|(y, m)| y - m).collect()
+        })
+        .collect()
+}
+
+/// The windows (s) in which a force on the tool explains most of the residual, best first; `force` are the
+/// columns of a force that always acts.
+pub fn contacts(
+    table: &Table,
+    times: &[f64],
+    residual: &[Vec<f64>],
+    weights: &[f64],
+    force: [usize; 3],
+    fitted: &[bool],
+    most: usize,
+) -> Vec<(f64, f64)> {
+    let mut found: Vec<(f64, f64, f64)> = Vec::new();
+    for (recording, rows) in table.rows.iter().enumerate() {
+        if !fitted[recording] || rows.len() < 10 {
+            continue;
+        }
+        // Sums from the first row on: the matrix (6), the right side (3).
+        let mut sums = vec![[0.0; 9]; rows.len() + 1];
+        for (k, row) in rows.clone().enumerate() {
+            let mut sum = sums[k];
+            for joint in 0..table.dof() {
+                let this = &table.joints[joint];
+                if !this.moving[row] {
+                    continue;
+                }
+                let w = weights[joint];
+                let x = force.map(|column| table.place[joint][column].map_or(0.0, |place| this.x[place][row]));
+                let r = residual[joint][row];
+                let products = [
+                    x[0] * x[0],
+                    x[0] * x[1],
+                    x[0] * x[2],
+                    x[1] * x[1],
+                    x[1] * x[2],
+                    x[2] * x[2],
+                    x[0] * r,
+                    x[1] * r,
+                    x[2] * r,
+                ];
+                for (sum, product) in sum.iter_mut().zip(products) {
+                    *sum += w * product;
+                }
+            }
+            sums[k + 1] = sum;
+        }
+        let step = (times[rows.end - 1] - times[rows.start]) / (rows.len() - 1) as f64;
+        for duration in DURATIONS {
+            let length = ((duration / step).round() as usize).max(3);
+            let hop = (length / 5).max(1);
+            let mut from = 0;
+            while from + length <= rows.len() {
+                let gain = force_gain(&sums[from], &sums[from + length]);
+                found.push((gain, times[rows.start + from], times[rows.start + from + length - 1]));
+                from += hop;
+            }
+        }
+    }
+    found.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.total_cmp(&b.1)));
+    let mut best: Vec<(f64, f64)> = Vec::new();
+    for &(_, from, to) in &found {
+        if best.len() == most {
+            break;
+        }
+        let overlaps = best.iter().any(|&(a, b)| from < b && a < to);
+        if !overlaps {
+            best.push((from, to));
+        }
+    }
+    best
+}
+
+fn force_gain(before: &[f64; 9], after: &[f64; 9]) -> f64 {
+    let d: Vec<f64> = after.iter().zip(before).map(|(a, b)| a - b).collect();
+    let mut matrix = Matrix3::new(d[0], d[1], d[2], d[1], d[3], d[4], d[2], d[4], d[5]);
+    let right = Vector3::new(d[6], d[7], d[8]);
+    let ridge = 1e-6 * matrix.trace();
+    for k in 0..3 {
+        matrix[(k, k)] += ridge.max(1e-300);
+    }
+    matrix.cholesky().map_or(0.0, |factor| right.dot(&factor.solve(&right)))
+}
+
+/// The periods (rad a rad) of a ripple on `joint` that explain most of its residual: peaks, best first.
+pub fn ripples(
+    table: &Table,
+    motions: &Motions,
+    scales: &Scales,
+    joint: usize,
+    residual: &[f64],
+    fitted: &[bool],
+    most: usize,
+) -> Vec<f64> {
+    let range = scales.range[joint].max(1e-6);
+    let samples = samples(table, motions, joint, residual, fitted);
+    // The highest frequency that the filter passes at half the usual speed.
+    let usual = 0.4 * scales.speed[joint];
+    let most_periods = (2.0 * std::f64::consts::PI * 1.5 * motions.cutoff / usual).min(400.0);
+    let step = 1.5 / range;
+    let least = 16.0 / range;
+    let at = |samples: &[Sample], periods: f64| {
+        power(samples, |sample| {
+            // The filter weakens fast ripples.
+            let gain = motions.chunks[0].kernel.gain(periods * sample.qd);
+            (gain * (periods * sample.q).sin(), gain * (periods * sample.q).cos())
+        })
+    };
+    let count = ((most_periods - least) / step).ceil().max(0.0) as usize;
+    let every = samples.len().div_ceil(MOST_SAMPLES).max(1);
+    let coarse: Vec<Sample> = samples.iter().step_by(every).copied().collect();
+    let values: Vec<f64> = (0..count).map(|k| at(&coarse, least + step * k as f64)).collect();
+    peaks(least, step, &values, most, |periods| at(&samples, periods))
+}
+
+#[derive(Clone, Copy)]
+struct Sample {
+    time: f64,
+    q: f64,
+    qd: f64,
+    residual: f64,
+}
+
+fn samples(table: &Table, motions: &Motions, joint: usize, residual: &[f64], fitted: &[bool]) -> Vec<Sample> {
+    let mut samples = Vec::new();
+    let mut row = 0;
+    for chunk in &motions.chunks {
+        for k in 0..chunk.rows() {
+            let tick = chunk.tick_of(k);
+            if fitted[chunk.recording] && table.joints[joint].moving[row] {
+                samples.push(Sample {
+                    time: chunk.time(tick),
+                    q: chunk.q[joint][tick],
+                    qd: chunk.qd[joint][tick],
+                    residual: residual[row],
+                });
+            }
+            row += 1;
+        }
+    }
+    samples
+}
+
+/// The part of the residual's power that a sine and a cosine take.
+fn power(samples: &[Sample], pair: impl Fn(&Sample) -> (f64, f64)) -> f64 {
+    let (mut ss, mut sc, mut cc, mut sr, mut cr) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for sample in samples {
+        let (s, c) = pair(sample);
+        ss += s * s;
+        sc += s * c;
+        cc += c * c;
+        sr += s * sample.residual;
+        cr += c * sample.residual;
+    }
+    explained(ss, sc, cc, sr, cr)
+}
+
+/// What two columns of these inner products explain.
+fn explained(ss: f64, sc: f64, cc: f64, sr: f64, cr: f64) -> f64 {
+    let determinant = ss * cc - sc * sc;
+    if determinant <= 1e-9 * (ss + cc).powi(2) {
+        return 0.0;
+    }
+    (cc * sr * sr - 2.0 * sc * sr * cr + ss * cr * cr) / determinant
+}
+
+/// The highest local maxima of `values`, on a grid that begins `from`; refined on `f` by golden-section search.
+fn peaks(from: f64, step: f64, values: &[f64], most: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
+    let count = values.len();
+    let at = |k: usize| from + step * k as f64;
+    let mut tops: Vec<(f64, f64)> = (0..count)
+        .filter(|&k| (k == 0 || values[k] >= values[k - 1]) && (k + 1 == count || values[k] > values[k + 1]))
+        .map(|k| (values[k], at(k)))
+        .collect();
+    tops.sort_by(|a, b| b.0.total_cmp(&a.0));
+    tops.truncate(most);
+    tops.iter().map(|&(_, x)| golden(x - step, x + step, &f)).collect()
+}
+
+/// The maximum of `f` between two places, by golden-section search.
+pub fn golden(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut a, mut b) = (high - ratio * (high - low), low + ratio * (high - low));
+    let (mut fa, mut fb) = (f(a), f(b));
+    for _ in 0..14 {
+        if fa > fb {
+            (high, b, fb) = (b, a, fa);
+            a = high - ratio * (high - low);
+            fa = f(a);
+        } else {
+            (low, a, fa) = (a, b, fb);
+            b = low + ratio * (high - low);
+            fb = f(b);
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// The terms of a contact in a window.
+pub fn contact_terms(from: f64, to: f64, round: bool) -> Vec<Term> {
+    (0..3).map(|axis| Term::Force { axis, from, to, round }).collect()
+}
+
+/// How well a contact's force predicts its own window: fitted to every other piece of .15 s, tried on the rest; the
+/// relative drop of what `without` leaves there.
+pub fn contact_gain(study: &Study, without: &Fit, columns: &[usize]) -> f64 {
+    let table = &study.table;
+    let residual = residuals(table, without);
+    let times = study.motions.row_times();
+    let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    let mut tried: Vec<(f64, f64, [f64; 3])> = Vec::new();
+    for row in study.training() {
+        let piece = (times[row] / PIECE).floor() as i64;
+        for joint in 0..table.dof() {
+            let this = &table.joints[joint];
+            let mut x = [0.0; 3];
+            for (value, &column) in x.iter_mut().zip(columns) {
+                *value = table.place[joint][column].map_or(0.0, |place| this.x[place][row]);
+            }
+            if !this.moving[row] || x.iter().all(|&v| v == 0.0) {
+                continue;
+            }
+            let (w, r) = (without.weights[joint], residual[joint][row]);
+            if piece % 2 == 0 {
+                let x = Vector3::from(x);
+                matrix += w * x * x.transpose();
+                right += w * r * x;
+            } else {
+                tried.push((w, r, x));
+            }
+        }
+    }
+    let ridge = 1e-6 * matrix.trace();
+    let Some(factor) = (matrix + Matrix3::identity() * ridge.max(1e-300)).cholesky() else {
+        return 0.0;
+    };
+    let force = factor.solve(&right);
+    let (mut before, mut after) = (0.0, 0.0);
+    for (w, r, x) in tried {
+        before += w * r * r;
+        after += w * (r - force.dot(&Vector3::from(x))).powi(2);
+    }
+    if before > 0.0 {
+        1.0 - (after / before).sqrt()
+    } else {
+        0.0
+    }
+}
+
+/// Pieces of a contact's window (s).
+const PIECE: f64 = 0.15;

@@ -1,0 +1,334 @@
+//! Everything the search works on: recordings filtered, the model along them, columns, candidates.
+
+use arm::Arm;
+use rayon::prelude::*;
+
+use crate::data::known::Known;
+use crate::data::measure::{self, drives, mean, noise, scales, seconds, spans};
+use crate::data::motion::{Input, Motions};
+use crate::data::rigid::Rigid;
+use crate::regression::columns::Scales;
+use crate::regression::fit::{Fit, Products};
+use crate::regression::table::{Moving, Table};
+use crate::regression::term::Term;
+use crate::search::candidate::{Candidate, Cause, MayBe, catalogue};
+use crate::search::problem::Problem;
+use crate::search::scan;
+use crate::thresholds;
+
+mod about;
+
+pub use about::About;
+
+/// The evidence that an onset must bring: it was looked for at some hundred times (nats).
+const ONSET: f64 = 6.0;
+
+/// The recordings, the model along them, and the candidates.
+pub struct Study {
+    /// The model as it was given.
+    pub arm: Arm,
+    /// The recordings, filtered.
+    pub motions: Motions,
+    /// The model along them, one a chunk.
+    pub rigid: Vec<Rigid>,
+    /// What is slow and what is large.
+    pub scales: Scales,
+    /// All columns.
+    pub table: Table,
+    /// All candidates.
+    pub candidates: Vec<Candidate>,
+    /// The variance that noise, filtering and small errors leave, one a joint.
+    pub floor: Vec<f64>,
+    /// The variance of the measured noise alone, one a joint.
+    pub noise: Vec<f64>,
+    /// From row to row, one a recording (s).
+    pub seconds: Vec<f64>,
+    /// Whether a recording is fitted.
+    pub fitted: Vec<bool>,
+    /// The columns of a force on the tool that always acts.
+    force: [usize; 3],
+    /// Measured torque on all rows (N m or N).
+    pub measured: Vec<Vec<f64>>,
+    /// Measured less the model as it was given, on all rows (N m or N).
+    pub nominal: Vec<Vec<f64>>,
+    /// Whether the columns are about another arm than the one given.
+    carries: bool,
+    /// Which rows are fitted.
+    moving: Moving,
+}
+
+impl Study {
+    /// Prepares `inputs` for the arm and effects in `known`, filtered at `cutoff` (Hz), with the candidates that `may_be`.
+    pub fn new(known: &Known, inputs: &[Input<'_>], cutoff: f64, may_be: &MayBe<'_>) -> Self {
+        let arm = &known.arm;
+        let mut motions = Motions::new(inputs, cutoff);
+        let measured: Vec<Vec<f64>> = (0..motions.dof)
+            .map(|joint| {
+                motions
+                    .chunks
+                    .iter()
+                    .flat_map(|chunk| chunk.filter(&chunk.tau[joint]))
+                    .collect()
+            })
+            .collect();
+        let mut torque = measure::deviations(&motions);
+        known.take_off(&mut motions);
+        let offset = vec![0.0; arm.dof()];
+        let nominal = arm.inertial_parameters();
+        let rigid: Vec<Rigid> = motions
+            .chunks
+            .par_iter()
+            .map(|chunk| Rigid::new(arm, &nominal, &offset, chunk))
+            .collect();
+        for joint in measure::dead(&motions, &rigid, &torque) {
+            torque[joint] = 0.0;
+            let name = &arm.joints()[joint].name;
+            let remark = format!("{name}: its torque hardly varies while the model's does; it is left out");
+            motions.remarks.push(remark);
+        }
+        let scales = scales(&motions, torque);
+        let fitted: Vec<bool> = motions.sources.iter().map(|source| !source.held_out).collect();
+        let seconds = seconds(&motions);
+        let noise = noise(&motions, &rigid, &fitted);
+        let floor = noise
+            .iter()
+            .zip(&scales.torque)
+            .map(|(noise, torque)| noise + (thresholds::TOLERANCE * torque).powi(2))
+            .collect();
+        let times: Vec<(f64, f64)> = spans(&motions)
+            .into_iter()
+            .zip(&fitted)
+            .filter_map(|(span, fitted)| fitted.then_some(span))
+            .flatten()
+            .collect();
+        let first = times.first().map_or(0.0, |span| span.0);
+        let span = times.last().map_or(1.0, |span| span.1 - first).max(1.0);
+        let mut terms: Vec<Term> = Vec::new();
+        let mut candidates = Vec::new();
+        let mut list = catalogue(&scales, motions.one_clock.then_some(span), &times);
+        for joint in 0..motions.dof {
+            let mass = mean(rigid.iter().flat_map(|r| &r.mass[joint][joint]));
+            list.extend(drives(joint, mass, &scales, &motions, &rigid));
+        }
+        if motions.cutoff < thresholds::LEAST_FOR_DYNAMICS {
+            list.retain(|(cause, ..)| !cause.is_unit());
+        }
+        list.retain(|(cause, joint, _)| may_be(*cause, *joint));
+        for (cause, joint, columns) in list {
+            let columns = columns
+                .into_iter()
+                .map(|term| {
+                    terms.iter().position(|&known| known == term).unwrap_or_else(|| {
+                        terms.push(term);
+                        terms.len() - 1
+                    })
+                })
+                .collect();
+            candidates.push(Candidate::new(cause, joint, columns));
+        }
+        let always = scan::contact_terms(f64::NEG_INFINITY, f64::INFINITY, false);
+        let force = [0, 1, 2].map(|k| terms.len() + k);
+        terms.extend(always);
+        let table = Table::new(&motions, &rigid, &scales, terms, &[], Moving::Steadily);
+        let nominal = table.joints.iter().map(|joint| joint.y.clone()).collect();
+        Self {
+            arm: arm.clone(),
+            motions,
+            rigid,
+            scales,
+            table,
+            candidates,
+            floor,
+            noise,
+            seconds,
+            fitted,
+            force,
+            nominal,
+            measured,
+            carries: false,
+            moving: Moving::Steadily,
+        }
+    }
+
+    /// The columns of a force on the tool that always acts, along x, y, z of the base.
+    pub fn force(&self) -> [usize; 3] {
+        self.force
+    }
+
+    /// Inner products over the recordings that `chosen` picks.
+    pub fn products(&self, chosen: impl Fn(usize) -> bool) -> Products {
+        Products::new(&self.table, chosen, &self.seconds, &self.motions.tempo, &self.floor)
+    }
+
+    /// The problem with these products.
+    pub fn problem<'a>(&'a self, products: &'a Products) -> Problem<'a> {
+        Problem {
+            table: &self.table,
+            products,
+            candidates: &self.candidates,
+            arm: &self.arm,
+        }
+    }
+
+    /// Forms everything anew about the arm that `fit` found: what is not linear in a tilt, an encoder's offset or a
+    /// payload is then small. Sizes tried in vain are forgotten. Returns the numbers that the candidates `kept` have now,
+    /// or `None` if there was nothing to do.
+    pub fn relinearise(&mut self, fit: &Fit, kept: &[usize]) -> Option<Vec<usize>> {
+        self.about(fit, kept, false)
+    }
+
+    /// Forms everything anew, with the rows near reversals, for the last fit. The numbers that the candidates `kept` have now.
+    pub fn settle(&mut self, fit: &Fit, kept: &[usize]) -> Vec<usize> {
+        self.moving = Moving::ThroughReversals;
+        self.about(fit, kept, true).unwrap_or_default()
+    }
+
+    fn about(&mut self, fit: &Fit, kept: &[usize], anyway: bool) -> Option<Vec<usize>> {
+        let About { arm, offset, carried } = About::new(self, fit);
+        // Nothing to carry, and nothing carried by an earlier choice.
+        if carried.is_empty() && !self.carries && !anyway {
+            return None;
+        }
+        self.carries = !carried.is_empty();
+        let nominal = self.arm.inertial_parameters();
+        self.rigid = self
+            .motions
+            .chunks
+            .par_iter()
+            .map(|chunk| Rigid::new(&arm, &nominal, &offset, chunk))
+            .collect();
+        let (set, terms) = self.forget_trials(kept);
+        self.table = self
+            .table
+            .formed_anew(&self.motions, &self.rigid, &self.scales, terms, &carried, self.moving);
+        Some(set)
+    }
+
+    /// Leaves out the trials that are not in `set`; the set's new numbers, and the terms that are left. The table is then to
+    /// be formed anew.
+    fn forget_trials(&mut self, set: &[usize]) -> (Vec<usize>, Vec<Term>) {
+        let old = &self.table.terms;
+        let mut terms: Vec<Term> = Vec::new();
+        let mut place: Vec<Option<usize>> = vec![None; old.len()];
+        let mut keep = |column: usize| -> usize {
+            *place[column].get_or_insert_with(|| {
+                terms.push(old[column]);
+                terms.len() - 1
+            })
+        };
+        self.force = self.force.map(&mut keep);
+        let mut numbers = vec![0; self.candidates.len()];
+        let mut kept = Vec::new();
+        for (number, mut candidate) in std::mem::take(&mut self.candidates).into_iter().enumerate() {
+            if candidate.is_trial && !set.contains(&number) {
+                continue;
+            }
+            candidate.columns.iter_mut().for_each(|column| *column = keep(*column));
+            numbers[number] = kept.len();
+            kept.push(candidate);
+        }
+        self.candidates = kept;
+        (set.iter().map(|&number| numbers[number]).collect(), terms)
+    }
+
+    /// The rows of the training recordings.
+    pub fn training(&self) -> impl Iterator<Item = usize> {
+        let rows = self.table.rows.iter().zip(&self.fitted).filter(|(_, fitted)| **fitted);
+        rows.flat_map(|(rows, _)| rows.clone()).collect::<Vec<_>>().into_iter()
+    }
+
+    /// The terms of a candidate.
+    pub fn terms(&self, candidate: usize) -> Vec<Term> {
+        let columns = &self.candidates[candidate].columns;
+        columns.iter().map(|&column| self.table.terms[column]).collect()
+    }
+
+    /// The moving rows of `joint` in the training recordings.
+    pub fn training_rows(&self, joint: usize) -> Vec<usize> {
+        let moving = &self.table.joints[joint].moving;
+        let rows = self.table.rows.iter().zip(&self.fitted).filter(|(_, fitted)| **fitted);
+        rows.flat_map(|(rows, _)| rows.clone())
+            .filter(|&row| moving[row])
+            .collect()
+    }
+
+    /// The rows of all recordings on which `joint` rests for as long as the filter reaches.
+    pub fn resting_rows(&self, joint: usize) -> Vec<usize> {
+        let mut rows = Vec::new();
+        let mut first = 0;
+        for chunk in &self.motions.chunks {
+            let reach = (3.0 * chunk.kernel.width() / chunk.period).ceil() as usize;
+            let qd = &chunk.qd[joint];
+            for row in 0..chunk.rows() {
+                let tick = chunk.tick_of(row);
+                let window = &qd[tick.saturating_sub(reach)..(tick + reach + 1).min(qd.len())];
+                if window.iter().all(|qd| qd.abs() < 0.7 * self.scales.rest[joint]) {
+                    rows.push(first + row);
+                }
+            }
+            first += chunk.rows();
+        }
+        rows
+    }
+
+    /// The rigid torque (N m or N) and the time (s) of some rows of `joint`, in ascending order.
+    pub fn loads_and_times(&self, joint: usize, rows: &[usize]) -> (Vec<f64>, Vec<f64>) {
+        let (mut loads, mut times) = (Vec::with_capacity(rows.len()), Vec::with_capacity(rows.len()));
+        let mut rows = rows.iter().peekable();
+        let mut first = 0;
+        for (chunk, rigid) in self.motions.chunks.iter().zip(&self.rigid) {
+            let end = first + chunk.rows();
+            while let Some(&&row) = rows.peek()
+                && row < end
+            {
+                let tick = chunk.tick_of(row - first);
+                loads.push(rigid.tau[joint][tick]);
+                times.push(chunk.time(tick));
+                rows.next();
+            }
+            first = end;
+        }
+        (loads, times)
+    }
+
+    /// Evaluates more terms.
+    pub fn extend(&mut self, terms: Vec<Term>) {
+        if !terms.is_empty() {
+            self.table.add(&self.motions, &self.rigid, &self.scales, terms, None);
+        }
+    }
+
+    /// A new candidate with new columns; its index.
+    pub fn add(&mut self, cause: Cause, joint: Option<usize>, terms: Vec<Term>) -> usize {
+        let columns: Vec<usize> = terms
+            .iter()
+            .filter_map(|term| self.table.terms.iter().position(|known| known == term))
+            .collect();
+        let columns = if columns.len() == terms.len() {
+            columns
+        } else {
+            let missing: Vec<Term> = terms
+                .iter()
+                .copied()
+                .filter(|term| !self.table.terms.contains(term))
+                .collect();
+            self.table.add(&self.motions, &self.rigid, &self.scales, missing, None);
+            terms
+                .iter()
+                .filter_map(|term| self.table.terms.iter().position(|known| known == term))
+                .collect()
+        };
+        let same = |candidate: &Candidate| {
+            candidate.cause == cause && candidate.joint == joint && candidate.columns == columns
+        };
+        if let Some(known) = self.candidates.iter().position(same) {
+            return known;
+        }
+        let mut candidate = Candidate::new(cause, joint, columns);
+        if terms.iter().any(|term| term.onset().is_some()) {
+            candidate.cost += ONSET;
+        }
+        self.candidates.push(candidate);
+        self.candidates.len() - 1
+    }
+}

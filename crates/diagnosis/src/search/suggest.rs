@@ -1,0 +1,65 @@
+//! Candidates that the residual of a choice suggests: contacts, ripples, sinusoids in time, onsets.
+
+use rayon::prelude::*;
+
+use crate::regression::term::Term;
+use crate::search::candidate::Cause;
+use crate::search::problem::Chosen;
+use crate::search::scan;
+use crate::search::study::Study;
+
+impl Study {
+    /// Adds what the residual of `chosen` suggests.
+    pub fn suggest(&mut self, chosen: &Chosen) {
+        let residual = scan::residuals(&self.table, &chosen.fit);
+        let times = self.motions.row_times();
+        let dof = self.motions.dof;
+        let windows = scan::contacts(
+            &self.table,
+            &times,
+            &residual,
+            &chosen.fit.weights,
+            self.force(),
+            &self.fitted,
+            4,
+        );
+        let found: Vec<(Vec<f64>, Vec<f64>)> = (0..dof)
+            .into_par_iter()
+            .map(|joint| {
+                if self.scales.speed[joint] <= self.scales.rest[joint] {
+                    return (Vec::new(), Vec::new());
+                }
+                let (table, motions) = (&self.table, &self.motions);
+                (
+                    scan::ripples(table, motions, &self.scales, joint, &residual[joint], &self.fitted, 3),
+                    scan::waves(table, motions, joint, &residual[joint], &self.fitted, 2),
+                )
+            })
+            .collect();
+        let mut new = scan::onsets(self, &chosen.fit.weights, &times, &residual);
+        for (from, to) in windows {
+            for round in [false, true] {
+                new.push((Cause::Contact, None, scan::contact_terms(from, to, round)));
+            }
+        }
+        for (joint, (ripples, waves)) in found.into_iter().enumerate() {
+            for periods in ripples {
+                let term = |cosine| Term::Ripple { joint, periods, cosine };
+                new.push((Cause::Ripple, Some(joint), vec![term(false), term(true)]));
+            }
+            for omega in waves {
+                let term = |cosine| Term::Wave { joint, omega, cosine };
+                new.push((Cause::Periodic, Some(joint), vec![term(false), term(true)]));
+            }
+        }
+        let missing: Vec<Term> = new
+            .iter()
+            .flat_map(|(_, _, terms)| terms.iter().copied())
+            .filter(|term| !self.table.terms.contains(term))
+            .collect();
+        self.table.add(&self.motions, &self.rigid, &self.scales, missing, None);
+        for (cause, joint, terms) in new {
+            self.add(cause, joint, terms);
+        }
+    }
+}

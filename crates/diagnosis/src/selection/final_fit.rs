@@ -1,0 +1,199 @@
+//! The last fit: about the arm that the named effects make, and without what does not prove itself.
+
+use torque::Corrected;
+
+use crate::findings::found::useless;
+use crate::findings::verdict::structured;
+use crate::regression::bootstrap::{Resampled, resample};
+use crate::search::candidate::Cause;
+use crate::search::problem::{Chosen, Problem};
+use crate::search::study::Study;
+use crate::selection::judge::{self, Judged};
+use crate::selection::naming::{Named, name};
+use crate::selection::predict::{augmented, errors};
+
+/// Fits the named effects for the last time: about the arm that they make, with the rows near reversals; drops what makes a
+/// joint's held-out error grow, what does not help there, and what might be zero.
+pub fn settled(study: &mut Study, judged: &mut Judged) -> Resampled {
+    loop {
+        settle(study, judged);
+        make_possible(study, judged);
+        let before = judged.named.set.len();
+
+        guard(study, judged);
+        prove(study, judged);
+
+        give_up(study, judged);
+        // What is left stands about another arm, and may harm without what went.
+        if judged.named.set.len() < before {
+            continue;
+        }
+        let resampled = resample(study, &judged.named);
+        match unclear(study, judged, &resampled) {
+            Some(unclear) => drop_name(study, judged, unclear),
+            None => return resampled,
+        }
+    }
+}
+
+/// Fits the named effects for the last time, about the arm that they make, whatever comes of them.
+pub fn as_given(study: &mut Study, judged: &mut Judged) -> Resampled {
+    settle(study, judged);
+    resample(study, &judged.named)
+}
+
+/// Takes one name out, or puts what it is a form of in its place, and fits the others anew.
+fn drop_name(study: &Study, judged: &mut Judged, candidate: usize) {
+    let products = study.products(|r| study.fitted[r]);
+    let problem = study.problem(&products);
+    judged.named = problem.without(&judged.named, candidate);
+    judged.members = judge::describe(study, &problem, &judged.named);
+}
+
+fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Judged, set: Vec<usize>) {
+    judged.named = problem.choose(set, &judged.named.fit.weights);
+    judged.members = judge::describe(study, problem, &judged.named);
+}
+
+/// Forms everything about the arm that the named effects make, and no other, with the rows near reversals, and fits anew.
+fn settle(study: &mut Study, judged: &mut Judged) {
+    let kept = study.settle(&judged.named.fit, &judged.candidates());
+    let named = judged.named.set.len();
+    let products = study.products(|r| study.fitted[r]);
+    refit(study, &study.problem(&products), judged, kept[..named].to_vec());
+    for (member, &number) in judged.nameless.iter_mut().zip(&kept[named..]) {
+        member.candidate = number;
+    }
+}
+
+/// Drops names that became impossible, until there are none.
+fn make_possible(study: &Study, judged: &mut Judged) {
+    let products = study.products(|r| study.fitted[r]);
+    let problem = study.problem(&products);
+    let impossible = |named: &Chosen| named.set.iter().copied().find(|&c| !problem.is_possible(c, &named.fit));
+    while let Some(candidate) = impossible(&judged.named) {
+        drop_name(study, judged, candidate);
+    }
+}
+
+/// Drops names that do not help to predict recordings they were not fitted to, until there are none.
+fn prove(study: &Study, judged: &mut Judged) {
+    let fitted = &study.fitted;
+    if fitted.iter().all(|&fitted| fitted) {
+        return;
+    }
+    let products = study.products(|r| fitted[r]);
+    let held = study.products(|r| !fitted[r]);
+    while let Some(useless) = useless(study, &products, &held, judged) {
+        drop_name(study, judged, useless);
+    }
+}
+
+/// Drops the names on joints that, for all of them, are still predicted worse than by a constant: what is measured there is
+/// something else.
+fn give_up(study: &Study, judged: &mut Judged) {
+    let is_hopeless = |joint: usize| {
+        let fit = errors(study, joint, &augmented(study, &judged.named, joint));
+        fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented) > 1.0
+    };
+    let hopeless: Vec<bool> = (0..study.motions.dof).map(is_hopeless).collect();
+    let stays = |&candidate: &usize| !study.candidates[candidate].joint.is_some_and(|joint| hopeless[joint]);
+    let set: Vec<usize> = judged.named.set.iter().copied().filter(stays).collect();
+    if set.len() < judged.named.set.len() {
+        let products = study.products(|r| study.fitted[r]);
+        refit(study, &study.problem(&products), judged, set);
+    }
+}
+
+/// The weakest of the names whose size might be zero, or is none that physics has.
+fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<usize> {
+    let is_unclear = |member: &&judge::Member| {
+        let named = name(study, resampled, member.candidate);
+        // With its sizes corrected it may be no physics any more: a level below zero.
+        let is_impossible = |named: &Named| Corrected::new(&study.arm, std::slice::from_ref(&named.effect)).is_err();
+        if named.iter().any(is_impossible) || is_part_of_the_rest(study, judged, member) {
+            return true;
+        }
+        named.first().is_some_and(|named| {
+            let effect = named.effect.name();
+            // A factor of one changes nothing.
+            let nothing = if effect.ends_with("_scale") { 1.0 } else { 0.0 };
+            let size = named.parameters.get(main_parameter(effect));
+            size.is_some_and(|size| size.ci95[0] <= nothing && nothing <= size.ci95[1])
+        })
+    };
+    let unclear = judged.members.iter().filter(is_unclear);
+    let weakest = unclear.min_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
+    Some(weakest.candidate)
+}
+
+/// Beside structure that has no name a constant must be as large as that, and a drive's inertia larger by this: both may be a
+/// part of it.
+const BESIDE_THE_REST: f64 = 1.25;
+
+/// Whether it is a constant or a drive's inertia no larger than what is left beside it with structure.
+fn is_part_of_the_rest(study: &Study, judged: &Judged, member: &judge::Member) -> bool {
+    let candidate = &study.candidates[member.candidate];
+    let factor = match candidate.cause {
+        Cause::TorqueOffset => 1.0,
+        Cause::RotorInertia => BESIDE_THE_REST,
+        _ => return false,
+    };
+    let Some(joint) = candidate.joint else { return false };
+    let nameless = judged.nameless.iter().map(|member| member.shares[joint]);
+    let left = structured(&errors(study, joint, &augmented(study, &judged.named, joint)));
+    factor * nameless.chain(left).fold(0.0, f64::max) > member.shares[joint]
+}
+
+/// The parameter that says how large an effect is.
+fn main_parameter(effect: &str) -> &'static str {
+    match effect {
+        "viscous_friction" | "quadratic_drag" => "coefficient",
+        "coulomb_friction" => "level",
+        "friction_asymmetry" => "positive",
+        "stribeck_friction" => "breakaway",
+        "load_dependent_friction" => "gain",
+        "thermal_drift" | "torque_ripple" => "amplitude",
+        "rotor_inertia" => "inertia",
+        "torque_scale" | "inertial_scale" => "factor",
+        "torque_offset" | "encoder_offset" => "offset",
+        "actuation_delay" => "delay",
+        "backlash" => "halfgap",
+        "payload" => "mass",
+        "link_inertial_error" => "relative",
+        "gravity_misalignment" => "angle",
+        "external_contact" => "force",
+        "joint_elasticity" | "spring" => "stiffness",
+        _ => "",
+    }
+}
+
+/// Drops findings until no joint's held-out error is larger than the nominal model's.
+fn guard(study: &Study, judged: &mut Judged) {
+    let fitted = study.fitted.clone();
+    let products = study.products(|r| fitted[r]);
+    let problem = study.problem(&products);
+    loop {
+        let nrmse = |chosen: &Chosen, joint: usize| {
+            let fit = errors(study, joint, &augmented(study, chosen, joint));
+            (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented)
+        };
+        let worse = (0..study.motions.dof).find(|&joint| match nrmse(&judged.named, joint) {
+            (Some(nominal), Some(augmented)) => judge::harms(nominal, augmented),
+            _ => false,
+        });
+        let Some(joint) = worse else { break };
+        let best = judged
+            .members
+            .iter()
+            .filter(|member| member.shares[joint] > 0.0)
+            .map(|member| {
+                let next = problem.choose(judged.named.others(member.candidate), &judged.named.fit.weights);
+                (nrmse(&next, joint).1.unwrap_or(f64::INFINITY), next)
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, next)) = best else { break };
+        judged.members = judge::describe(study, &problem, &next);
+        judged.named = next;
+    }
+}

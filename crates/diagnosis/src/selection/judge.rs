@@ -1,0 +1,364 @@
+//! Which of the chosen candidates deserve their name.
+
+use rayon::prelude::*;
+
+use crate::regression::fit::Products;
+use crate::search::candidate::Cause;
+use crate::search::physics::is_at_its_size;
+use crate::search::problem::{Chosen, Problem};
+use crate::search::study::Study;
+use crate::thresholds;
+
+/// A name must explain this much of a joint's torque spread …
+pub const LEAST_SHARE: f64 = 0.012;
+/// … and bring this much evidence (nats).
+pub const LEAST_EVIDENCE: f64 = 25.0;
+/// … or, over the ordinary cause that it is a form of, this much.
+const LEAST_BEYOND: f64 = 15.0;
+/// On the joint of a larger effect, it must be larger than this part of that effect: what is smaller may be its form's error …
+const BESIDE_A_LARGER: f64 = 0.1;
+/// … or, where that effect's form is certain, than this part.
+const BESIDE_A_CERTAIN: f64 = 0.05;
+/// Beside friction that grows with the load, a torque's scale must be larger than this part of it: both are a gain on the load,
+/// and what the load is, the drive's or the link's, is a matter of form.
+const BESIDE_LOADED_FRICTION: f64 = 0.3;
+/// Beside a link that is loose or sprung, a delay must be larger than this part of that: the link is late too, and what its
+/// simulation misses looks like more of it.
+const BESIDE_A_LOOSE_LINK: f64 = 0.5;
+/// A drive's inertia, which every drive has, must be this part of the joint's torque to be told.
+const LEAST_DRIVE: f64 = 0.01;
+/// Structure without a name must explain this much of a joint's torque spread …
+const LEAST_NAMELESS_SHARE: f64 = 0.012;
+/// … and this much of what the model as it was given misses …
+const LEAST_OF_MISMATCH: f64 = 0.05;
+/// … and bring this much evidence (nats).
+const LEAST_NAMELESS_EVIDENCE: f64 = 5.0;
+/// On a joint with unnamed structure a name must be so much larger than it.
+const BESIDE_NAMELESS: f64 = 1.5;
+
+/// What varies by less than this part of its mean is nearly constant: an offset, or friction of a joint that never turns back.
+const NEARLY_CONSTANT: f64 = 0.2;
+/// What does less than this part of a joint's torque does nothing.
+const IDLE: f64 = 0.002;
+/// What has no name must keep this part of its gain on held-out recordings.
+const HELD: f64 = 0.2;
+
+/// A chosen candidate and what it does.
+#[derive(Clone, Debug)]
+pub struct Member {
+    /// Its index.
+    pub candidate: usize,
+    /// The standard deviation of its torque over that of the joint's, training recordings, one a joint.
+    pub shares: Vec<f64>,
+    /// What the score loses without it (nats).
+    pub evidence: f64,
+}
+
+impl Member {
+    /// The largest of its shares.
+    pub fn share(&self) -> f64 {
+        self.shares.iter().copied().fold(0.0, f64::max)
+    }
+}
+
+/// Names and nameless.
+#[derive(Clone, Debug)]
+pub struct Judged {
+    /// The named candidates, refitted together.
+    pub named: Chosen,
+    /// What they do.
+    pub members: Vec<Member>,
+    /// What has structure and no name.
+    pub nameless: Vec<Member>,
+}
+
+impl Judged {
+    /// The named candidates, then the nameless.
+    pub fn candidates(&self) -> Vec<usize> {
+        let nameless = self.nameless.iter().map(|member| member.candidate);
+        self.named.set.iter().copied().chain(nameless).collect()
+    }
+}
+
+/// Judges `chosen`; `held` are the products of the held-out recordings, if there are any.
+pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut chosen: Chosen) -> Judged {
+    let problem = study.problem(products);
+    let off = |chosen: &Chosen| -> Option<usize> {
+        let is_off = |&c: &usize| !is_at_its_size(&study.candidates[c], &chosen.fit);
+        chosen.set.iter().copied().find(is_off)
+    };
+    while let Some(off) = off(&chosen) {
+        chosen = problem.without(&chosen, off);
+    }
+    let mut members;
+    if let Some(held) = held {
+        chosen = predicting(study, &problem, held, chosen);
+    }
+    loop {
+        members = describe(study, &problem, &chosen);
+        let Some(weak) = weakest(study, &members) else { break };
+        chosen = problem.without(&chosen, members[weak].candidate);
+    }
+    let (nameless, named): (Vec<Member>, Vec<Member>) = members
+        .into_iter()
+        .partition(|member| study.candidates[member.candidate].cause.name().is_none());
+    let mut kept = problem.choose(named.iter().map(|m| m.candidate).collect(), &chosen.fit.weights);
+    if !nameless.is_empty() {
+        // What has no name may have stood for something simple: for a constant only if nothing else is left.
+        let candidates = &study.candidates;
+        let simple: Vec<usize> = (0..candidates.len())
+            .filter(|&c| candidates[c].cause.is_simple())
+            .collect();
+        let left: Vec<Option<usize>> = beside(study, &problem, &problem.forward(kept.clone(), &simple), &nameless)
+            .iter()
+            .map(|member| candidates[member.candidate].joint)
+            .collect();
+        let mut allowed = simple;
+        allowed.retain(|&c| candidates[c].cause.is_ordinary() || !left.contains(&candidates[c].joint));
+        kept = problem.forward(kept, &allowed);
+    }
+    if let Some(held) = held {
+        kept = out_of_sample(study, &problem, held, kept);
+    }
+    // Without the nameless and the refused the rest may have become impossible.
+    while let Some(&bad) = kept.set.iter().find(|&&c| !problem.is_possible(c, &kept.fit)) {
+        let set = kept.others(bad);
+        kept = problem.choose(set, &kept.fit.weights);
+    }
+    let members = describe(study, &problem, &kept);
+    let nameless = beside(study, &problem, &kept, &nameless);
+    Judged {
+        named: kept,
+        members,
+        nameless,
+    }
+}
+
+/// The nameless that are still there beside what was `kept`, as large as they are beside it.
+fn beside(study: &Study, problem: &Problem<'_>, kept: &Chosen, nameless: &[Member]) -> Vec<Member> {
+    let mut set = kept.set.clone();
+    set.extend(nameless.iter().map(|member| member.candidate));
+    loop {
+        let all = problem.choose(set.clone(), &kept.fit.weights);
+        let mut members = describe(study, problem, &all);
+        members.retain(|member| !kept.set.contains(&member.candidate));
+        let fails = |member: &Member| {
+            let joint = study.candidates[member.candidate].joint.unwrap_or(0);
+            let mismatch = problem.products.power(joint).sqrt() / study.scales.torque[joint].max(1e-300);
+            member.share() < LEAST_NAMELESS_SHARE.max(LEAST_OF_MISMATCH * mismatch)
+                || member.evidence < LEAST_NAMELESS_EVIDENCE
+        };
+        let weak = members
+            .iter()
+            .filter(|m| fails(m))
+            .min_by(|a, b| a.evidence.total_cmp(&b.evidence));
+        match weak {
+            Some(weak) => set.retain(|&c| c != weak.candidate),
+            None => return members,
+        }
+    }
+}
+
+/// `chosen` without the nameless that do not predict recordings they were not fitted to. They may have stood for
+/// something simple, which is then looked for again.
+fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen: Chosen) -> Chosen {
+    let cause = |c: usize| study.candidates[c].cause;
+    let loss = |chosen: &Chosen| held.loss(&held.rss(&study.table, &chosen.fit.columns, &chosen.fit.coefficients));
+    let simple: Vec<usize> = (0..study.candidates.len()).filter(|&c| cause(c).is_simple()).collect();
+    loop {
+        let with = loss(&chosen);
+        let worst = chosen
+            .set
+            .par_iter()
+            .filter(|&&c| cause(c).name().is_none() && !cause(c).is_passing())
+            .map(|&c| {
+                let set: Vec<usize> = chosen.others(c);
+                let rest = problem.forward(problem.choose(set, &chosen.fit.weights), &simple);
+                let (outside, inside) = (loss(&rest) - with, rest.fit.loss - chosen.fit.loss);
+                let joint = study.candidates[c].joint.unwrap_or(0);
+                let length = held.evidence[joint] / problem.products.evidence[joint].max(1e-9);
+                (outside - HELD * length * inside, rest)
+            })
+            .collect::<Vec<_>>()
+            .into_iter()
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        match worst {
+            Some((gain, rest)) if gain < 0.0 => chosen = rest,
+            _ => return chosen,
+        }
+    }
+}
+
+/// Shares and evidence of all that is chosen.
+pub fn describe(study: &Study, problem: &Problem<'_>, chosen: &Chosen) -> Vec<Member> {
+    (0..chosen.set.len())
+        .into_par_iter()
+        .map(|k| {
+            let candidate = chosen.set[k];
+            let without = problem.without(chosen, candidate);
+            Member {
+                candidate,
+                shares: shares(study, chosen, candidate),
+                evidence: without.score - chosen.score,
+            }
+        })
+        .collect()
+}
+
+/// The standard deviation of a candidate's torque over the measured one's, on moving training rows, one a joint. What is
+/// nearly constant has none, so its size is taken.
+fn shares(study: &Study, chosen: &Chosen, candidate: usize) -> Vec<f64> {
+    let columns = &study.candidates[candidate].columns;
+    let values: Vec<f64> = columns.iter().map(|&column| chosen.fit.coefficient(column)).collect();
+    (0..study.motions.dof)
+        .map(|joint| {
+            let torque = study.table.torque(joint, columns, &values);
+            let rows = study.training_rows(joint);
+            let n = rows.len().max(1) as f64;
+            let mean = rows.iter().map(|&r| torque[r]).sum::<f64>() / n;
+            let variance = rows.iter().map(|&r| (torque[r] - mean).powi(2)).sum::<f64>() / n;
+            let size = if variance < (NEARLY_CONSTANT * mean).powi(2) {
+                mean.hypot(variance.sqrt())
+            } else {
+                variance.sqrt()
+            };
+            size / study.scales.torque[joint].max(1e-300)
+        })
+        .collect()
+}
+
+/// Whether a candidate does nothing in the held-out recordings, so that they do not say whether it predicts.
+pub fn is_idle(study: &Study, chosen: &Chosen, candidate: usize) -> bool {
+    let columns = &study.candidates[candidate].columns;
+    let values: Vec<f64> = columns.iter().map(|&column| chosen.fit.coefficient(column)).collect();
+    let rows = crate::selection::predict::rows_of(study, |recording| !study.fitted[recording]);
+    (0..study.motions.dof).all(|joint| {
+        let torque = study.table.torque(joint, columns, &values);
+        let moving = &study.table.joints[joint].moving;
+        let (mut power, mut count) = (0.0, 0.0);
+        for &row in rows.iter().filter(|&&row| moving[row]) {
+            power += torque[row] * torque[row];
+            count += 1.0;
+        }
+        (power / f64::max(count, 1.0)).sqrt() < IDLE * study.scales.torque[joint]
+    })
+}
+
+/// The member that deserves its place least, if one does not.
+fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
+    let cause = |member: &Member| study.candidates[member.candidate].cause;
+    let is_named = |member: &Member| cause(member).name().is_some();
+    // On each joint, the largest nameless structure and the largest of the effects that are not ordinary.
+    let dof = study.motions.dof;
+    let largest = |wanted: &dyn Fn(&Member) -> bool, joint: usize| -> f64 {
+        members
+            .iter()
+            .filter(|m| wanted(m))
+            .map(|m| m.shares[joint])
+            .fold(0.0, f64::max)
+    };
+    let fails = |member: &Member| -> bool {
+        let share = member.share();
+        let at = (0..dof)
+            .max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b]))
+            .unwrap_or(0);
+        if !is_named(member) {
+            let named = largest(&|m| is_named(m) && !cause(m).is_ordinary(), at);
+            return share < LEAST_NAMELESS_SHARE
+                || member.evidence < LEAST_NAMELESS_EVIDENCE
+                || share < BESIDE_A_LARGER * named;
+        }
+        let nameless = largest(&|m| !is_named(m), at);
+        if cause(member).is_ordinary() {
+            // Beside larger structure without a name a drive's inertia may be a part of that.
+            return cause(member) == Cause::RotorInertia && share < nameless.max(LEAST_DRIVE);
+        }
+        let needed = if cause(member).plain().is_some() {
+            LEAST_BEYOND
+        } else {
+            LEAST_EVIDENCE
+        };
+        // What acts on several joints need not stand out on all of them.
+        let stands_out = |joint: usize| {
+            let others = |certain: bool| {
+                let is_other = |m: &Member| {
+                    let cause = cause(m);
+                    let is_known = is_named(m) && !cause.is_ordinary() && cause.is_certain_in_form() == certain;
+                    m.candidate != member.candidate && is_known
+                };
+                largest(&is_other, joint)
+            };
+            let share = member.shares[joint];
+            let alike = match cause(member) {
+                Cause::TorqueScale => BESIDE_LOADED_FRICTION * largest(&|m| cause(m) == Cause::LoadDependent, joint),
+                Cause::Delay => {
+                    let loose = |m: &Member| matches!(cause(m), Cause::Backlash | Cause::Elasticity);
+                    BESIDE_A_LOOSE_LINK * largest(&loose, joint)
+                }
+                _ => 0.0,
+            };
+            share >= LEAST_SHARE
+                && share >= alike
+                && share >= BESIDE_A_LARGER * others(false)
+                && share >= BESIDE_A_CERTAIN * others(true)
+                && share >= BESIDE_NAMELESS * largest(&|m| !is_named(m), joint)
+        };
+        member.evidence < needed || !(0..dof).any(stands_out)
+    };
+    (0..members.len())
+        .filter(|&k| fails(&members[k]))
+        .min_by(|&a, &b| members[a].evidence.total_cmp(&members[b].evidence))
+}
+
+/// Whether an error (NRMSE) grows from `nominal` by more than what another joint's effect may do.
+pub fn harms(nominal: f64, with: f64) -> bool {
+    let harmless = if nominal < thresholds::EXPLAINED {
+        thresholds::HARMLESS
+    } else {
+        1e-9
+    };
+    with > nominal + harmless
+}
+
+/// Drops what does not predict recordings it was not fitted to, and what makes a joint's prediction worse than the nominal one.
+fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen: Chosen) -> Chosen {
+    let table = &study.table;
+    let rss = |chosen: &Chosen| held.rss(table, &chosen.fit.columns, &chosen.fit.coefficients);
+    loop {
+        let with = rss(&chosen);
+        // By how much the held-out loss grows without each.
+        let gains: Vec<(usize, f64, Vec<f64>)> = (0..chosen.set.len())
+            .into_par_iter()
+            .map(|k| {
+                let mut set = chosen.set.clone();
+                let removed = set.remove(k);
+                let without = rss(&problem.choose(set, &chosen.fit.weights));
+                (removed, held.loss(&without) - held.loss(&with), without)
+            })
+            .collect();
+        let exempt = |candidate: usize| {
+            study.candidates[candidate].cause == Cause::Contact || is_idle(study, &chosen, candidate)
+        };
+        let useless = gains
+            .iter()
+            .filter(|(candidate, gain, _)| !exempt(*candidate) && *gain < 0.0)
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        let harmful = || {
+            let joint = (0..with.len()).find(|&joint| {
+                let n = held.count[joint].max(1.0);
+                let spread = study.scales.torque[joint].max(1e-300);
+                let (nominal, with) = (held.power(joint).sqrt() / spread, (with[joint] / n).sqrt() / spread);
+                held.count[joint] > 0.0 && harms(nominal, with)
+            })?;
+            gains
+                .iter()
+                .filter(|(_, _, without)| without[joint] < with[joint])
+                .min_by(|a, b| a.2[joint].total_cmp(&b.2[joint]))
+        };
+        let Some(&(bad, ..)) = useless.or_else(harmful) else {
+            return chosen;
+        };
+        let set = chosen.others(bad);
+        chosen = problem.choose(set, &chosen.fit.weights);
+    }
+}

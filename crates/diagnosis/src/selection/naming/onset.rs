@@ -1,0 +1,101 @@
+//! When an effect set in, and within which times that is known.
+
+use super::Reader;
+use crate::findings::report::Parameter;
+
+/// A time for whose sake the fit is so much worse is outside the 95 % interval (nats): half the square of 1.96, and as much
+/// again for what residuals remember and the filter smears.
+const TOO_MUCH: f64 = 2.0 * 1.92;
+
+/// A push that sets in gently seems to begin later, by this part of its duration.
+const OF_A_PUSH: f64 = 0.1;
+
+impl Reader<'_> {
+    /// Notes when the candidate sets in, if it does not always act.
+    pub(super) fn onset(&mut self) -> Option<f64> {
+        let onset = self.study.terms(self.candidate).first()?.onset()?;
+        let (value, ci95) = self.likeliest_onset(onset);
+        let parameter = Parameter { value, ci95, unit: "s" };
+        self.parameters.insert("onset", parameter);
+        Some(value)
+    }
+
+    /// Notes when a push of a `duration` (s) begins.
+    pub(super) fn start(&mut self, start: f64, duration: f64) {
+        let half = OF_A_PUSH * duration;
+        let parameter = Parameter {
+            value: start,
+            ci95: [start - half, start + half],
+            unit: "s",
+        };
+        self.parameters.insert("start", parameter);
+    }
+
+    /// The likeliest onset (s), and the times about it at which the fit would not be clearly worse, with the sizes found from
+    /// `near` on, by all rows, those near reversals too. Were it earlier or later, the effect's torque on the rows between would
+    /// be added in vain or left over: where there is none, at rest or between recordings, nothing tells.
+    fn likeliest_onset(&self, near: f64) -> (f64, [f64; 2]) {
+        let study = self.study;
+        let table = &study.table;
+        let fitted = study.products(|recording| study.fitted[recording]);
+        let columns = &study.candidates[self.candidate].columns;
+        let value = |column: usize| self.resampled.column(column).map(|at| self.resampled.estimate[at]);
+        // What it would do if it always acted.
+        let (always, sizes): (Vec<usize>, Vec<f64>) = columns
+            .iter()
+            .filter_map(|&column| {
+                let term = table.terms[column].always();
+                let place = table.terms.iter().position(|&known| known == term)?;
+                Some((place, value(column)?))
+            })
+            .unzip();
+        let all = &self.resampled.columns;
+        let model = &self.resampled.estimate[..all.len()];
+        let joints: Vec<(usize, Vec<f64>, Vec<f64>, f64)> = (0..table.dof())
+            .filter(|&joint| fitted.count[joint] > 0.0)
+            .map(|joint| {
+                let model = table.torque(joint, all, model);
+                let y = table.joints[joint].y.iter();
+                let left: Vec<f64> = y.zip(&model).map(|(y, m)| y - m).collect();
+                let rows = study.training_rows(joint);
+                let power = rows.iter().map(|&row| left[row].powi(2)).sum::<f64>() / rows.len().max(1) as f64;
+                let evidence = fitted.evidence[joint] / fitted.count[joint];
+                let weight = 0.5 * evidence / power.max(fitted.floor[joint]).max(1e-300);
+                (joint, table.torque(joint, &always, &sizes), left, weight)
+            })
+            .collect();
+        // By how much a row's misfit grows (nats) if the effect also acts on it (−1), or does not (1).
+        let growth = |row: usize, sign: f64| -> f64 {
+            let acting = joints.iter().filter(|(joint, ..)| table.joints[*joint].moving[row]);
+            acting
+                .map(|(_, torque, left, weight)| weight * torque[row] * (2.0 * sign * left[row] + torque[row]))
+                .sum()
+        };
+        let times = study.motions.row_times();
+        let mut rows: Vec<usize> = study.training().collect();
+        rows.sort_by(|&a, &b| times[a].total_cmp(&times[b]));
+        let now = rows.partition_point(|&row| times[row] < near);
+        // The misfit if it acts from the k-th row on.
+        let mut misfit = vec![0.0; rows.len() + 1];
+        for k in (0..now).rev() {
+            misfit[k] = misfit[k + 1] + growth(rows[k], -1.0);
+        }
+        for k in now..rows.len() {
+            misfit[k + 1] = misfit[k] + growth(rows[k], 1.0);
+        }
+        let inner = 1..rows.len().max(2);
+        let best = inner
+            .clone()
+            .min_by(|&a, &b| misfit[a].total_cmp(&misfit[b]))
+            .unwrap_or(now);
+        let is_near = |k: &usize| misfit[*k] < misfit[best] + TOO_MUCH;
+        let first = (1..=best).rev().take_while(is_near).last().unwrap_or(best);
+        let last = (best..rows.len()).take_while(is_near).last().unwrap_or(best);
+        let time = |k: usize| rows.get(k).map_or(near, |&row| times[row]);
+        let likeliest = if best == now { near } else { time(best) };
+        (
+            likeliest,
+            [time(first.saturating_sub(1)).min(likeliest), time(last).max(likeliest)],
+        )
+    }
+}

@@ -1,0 +1,148 @@
+//! Errors of prediction on all rows, at rest as in motion.
+
+use std::ops::Range;
+
+use crate::findings::report::JointFit;
+use crate::regression::term::Term;
+use crate::search::problem::Chosen;
+use crate::search::study::Study;
+
+/// With fewer moving rows the error is told over all.
+pub const LEAST_ROWS: usize = 10;
+/// The lag of the residual's autocorrelation (s): beyond the filter's memory.
+const LAG: f64 = 0.1;
+
+/// What the model with named effects leaves on all rows of one joint. At rest dry friction may hold any torque within
+/// its cone: the error is the distance to it.
+pub fn augmented(study: &Study, named: &Chosen, joint: usize) -> Vec<f64> {
+    let table = &study.table;
+    let fit = &named.fit;
+    let model = table.torque(joint, &fit.columns, &fit.coefficients);
+    let mut residual: Vec<f64> = table.joints[joint].y.iter().zip(&model).map(|(y, m)| y - m).collect();
+    let dry: Vec<(usize, f64)> = fit
+        .columns
+        .iter()
+        .zip(&fit.coefficients)
+        .filter(|&(&column, _)| is_dry(table.terms[column], joint))
+        .map(|(&column, &value)| (column, value))
+        .collect();
+    if dry.is_empty() {
+        return residual;
+    }
+    let (columns, values): (Vec<usize>, Vec<f64>) = dry.iter().copied().unzip();
+    let as_moving = table.torque(joint, &columns, &values);
+    let rests = study.resting_rows(joint);
+    let (loads, times) = study.loads_and_times(joint, &rests);
+    for ((&row, load), time) in rests.iter().zip(loads).zip(times) {
+        let (mut cone, mut middle) = (0.0, 0.0);
+        for &(column, value) in &dry {
+            match table.terms[column] {
+                Term::LoadSign(_) => cone += value * load.abs(),
+                Term::Warm { time_constant, .. } => cone += value * (-time / time_constant).exp(),
+                Term::AbsSign(_) => middle += value,
+                _ => cone += value,
+            }
+        }
+        let free = residual[row] + as_moving[row] - middle;
+        residual[row] = free - free.clamp(-cone.abs(), cone.abs());
+    }
+    residual
+}
+
+/// Whether a term is dry friction of a joint.
+fn is_dry(term: Term, joint: usize) -> bool {
+    let dry = matches!(
+        term,
+        Term::Sign(_) | Term::AbsSign(_) | Term::Stribeck { .. } | Term::LoadSign(_) | Term::Warm { .. }
+    );
+    dry && term.joint() == Some(joint)
+}
+
+fn rms(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (mut sum, mut count) = (0.0, 0);
+    for value in values {
+        sum += value * value;
+        count += 1;
+    }
+    (count > 0).then(|| (sum / f64::from(count)).sqrt())
+}
+
+/// The standard deviation of a signal on some rows.
+pub fn deviation(signal: &[f64], rows: &[usize]) -> f64 {
+    let n = rows.len().max(1) as f64;
+    let mean = rows.iter().map(|&row| signal[row]).sum::<f64>() / n;
+    (rows.iter().map(|&row| (signal[row] - mean).powi(2)).sum::<f64>() / n).sqrt()
+}
+
+/// The rows of the recordings that `chosen` picks.
+pub fn rows_of(study: &Study, chosen: impl Fn(usize) -> bool) -> Vec<usize> {
+    let ranges: Vec<Range<usize>> = study
+        .table
+        .rows
+        .iter()
+        .enumerate()
+        .filter(|(r, _)| chosen(*r))
+        .map(|(_, r)| r.clone())
+        .collect();
+    ranges.into_iter().flatten().collect()
+}
+
+/// The errors on `joint`, nominal and `augmented`.
+pub fn errors(study: &Study, joint: usize, augmented: &[f64]) -> JointFit {
+    let nominal = &study.nominal[joint];
+    let tau = &study.measured[joint];
+    let moving = &study.table.joints[joint].moving;
+    let mut resting = vec![false; nominal.len()];
+    for row in study.resting_rows(joint) {
+        resting[row] = true;
+    }
+    let held = rows_of(study, |r| !study.fitted[r]);
+    let train = rows_of(study, |r| study.fitted[r]);
+    // Of a dead channel there is no relative error.
+    let over_spread =
+        |error: f64, spread: f64| (study.scales.torque[joint] > 0.0 && spread > 0.0).then(|| error / spread);
+    let over = |rows: &[usize], keep: &[bool], signal: &[f64]| -> Option<f64> {
+        let kept: Vec<usize> = rows.iter().copied().filter(|&row| keep[row]).collect();
+        let error = rms(kept.iter().map(|&row| signal[row]))?;
+        over_spread(error, deviation(tau, &kept))
+    };
+    // A joint at rest may need one and the same torque all the time: the spread is that of all rows.
+    let at_rest = |signal: &[f64]| -> Option<f64> {
+        let error = rms(held.iter().filter(|&&row| resting[row]).map(|&row| signal[row]))?;
+        over_spread(error, deviation(tau, &held))
+    };
+    // The error is told where the joint moves; at rest friction, a brake or the last move decide what is measured.
+    let moves = held.iter().filter(|&&row| moving[row]).count() >= LEAST_ROWS;
+    let counted = if moves {
+        moving.clone()
+    } else {
+        vec![true; nominal.len()]
+    };
+    JointFit {
+        torque_std: deviation(tau, &train),
+        noise: study.noise[joint].sqrt(),
+        held_out_nrmse_nominal: over(&held, &counted, nominal),
+        held_out_nrmse_augmented: over(&held, &counted, augmented),
+        held_out_nrmse_learned: None,
+        held_out_nrmse_resting: at_rest(augmented),
+        held_out_nrmse_resting_nominal: at_rest(nominal),
+        train_nrmse_nominal: over(&train, moving, nominal).unwrap_or(0.0),
+        train_nrmse_augmented: over(&train, moving, augmented).unwrap_or(0.0),
+        residual_autocorrelation: autocorrelation(study, augmented, moving),
+        residual_autocorrelation_nominal: autocorrelation(study, nominal, moving),
+    }
+}
+
+fn autocorrelation(study: &Study, signal: &[f64], moving: &[bool]) -> f64 {
+    let (mut product, mut power) = (0.0, 0.0);
+    for (recording, rows) in study.table.rows.iter().enumerate() {
+        let lag = (LAG / study.seconds[recording]).round().max(1.0) as usize;
+        for row in rows.start..rows.end.saturating_sub(lag) {
+            if moving[row] && moving[row + lag] {
+                product += signal[row] * signal[row + lag];
+                power += 0.5 * (signal[row].powi(2) + signal[row + lag].powi(2));
+            }
+        }
+    }
+    if power > 0.0 { product / power } else { 0.0 }
+}
