@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use proof::{Score, Target};
+use scoring::{Score, Target};
 
 use super::command::percent;
 use super::experiments;

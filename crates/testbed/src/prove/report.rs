@@ -1,6 +1,6 @@
 //! What a proof says, as blocks that the page and the Markdown file are both made of.
 
-use proof::{Counted, Fate, Name, Score};
+use scoring::{Counted, Fate, Name, Score};
 
 use super::command::{Proof, figure, percent, wanted};
 use super::{disturbance, experiments, reasons, results, tracking};
@@ -208,7 +208,7 @@ fn concealed(proof: &Proof) -> Vec<Block> {
             proof.seal.source,
             &proof.seal.whole[..12],
             score.concealed.len(),
-            percent(proof::LEAST_SHARE),
+            percent(scoring::LEAST_SHARE),
         )),
         text(
             "Before the first diagnosis the SHA-256 of the program, of every recording and URDF and of every truth was written (`seal.json`, \

@@ -6,8 +6,9 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow, bail, ensure};
 use arm::{Arm, JointKind};
-use proof::{Denied, EFFECTS, Evidence, Published, PublishedNumber, Said, compared_parameters, sha256};
+use faults::{EFFECTS, sha256};
 use recording::{nearest, toml_reason};
+use scoring::{Denied, Evidence, Published, PublishedNumber, Said, compared_parameters};
 use serde::Deserialize;
 use toml::Spanned;
 

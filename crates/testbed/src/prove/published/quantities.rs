@@ -70,7 +70,8 @@ pub fn si(effect: &str, parameter: &str, kind: Option<JointKind>, unit: &str) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proof::{EFFECTS, compared_parameters};
+    use faults::EFFECTS;
+    use scoring::compared_parameters;
 
     #[test]
     fn units_are_those_of_the_joint() {

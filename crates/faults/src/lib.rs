@@ -1,0 +1,38 @@
+//! Injected faults: recordings of a simulated arm with faults that its URDF leaves out, and the sealed truth about them.
+//!
+//! A [`Robot`] is what its user believes. A [`Campaign`] decides which cases there are; [`conceal_case`] draws one, [`conceal_effects`]
+//! takes what it is given: either drives the plant in a 1 kHz position loop with faults in it, records what encoders and drives report,
+//! and keeps the [`Truth`]. [`write_case`] puts the two in different places, a [`Seal`] holds their hashes.
+
+mod again;
+mod campaign;
+mod case;
+mod conceal;
+mod draw;
+mod error;
+mod law;
+mod machine;
+mod motion;
+mod physics;
+mod robot;
+mod seal;
+mod sensor;
+mod share;
+#[cfg(test)]
+mod test_robots;
+mod tracking;
+mod truth;
+
+pub use again::record_again;
+pub use campaign::{Campaign, CasePlan};
+pub use case::write_case;
+pub use conceal::{Concealment, RATES, Settings, conceal_case, conceal_effects};
+pub use draw::FAMILIES;
+pub use error::FaultError;
+pub use machine::{Inverse, LinkMotion, Seen, VelocityFilter};
+pub use motion::{DURATION, PAUSE};
+pub use physics::{EFFECTS, UNKNOWN, form_parameters, forms};
+pub use robot::Robot;
+pub use seal::{Program, Seal, SealError, SealedCase, sha256, sha256_of};
+pub use tracking::{CaseMachine, Driven};
+pub use truth::{Injected, Truth};
