@@ -4,8 +4,7 @@ use rand::seq::{IndexedRandom, SliceRandom};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::draw::FAMILIES;
-use crate::physics::UNKNOWN;
+use crate::fault::{Fault, families, outside};
 use crate::robot::Robot;
 
 /// Cases drawn from a seed: a third hold nothing but ordinary friction, a tenth something outside the catalogue, the others one to
@@ -36,10 +35,6 @@ pub struct CasePlan {
     pub effects: Vec<String>,
 }
 
-/// Effects that all sit between a command and its link: one of them at a time can be told.
-const DRIVE: [&str; 4] = ["joint_elasticity", "backlash", "torque_saturation", "actuation_delay"];
-const SCALES: [&str; 2] = ["inertial_scale", "torque_scale"];
-
 impl Campaign {
     /// The plan of case `index`, or of none if there are not so many.
     pub fn case(&self, index: usize) -> Option<CasePlan> {
@@ -50,11 +45,11 @@ impl Campaign {
     pub fn plans(&self) -> Vec<CasePlan> {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         let count = |part: f64| (self.cases as f64 * part).round() as usize;
-        let (ordinary, outside) = (count(1.0 / 3.0), count(0.1));
-        let mut unknown = Deck::new(&UNKNOWN);
-        let mut families = Deck::new(FAMILIES);
+        let (ordinary, unknown) = (count(1.0 / 3.0), count(0.1));
+        let mut outside = Deck::new(outside());
+        let mut families = Deck::new(families());
         let mut effects: Vec<Vec<String>> = vec![Vec::new(); ordinary];
-        effects.extend((0..outside).map(|_| vec![unknown.next(&mut random).to_owned()]));
+        effects.extend((0..unknown).map(|_| vec![outside.next(&mut random).to_owned()]));
         while effects.len() < self.cases {
             let size = *[1, 2, 2, 3].choose(&mut random).unwrap_or(&1);
             effects.push(families.hand(size, &mut random));
@@ -105,9 +100,9 @@ struct Deck {
 }
 
 impl Deck {
-    fn new(names: &[&'static str]) -> Self {
+    fn new(names: Vec<&'static str>) -> Self {
         Self {
-            names: names.to_vec(),
+            names,
             left: Vec::new(),
         }
     }
@@ -132,8 +127,9 @@ impl Deck {
         let mut place = 0;
         while hand.len() < size {
             let next = self.left[place];
-            let clashes = |group: &[&str]| group.contains(&next) && hand.iter().any(|held| group.contains(held));
-            if hand.contains(&next) || clashes(&DRIVE) || clashes(&SCALES) {
+            let alike = |name: &str| Fault::named(name).and_then(|fault| fault.alone_among);
+            let clashes = |held: &&str| *held == next || (alike(next).is_some() && alike(held) == alike(next));
+            if hand.iter().any(clashes) {
                 place += 1;
             } else {
                 hand.push(self.left.remove(place));
@@ -160,16 +156,16 @@ mod tests {
         );
         assert_eq!(count(&|plan| plan.hard), 150);
         assert_eq!(count(&|plan| !plan.background_friction), 75);
-        let mut families: BTreeMap<&str, usize> = BTreeMap::new();
+        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
         for name in plans.iter().flat_map(|plan| &plan.effects) {
-            *families.entry(name).or_default() += 1;
+            *counts.entry(name).or_default() += 1;
         }
-        assert_eq!(families.len(), FAMILIES.len() + UNKNOWN.len());
+        assert_eq!(counts.len(), families().len() + outside().len());
         let of = |names: &[&str]| {
-            let counts: Vec<usize> = names.iter().map(|name| families[name]).collect();
-            counts.iter().max().unwrap_or(&0) - counts.iter().min().unwrap_or(&0)
+            let list = || names.iter().map(|name| counts[name]);
+            list().max().unwrap_or(0) - list().min().unwrap_or(0)
         };
-        assert!(of(&UNKNOWN) <= 1 && of(FAMILIES) <= 3, "{families:?}");
+        assert!(of(&outside()) <= 1 && of(&families()) <= 3, "{counts:?}");
     }
 
     #[test]

@@ -6,9 +6,10 @@ use rand_chacha::ChaCha8Rng;
 use recording::Recording;
 
 use crate::campaign::CasePlan;
-use crate::draw::{is_dry, ordinary_friction};
+use crate::draw::ordinary_friction;
 use crate::error::FaultError;
-use crate::machine::{LONGEST_DELAY, Machine, Run, TICK};
+use crate::fault::Leaves;
+use crate::machine::{Machine, Run, TICK};
 use crate::motion::{LEAD, Reference, excitation, pick_and_place, start};
 use crate::robot::Robot;
 use crate::sensor::Sensors;
@@ -150,7 +151,9 @@ impl<'a> Stage<'a> {
         };
         let mut background = Vec::new();
         for (joint, (coulomb, viscous)) in self.robot.arm().joints().iter().zip(levels) {
-            let own = |effect: &Injected| effect.joint.as_deref() == Some(&joint.name) && is_dry(&effect.effect);
+            let own = |effect: &Injected| {
+                effect.joint.as_deref() == Some(&joint.name) && effect.leaves() == Leaves::DryFriction
+            };
             // A drifting or loaded friction stays what it is; the plain one is in it.
             if !effects.iter().any(own) {
                 background.push(Injected::new("coulomb_friction", Some(&joint.name)).with("level", *coulomb));
@@ -206,7 +209,8 @@ impl<'a> Stage<'a> {
         for reference in &self.training[without.len()..] {
             without.push(self.torques(&self.run(effects, Some(which), reference)?).0);
         }
-        Ok(share(with, &without, effects[which].effect == "torque_offset"))
+        let is_constant = effects[which].fault().is_some_and(|fault| fault.is_constant);
+        Ok(share(with, &without, is_constant))
     }
 
     fn finish(&self, name: &str, seed: u64, effects: Vec<Injected>, runs: &[Run]) -> Concealment {
@@ -295,9 +299,6 @@ pub fn conceal_effects(
         }
         if effects[..k].iter().any(|other| other.is_again(effect)) {
             return fail("is given twice on one joint; one is one effect".into());
-        }
-        if effect.number("delay").is_some_and(|delay| delay > LONGEST_DELAY) {
-            return fail(format!("its delay is above {LONGEST_DELAY} s"));
         }
     }
     let (runs, torques) = stage.run_all(&effects)?;

@@ -4,8 +4,8 @@ use arm::{Arm, Matrix6xX, Workspace};
 use plant::{Plant, PlantOptions};
 
 use crate::error::FaultError;
-use crate::law::{At, resistance};
 use crate::motion::Reference;
+use crate::part::{At, DryAt, resistance};
 use crate::robot::Robot;
 use crate::truth::Injected;
 
@@ -57,7 +57,7 @@ impl<'a> Machine<'a> {
         let arm = robot.driven();
         let mut parts = Vec::new();
         for (i, effect) in effects.iter().enumerate() {
-            parts.extend(crate::physics::parts(effect, &arm, Some(i) != without)?);
+            parts.extend(crate::fault::parts(effect, &arm, Some(i) != without)?);
         }
         Ok(Self {
             robot,
@@ -291,8 +291,16 @@ impl<'a> Simulation<'a> {
     /// What the drive of joint `j` puts on its link; its dry friction, where it is the plant's, goes to the levels.
     fn joint_torque(&mut self, j: usize, time: f64) -> f64 {
         let applied = self.drives[j].applied(&self.parts.drive_at(j, time));
-        let (parts, loads) = (self.parts, self.loads[j]);
-        let dry = |v: f64| resistance(parts.dry(j, time), v, time, loads);
+        let (parts, [rigid_load, drive_load]) = (self.parts, self.loads[j]);
+        let dry = |velocity: f64| {
+            let at = DryAt {
+                velocity,
+                time,
+                rigid_load,
+                drive_load,
+            };
+            resistance(parts.dry(j, time), &at)
+        };
         let smooth = |q: f64, v: f64| parts.smooth(j, time).map(|law| law.torque(q, v)).sum::<f64>();
         let (q, v) = (self.plant.q()[j], self.plant.qd()[j]);
         let inner = match &mut self.rotors[j] {

@@ -156,6 +156,11 @@ impl Robot {
     }
 }
 
+/// Whether there are two joints at least.
+pub(crate) fn has_another_joint(robot: &Robot) -> bool {
+    robot.arm().dof() > 1
+}
+
 /// Zero, where the joint has room about it; else the middle of its range.
 fn home(joint: &arm::Joint) -> f64 {
     let (lower, upper) = (joint.limits.lower, joint.limits.upper);

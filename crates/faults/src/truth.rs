@@ -2,7 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use arm::Arm;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::error::FaultError;
+use crate::fault::{Fault, Leaves, parts};
 
 /// The truth about one case, a JSON file of its own beside the recordings' folder.
 ///
@@ -38,7 +43,7 @@ pub struct Injected {
     pub joint: Option<String>,
     /// The catalogue's parameters (SI), by name, as far as they say what the form in use does.
     #[serde(flatten)]
-    pub parameters: BTreeMap<String, serde_json::Value>,
+    pub parameters: BTreeMap<String, Value>,
     /// The functional form, where it is not the textbook's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub form: Option<String>,
@@ -52,24 +57,62 @@ pub struct Injected {
 }
 
 impl Injected {
-    /// The catalogue's name, also of truths that were written under another.
-    pub fn name(&self) -> &str {
-        match self.effect.as_str() {
-            "link_mass_error" => "link_inertial_error",
-            "gravity_tilt" => "gravity_misalignment",
-            name => name,
+    /// An effect on a joint, or on the whole arm, without parameters.
+    pub fn new(effect: &str, joint: Option<&str>) -> Self {
+        Self {
+            effect: effect.to_owned(),
+            joint: joint.map(str::to_owned),
+            parameters: BTreeMap::new(),
+            form: None,
+            onset: None,
+            expressed_share: None,
         }
     }
 
+    /// With a parameter.
+    #[must_use]
+    pub fn with(mut self, name: &str, value: impl Into<Value>) -> Self {
+        self.parameters.insert(name.to_owned(), value.into());
+        self
+    }
+
+    /// In another functional form than the textbook's.
+    #[must_use]
+    pub fn formed(mut self, form: &str) -> Self {
+        self.form = Some(form.to_owned());
+        self
+    }
+
+    /// A parameter that is a number.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        self.parameters.get(name).and_then(Value::as_f64)
+    }
+
+    /// Refuses what cannot be injected into `arm`.
+    ///
+    /// # Errors
+    /// [`FaultError::Effect`], with the effect, what is wrong and the remedy.
+    pub fn check(&self, arm: &Arm) -> Result<(), FaultError> {
+        parts(self, arm, true).map(|_| ())
+    }
+
+    /// What is known of its kind, if there is such a fault.
+    pub(crate) fn fault(&self) -> Option<&'static Fault> {
+        Fault::named(&self.effect)
+    }
+
+    /// What stays of it when it is taken away.
+    pub(crate) fn leaves(&self) -> Leaves {
+        self.fault().map_or(Leaves::Nothing, |fault| fault.leaves)
+    }
+
     /// Whether `other` is the same effect on the same joint (with the same other joint), from the start or from an onset on as it is.
-    /// Pushes and ripples there may be several.
     pub(crate) fn is_again(&self, other: &Self) -> bool {
-        let about = |effect: &Self| {
-            let (joint, with) = (effect.joint.clone(), effect.parameters.get("other").cloned());
-            (effect.name().to_owned(), joint, with, effect.onset.is_some())
-        };
-        let several = ["external_contact", "torque_ripple"].contains(&self.name()) || self.is_outside_the_catalogue();
-        !several && about(self) == about(other)
+        let with = |injected: &Self| injected.parameters.get("other").cloned();
+        let is_same = self.effect == other.effect && self.joint == other.joint && with(self) == with(other);
+        is_same
+            && self.onset.is_some() == other.onset.is_some()
+            && self.fault().is_some_and(|fault| !fault.may_be_several)
     }
 
     /// Whether no name of the catalogue fits it.

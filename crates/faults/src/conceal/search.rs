@@ -2,14 +2,15 @@
 
 use rand::Rng;
 use rand::seq::IndexedRandom;
+use rand_chacha::ChaCha8Rng;
 
 use super::Stage;
 use crate::campaign::CasePlan;
-use crate::draw::{FAMILIES, Scales, is_sized, resize};
+use crate::draw::Scales;
 use crate::error::FaultError;
+use crate::fault::{Fault, Leaves, Size, families, outside};
 use crate::machine::Run;
 use crate::motion::{DURATION, LEAD, Reference, start};
-use crate::physics::UNKNOWN;
 use crate::share::{Torques, share};
 use crate::truth::Injected;
 
@@ -39,7 +40,7 @@ struct Base {
 pub(super) fn search(
     stage: &Stage<'_>,
     plan: &CasePlan,
-    random: &mut impl Rng,
+    random: &mut ChaCha8Rng,
 ) -> Result<(Vec<Injected>, Vec<Run>), FaultError> {
     let base = base(stage)?;
     let mut names = plan.effects.clone();
@@ -47,8 +48,9 @@ pub(super) fn search(
         if attempt >= CASES / 2 {
             // What this robot cannot show gives way to what it can.
             for name in &mut names {
-                let known: &[&str] = if name.ends_with("_unknown") { &UNKNOWN } else { FAMILIES };
-                *name = known.choose(random).copied().unwrap_or("torque_offset").to_owned();
+                let is_outside = Fault::named(name).is_some_and(|fault| fault.is_outside);
+                let known = if is_outside { outside() } else { families() };
+                *name = known.choose(random).copied().unwrap_or(name).to_owned();
             }
             names.sort_unstable();
             names.dedup();
@@ -118,7 +120,7 @@ fn draw_all(
     plan: &CasePlan,
     names: &[String],
     base: &Base,
-    random: &mut impl Rng,
+    random: &mut ChaCha8Rng,
 ) -> Result<Option<Vec<Injected>>, FaultError> {
     let coulomb: Vec<f64> = match &stage.friction {
         Some((levels, _)) => levels.iter().map(|(coulomb, _)| *coulomb).collect(),
@@ -134,9 +136,8 @@ fn draw_all(
     };
     let mut effects: Vec<Injected> = Vec::new();
     for name in names {
-        if !scales.can_have(name) {
-            return Ok(None);
-        }
+        let known = Fault::named(name).filter(|fault| (fault.can_be_on)(stage.robot));
+        let Some(fault) = known else { return Ok(None) };
         let joints = stage.robot.arm().joints();
         let used: Vec<usize> = (0..joints.len())
             .filter(|&j| {
@@ -147,9 +148,9 @@ fn draw_all(
             .collect();
         let mut found = None;
         for _ in 0..DRAWS {
-            let mut effect = scales.draw(name, &used, random);
+            let mut effect = scales.draw(fault, &used, random);
             let target = target(plan.hard, random);
-            if fit(stage, &mut effect, target, base)? {
+            if fit(stage, fault, &mut effect, target, base)? {
                 found = Some(effect);
                 break;
             }
@@ -161,13 +162,13 @@ fn draw_all(
 }
 
 /// The share that an effect is to have where its size is free.
-fn target(hard: bool, random: &mut impl Rng) -> f64 {
+fn target(hard: bool, random: &mut ChaCha8Rng) -> f64 {
     let (least, most): (f64, f64) = if hard { (0.03, 0.35) } else { (0.035, 0.5) };
     random.random_range(least.ln()..most.ln()).exp()
 }
 
 /// Brings `effect` near its target share, on one recording and alone; whether it shows there.
-fn fit(stage: &Stage<'_>, effect: &mut Injected, target: f64, base: &Base) -> Result<bool, FaultError> {
+fn fit(stage: &Stage<'_>, fault: &Fault, effect: &mut Injected, target: f64, base: &Base) -> Result<bool, FaultError> {
     // Its own time is not what its size is about.
     let onset = effect.onset.take();
     let reference = match effect.number("start") {
@@ -186,28 +187,27 @@ fn fit(stage: &Stage<'_>, effect: &mut Injected, target: f64, base: &Base) -> Re
     } else {
         base.torques.clone()
     };
-    let constant = effect.effect == "torque_offset";
-    let free = is_sized(&effect.effect);
+    let free = !matches!(fault.size, Size::AsDrawn);
     let mut shows = false;
     for attempt in 0..2 {
         let with = match run(effect, None) {
             Ok(run) if is_quiet(stage, std::slice::from_ref(effect), &run, base.above) => stage.torques(&run).0,
             Ok(_) => return Ok(false),
             Err(error) if is_unsound(&error) && free && attempt == 0 => {
-                resize(effect, 0.3);
+                fault.resize(effect, 0.3);
                 continue;
             }
             Err(error) if is_unsound(&error) => return Ok(false),
             Err(error) => return Err(error),
         };
-        let share = share(&[with], std::slice::from_ref(&without), constant);
+        let share = share(&[with], std::slice::from_ref(&without), fault.is_constant);
         shows = (SHARES.0..=SHARES.1).contains(&share);
         let off = (target / share.max(1e-4)).clamp(0.1, 10.0);
         if !free || off.ln().abs() < 0.7 {
             break;
         }
         // The share is not proportional to the size: it is in its own denominator.
-        resize(effect, off.powf(0.9));
+        fault.resize(effect, off.powf(0.9));
     }
     effect.onset = onset;
     Ok(shows)
@@ -215,7 +215,7 @@ fn fit(stage: &Stage<'_>, effect: &mut Injected, target: f64, base: &Base) -> Re
 
 /// Whether the machine without the effect is not the one with ordinary friction alone.
 fn leaves_more_than_the_base(effect: &Injected) -> bool {
-    crate::draw::is_dry(&effect.effect) || ["joint_elasticity", "backlash"].contains(&effect.effect.as_str())
+    effect.leaves() != Leaves::Nothing
 }
 
 /// Whether another draw may be sound.
@@ -228,7 +228,7 @@ fn is_unsound(error: &FaultError) -> bool {
 
 /// Whether the loop does not swing.
 fn is_quiet(stage: &Stage<'_>, effects: &[Injected], run: &Run, base: f64) -> bool {
-    let gapped = effects.iter().any(|effect| effect.effect == "backlash");
-    let most = if gapped { OSCILLATION.1 } else { OSCILLATION.0 };
+    let rattles = effects.iter().filter_map(Injected::fault).any(|fault| fault.rattles);
+    let most = if rattles { OSCILLATION.1 } else { OSCILLATION.0 };
     stage.torques(run).1 <= most + base
 }

@@ -2,7 +2,7 @@
 
 use super::TICK;
 use super::parts::DriveNow;
-use crate::physics::Connection;
+use crate::part::Connection;
 
 /// The drives' velocity filter (Hz).
 const VELOCITY_FILTER: f64 = 40.0;

@@ -3,8 +3,7 @@
 use arm::{Arm, Workspace};
 
 use super::{LOAD_FILTER, Machine, TICK};
-use crate::law::{At, resistance};
-use crate::physics::Connection;
+use crate::part::{At, Connection, DryAt, resistance};
 
 /// A motion of the links at ticks of 1 ms; `[tick × dof + joint]`.
 #[derive(Clone, Copy, Debug)]
@@ -65,7 +64,13 @@ impl Machine<'_> {
                 let apart = (after - before).max(1) as f64 * TICK;
                 let (q, qd) = (motion.q[at] + b, motion.qd[at] + (c - a) / apart);
                 let qdd = motion.qdd[at] + (c - 2.0 * b + a) / (TICK * TICK);
-                let friction = resistance(parts.dry(j, time), qd, time, [links.rigid[at], *load]);
+                let dry_at = DryAt {
+                    velocity: qd,
+                    time,
+                    rigid_load: links.rigid[at],
+                    drive_load: *load,
+                };
+                let friction = resistance(parts.dry(j, time), &dry_at);
                 let direction = if qd == 0.0 { 0.0 } else { qd.signum() };
                 let applied = links.through[at]
                     + links.rotor[at] * qdd

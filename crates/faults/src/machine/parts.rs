@@ -2,14 +2,14 @@
 
 use arm::Arm;
 
-use crate::law::{Dry, Link, Load, Smooth};
-use crate::physics::{Body, Connection, Contact, Part, What};
+use crate::fault::external_contact::Contact;
+use crate::part::{Body, Connection, DriveLaw, DryLaw, LinkLaw, Part, What};
 
 /// Of each joint, what is on its drive; and what is on the whole.
 pub(super) struct Parts {
     joints: Vec<Joint>,
     /// Laws on the links' side with their joint, and when they set in (s).
-    pub(super) links: Vec<((usize, Link), f64)>,
+    pub(super) links: Vec<((usize, Box<dyn LinkLaw>), f64)>,
     couplings: Vec<(usize, usize, f64, f64)>,
     bodies: Vec<(Body, f64)>,
     pub(super) contacts: Vec<Contact>,
@@ -17,8 +17,8 @@ pub(super) struct Parts {
 
 #[derive(Default)]
 struct Joint {
-    dry: Vec<(Dry, f64)>,
-    smooth: Vec<(Smooth, f64)>,
+    dry: Vec<(Box<dyn DryLaw>, f64)>,
+    smooth: Vec<(Box<dyn DriveLaw>, f64)>,
     drive: Vec<(What, f64)>,
 }
 
@@ -47,7 +47,7 @@ impl Parts {
         for Part { onset, what } in parts {
             match what {
                 What::Dry(j, law) => sorted.joints[j].dry.push((law, onset)),
-                What::Smooth(j, law) => sorted.joints[j].smooth.push((law, onset)),
+                What::Drive(j, law) => sorted.joints[j].smooth.push((law, onset)),
                 What::Link(j, law) => sorted.links.push(((j, law), onset)),
                 What::CouplingInertia(j, o, inertia) => sorted.couplings.push((j, o, inertia, onset)),
                 What::Body(body) => sorted.bodies.push((body, onset)),
@@ -151,19 +151,22 @@ impl Parts {
         self.drive(j, time).map(offset).sum()
     }
 
-    pub(super) fn dry(&self, j: usize, time: f64) -> impl Iterator<Item = &Dry> {
+    pub(super) fn dry(&self, j: usize, time: f64) -> impl Iterator<Item = &dyn DryLaw> {
         let dry = self.joints[j].dry.iter();
-        dry.filter(move |(_, onset)| time >= *onset).map(|(law, _)| law)
+        dry.filter(move |(_, onset)| time >= *onset)
+            .map(|(law, _)| law.as_ref())
     }
 
-    pub(super) fn smooth(&self, j: usize, time: f64) -> impl Iterator<Item = &Smooth> {
+    pub(super) fn smooth(&self, j: usize, time: f64) -> impl Iterator<Item = &dyn DriveLaw> {
         let smooth = self.joints[j].smooth.iter();
-        smooth.filter(move |(_, onset)| time >= *onset).map(|(law, _)| law)
+        smooth
+            .filter(move |(_, onset)| time >= *onset)
+            .map(|(law, _)| law.as_ref())
     }
 
     pub(super) fn feels_rigid_load(&self) -> bool {
-        let rigid = |(law, _): &(Dry, f64)| matches!(law, Dry::Loaded { of: Load::Rigid, .. });
-        self.joints.iter().any(|joint| joint.dry.iter().any(rigid))
+        let mut dry = self.joints.iter().flat_map(|joint| &joint.dry);
+        dry.any(|(law, _)| law.feels_rigid_load())
     }
 
     /// Joint, other joint and inertia of the drives that two joints turn.

@@ -5,8 +5,8 @@ use rand_chacha::ChaCha8Rng;
 use serde_json::json;
 
 use super::*;
+use crate::fault::{FAULTS, Fault, Place};
 use crate::motion::{LEAD, excitation};
-use crate::physics::{EFFECTS, UNKNOWN, forms};
 use crate::share::{share, smooth};
 use crate::test_robots::{puma, seven_axis};
 
@@ -36,61 +36,11 @@ fn an_empty_machine_costs_the_rigid_torque() {
     }
 }
 
-/// Every effect at a robust size, on axis 4 of the arm with seven axes or on all of it.
-fn robust(effect: &str) -> Injected {
-    let on_joint = |parameters: &[(&str, f64)]| {
-        let bare = Injected::new(effect, Some("axis4"));
-        parameters
-            .iter()
-            .fold(bare, |effect, &(name, value)| effect.with(name, value))
-    };
-    let whole = Injected::new(effect, None);
-    match effect {
-        "viscous_friction" | "quadratic_drag" => on_joint(&[("coefficient", 3.0)]),
-        "coulomb_friction" => on_joint(&[("level", 2.0)]),
-        "friction_asymmetry" => on_joint(&[("positive", 2.0), ("negative", 1.0)]),
-        "stribeck_friction" => on_joint(&[("coulomb", 1.0), ("breakaway", 3.0), ("velocity", 0.2)]),
-        "load_dependent_friction" => on_joint(&[("coulomb", 1.0), ("gain", 0.15)]),
-        "thermal_drift" => on_joint(&[("coulomb", 1.0), ("amplitude", 1.0), ("time_constant", 30.0)]),
-        "rotor_inertia" => on_joint(&[("inertia", 0.2)]),
-        "torque_scale" => on_joint(&[("factor", 1.2)]),
-        "torque_offset" => on_joint(&[("offset", 2.0)]),
-        "torque_ripple" => on_joint(&[("amplitude", 1.0), ("periods", 20.0), ("phase", 1.0)]),
-        "torque_saturation" => Injected::new(effect, Some("axis1")).with("limit", 2.5),
-        "actuation_delay" => on_joint(&[("delay", 0.01)]),
-        "joint_elasticity" => on_joint(&[
-            ("stiffness", 160.0),
-            ("damping", 0.4),
-            ("rotor", 0.2),
-            ("hardening_torque", 20.0),
-        ]),
-        "backlash" => on_joint(&[("halfgap", 0.01), ("rotor", 0.2)]),
-        "transmission_coupling" => on_joint(&[("viscous", 0.2), ("inertia", 0.005)]).with("other", "axis5"),
-        "payload" => whole.with("mass", 1.5).with("com", json!([0.01, 0.0, 0.08])),
-        "link_inertial_error" => on_joint(&[("relative", 0.3)]),
-        "inertial_scale" => whole.with("factor", 1.2),
-        "gravity_misalignment" => whole.with("angle", 0.1).with("axis", json!([0.0, 1.0, 0.0])),
-        "encoder_offset" => on_joint(&[("offset", 0.05)]),
-        "spring" => on_joint(&[("stiffness", 10.0), ("rest", 0.2)]),
-        "external_contact" => whole
-            .with("start", 1.0)
-            .with("duration", 1.0)
-            .with("force", json!([10.0, -15.0, 20.0])),
-        _ => on_joint(&[
-            ("amplitude", 2.0),
-            ("rate", 4.0),
-            ("phase", 0.3),
-            ("hz", 1.0),
-            ("center", 0.2),
-            ("width", 0.2),
-            ("scale", 0.1),
-            ("shape", 0.6),
-            ("velocity", 0.2),
-            ("time_constant", 1.0),
-            ("seed", 3.0),
-        ])
-        .with("other", "axis5"),
-    }
+/// A fault at a robust size, on axis 4 of the arm with seven axes or on all of it.
+fn robust(name: &str) -> Injected {
+    let fault = Fault::named(name).expect("there is such a fault");
+    let joint = (fault.place != Place::WholeArm).then_some("axis4");
+    (fault.example)(Injected::new(name, joint))
 }
 
 /// Of every effect, in every form, a part of the torque is what it adds; that of any other form is another one.
@@ -100,15 +50,15 @@ fn every_effect_in_every_form_changes_the_torque() {
     let n = robot.arm().dof();
     let reference = reference(&robot).cut(4.0);
     let below = |run: &Run| vec![smooth(&run.tau, n, TICK, LEAD).0];
-    assert!(UNKNOWN.len() >= 8);
-    for name in EFFECTS.iter().chain(&UNKNOWN) {
+    for fault in &FAULTS {
+        let name = fault.name;
         let effect = robust(name);
         let without = Machine::new(&robot, &[&effect], Some(0)).expect("it fits");
         let without = below(&without.run(&reference, 0.0).expect("it follows"));
         let plain = below(&run(&robot, std::slice::from_ref(&effect), &reference));
         let size = share(&plain, &without, true);
         assert!(size > 0.01, "{name}: {size}");
-        for form in forms(name) {
+        for form in fault.forms {
             let formed = match *form {
                 "another exponent" => effect.clone().formed(form).with("exponent", 1.0),
                 _ => effect.clone().formed(form),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow};
 use arm::Arm;
-use faults::{EFFECTS, Injected, form_parameters};
+use faults::{Injected, form_parameters};
 
 use crate::diagnose::effect_file;
 use crate::library::Source;
@@ -40,7 +40,7 @@ pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Vec<Injected>> {
         }
         let json = serde_json::to_value(&table).map_err(|error| fail(error.to_string()))?;
         let effect: Injected = serde_json::from_value(json).map_err(|error| fail(error.to_string()))?;
-        if !effect.effect.ends_with("_unknown") {
+        if !effect.is_outside_the_catalogue() {
             // What the catalogue has not is this command's; the rest is checked as any effect is.
             let own = form_parameters(&effect.effect);
             for key in ["onset", "form"].iter().chain(own) {
@@ -51,10 +51,5 @@ pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Vec<Injected>> {
         effect.check(arm).map_err(|error| fail(error.to_string()))?;
         effects.push(effect);
     }
-    debug_assert!(
-        effects
-            .iter()
-            .all(|e| e.effect.ends_with("_unknown") || EFFECTS.contains(&e.effect.as_str()))
-    );
     Ok(effects)
 }

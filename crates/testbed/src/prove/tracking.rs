@@ -204,7 +204,7 @@ impl Case<'_> {
             joints: arm.joints().iter().map(|joint| joint.name.clone()).collect(),
             concealed: concealed
                 .map(|effect| Cause {
-                    effect: effect.name().to_owned(),
+                    effect: effect.effect.clone(),
                     joint: effect.joint.clone(),
                     onset: effect.onset,
                 })

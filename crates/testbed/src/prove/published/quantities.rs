@@ -70,7 +70,7 @@ pub fn si(effect: &str, parameter: &str, kind: Option<JointKind>, unit: &str) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use faults::EFFECTS;
+    use faults::catalogue;
     use scoring::compared_parameters;
 
     #[test]
@@ -103,7 +103,7 @@ mod tests {
         ] {
             assert_eq!(si(effect, parameter, Some(JointKind::Revolute), unit), Ok((1.0, unit)));
         }
-        for effect in EFFECTS {
+        for effect in catalogue() {
             assert!(!compared_parameters(effect).is_empty(), "{effect}");
         }
     }

@@ -1,21 +1,69 @@
-//! An effect's joints and numbers, looked up and checked.
+//! A fault's words in a truth, looked up and checked, and made into parts of a machine.
 
 use arm::Arm;
 use serde_json::Value;
 
-use super::forms::forms;
+use super::{FAULTS, Fault};
 use crate::error::FaultError;
+use crate::part::{DriveLaw, DryLaw, LinkLaw, Part, Piece, What};
 use crate::truth::Injected;
 
-/// One effect, its joints and numbers looked up.
-pub(super) struct Reader<'a> {
-    pub(super) effect: &'a Injected,
+/// What `injected` is to a machine of `arm` (its drives' rotor inertias in it); without it (`whole` false), what stays when it is
+/// taken away: the plain friction under a curve, the rotor of a drive whose spring is rigid.
+///
+/// # Errors
+/// [`FaultError::Effect`], with the fault, what is wrong and the remedy.
+pub(crate) fn parts(injected: &Injected, arm: &Arm, whole: bool) -> Result<Vec<Part>, FaultError> {
+    let reader = Reader { injected, arm };
+    let onset = injected.onset.unwrap_or(f64::NEG_INFINITY);
+    if onset.is_nan() || onset == f64::INFINITY {
+        return Err(reader.fail(format!("its onset is {onset} s; give a finite time")));
+    }
+    let pieces = (reader.fault()?.read)(&reader)?.into_iter();
+    let there = pieces.filter(|piece| whole || piece.stays);
+    let part = |Piece { what, stays }| Part {
+        onset: if stays { f64::NEG_INFINITY } else { onset },
+        what,
+    };
+    Ok(there.map(part).collect())
+}
+
+/// One fault in a truth, its joints and numbers looked up.
+pub(crate) struct Reader<'a> {
+    pub(super) injected: &'a Injected,
     pub(super) arm: &'a Arm,
 }
 
 impl Reader<'_> {
+    /// Its kind, of a form that the kind has.
+    fn fault(&self) -> Result<&'static Fault, FaultError> {
+        let name = &self.injected.effect;
+        if let Some(fault) = Fault::named(name) {
+            self.form()?;
+            return Ok(fault);
+        }
+        let known: Vec<String> = FAULTS.iter().map(|fault| fault.name.to_owned()).collect();
+        let hint = recording::nearest(name, &known).map_or(String::new(), |near| format!("did you mean \"{near}\"? "));
+        Err(self.fail(format!("there is no such effect; {hint}there are {}", known.join(", "))))
+    }
+
+    /// The piece that is dry friction on its joint.
+    pub(super) fn on_dry(&self, law: impl DryLaw + 'static) -> Result<Vec<Piece>, FaultError> {
+        Ok(vec![What::Dry(self.joint()?, Box::new(law)).into()])
+    }
+
+    /// The piece that is a torque on the drive's side of its joint.
+    pub(super) fn on_drive(&self, law: impl DriveLaw + 'static) -> Result<Vec<Piece>, FaultError> {
+        Ok(vec![What::Drive(self.joint()?, Box::new(law)).into()])
+    }
+
+    /// The piece that is a torque on the link's side of its joint.
+    pub(super) fn on_link(&self, law: impl LinkLaw + 'static) -> Result<Vec<Piece>, FaultError> {
+        Ok(vec![What::Link(self.joint()?, Box::new(law)).into()])
+    }
+
     pub(super) fn fail(&self, reason: String) -> FaultError {
-        let effect = self.effect.effect.clone();
+        let effect = self.injected.effect.clone();
         FaultError::Effect { effect, reason }
     }
 
@@ -33,14 +81,14 @@ impl Reader<'_> {
     }
 
     pub(super) fn joint(&self) -> Result<usize, FaultError> {
-        match &self.effect.joint {
+        match &self.injected.joint {
             Some(name) => self.joint_named(name),
             None => Err(self.fail("the joint is missing; add joint = \"…\"".into())),
         }
     }
 
     pub(super) fn other(&self) -> Result<usize, FaultError> {
-        let name = self.effect.parameters.get("other").and_then(Value::as_str);
+        let name = self.injected.parameters.get("other").and_then(Value::as_str);
         let other =
             self.joint_named(name.ok_or_else(|| self.fail("the other joint is missing; add other = \"…\"".into()))?)?;
         if other == self.joint()? {
@@ -50,7 +98,7 @@ impl Reader<'_> {
     }
 
     pub(super) fn number(&self, name: &str) -> Result<f64, FaultError> {
-        match self.effect.parameters.get(name) {
+        match self.injected.parameters.get(name) {
             None => Err(self.fail(format!("the parameter {name} is missing; add {name} = …"))),
             Some(value) => match value.as_f64() {
                 Some(number) if number.is_finite() => Ok(number),
@@ -59,8 +107,12 @@ impl Reader<'_> {
         }
     }
 
+    pub(super) fn given(&self, name: &str) -> bool {
+        self.injected.parameters.contains_key(name)
+    }
+
     pub(super) fn number_or(&self, name: &str, default: f64) -> Result<f64, FaultError> {
-        if self.effect.parameters.contains_key(name) {
+        if self.given(name) {
             self.number(name)
         } else {
             Ok(default)
@@ -84,7 +136,7 @@ impl Reader<'_> {
     }
 
     pub(super) fn numbers<const N: usize>(&self, name: &str) -> Result<[f64; N], FaultError> {
-        let list = self.effect.parameters.get(name).and_then(Value::as_array);
+        let list = self.injected.parameters.get(name).and_then(Value::as_array);
         let values: Option<Vec<f64>> = list.and_then(|list| list.iter().map(Value::as_f64).collect());
         values
             .and_then(|values| <[f64; N]>::try_from(values).ok())
@@ -93,7 +145,7 @@ impl Reader<'_> {
     }
 
     pub(super) fn curve(&self) -> Result<Vec<[f64; 2]>, FaultError> {
-        let Some(value) = self.effect.parameters.get("curve") else {
+        let Some(value) = self.injected.parameters.get("curve") else {
             return Ok(Vec::new());
         };
         let points: Vec<[f64; 2]> = serde_json::from_value(value.clone())
@@ -106,8 +158,8 @@ impl Reader<'_> {
 
     /// Which of the effect's forms it has: 0 is the textbook's.
     pub(super) fn form(&self) -> Result<usize, FaultError> {
-        let Some(form) = &self.effect.form else { return Ok(0) };
-        let known = forms(&self.effect.effect);
+        let Some(form) = &self.injected.form else { return Ok(0) };
+        let known = Fault::named(&self.injected.effect).map_or(&[][..], |fault| fault.forms);
         match known.iter().position(|name| name == form) {
             Some(place) => Ok(place + 1),
             None if known.is_empty() => Err(self.fail(format!(
