@@ -8,12 +8,12 @@ use recording::Recording;
 use crate::campaign::CasePlan;
 use crate::draw::ordinary_friction;
 use crate::error::FaultError;
+use crate::expressed_share::{Torques, deviation, share, smooth};
 use crate::fault::Leaves;
 use crate::machine::{Machine, Run, TICK};
 use crate::motion::{LEAD, Reference, excitation, pick_and_place, start};
 use crate::robot::Robot;
 use crate::sensor::Sensors;
-use crate::share::{Torques, deviation, share, smooth};
 use crate::truth::{Injected, Truth};
 
 mod search;

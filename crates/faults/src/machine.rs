@@ -291,16 +291,8 @@ impl<'a> Simulation<'a> {
     /// What the drive of joint `j` puts on its link; its dry friction, where it is the plant's, goes to the levels.
     fn joint_torque(&mut self, j: usize, time: f64) -> f64 {
         let applied = self.drives[j].applied(&self.parts.drive_at(j, time));
-        let (parts, [rigid_load, drive_load]) = (self.parts, self.loads[j]);
-        let dry = |velocity: f64| {
-            let at = DryAt {
-                velocity,
-                time,
-                rigid_load,
-                drive_load,
-            };
-            resistance(parts.dry(j, time), &at)
-        };
+        let (parts, loads) = (self.parts, self.loads[j]);
+        let dry = |v: f64| resistance(parts.dry(j, time), &DryAt::new(v, time, loads));
         let smooth = |q: f64, v: f64| parts.smooth(j, time).map(|law| law.torque(q, v)).sum::<f64>();
         let (q, v) = (self.plant.q()[j], self.plant.qd()[j]);
         let inner = match &mut self.rotors[j] {
@@ -321,17 +313,17 @@ impl<'a> Simulation<'a> {
     }
 
     fn add_link_side(&mut self, time: f64) {
-        for ((link, onset), state) in self.parts.links.iter().zip(&mut self.states) {
-            if time < *onset {
+        for (link, state) in self.parts.links.iter().zip(&mut self.states) {
+            if time < link.onset {
                 continue;
             }
             let at = At {
                 time,
-                joint: link.0,
+                joint: link.joint,
                 q: self.plant.q(),
                 qd: self.plant.qd(),
             };
-            self.net[link.0] -= link.1.torque(at, state, TICK);
+            self.net[link.joint] -= link.law.torque(at, state, TICK);
         }
     }
 

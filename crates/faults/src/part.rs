@@ -127,6 +127,18 @@ pub(crate) struct DryAt {
     pub drive_load: f64,
 }
 
+impl DryAt {
+    /// At a velocity and a time, under the rigid load and the drive's.
+    pub(crate) fn new(velocity: f64, time: f64, [rigid_load, drive_load]: [f64; 2]) -> Self {
+        Self {
+            velocity,
+            time,
+            rigid_load,
+            drive_load,
+        }
+    }
+}
+
 /// What the parts of a joint's dry friction add up to: ± `level`, `bias` in both directions alike (N m or N), both times `factor`.
 pub(crate) struct DrySum {
     pub level: f64,

@@ -97,8 +97,8 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
+    use crate::expressed_share::deviation;
     use crate::motion::excitation;
-    use crate::share::deviation;
     use crate::test_robots::seven_axis;
 
     /// Rows, stamps and noise are as the settings say; what a logger does not touch is the run.

@@ -17,7 +17,7 @@ pub struct Answer {
     pub unexplained: Vec<Refused>,
     /// What the recordings could not show.
     #[serde(default)]
-    pub not_observable: Vec<Unseen>,
+    pub not_observable: Vec<DeclaredUnseen>,
     /// Errors of prediction, by joint.
     #[serde(default)]
     pub fit: BTreeMap<String, Fit>,
@@ -26,34 +26,34 @@ pub struct Answer {
     pub rollout: BTreeMap<String, Rollout>,
     /// The motion it proposes, where it was asked for one.
     #[serde(default)]
-    pub next_experiment: Option<Next>,
+    pub next_experiment: Option<NextExperiment>,
 }
 
 /// A proposed experiment.
 #[derive(Clone, Debug, Default, Deserialize)]
-pub struct Next {
+pub struct NextExperiment {
     /// The confusions that it should resolve.
-    pub separates: Vec<Told>,
+    pub separates: Vec<Separated>,
     /// Those that it leaves.
-    pub not_separated: Vec<Left>,
+    pub not_separated: Vec<NotSeparated>,
 }
 
 /// A confusion that a motion should resolve.
 #[derive(Clone, Debug, Deserialize)]
-pub struct Told {
+pub struct Separated {
     /// What was named.
-    pub finding: Other,
+    pub finding: EffectOnJoint,
     /// What it could be instead.
-    pub rival: Other,
+    pub rival: EffectOnJoint,
 }
 
 /// A confusion that it leaves.
 #[derive(Clone, Debug, Deserialize)]
-pub struct Left {
+pub struct NotSeparated {
     /// What was named.
-    pub finding: Other,
+    pub finding: EffectOnJoint,
     /// What it could be instead.
-    pub rival: Other,
+    pub rival: EffectOnJoint,
     /// Why, in a word.
     #[serde(default)]
     pub kind: String,
@@ -80,15 +80,15 @@ pub struct Named {
     pub share: f64,
     /// What it could be instead.
     #[serde(default)]
-    pub confusable_with: Vec<Other>,
+    pub confusable_with: Vec<EffectOnJoint>,
     /// In words.
     #[serde(default)]
     pub sentence: String,
 }
 
-/// What a finding could be instead.
+/// An effect, and where it is.
 #[derive(Clone, Debug, Deserialize)]
-pub struct Other {
+pub struct EffectOnJoint {
     /// The catalogue's name.
     pub effect: String,
     /// The joint; `None` for the whole arm.
@@ -121,7 +121,7 @@ pub struct Refused {
 
 /// An effect that is said not to show.
 #[derive(Clone, Debug, Deserialize)]
-pub struct Unseen {
+pub struct DeclaredUnseen {
     /// The catalogue's name.
     pub effect: String,
     /// The joint; `None` for the whole arm.

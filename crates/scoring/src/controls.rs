@@ -3,24 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::answer::{Answer, Fit};
-use crate::rules::{Key, Name, brings, is_ordinary};
-use crate::sizes::parameters;
+use crate::catalogue::{ON_A_JOINT, ON_THE_ARM, brings, parameters};
+use crate::rules::{Key, Name, is_ordinary};
 use crate::truth::Truth;
-
-/// Names that a wrong term on a joint is taken from.
-const ON_A_JOINT: [&str; 9] = [
-    "quadratic_drag",
-    "rotor_inertia",
-    "torque_offset",
-    "spring",
-    "torque_scale",
-    "stribeck_friction",
-    "load_dependent_friction",
-    "friction_asymmetry",
-    "encoder_offset",
-];
-/// Names that a wrong term on the whole arm is taken from.
-const ON_THE_ARM: [&str; 3] = ["payload", "gravity_misalignment", "inertial_scale"];
 
 /// The effects of the control "the true terms": all that is concealed and has a name, fitted by name, with no search.
 pub fn true_terms(truth: &Truth) -> Vec<Name> {

@@ -5,24 +5,29 @@
 
 mod answer;
 mod calibration;
+mod catalogue;
 mod controls;
-mod experiment;
+mod experiments;
 mod intervals;
+mod numbers;
 mod outcome;
 mod plain;
 mod published;
 mod rules;
 mod score;
-mod sizes;
 mod summary;
 mod targets;
 mod truth;
 
-pub use answer::{Answer, Fit, Left, Named, Next, Number, Other, Refused, Rollout, Told, Unseen};
+pub use answer::{
+    Answer, DeclaredUnseen, EffectOnJoint, Fit, Named, NextExperiment, NotSeparated, Number, Refused, Rollout,
+    Separated,
+};
 pub use calibration::{Bin, Calibration};
 pub use controls::{HeldOut, WrongTerm, true_terms, wrong_term};
-pub use experiment::{After, Again, Confusion, Experiments, InCase};
+pub use experiments::{After, Again, Confusion, Experiments, InCase};
 pub use intervals::{Counted, quantile, wilson};
+pub use numbers::ScoredNumber;
 pub use outcome::{FalseName, Fate, Outcome, OutsideOutcome};
 pub use plain::Plain;
 pub use published::{
@@ -31,7 +36,6 @@ pub use published::{
 };
 pub use rules::{LEAST_SHARE, Name};
 pub use score::{Family, Score, Tried, score};
-pub use sizes::Sized;
 pub use summary::{Curve, Errors, ParameterScore, SizeBin};
-pub use targets::Target;
+pub use targets::{Figure, Target};
 pub use truth::{Injected, Truth};

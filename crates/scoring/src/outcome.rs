@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::answer::{Answer, Named, Other};
+use crate::answer::{Answer, EffectOnJoint, Named};
 use crate::intervals::quantile;
+use crate::numbers::{ScoredNumber, sized};
 use crate::rules::{Key, LEAST_SHARE, Name, found, found_or_confusable, is_declared_unseen, is_ordinary, same_machine};
 use crate::score::Tried;
-use crate::sizes::{Sized, sized};
 use crate::truth::Injected;
 
 /// What came of a concealed effect.
@@ -128,7 +128,7 @@ pub struct CaseOutcome {
     /// A refusal with nothing outside the catalogue.
     pub refused_without_cause: Option<OutsideOutcome>,
     /// The numbers of right findings.
-    pub sizes: Vec<Sized>,
+    pub sizes: Vec<ScoredNumber>,
     /// Probabilities of findings that are not ordinary, and whether they are right.
     pub said: Vec<(f64, bool)>,
     /// The same of all.
@@ -138,7 +138,7 @@ pub struct CaseOutcome {
 
 impl CaseOutcome {
     /// Whether a number is of an ordinary effect.
-    pub fn is_ordinary(&self, sized: &Sized) -> bool {
+    pub fn is_ordinary(&self, sized: &ScoredNumber) -> bool {
         self.baseline.contains(&sized.effect.as_str())
     }
 }
@@ -162,7 +162,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
                 (concealed.name().to_owned(), concealed.joint.clone()),
             );
             let finding = answer.findings.iter().find(|finding| name_of(finding) == given)?;
-            let admits = |other: &Other| (&other.effect, &other.joint) == (&meant.0, &meant.1);
+            let admits = |other: &EffectOnJoint| (&other.effect, &other.joint) == (&meant.0, &meant.1);
             (!named.contains(&meant) && finding.confusable_with.iter().any(admits)).then_some((meant, given))
         })
         .collect();
@@ -232,7 +232,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
             let name = (c.name().to_owned(), c.joint.clone());
             !ordinary(&name) && (c.joint == finding.joint || c.joint.is_none() || finding.joint.is_none())
         });
-        let admits = |other: &Other| key.known.contains(&(other.effect.clone(), other.joint.clone()));
+        let admits = |other: &EffectOnJoint| key.known.contains(&(other.effect.clone(), other.joint.clone()));
         result.false_names.push(FalseName {
             case: truth.case.clone(),
             effect: finding.effect.clone(),
@@ -282,7 +282,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
             .filter(|c| c.name() == name.0 && c.joint == name.1);
         // Of several of one name, the one that it is nearest to.
         let nearest = same.map(|concealed| sized(truth, concealed, finding)).min_by(|a, b| {
-            let first = |list: &Vec<Sized>| list.first().map_or(f64::INFINITY, |sized| sized.error);
+            let first = |list: &Vec<ScoredNumber>| list.first().map_or(f64::INFINITY, |sized| sized.error);
             first(a).total_cmp(&first(b))
         });
         result.sizes.extend(nearest.into_iter().flatten());

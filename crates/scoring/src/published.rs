@@ -7,8 +7,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::{Deserialize, Serialize};
 
 use crate::answer::{Answer, Named, Rollout};
-use crate::rules::{Name, brings, is_declared_unseen};
-use crate::sizes::parameters;
+use crate::catalogue::{brings, parameters};
+use crate::rules::{Name, is_declared_unseen};
 use crate::truth::Injected;
 use readings::{Reading, readings};
 

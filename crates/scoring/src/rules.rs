@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::answer::{Answer, Unseen};
-use crate::sizes::truth_value;
+use crate::answer::{Answer, DeclaredUnseen};
+use crate::catalogue::{brings, is_dry_friction, neutral};
+use crate::numbers::truth_value;
 use crate::truth::{Injected, Truth};
 
 /// An effect's name and its joint; `None` is the whole arm.
@@ -11,17 +12,6 @@ pub type Name = (String, Option<String>);
 
 /// An effect below this expressed share is not asked for.
 pub const LEAST_SHARE: f64 = 0.015;
-
-/// What comes with an effect, and is neither right nor wrong beside it: plain friction is a part of every friction curve,
-/// the drive's inertia moves behind a spring or a gap.
-pub fn brings(effect: &str) -> &'static [&'static str] {
-    match effect {
-        "stribeck_friction" | "load_dependent_friction" | "thermal_drift" => &["coulomb_friction"],
-        "friction_asymmetry" => &["coulomb_friction", "torque_offset"],
-        "joint_elasticity" | "backlash" => &["rotor_inertia"],
-        _ => &[],
-    }
-}
 
 /// Whether it is in the machine's baseline, and scored apart.
 pub fn is_ordinary(truth: &Truth, effect: &str) -> bool {
@@ -41,9 +31,7 @@ pub fn same_machine(truth: &Truth, concealed: &Injected) -> Option<Name> {
     let beside: Vec<&Injected> = truth
         .concealed
         .iter()
-        .filter(|c| {
-            c.joint == concealed.joint && crate::sizes::is_dry_friction(c.name()) && c.name() != concealed.name()
-        })
+        .filter(|c| c.joint == concealed.joint && is_dry_friction(c.name()) && c.name() != concealed.name())
         .collect();
     let is_plain = concealed.form.is_none();
     let same = match (concealed.name(), beside.as_slice()) {
@@ -130,14 +118,12 @@ pub fn is_declared_unseen(answer: &Answer, concealed: &Injected) -> bool {
         .any(|unseen| hides(unseen, concealed))
 }
 
-fn hides(unseen: &Unseen, concealed: &Injected) -> bool {
+fn hides(unseen: &DeclaredUnseen, concealed: &Injected) -> bool {
     let (above, below) = (&unseen.would_be_seen_above, &unseen.would_be_seen_below);
     if above.is_empty() && below.is_empty() {
         return true;
     }
-    // A factor of one changes nothing; its distance from one is the size.
-    let nothing = if concealed.name().ends_with("_scale") { 1.0 } else { 0.0 };
-    let size = |key: &String| truth_value(concealed, key).map(|value| (value - nothing).abs());
+    let size = |key: &String| truth_value(concealed, key).map(|value| (value - neutral(concealed.name())).abs());
     let under = |(key, bound): (&String, &Option<f64>)| match (size(key), bound) {
         (Some(size), Some(bound)) => size < *bound,
         _ => false,

@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::answer::Answer;
 use crate::calibration::{Calibration, calibration};
+use crate::catalogue::brings;
 use crate::controls::{HeldOut, held_out};
-use crate::experiment::{Again, Experiments, experiments};
+use crate::experiments::{Again, Experiments, experiments};
 use crate::intervals::Counted;
+use crate::numbers::ScoredNumber;
 use crate::outcome::{FalseName, Fate, Outcome, OutsideOutcome, outcomes};
 use crate::plain::{Plain, plain};
-use crate::rules::brings;
-use crate::sizes::Sized;
 use crate::summary::{Curve, Errors, ParameterScore, curves, errors, parameter_scores};
 use crate::targets::{Target, targets};
 use crate::truth::{Injected, Truth};
@@ -39,7 +39,7 @@ pub struct Tried {
 }
 
 /// What the diagnoses of all cases are worth. Everything is counted in names: an effect on a joint.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Score {
     /// Cases scored.
     pub cases: usize,
@@ -104,7 +104,7 @@ pub struct Score {
     /// Joints called unexplained in cases with nothing outside the catalogue.
     pub refusals_without_cause: Vec<OutsideOutcome>,
     /// Every scored number.
-    pub sizes: Vec<Sized>,
+    pub sizes: Vec<ScoredNumber>,
     /// The controls, case by case.
     pub held_out: Vec<HeldOut>,
     /// The experiments that were proposed.
@@ -160,8 +160,8 @@ pub fn score(cases: &[Tried]) -> Score {
         let values: Vec<f64> = families.values().filter_map(pick).collect();
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     };
-    let sizes: Vec<Sized> = all.iter().flat_map(|case| case.sizes.clone()).collect();
-    let special: Vec<&Sized> = all
+    let sizes: Vec<ScoredNumber> = all.iter().flat_map(|case| case.sizes.clone()).collect();
+    let special: Vec<&ScoredNumber> = all
         .iter()
         .flat_map(|case| case.sizes.iter().filter(|s| !case.is_ordinary(s)))
         .collect();

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::intervals::{Counted, quantile};
+use crate::numbers::ScoredNumber;
 use crate::outcome::{Fate, Outcome};
-use crate::sizes::Sized;
 
 /// Found or not, against one measure of size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -98,15 +98,15 @@ fn curve(measure: &str, bounds: &[f64], concealed: &[Outcome], size: &dyn Fn(&Ou
 }
 
 /// By effect and parameter.
-pub fn parameter_scores(sizes: &[Sized]) -> Vec<ParameterScore> {
-    let mut groups: BTreeMap<(&str, bool, &str), Vec<&Sized>> = BTreeMap::new();
+pub fn parameter_scores(sizes: &[ScoredNumber]) -> Vec<ParameterScore> {
+    let mut groups: BTreeMap<(&str, bool, &str), Vec<&ScoredNumber>> = BTreeMap::new();
     for sized in sizes {
         groups
             .entry((&sized.effect, !sized.main, &sized.parameter))
             .or_default()
             .push(sized);
     }
-    let score = |((effect, minor, parameter), list): ((&str, bool, &str), Vec<&Sized>)| ParameterScore {
+    let score = |((effect, minor, parameter), list): ((&str, bool, &str), Vec<&ScoredNumber>)| ParameterScore {
         effect: effect.to_owned(),
         parameter: parameter.to_owned(),
         main: !minor,

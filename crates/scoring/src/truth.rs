@@ -7,6 +7,8 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
+use crate::catalogue::{DRIVE_INERTIA, ORDINARY, ORDINARY_WITH_DRIVES, canonical, is_outside};
+
 /// What a case's machine has and its URDF has not; what is not scored is not read.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct Truth {
@@ -49,11 +51,11 @@ impl Truth {
         let drives = self
             .concealed
             .iter()
-            .filter(|injected| injected.effect == "rotor_inertia");
+            .filter(|injected| injected.effect == DRIVE_INERTIA);
         if joints > 1 && drives.count() == joints {
-            &["coulomb_friction", "viscous_friction", "rotor_inertia"]
+            ORDINARY_WITH_DRIVES
         } else {
-            &["coulomb_friction", "viscous_friction"]
+            ORDINARY
         }
     }
 }
@@ -61,15 +63,11 @@ impl Truth {
 impl Injected {
     /// The catalogue's name, also of truths that were written under another.
     pub fn name(&self) -> &str {
-        match self.effect.as_str() {
-            "link_mass_error" => "link_inertial_error",
-            "gravity_tilt" => "gravity_misalignment",
-            name => name,
-        }
+        canonical(&self.effect)
     }
 
     /// Whether no name of the catalogue fits it.
     pub fn is_outside_the_catalogue(&self) -> bool {
-        self.effect.ends_with("_unknown")
+        is_outside(&self.effect)
     }
 }

@@ -8,10 +8,10 @@ use super::Stage;
 use crate::campaign::CasePlan;
 use crate::draw::Scales;
 use crate::error::FaultError;
+use crate::expressed_share::{Torques, share};
 use crate::fault::{Fault, Leaves, Size, families, outside};
 use crate::machine::Run;
 use crate::motion::{DURATION, LEAD, Reference, start};
-use crate::share::{Torques, share};
 use crate::truth::Injected;
 
 /// Whole cases, and draws of one effect, that are tried.

@@ -64,12 +64,7 @@ impl Machine<'_> {
                 let apart = (after - before).max(1) as f64 * TICK;
                 let (q, qd) = (motion.q[at] + b, motion.qd[at] + (c - a) / apart);
                 let qdd = motion.qdd[at] + (c - 2.0 * b + a) / (TICK * TICK);
-                let dry_at = DryAt {
-                    velocity: qd,
-                    time,
-                    rigid_load: links.rigid[at],
-                    drive_load: *load,
-                };
+                let dry_at = DryAt::new(qd, time, [links.rigid[at], *load]);
                 let friction = resistance(parts.dry(j, time), &dry_at);
                 let direction = if qd == 0.0 { 0.0 } else { qd.signum() };
                 let applied = links.through[at]
@@ -117,15 +112,15 @@ impl Machine<'_> {
                 links.rotor[row + j] = rotor;
                 links.through[row + j] = links.rigid[row + j];
             }
-            for (((joint, law), onset), state) in parts.links.iter().zip(&mut states) {
-                if time >= *onset {
+            for (link, state) in parts.links.iter().zip(&mut states) {
+                if time >= link.onset {
                     let at = At {
                         time,
-                        joint: *joint,
+                        joint: link.joint,
                         q,
                         qd,
                     };
-                    links.through[row + joint] += law.torque(at, state, TICK);
+                    links.through[row + link.joint] += link.law.torque(at, state, TICK);
                 }
             }
             for (j, o, inertia) in parts.couplings(time) {

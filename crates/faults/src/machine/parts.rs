@@ -8,11 +8,18 @@ use crate::part::{Body, Connection, DriveLaw, DryLaw, LinkLaw, Part, What};
 /// Of each joint, what is on its drive; and what is on the whole.
 pub(super) struct Parts {
     joints: Vec<Joint>,
-    /// Laws on the links' side with their joint, and when they set in (s).
-    pub(super) links: Vec<((usize, Box<dyn LinkLaw>), f64)>,
+    pub(super) links: Vec<OnLink>,
     couplings: Vec<(usize, usize, f64, f64)>,
     bodies: Vec<(Body, f64)>,
     pub(super) contacts: Vec<Contact>,
+}
+
+/// A law on the link's side of a joint.
+pub(super) struct OnLink {
+    pub joint: usize,
+    pub law: Box<dyn LinkLaw>,
+    /// When it sets in (s).
+    pub onset: f64,
 }
 
 #[derive(Default)]
@@ -48,7 +55,7 @@ impl Parts {
             match what {
                 What::Dry(j, law) => sorted.joints[j].dry.push((law, onset)),
                 What::Drive(j, law) => sorted.joints[j].smooth.push((law, onset)),
-                What::Link(j, law) => sorted.links.push(((j, law), onset)),
+                What::Link(joint, law) => sorted.links.push(OnLink { joint, law, onset }),
                 What::CouplingInertia(j, o, inertia) => sorted.couplings.push((j, o, inertia, onset)),
                 What::Body(body) => sorted.bodies.push((body, onset)),
                 What::Contact(contact) => sorted.contacts.push(contact),

@@ -5,9 +5,9 @@ use rand_chacha::ChaCha8Rng;
 use serde_json::json;
 
 use super::*;
+use crate::expressed_share::{share, smooth};
 use crate::fault::{FAULTS, Fault, Place};
 use crate::motion::{LEAD, excitation};
-use crate::share::{share, smooth};
 use crate::test_robots::{puma, seven_axis};
 
 fn reference(robot: &Robot) -> Reference {

@@ -8,7 +8,7 @@ use std::time::Instant;
 use anyhow::Context;
 use arm::Arm;
 use faults::{Program, Seal, SealedCase, sha256};
-use scoring::{Score, Target, Truth, true_terms, wrong_term};
+use scoring::{Figure, Score, Target, Truth, true_terms, wrong_term};
 use serde::Serialize;
 
 use super::cases::{Files, Place, Source};
@@ -285,14 +285,14 @@ pub fn figure(target: &Target) -> String {
     match (target.figure, &target.counted) {
         (None, _) => "–".to_owned(),
         (Some(share), Some(_)) => percent(share),
-        (Some(figure), None) if target.what.contains("relative error") => percent(figure),
+        (Some(figure), None) if target.id == Figure::ParameterErrors => percent(figure),
         (Some(figure), None) => format!("{figure:.3}"),
     }
 }
 
 /// What a target wants in words.
 pub fn wanted(target: &Target) -> String {
-    let is_share = target.counted.is_some() || target.what.contains("relative error");
+    let is_share = target.counted.is_some() || target.id == Figure::ParameterErrors;
     let show = |value: f64| if is_share { percent(value) } else { format!("{value}") };
     match (target.at_least, target.at_most) {
         (Some(low), Some(high)) => format!("{} to {}", show(low), show(high)),

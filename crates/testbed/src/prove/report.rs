@@ -143,11 +143,7 @@ fn opening(proof: &Proof) -> Vec<Block> {
         text(exempt(score)),
     ];
     for target in score.targets.iter().filter(|target| target.reached == Some(false)) {
-        let reason = match target.what.starts_with("tracking") {
-            true => "the section about the closed loop tells it case by case.".to_owned(),
-            false => reasons::reason(target, score),
-        };
-        list.push(text(format!("**{}**: {reason}", target.what)));
+        list.push(text(format!("**{}**: {}", target.what, reasons::reason(target, score))));
     }
     list
 }

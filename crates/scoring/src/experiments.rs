@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use crate::answer::{Answer, Other};
+use crate::answer::{Answer, EffectOnJoint};
 use crate::intervals::Counted;
 use crate::rules::{Key, Name, found, is_declared_unseen};
 use crate::score::Tried;
@@ -173,7 +173,7 @@ pub fn experiments(cases: &[Tried]) -> Experiments {
     all
 }
 
-fn named(other: &Other) -> Name {
+fn named(other: &EffectOnJoint) -> Name {
     (other.effect.clone(), other.joint.clone())
 }
 
@@ -196,7 +196,8 @@ fn confusions(case: &str, first: &Answer, key: &Key) -> Vec<Confusion> {
             if (!finding_is_true && !rival_is_true) || list.iter().any(is_known) {
                 continue;
             }
-            let is_it = |pair: &&crate::answer::Left| named(&pair.finding) == name && named(&pair.rival) == rival;
+            let is_it =
+                |pair: &&crate::answer::NotSeparated| named(&pair.finding) == name && named(&pair.rival) == rival;
             let left = next.not_separated.iter().find(is_it);
             list.push(Confusion {
                 case: case.to_owned(),
