@@ -3,7 +3,7 @@
 use arm::Arm;
 use serde_json::Value;
 
-use super::{FAULTS, Fault};
+use super::{FAULTS, Fault, Place};
 use crate::error::FaultError;
 use crate::part::{DriveLaw, DryLaw, LinkLaw, Part, Piece, What};
 use crate::truth::Injected;
@@ -35,11 +35,14 @@ pub(crate) struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Its kind, of a form that the kind has.
+    /// Its kind, of a form that the kind has and on a joint that there is.
     fn fault(&self) -> Result<&'static Fault, FaultError> {
         let name = &self.injected.effect;
         if let Some(fault) = Fault::named(name) {
             self.form()?;
+            if fault.place != Place::WholeArm {
+                self.joint()?;
+            }
             return Ok(fault);
         }
         let known: Vec<String> = FAULTS.iter().map(|fault| fault.name.to_owned()).collect();
