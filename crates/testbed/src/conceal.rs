@@ -5,7 +5,7 @@ mod effects;
 use std::path::Path;
 
 use anyhow::{Context, ensure};
-use proof::{Campaign, Concealment, ProofError, Robot, Settings, conceal_case, conceal_effects, write_case};
+use faults::{Campaign, Concealment, FaultError, Robot, Settings, conceal_case, conceal_effects, write_case};
 use rayon::prelude::*;
 
 use crate::cli::ConcealArgs;
@@ -119,7 +119,7 @@ fn drawn(args: &ConcealArgs, robots: &[Robot], truths: &Path) -> anyhow::Result<
 fn refuse_existing(folder: &Path) -> anyhow::Result<()> {
     let is_empty = std::fs::read_dir(folder).map_or(!folder.exists(), |mut inside| inside.next().is_none());
     let path = folder.to_owned();
-    ensure!(is_empty, ProofError::Exists { path });
+    ensure!(is_empty, FaultError::Exists { path });
     Ok(())
 }
 

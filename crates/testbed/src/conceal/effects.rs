@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow};
 use arm::Arm;
-use proof::{Concealed, EFFECTS, form_parameters};
+use faults::{Injected, form_parameters};
 
 use crate::diagnose::effect_file;
 use crate::library::Source;
@@ -13,7 +13,7 @@ use crate::library::Source;
 ///
 /// # Errors
 /// With file, line, reason and remedy.
-pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Vec<Concealed>> {
+pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Vec<Injected>> {
     let text = std::fs::read_to_string(path).with_context(|| {
         format!(
             "{}: the effects cannot be read; give a .toml file of effects",
@@ -39,8 +39,8 @@ pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Vec<Concealed>> {
             return Err(fail(format!("{key} is {value}; give a number")));
         }
         let json = serde_json::to_value(&table).map_err(|error| fail(error.to_string()))?;
-        let effect: Concealed = serde_json::from_value(json).map_err(|error| fail(error.to_string()))?;
-        if !effect.effect.ends_with("_unknown") {
+        let effect: Injected = serde_json::from_value(json).map_err(|error| fail(error.to_string()))?;
+        if !effect.is_outside_the_catalogue() {
             // What the catalogue has not is this command's; the rest is checked as any effect is.
             let own = form_parameters(&effect.effect);
             for key in ["onset", "form"].iter().chain(own) {
@@ -51,10 +51,5 @@ pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Vec<Concealed>> {
         effect.check(arm).map_err(|error| fail(error.to_string()))?;
         effects.push(effect);
     }
-    debug_assert!(
-        effects
-            .iter()
-            .all(|e| e.effect.ends_with("_unknown") || EFFECTS.contains(&e.effect.as_str()))
-    );
     Ok(effects)
 }

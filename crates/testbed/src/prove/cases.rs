@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail, ensure};
-use proof::{Campaign, CasePlan, ProofError, Robot, conceal_case, write_case};
+use faults::{Campaign, CasePlan, FaultError, Robot, conceal_case, write_case};
 
 use super::{disturbance, tracking};
 use crate::cli::ProveArgs;
@@ -189,7 +189,7 @@ impl Source {
                     break;
                 }
                 // What a robot cannot show from one seed it may from another.
-                Err(ProofError::NotExpressed { .. }) if attempt < SEEDS => plan.seed = plan.seed.wrapping_add(1),
+                Err(FaultError::NotExpressed { .. }) if attempt < SEEDS => plan.seed = plan.seed.wrapping_add(1),
                 Err(error) => return Err(error.into()),
             }
         }

@@ -7,7 +7,8 @@ use std::time::Instant;
 
 use anyhow::Context;
 use arm::Arm;
-use proof::{Program, Score, Seal, SealedCase, Target, sha256, true_terms, wrong_term};
+use faults::{Program, Seal, SealedCase, sha256};
+use scoring::{Figure, Score, Target, Truth, true_terms, wrong_term};
 use serde::Serialize;
 
 use super::cases::{Files, Place, Source};
@@ -98,7 +99,8 @@ fn protocol(
         // A truth that cannot be read is better known before hours of diagnosis than after.
         for Place { name, truth, .. } in places {
             let text = std::fs::read_to_string(truth).with_context(|| truth.display().to_string())?;
-            rows::truth(name, &text).with_context(|| format!("{}: mend it, or take it away", truth.display()))?;
+            rows::truth::<Truth>(name, &text)
+                .with_context(|| format!("{}: mend it, or take it away", truth.display()))?;
         }
     }
     times.of("conceal", || {
@@ -123,9 +125,9 @@ fn protocol(
             let bytes = std::fs::read(&place.truth).with_context(|| place.truth.display().to_string())?;
             sealed.check_truth(&bytes)?;
             let text = String::from_utf8(bytes).with_context(|| place.truth.display().to_string())?;
-            let truth = rows::truth(&place.name, &text)?;
+            let truth: Truth = rows::truth(&place.name, &text)?;
             let name = |control: &str| format!("controls/{}.{control}", place.name);
-            let fit = |control: &str, terms: &[proof::Name]| {
+            let fit = |control: &str, terms: &[scoring::Name]| {
                 let only = list(terms);
                 let task = Task {
                     only: Some(&only),
@@ -176,7 +178,7 @@ fn protocol(
 }
 
 /// Effects as `--only` takes them.
-pub fn list(terms: &[proof::Name]) -> String {
+pub fn list(terms: &[scoring::Name]) -> String {
     let words = terms.iter().map(|(effect, joint)| match joint {
         Some(joint) => format!("{effect}:{joint}"),
         None => effect.clone(),
@@ -283,14 +285,14 @@ pub fn figure(target: &Target) -> String {
     match (target.figure, &target.counted) {
         (None, _) => "–".to_owned(),
         (Some(share), Some(_)) => percent(share),
-        (Some(figure), None) if target.what.contains("relative error") => percent(figure),
+        (Some(figure), None) if target.id == Figure::ParameterErrors => percent(figure),
         (Some(figure), None) => format!("{figure:.3}"),
     }
 }
 
 /// What a target wants in words.
 pub fn wanted(target: &Target) -> String {
-    let is_share = target.counted.is_some() || target.what.contains("relative error");
+    let is_share = target.counted.is_some() || target.id == Figure::ParameterErrors;
     let show = |value: f64| if is_share { percent(value) } else { format!("{value}") };
     match (target.at_least, target.at_most) {
         (Some(low), Some(high)) => format!("{} to {}", show(low), show(high)),

@@ -5,8 +5,9 @@ pub mod words;
 use std::path::Path;
 
 use anyhow::Context;
-use proof::{Answer, Concealed, Concealment, Named, Number, Truth};
+use faults::{Concealment, Injected, Truth};
 use recording::Recording;
+use scoring::{Answer, Named, Number};
 use serde::Serialize;
 use torque::{Corrected, Effect, RigidBody, TorqueModel, TrainingOptions};
 
@@ -107,7 +108,7 @@ pub fn conceal() -> anyhow::Result<Concealment> {
             case: CASE.to_owned(),
             robot: train.arm.name().to_owned(),
             seed: 0,
-            concealed: vec![Concealed {
+            concealed: vec![Injected {
                 effect: EFFECT.to_owned(),
                 joint: None,
                 parameters: [("factor".to_owned(), factor.into())].into(),
@@ -237,7 +238,7 @@ fn effect(named: &Named) -> Option<Effect> {
 /// # Errors
 /// If it cannot be made or written.
 pub fn write(cases: &Path, truths: &Path) -> anyhow::Result<()> {
-    proof::write_case(&conceal()?, cases, truths)?;
+    faults::write_case(&conceal()?, cases, truths)?;
     Ok(())
 }
 

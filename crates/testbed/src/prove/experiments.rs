@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use proof::{Answer, ProofError, SealedCase, record_again, sha256_of};
+use faults::{FaultError, SealedCase, record_again, sha256_of};
+use scoring::Answer;
 use serde::{Deserialize, Serialize};
 
 use super::cases::{Place, Source};
@@ -128,10 +129,10 @@ pub fn make(source: &Source, vault: &Vault, place: &Place, sealed: &SealedCase, 
                     break;
                 }
                 // What cannot be recorded at any size is a result, too.
-                Err(error @ ProofError::Lost { .. }) if size == SIZES[SIZES.len() - 1] => {
+                Err(error @ FaultError::Lost { .. }) if size == SIZES[SIZES.len() - 1] => {
                     failed = Some(error.to_string());
                 }
-                Err(ProofError::Lost { .. }) => {}
+                Err(FaultError::Lost { .. }) => {}
                 Err(error) => return Err(error.into()),
             }
         }

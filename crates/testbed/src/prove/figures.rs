@@ -1,6 +1,6 @@
 //! The drawings of a proof: shares with their intervals.
 
-use proof::{Calibration, Counted, Curve};
+use scoring::{Calibration, Counted, Curve};
 
 use super::command::percent;
 use crate::diagnose::page::chart::{Scale, Svg};

@@ -14,7 +14,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use anyhow::{Context, ensure};
-use proof::{Answer, Published, RobotScore, SaidFate, Seal};
+use faults::Seal;
+use scoring::{Answer, Published, RobotScore, SaidFate};
 use serde::Serialize;
 
 use super::cases::Place;

@@ -2,41 +2,43 @@
 
 use std::collections::BTreeMap;
 
-use proof::{Score, Target};
+use scoring::{Figure, Score, Target};
 
 use super::command::percent;
 use super::experiments;
 
 /// In a sentence or two.
 pub fn reason(target: &Target, score: &Score) -> String {
-    let what = target.what.as_str();
-    if what.starts_with("macro F1") {
-        families(score)
-    } else if what.starts_with("empty") {
-        let empty = score.false_names.iter().filter(|name| name.concealed_there.is_empty());
-        format!(
-            "named where nothing is concealed: {}.",
-            tally(empty.map(|name| name.effect.as_str()))
-        )
-    } else if what.ends_with("right joint") {
-        let missed = score.outside.iter().filter(|case| !case.refused);
-        format!(
-            "not refused: {}.",
-            tally(missed.flat_map(|case| case.concealed.iter().map(|(effect, _)| effect.as_str())))
-        )
-    } else if what.ends_with("wrong name") {
-        let named = score.outside.iter().flat_map(|case| &case.named);
-        format!("named there: {}.", tally(named.map(|(effect, _)| effect.as_str())))
-    } else if what.starts_with("relative error") || what.starts_with("95 %") {
-        parameters(score, what.starts_with("95 %"))
-    } else if what.starts_with("truth in") {
-        let missed = score.concealed.iter().filter(|o| o.is_asked());
-        let missed = missed.filter(|o| !o.fate.is_covered());
-        format!("neither: {}.", tally(missed.map(|o| o.effect.as_str())))
-    } else if what.starts_with("confusions") {
-        experiments::words::reason(&score.experiments)
-    } else {
-        held_out(score)
+    match target.id {
+        Figure::MacroF1 => families(score),
+        Figure::EmptyCases => {
+            let empty = score.false_names.iter().filter(|name| name.concealed_there.is_empty());
+            format!(
+                "named where nothing is concealed: {}.",
+                tally(empty.map(|name| name.effect.as_str()))
+            )
+        }
+        Figure::OutsideRefused => {
+            let missed = score.outside.iter().filter(|case| !case.refused);
+            format!(
+                "not refused: {}.",
+                tally(missed.flat_map(|case| case.concealed.iter().map(|(effect, _)| effect.as_str())))
+            )
+        }
+        Figure::OutsideNamed => {
+            let named = score.outside.iter().flat_map(|case| &case.named);
+            format!("named there: {}.", tally(named.map(|(effect, _)| effect.as_str())))
+        }
+        Figure::ParameterErrors => parameters(score, false),
+        Figure::Intervals => parameters(score, true),
+        Figure::Covered => {
+            let missed = score.concealed.iter().filter(|o| o.is_asked());
+            let missed = missed.filter(|o| !o.fate.is_covered());
+            format!("neither: {}.", tally(missed.map(|o| o.effect.as_str())))
+        }
+        Figure::HeldOut => held_out(score),
+        Figure::Tracking => "the section about the closed loop tells it case by case.".to_owned(),
+        Figure::Confusions => experiments::words::reason(&score.experiments),
     }
 }
 

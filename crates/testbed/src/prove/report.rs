@@ -1,6 +1,6 @@
 //! What a proof says, as blocks that the page and the Markdown file are both made of.
 
-use proof::{Counted, Fate, Name, Score};
+use scoring::{Counted, Fate, Name, Score};
 
 use super::command::{Proof, figure, percent, wanted};
 use super::{disturbance, experiments, reasons, results, tracking};
@@ -143,11 +143,7 @@ fn opening(proof: &Proof) -> Vec<Block> {
         text(exempt(score)),
     ];
     for target in score.targets.iter().filter(|target| target.reached == Some(false)) {
-        let reason = match target.what.starts_with("tracking") {
-            true => "the section about the closed loop tells it case by case.".to_owned(),
-            false => reasons::reason(target, score),
-        };
-        list.push(text(format!("**{}**: {reason}", target.what)));
+        list.push(text(format!("**{}**: {}", target.what, reasons::reason(target, score))));
     }
     list
 }
@@ -208,7 +204,7 @@ fn concealed(proof: &Proof) -> Vec<Block> {
             proof.seal.source,
             &proof.seal.whole[..12],
             score.concealed.len(),
-            percent(proof::LEAST_SHARE),
+            percent(scoring::LEAST_SHARE),
         )),
         text(
             "Before the first diagnosis the SHA-256 of the program, of every recording and URDF and of every truth was written (`seal.json`, \

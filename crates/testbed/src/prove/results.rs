@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use proof::{Errors, Family, HeldOut, Score, quantile};
+use scoring::{Errors, Family, HeldOut, Score, quantile};
 
 use super::command::percent;
 use super::figures;

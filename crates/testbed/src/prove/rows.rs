@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use anyhow::Context;
-use proof::{Again, Answer, Score, SealedCase, Tried, Truth, sha256};
+use faults::{SealedCase, sha256};
+use scoring::{Again, Answer, Score, Tried};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::tracking::CaseTracking;
@@ -83,7 +85,7 @@ impl Row {
 ///
 /// # Errors
 /// If it is none.
-pub fn truth(case: &str, text: &str) -> anyhow::Result<Truth> {
+pub fn truth<T: DeserializeOwned>(case: &str, text: &str) -> anyhow::Result<T> {
     serde_json::from_str(text).with_context(|| format!("{case}: the truth"))
 }
 
@@ -93,5 +95,5 @@ pub fn truth(case: &str, text: &str) -> anyhow::Result<Truth> {
 /// If a text is not what it should be.
 pub fn score<'a>(rows: impl Iterator<Item = &'a Row>) -> anyhow::Result<Score> {
     let tried: anyhow::Result<Vec<Tried>> = rows.map(Row::tried).collect();
-    Ok(proof::score(&tried?))
+    Ok(scoring::score(&tried?))
 }

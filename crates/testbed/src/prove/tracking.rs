@@ -13,7 +13,8 @@ pub mod words;
 use std::path::Path;
 
 use anyhow::Context;
-use proof::{CaseMachine, DURATION, Name, PAUSE, Robot, Truth};
+use faults::{CaseMachine, DURATION, PAUSE, Robot, Truth};
+use scoring::Name;
 use serde::{Deserialize, Serialize};
 
 use self::closed_loop::Rate;
@@ -194,7 +195,7 @@ impl Case<'_> {
             .iter()
             .zip(pairs)
             .map(|(&model, (run, other))| run.tracked(model, other, &course));
-        let ordinary = |effect: &proof::Concealed| effect.expressed_share.is_none();
+        let ordinary = |effect: &faults::Injected| effect.expressed_share.is_none();
         let concealed = self.truth.concealed.iter().filter(|effect| !ordinary(effect));
         Ok(CaseTracking {
             case: case.clone(),
@@ -203,7 +204,7 @@ impl Case<'_> {
             joints: arm.joints().iter().map(|joint| joint.name.clone()).collect(),
             concealed: concealed
                 .map(|effect| Cause {
-                    effect: effect.name().to_owned(),
+                    effect: effect.effect.clone(),
                     joint: effect.joint.clone(),
                     onset: effect.onset,
                 })

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
-use proof::{Program, Seal, SealedCase, sha256, sha256_of};
+use faults::{Program, Seal, SealedCase, sha256, sha256_of};
 use serde::{Deserialize, Serialize};
 
 use super::cases::{Files, Place, Source};

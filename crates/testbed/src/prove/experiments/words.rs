@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use proof::{After, Confusion, Experiments, InCase};
+use scoring::{After, Confusion, Experiments, InCase};
 
 use super::LOOKED_AT;
 use crate::prove::report::{Block, counted, name, table, text};

@@ -1,6 +1,6 @@
 //! The drawing of a proof on published recordings: each number found over the one published, with its interval.
 
-use proof::{Compared, Evidence};
+use scoring::{Compared, Evidence};
 
 use super::Tried;
 use crate::diagnose::page::chart::{Scale, Svg};

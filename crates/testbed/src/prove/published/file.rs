@@ -6,8 +6,9 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow, bail, ensure};
 use arm::{Arm, JointKind};
-use proof::{Denied, EFFECTS, Evidence, Published, PublishedNumber, Said, compared_parameters, sha256};
+use faults::{catalogue, sha256};
 use recording::{nearest, toml_reason};
+use scoring::{Denied, Evidence, Published, PublishedNumber, Said, compared_parameters};
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -250,10 +251,10 @@ impl File {
 
     fn check_effect(&self, effect: &Spanned<String>) -> anyhow::Result<()> {
         let name = effect.get_ref();
-        if EFFECTS.contains(&name.as_str()) {
+        if catalogue().contains(&name.as_str()) {
             return Ok(());
         }
-        let known: Vec<String> = EFFECTS.iter().map(|&name| name.to_owned()).collect();
+        let known: Vec<String> = catalogue().into_iter().map(str::to_owned).collect();
         let hint = nearest(name, &known).map_or(String::new(), |near| format!("did you mean \"{near}\"? "));
         let known = known.join(", ");
         Err(self.fail(

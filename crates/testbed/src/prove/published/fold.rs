@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use proof::{HeldOutErrors, RobotScore};
+use scoring::{HeldOutErrors, RobotScore};
 
 use crate::diagnose::numbers::nrmse;
 

@@ -1,6 +1,6 @@
 //! What does not agree with what is published, up front.
 
-use proof::{Evidence, SaidFate};
+use scoring::{Evidence, SaidFate};
 
 use super::Tried;
 use crate::prove::command::percent;

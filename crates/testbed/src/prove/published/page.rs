@@ -1,6 +1,6 @@
 //! What a proof on published recordings says, as blocks of its report.
 
-use proof::{Compared, Evidence, SaidFate, quantile};
+use scoring::{Compared, Evidence, SaidFate, quantile};
 
 use super::fold::{error, rms};
 use super::robots::names;
@@ -222,8 +222,8 @@ pub const ERRORS: [&str; 6] = [
 fn errors(real: &Real) -> Vec<Block> {
     let row = |tried: &Tried| {
         let (robot, score) = (&tried.robot, &tried.score);
-        let of = |figure: fn(&proof::HeldOutErrors) -> Option<f64>| error(rms(&score.held_out, figure));
-        let motion = |figure: fn(&proof::Rollout) -> f64| {
+        let of = |figure: fn(&scoring::HeldOutErrors) -> Option<f64>| error(rms(&score.held_out, figure));
+        let motion = |figure: fn(&scoring::Rollout) -> f64| {
             let rms = rms(&score.rollout, |rollout| Some(figure(rollout)));
             rms.map_or_else(|| "–".to_owned(), |rms| crate::output::rounded(1e3 * rms, 3))
         };

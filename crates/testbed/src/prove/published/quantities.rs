@@ -70,7 +70,8 @@ pub fn si(effect: &str, parameter: &str, kind: Option<JointKind>, unit: &str) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proof::{EFFECTS, compared_parameters};
+    use faults::catalogue;
+    use scoring::compared_parameters;
 
     #[test]
     fn units_are_those_of_the_joint() {
@@ -102,7 +103,7 @@ mod tests {
         ] {
             assert_eq!(si(effect, parameter, Some(JointKind::Revolute), unit), Ok((1.0, unit)));
         }
-        for effect in EFFECTS {
+        for effect in catalogue() {
             assert!(!compared_parameters(effect).is_empty(), "{effect}");
         }
     }

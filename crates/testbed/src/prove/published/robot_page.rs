@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
-use proof::{Besides, Compared, Evidence, SaidFate, SaidOutcome};
+use scoring::{Besides, Compared, Evidence, SaidFate, SaidOutcome};
 
 use super::Tried;
 use super::fold::error;

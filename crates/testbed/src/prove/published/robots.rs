@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, ensure};
 use arm::Arm;
-use proof::sha256_of;
+use faults::sha256_of;
 
 use super::file::{File, Robot};
 use crate::output;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use proof::{CasePlan, Robot};
+use faults::{CasePlan, Robot};
 
 use super::TASK;
 use crate::scenario::Scenario;
@@ -54,7 +54,7 @@ fn chosen_on(plans: &[CasePlan], robots: &[Robot], name: &str) -> BTreeSet<usize
 
 #[cfg(test)]
 mod tests {
-    use proof::Campaign;
+    use faults::Campaign;
 
     use super::*;
 

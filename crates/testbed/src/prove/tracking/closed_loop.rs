@@ -1,6 +1,6 @@
 //! The closed loop on a case's machine: computed torque, the same gains whatever the model.
 
-use proof::{CaseMachine, ProofError, Robot, VelocityFilter};
+use faults::{CaseMachine, FaultError, Robot, VelocityFilter};
 use torque::{Command, Controller, RigidBody};
 
 use super::course::Course;
@@ -74,7 +74,7 @@ pub fn run(
     let (links, tau) = match driven {
         Ok(driven) => (driven.links, driven.tau),
         // An arm that runs away under a model is a result.
-        Err(ProofError::Plant(_)) => (Vec::new(), Vec::new()),
+        Err(FaultError::Plant(_)) => (Vec::new(), Vec::new()),
         Err(error) => return Err(error.into()),
     };
     Ok(Run { links, tau, cut })

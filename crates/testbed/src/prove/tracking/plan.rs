@@ -1,7 +1,7 @@
 //! The feed-forward of a model along the course: torques, and what the encoders are to say.
 
 use arm::Arm;
-use proof::{CaseMachine, LinkMotion};
+use faults::{CaseMachine, LinkMotion};
 use torque::{Corrected, Effect, Learned, Prediction, RigidBody, TorqueModel, Workspace};
 
 use super::course::{Course, TICK};

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::Context;
-use proof::{SealedCase, sha256, sha256_of};
+use faults::{SealedCase, sha256, sha256_of};
 use serde::{Deserialize, Serialize};
 
 use super::Case;

@@ -1,12 +1,12 @@
 //! A machine whose effects are known: what each model is worth on it.
 
-use proof::{Concealed, Settings, conceal_effects, write_case};
+use faults::{Injected, Settings, conceal_effects, write_case};
 use torque::Effect;
 
 use super::*;
 
 /// Conceals `effects` in the PUMA 560, and tracks the task with `named` as what was diagnosed.
-fn tracked(effects: &[Concealed], named: &[Effect]) -> CaseTracking {
+fn tracked(effects: &[Injected], named: &[Effect]) -> CaseTracking {
     let robots = crate::conceal::robots(&["puma560".to_owned()]).expect("it comes with the program");
     let settings = Settings {
         training: 1,
@@ -42,7 +42,7 @@ fn errors(tracking: &CaseTracking) -> [f64; 5] {
 #[test]
 fn a_true_name_tracks_as_the_exact_model_does() {
     let joint = || "joint2".to_owned();
-    let drag = Concealed::new("quadratic_drag", Some("joint2")).with("coefficient", 40.0);
+    let drag = Injected::new("quadratic_drag", Some("joint2")).with("coefficient", 40.0);
     let named = Effect::QuadraticDrag {
         joint: joint(),
         coefficient: 40.0,
@@ -65,12 +65,12 @@ fn a_true_name_tracks_as_the_exact_model_does() {
 fn drives_are_made_up_for() {
     let on = |name: &str| Some(format!("joint{name}"));
     let effects = [
-        Concealed::new("actuation_delay", on("1").as_deref()).with("delay", 0.0085),
-        Concealed::new("encoder_offset", on("2").as_deref()).with("offset", 0.03),
-        Concealed::new("joint_elasticity", on("3").as_deref())
+        Injected::new("actuation_delay", on("1").as_deref()).with("delay", 0.0085),
+        Injected::new("encoder_offset", on("2").as_deref()).with("offset", 0.03),
+        Injected::new("joint_elasticity", on("3").as_deref())
             .with("stiffness", 900.0)
             .with("damping", 2.0),
-        Concealed::new("torque_scale", on("5").as_deref()).with("factor", 1.3),
+        Injected::new("torque_scale", on("5").as_deref()).with("factor", 1.3),
     ];
     let joint = |name: &str| format!("joint{name}");
     let named = [

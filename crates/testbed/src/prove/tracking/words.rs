@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use proof::{Name, quantile};
+use scoring::{Name, quantile};
 
 use super::{CaseTracking, Model};
 use crate::output::rounded;

@@ -1,0 +1,176 @@
+//! A case's true machine under a controller from outside.
+
+use crate::error::FaultError;
+use crate::machine::{Begin, Inverse, LinkMotion, Machine, Seen};
+use crate::robot::Robot;
+use crate::truth::{Injected, Truth};
+
+/// The machine that a case's recordings are of.
+///
+/// Its time is the recordings' clock: what has set in by then is there, what warms has warmed, and a contact acts in its window alone.
+pub struct CaseMachine<'a> {
+    machine: Machine<'a>,
+    robot: &'a Robot,
+    quantum: f64,
+}
+
+/// A run of a machine; `[tick × dof + joint]`, ticks of 1 ms.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Driven {
+    /// Where the links were (rad or m), which no encoder tells.
+    pub links: Vec<f64>,
+    /// What the encoders said (rad or m).
+    pub q: Vec<f64>,
+    /// The torques commanded (N m or N).
+    pub tau: Vec<f64>,
+}
+
+impl<'a> CaseMachine<'a> {
+    /// The machine of `truth`, which is of a case drawn on `robot`.
+    ///
+    /// # Errors
+    /// [`FaultError::Setting`] if the truth is of another robot, [`FaultError::Effect`] if an effect is not of this robot.
+    pub fn new(robot: &'a Robot, truth: &Truth) -> Result<Self, FaultError> {
+        if truth.robot != robot.name() {
+            let (case, its, name) = (&truth.case, &truth.robot, robot.name());
+            let reason = format!("{case} is of the robot \"{its}\", not of \"{name}\"; give the robot it was drawn on");
+            return Err(FaultError::Setting(reason));
+        }
+        let effects: Vec<&Injected> = truth.concealed.iter().filter(|effect| !robot.brings(effect)).collect();
+        Ok(Self {
+            machine: Machine::new(robot, &effects, None)?,
+            robot,
+            quantum: truth.encoder_quantum,
+        })
+    }
+
+    /// Drives it for so many ticks of 1 ms from `start` (s) on; it begins at rest with its encoders at `q` (rad or m), under the torque
+    /// that holds the robot as its user believes it. `controller` sees encoders and gives torques (N m or N), once a tick.
+    ///
+    /// # Errors
+    /// [`FaultError::Plant`] if the motion leaves all bounds.
+    ///
+    /// # Panics
+    /// If `q` is of another size than the arm.
+    pub fn drive(
+        &self,
+        start: f64,
+        q: &[f64],
+        ticks: usize,
+        mut controller: impl FnMut(&Seen<'_>, &mut [f64]),
+    ) -> Result<Driven, FaultError> {
+        let arm = self.robot.arm();
+        let mut holding = vec![0.0; arm.dof()];
+        arm.gravity_torque(&mut arm::Workspace::new(arm), q, &mut holding);
+        let begin = Begin {
+            time: start,
+            q,
+            holding: &holding,
+        };
+        let (run, links) = self.machine.drive(&begin, self.quantum, ticks, &mut controller)?;
+        Ok(Driven {
+            links,
+            q: run.q,
+            tau: run.tau,
+        })
+    }
+
+    /// The torques that a motion of its links takes by its own laws: the exact model.
+    ///
+    /// Dry friction has the sign of the velocity and is nothing at rest. Left out are contacts, which are events; gaps and torque
+    /// limits, which no torque undoes; and the damping of springs. What remembers starts as a run does.
+    pub fn inverse(&self, motion: &LinkMotion<'_>) -> Inverse {
+        self.machine.inverse(motion)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+    use crate::motion::{LEAD, excitation};
+    use crate::test_robots::{puma, seven_axis};
+
+    fn truth(robot: &Robot, concealed: Vec<Injected>) -> Truth {
+        Truth {
+            case: "case_000".into(),
+            robot: robot.name().into(),
+            seed: 0,
+            concealed,
+            background_friction: false,
+            torque_noise: vec![0.0; robot.arm().dof()],
+            encoder_quantum: 1e-5,
+            period: 1e-3,
+        }
+    }
+
+    /// RMS distance of the links from the reference, with the feed-forward of the user's model and with that of the machine's own laws.
+    fn errors(robot: &Robot, concealed: Vec<Injected>) -> [f64; 2] {
+        let machine = CaseMachine::new(robot, &truth(robot, concealed)).expect("the effects fit");
+        let reference = excitation(robot, 60.0, &mut ChaCha8Rng::seed_from_u64(5)).cut(4.0);
+        let n = robot.arm().dof();
+        let start = reference.time(0);
+        let inverse = machine.inverse(&LinkMotion {
+            start,
+            q: &reference.q,
+            qd: &reference.qd,
+            qdd: &reference.qdd,
+        });
+        let beyond = vec![0.0; inverse.beyond.len()];
+        [(&reference.ff, &beyond), (&inverse.tau, &inverse.beyond)].map(|(ff, beyond)| {
+            let begin: Vec<f64> = (0..n).map(|j| reference.q[j] + beyond[j]).collect();
+            let driven = machine
+                .drive(start, &begin, reference.ticks(), |seen, torque| {
+                    for (j, torque) in torque.iter_mut().enumerate() {
+                        let at = seen.tick * n + j;
+                        let (p, d) = (400.0 * robot.inertia(j), 32.0 * robot.inertia(j));
+                        *torque = ff[at]
+                            + p * (reference.q[at] + beyond[at] - seen.q[j])
+                            + d * (reference.qd[at] - seen.qd[j]);
+                    }
+                })
+                .expect("it can be driven");
+            let squares = driven.links.iter().zip(&reference.q).skip(n * LEAD);
+            (squares.map(|(q, wanted)| (wanted - q).powi(2)).sum::<f64>() / (reference.ticks() - LEAD) as f64).sqrt()
+        })
+    }
+
+    /// The machine follows its own inverse, whatever is concealed in it: in forms that the catalogue has not, with a memory, in a spring.
+    #[test]
+    fn the_inverse_is_the_machines_own() {
+        let robot = seven_axis();
+        let on = |effect: &str| Injected::new(effect, Some("axis4"));
+        let level = |effect: &str| on(effect).with("amplitude", 4.0);
+        for effect in [
+            on("quadratic_drag").with("coefficient", 8.0).formed("power"),
+            on("spring")
+                .with("stiffness", 30.0)
+                .with("rest", 0.6)
+                .formed("gas spring"),
+            on("encoder_offset").with("offset", 0.05),
+            on("torque_scale").with("factor", 1.5),
+            level("hysteresis_unknown").with("scale", 0.1).with("shape", 0.6),
+            level("history_unknown").with("time_constant", 1.0),
+            Injected::new("payload", None)
+                .with("mass", 2.0)
+                .with("com", serde_json::json!([0.0, 0.0, 0.1])),
+        ] {
+            let [nominal, exact] = errors(&robot, vec![effect.clone()]);
+            assert!(exact < 0.2 * nominal, "{effect:?}: {exact} {nominal}");
+        }
+    }
+
+    /// The drives' inertias are the robot's, in the truth or not; another robot's truth is refused.
+    #[test]
+    fn what_the_robot_has_is_not_concealed_twice() {
+        let robot = puma();
+        let joints = robot.arm().joints().iter().zip(robot.rotor_inertias());
+        let drives: Vec<Injected> = joints
+            .map(|(joint, &inertia)| Injected::new("rotor_inertia", Some(&joint.name)).with("inertia", inertia))
+            .collect();
+        assert_eq!(errors(&robot, drives), errors(&robot, Vec::new()));
+        assert!(CaseMachine::new(&seven_axis(), &truth(&robot, Vec::new())).is_err());
+    }
+}

@@ -1,0 +1,150 @@
+//! Cases: the same every time, and what their truth says.
+
+use super::*;
+use crate::campaign::Campaign;
+use crate::test_robots::{puma, seven_axis};
+
+fn plan(hard: bool, effects: &[&str]) -> CasePlan {
+    CasePlan {
+        index: 0,
+        name: "case_007".into(),
+        seed: 11,
+        hard,
+        background_friction: true,
+        effects: effects.iter().map(ToString::to_string).collect(),
+    }
+}
+
+#[test]
+fn a_case_is_the_same_every_time() {
+    let plan = plan(true, &["torque_offset"]);
+    let robot = seven_axis();
+    let first = conceal_case(&robot, &plan).expect("it comes out");
+    assert_eq!(first, conceal_case(&robot, &plan).expect("it comes out"));
+    assert_eq!((first.train.len(), first.truth.case.as_str()), (2, "case_007"));
+
+    // Ordinary friction is on every joint, without a share; what was drawn is there, with one within bounds.
+    let ordinary = first
+        .truth
+        .concealed
+        .iter()
+        .filter(|effect| effect.expressed_share.is_none());
+    assert_eq!(ordinary.count(), 14);
+    let effect = first
+        .truth
+        .concealed
+        .iter()
+        .find(|effect| effect.effect == "torque_offset");
+    let share = effect.and_then(|effect| effect.expressed_share).expect("it is there");
+    assert!((0.015..1.2).contains(&share), "{share}");
+    // One clock through the case: recordings of 25 s, 5 s apart.
+    let starts: Vec<f64> = first
+        .train
+        .iter()
+        .chain([&first.held_out])
+        .map(|run| run.time[0].round())
+        .collect();
+    assert_eq!(starts, [0.0, 30.0, 60.0]);
+}
+
+#[test]
+fn the_truth_says_what_was_given() {
+    let mut payload = Injected::new("payload", None)
+        .with("mass", 1.0)
+        .with("com", serde_json::json!([0.0, 0.0, 0.1]));
+    payload.onset = Some(12.0);
+    let settings = Settings {
+        training: 1,
+        rate: 100,
+        ..Settings::default()
+    };
+    let made = conceal_effects(&puma(), "one", &[payload.clone()], &settings).expect("it can be");
+    let (drives, given) = made.truth.concealed.split_at(6);
+    assert!(
+        drives
+            .iter()
+            .all(|effect| effect.effect == "rotor_inertia" && effect.expressed_share.is_none())
+    );
+    let share = given[0].expressed_share.expect("it was run without");
+    assert!(share > 0.1, "{share}");
+    payload.expressed_share = given[0].expressed_share;
+    assert_eq!(given, [payload]);
+    assert!(!made.truth.background_friction && made.truth.period == 0.01);
+    assert_eq!((made.train.len(), made.train[0].len()), (1, 2500));
+    // The truth is read again as it was written.
+    let text = serde_json::to_string(&made.truth).expect("it is JSON");
+    let read: Truth = serde_json::from_str(&text).expect("it is a truth");
+    assert_eq!(read, made.truth);
+}
+
+#[test]
+fn what_cannot_be_is_refused() {
+    let robot = seven_axis();
+    let refuse = |effect: Injected| {
+        let error = conceal_effects(&robot, "no", &[effect], &Settings::default()).expect_err("it is refused");
+        error.to_string()
+    };
+    let has = |text: String, part: &str| assert!(text.contains(part), "{text}");
+    has(
+        refuse(Injected::new("sprung", Some("axis1"))),
+        "did you mean \"spring\"",
+    );
+    has(
+        refuse(Injected::new("spring", Some("axis9")).with("stiffness", 1.0)),
+        "did you mean",
+    );
+    has(
+        refuse(Injected::new("spring", Some("axis1")).with("rest", 1.0)),
+        "add stiffness",
+    );
+    has(refuse(Injected::new("spring", None)), "the joint is missing");
+    let spring = Injected::new("spring", Some("axis1"))
+        .with("stiffness", 1.0)
+        .with("rest", 1.0);
+    has(refuse(spring.formed("air spring")), "gas spring, hardening, knee");
+    let offset = Injected::new("torque_offset", Some("axis1")).with("offset", 1.0);
+    has(refuse(offset.formed("round")), "one only");
+    has(
+        refuse(Injected::new("actuation_delay", Some("axis1")).with("delay", 2.0)),
+        "delay",
+    );
+    let rate = Settings {
+        rate: 300,
+        ..Settings::default()
+    };
+    has(
+        conceal_effects(&robot, "no", &[], &rate)
+            .expect_err("it is refused")
+            .to_string(),
+        "500",
+    );
+}
+
+/// A case goes to its folder, its truth elsewhere, and neither is ever overwritten.
+#[test]
+fn cases_are_written_once() {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let truths = folder.path().join("truth");
+    let mut plan = Campaign { seed: 3, cases: 1 }.case(0).expect("there is one");
+    plan.effects.clear();
+    plan.hard = true;
+    let made = conceal_case(&seven_axis(), &plan).expect("it comes out");
+    let case = crate::write_case(&made, folder.path(), &truths).expect("it is written");
+    let mut files: Vec<String> = std::fs::read_dir(&case)
+        .expect("it is there")
+        .flatten()
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
+    files.sort();
+    assert_eq!(files, ["held_out.csv", "robot.urdf", "train_1.csv", "train_2.csv"]);
+    let read = Recording::read_csv(&case.join("train_2.csv")).expect("it is a recording");
+    assert_eq!(
+        (read.time, read.tau),
+        (made.train[1].time.clone(), made.train[1].tau.clone())
+    );
+    assert!(truths.join("case_000.json").is_file());
+    let error = crate::write_case(&made, folder.path(), &truths)
+        .expect_err("it is refused")
+        .to_string();
+    assert!(error.contains("nothing is overwritten"), "{error}");
+}

@@ -1,0 +1,153 @@
+//! Faults drawn at random: on which joint, and when they set in; a fault's file draws its size and form.
+
+use std::f64::consts::TAU;
+
+use rand::Rng;
+use rand::seq::IndexedRandom;
+use rand_chacha::ChaCha8Rng;
+
+use crate::fault::{Fault, Place, coulomb_friction, viscous_friction};
+use crate::robot::Robot;
+use crate::truth::Injected;
+
+/// How often faults set in at an onset that may.
+const ONSET: f64 = 0.12;
+
+/// What sizes are drawn by.
+pub(crate) struct Scales<'a> {
+    pub robot: &'a Robot,
+    pub hard: bool,
+    /// Standard deviation of each joint's torque (N m or N), without faults.
+    pub spreads: &'a [f64],
+    /// Of each joint, the sizes of its torque in increasing order (N m or N).
+    pub torques: &'a [Vec<f64>],
+    /// Ordinary dry friction (N m or N), 0 where there is none.
+    pub coulomb: &'a [f64],
+    /// When the first training recording begins and the last ends (s).
+    pub span: (f64, f64),
+}
+
+/// A joint that a fault is drawn on.
+pub(crate) struct Site<'a> {
+    scales: &'a Scales<'a>,
+    pub robot: &'a Robot,
+    /// Whether the case is of the harder kind.
+    pub hard: bool,
+    /// When the first training recording begins and the last ends (s).
+    pub span: (f64, f64),
+    pub joint: usize,
+}
+
+/// Ordinary friction of every joint: Coulomb level and viscous coefficient.
+pub(crate) fn ordinary_friction(spreads: &[f64], random: &mut ChaCha8Rng) -> Vec<(f64, f64)> {
+    let of = |s: &f64| {
+        let level = coulomb_friction::level(*s, random);
+        (level, viscous_friction::coefficient(*s, random))
+    };
+    spreads.iter().map(of).collect()
+}
+
+impl Scales<'_> {
+    /// `fault` on a joint that is not `used`, of a size and form drawn.
+    pub(crate) fn draw(&self, fault: &Fault, used: &[usize], random: &mut ChaCha8Rng) -> Injected {
+        let n = self.robot.arm().dof();
+        let free = |j: &usize| !used.contains(j);
+        let mut joints: Vec<usize> = (0..n).filter(free).collect();
+        let fitting = match fault.place {
+            Place::AnyJoint | Place::WholeArm => 0..n,
+            Place::OuterJoints => 1..n,
+            Place::InnerJoints => 1..n.saturating_sub(1),
+        };
+        if joints.iter().any(|j| fitting.contains(j)) {
+            joints.retain(|j| fitting.contains(j));
+        }
+        let joint = joints
+            .choose(random)
+            .copied()
+            .unwrap_or_else(|| random.random_range(0..n));
+        let name = self.robot.arm().joints()[joint].name.as_str();
+        let bare = Injected::new(fault.name, (fault.place != Place::WholeArm).then_some(name));
+        let site = Site {
+            scales: self,
+            robot: self.robot,
+            hard: self.hard,
+            span: self.span,
+            joint,
+        };
+        let mut drawn = (fault.draw)(bare, &site, random);
+        let sets_in = random.random_bool(ONSET);
+        if sets_in && fault.sets_in {
+            let (from, to) = self.span;
+            drawn.onset = Some(from + (to - from) * random.random_range(0.3..0.7));
+        }
+        drawn
+    }
+}
+
+impl<'a> Site<'a> {
+    /// Standard deviation of the joint's torque (N m or N), without faults.
+    pub(crate) fn spread(&self) -> f64 {
+        self.scales.spreads[self.joint]
+    }
+
+    /// The sizes of the joint's torque in increasing order (N m or N).
+    pub(crate) fn torques(&self) -> &'a [f64] {
+        &self.scales.torques[self.joint]
+    }
+
+    /// Where the joint's motions are centred (rad or m).
+    pub(crate) fn home(&self) -> f64 {
+        self.robot.home()[self.joint]
+    }
+
+    /// What the joint moves with the others held, without its drive (kg m² or kg).
+    pub(crate) fn link_inertia(&self) -> f64 {
+        self.robot.link_inertia(self.joint)
+    }
+
+    /// The ordinary inertia of the joint's drive, 0 where it has none (kg m² or kg).
+    pub(crate) fn rotor_inertia(&self) -> f64 {
+        self.robot.rotor_inertias()[self.joint]
+    }
+
+    /// The mass (kg) that the arm might carry.
+    pub(crate) fn load(&self) -> f64 {
+        0.07 * self.robot.mass()
+    }
+
+    /// The plain dry friction under a friction curve: the joint's own, or one drawn (N m or N); and one of three forms, the first
+    /// where the case is easy.
+    pub(crate) fn dry_friction(&self, random: &mut ChaCha8Rng) -> (f64, usize) {
+        let drawn = self.spread() * random.random_range(0.08..0.25);
+        let own = self.scales.coulomb[self.joint];
+        let form = if self.hard { random.random_range(0..3) } else { 0 };
+        (if own > 0.0 { own } else { drawn }, form)
+    }
+
+    /// Another joint's name, and a phase: drawn for every fault outside the catalogue.
+    pub(crate) fn other_and_phase(&self, random: &mut ChaCha8Rng) -> (&'a str, f64) {
+        let joints = self.robot.arm().joints();
+        let others: Vec<usize> = (0..joints.len()).filter(|&o| o != self.joint).collect();
+        let other = others.choose(random).copied().unwrap_or(self.joint);
+        (&joints[other].name, random.random_range(0.0..TAU))
+    }
+}
+
+/// `bare` in another form, half of the time.
+pub(crate) fn sometimes(bare: Injected, form: &str, random: &mut ChaCha8Rng) -> Injected {
+    if random.random_bool(0.5) {
+        bare.formed(form)
+    } else {
+        bare
+    }
+}
+
+/// A number whose logarithm is as likely everywhere between those of `least` and `most`.
+pub(crate) fn log_uniform(least: f64, most: f64, random: &mut ChaCha8Rng) -> f64 {
+    random.random_range(least.ln()..most.ln()).exp()
+}
+
+/// 1 or −1.
+pub(crate) fn sign(random: &mut ChaCha8Rng) -> f64 {
+    if random.random_bool(0.5) { 1.0 } else { -1.0 }
+}

@@ -1,0 +1,259 @@
+//! The faults that can be injected, one file each: its name and forms, where it can be, how it is drawn, how its parameters are read and
+//! checked, its law, and an example that the tests run.
+//!
+//! To add a fault, write its file, and name it below: as a module, and in [`FAULTS`].
+
+use rand_chacha::ChaCha8Rng;
+use serde_json::{Value, json};
+
+use crate::draw::Site;
+use crate::error::FaultError;
+use crate::part::Piece;
+use crate::robot::Robot;
+use crate::truth::Injected;
+
+mod reader;
+pub(crate) use reader::{Reader, parts};
+
+mod actuation_delay;
+mod backlash;
+pub(crate) mod coulomb_friction;
+mod cross_coupling_unknown;
+mod dead_band_unknown;
+mod encoder_offset;
+pub(crate) mod external_contact;
+mod friction_asymmetry;
+mod gravity_misalignment;
+mod history_unknown;
+mod hysteresis_unknown;
+mod inertial_scale;
+mod joint_elasticity;
+mod link_inertial_error;
+mod load_dependent_friction;
+mod multiplicative_unknown;
+mod other_velocity_unknown;
+mod payload;
+mod quadratic_drag;
+mod random_walk_unknown;
+mod rotor_inertia;
+mod spring;
+mod stribeck_friction;
+mod thermal_drift;
+mod time_periodic_unknown;
+mod torque_offset;
+mod torque_ripple;
+mod torque_saturation;
+mod torque_scale;
+mod transmission_coupling;
+pub(crate) mod viscous_friction;
+
+/// All faults. Draws depend on their order: the ordinary first, then the catalogue's, then those outside it.
+pub(crate) static FAULTS: [Fault; 31] = [
+    viscous_friction::FAULT,
+    coulomb_friction::FAULT,
+    friction_asymmetry::FAULT,
+    stribeck_friction::FAULT,
+    load_dependent_friction::FAULT,
+    thermal_drift::FAULT,
+    quadratic_drag::FAULT,
+    rotor_inertia::FAULT,
+    torque_scale::FAULT,
+    torque_offset::FAULT,
+    torque_ripple::FAULT,
+    torque_saturation::FAULT,
+    actuation_delay::FAULT,
+    joint_elasticity::FAULT,
+    backlash::FAULT,
+    transmission_coupling::FAULT,
+    payload::FAULT,
+    link_inertial_error::FAULT,
+    inertial_scale::FAULT,
+    gravity_misalignment::FAULT,
+    encoder_offset::FAULT,
+    spring::FAULT,
+    external_contact::FAULT,
+    cross_coupling_unknown::FAULT,
+    time_periodic_unknown::FAULT,
+    dead_band_unknown::FAULT,
+    hysteresis_unknown::FAULT,
+    other_velocity_unknown::FAULT,
+    history_unknown::FAULT,
+    random_walk_unknown::FAULT,
+    multiplicative_unknown::FAULT,
+];
+
+/// What is known of a kind of fault. The first fields repeat what the catalogue of effects says: `effects::Spec` is to replace them.
+pub(crate) struct Fault {
+    /// The catalogue's name, or one that ends in `_unknown`.
+    pub name: &'static str,
+    /// On which joints it is drawn, or on the whole arm.
+    pub place: Place,
+    /// Whether the catalogue has no name for it.
+    pub is_outside: bool,
+    /// Its forms beside the first, which is the textbook's (or the plainest).
+    pub forms: &'static [&'static str],
+    /// Its parameters, all with defaults, beyond the catalogue's.
+    pub form_parameters: &'static [&'static str],
+    /// Whether a robot can have it.
+    pub can_be_on: fn(&Robot) -> bool,
+    /// Whether it may set in at an onset when it is drawn.
+    pub sets_in: bool,
+    /// Those of one kind are not drawn together: one of them at a time can be told.
+    pub alone_among: Option<Alike>,
+    /// What stays of it when it is taken away.
+    pub leaves: Leaves,
+    /// Whether it is a constant torque, so that its share is that of the mean, too.
+    pub is_constant: bool,
+    /// Whether there may be several on one joint.
+    pub may_be_several: bool,
+    /// Whether a sound machine may swing with it.
+    pub rattles: bool,
+    /// How it is made larger or smaller.
+    pub size: Size,
+    /// Gives it a form and parameters that a robot could have, at random.
+    pub draw: fn(Injected, &Site<'_>, &mut ChaCha8Rng) -> Injected,
+    /// Its parts of the machine, from its checked parameters.
+    pub read: fn(&Reader<'_>) -> Result<Vec<Piece>, FaultError>,
+    /// Gives it parameters at which it shows, on axis 4 of the arm with seven axes.
+    #[cfg(test)]
+    pub example: fn(Injected) -> Injected,
+}
+
+/// Where a fault is drawn.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Place {
+    AnyJoint,
+    /// All but the first.
+    OuterJoints,
+    /// All but the first and the last: the base may carry no load, and the last link may be next to nothing.
+    InnerJoints,
+    WholeArm,
+}
+
+/// Faults that look alike.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Alike {
+    BetweenCommandAndLink,
+    Scales,
+}
+
+/// What stays of a fault when it is taken away.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Leaves {
+    Nothing,
+    /// The plain dry friction under a friction curve. It replaces the ordinary one of its joint.
+    DryFriction,
+    /// The rotor of a drive whose spring is rigid.
+    Rotor,
+}
+
+/// How a fault is made `factor` as large.
+#[derive(Clone, Copy)]
+pub(crate) enum Size {
+    /// Not at all: it has sizes that machines have.
+    AsDrawn,
+    /// These parameters times the factor.
+    Times(&'static [&'static str]),
+    /// By the new values of some parameters, as far as physics lets it.
+    Changed(fn(&Injected, f64) -> Vec<(&'static str, Value)>),
+}
+
+impl Fault {
+    const ON_A_JOINT: Self = Self {
+        name: "",
+        place: Place::AnyJoint,
+        is_outside: false,
+        forms: &[],
+        form_parameters: &[],
+        can_be_on: |_| true,
+        sets_in: false,
+        alone_among: None,
+        leaves: Leaves::Nothing,
+        is_constant: false,
+        may_be_several: false,
+        rattles: false,
+        size: Size::AsDrawn,
+        draw: |bare, _, _| bare,
+        read: |_| Ok(Vec::new()),
+        #[cfg(test)]
+        example: |bare| bare,
+    };
+
+    const ON_THE_ARM: Self = Self {
+        place: Place::WholeArm,
+        ..Self::ON_A_JOINT
+    };
+
+    const OUTSIDE_THE_CATALOGUE: Self = Self {
+        is_outside: true,
+        may_be_several: true,
+        size: Size::Times(&["amplitude"]),
+        ..Self::ON_A_JOINT
+    };
+
+    /// The fault of this name.
+    pub(crate) fn named(name: &str) -> Option<&'static Self> {
+        FAULTS.iter().find(|fault| fault.name == name)
+    }
+
+    /// Makes one `factor` as large.
+    pub(crate) fn resize(&self, injected: &mut Injected, factor: f64) {
+        let changed = match self.size {
+            Size::AsDrawn => Vec::new(),
+            Size::Times(names) => {
+                let times = |name: &&'static str| (*name, json!(factor * injected.number(name).unwrap_or(0.0)));
+                names.iter().map(times).collect()
+            }
+            Size::Changed(change) => change(injected, factor),
+        };
+        for (name, value) in changed {
+            injected.parameters.insert(name.to_owned(), value);
+        }
+    }
+}
+
+/// The catalogue's names, what is ordinary first.
+pub fn catalogue() -> Vec<&'static str> {
+    names(|fault| !fault.is_outside)
+}
+
+/// Names outside the catalogue.
+pub fn outside() -> Vec<&'static str> {
+    names(|fault| fault.is_outside)
+}
+
+/// The catalogue's families that are drawn: all but the first two, plain viscous and Coulomb friction, which are ordinary.
+pub fn families() -> Vec<&'static str> {
+    catalogue().split_off(2)
+}
+
+/// The parameters, all with defaults, that `effect` has beyond the catalogue's.
+pub fn form_parameters(effect: &str) -> &'static [&'static str] {
+    Fault::named(effect).map_or(&[], |fault| fault.form_parameters)
+}
+
+fn names(counts: impl Fn(&Fault) -> bool) -> Vec<&'static str> {
+    FAULTS
+        .iter()
+        .filter(|fault| counts(fault))
+        .map(|fault| fault.name)
+        .collect()
+}
+
+/// What a fault's file is written with.
+mod prelude {
+    pub(super) use std::f64::consts::{PI, TAU};
+
+    pub(super) use arm::{Inertia, Matrix3, Vector3};
+    pub(super) use rand::seq::IndexedRandom;
+    pub(super) use rand::{Rng, SeedableRng};
+    pub(super) use rand_chacha::ChaCha8Rng;
+    pub(super) use rand_distr::{Distribution, StandardNormal};
+    pub(super) use serde_json::{Value, json};
+
+    pub(super) use super::{Alike, Fault, Leaves, Place, Reader, Size};
+    pub(super) use crate::draw::{log_uniform, sign, sometimes};
+    pub(super) use crate::error::FaultError;
+    pub(super) use crate::part::{At, Body, Connection, DriveLaw, DryAt, DryLaw, DrySum, LinkLaw, Piece, What};
+    pub(super) use crate::robot::has_another_joint;
+}

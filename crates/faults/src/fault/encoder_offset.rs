@@ -1,0 +1,16 @@
+//! An encoder whose zero is not the joint's.
+
+use super::prelude::*;
+
+pub(super) const FAULT: Fault = Fault {
+    name: "encoder_offset",
+    place: Place::InnerJoints,
+    draw: |bare, at, random| {
+        let size = random.random_range(if at.hard { 0.008..0.05 } else { 0.015..0.06 });
+        bare.with("offset", size * sign(random))
+    },
+    read: |reader| Ok(vec![What::Encoder(reader.joint()?, reader.number("offset")?).into()]),
+    #[cfg(test)]
+    example: |bare| bare.with("offset", 0.05),
+    ..Fault::ON_A_JOINT
+};

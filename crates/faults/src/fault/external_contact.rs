@@ -1,0 +1,79 @@
+//! A push at the tool that comes and goes.
+
+use super::prelude::*;
+
+pub(super) const FAULT: Fault = Fault {
+    name: "external_contact",
+    forms: &["half-sine", "decaying"],
+    may_be_several: true,
+    draw: |bare, at, random| {
+        let mut direction: [f64; 3] = [0.0; 3].map(|_: f64| StandardNormal.sample(random));
+        let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let size = at.load() * random.random_range(8.0..27.0);
+        direction = direction.map(|x| x / length * size);
+        // A recording is 25 s of every 30; the contact is within one.
+        let (first, last) = at.span;
+        let recordings = ((last - first) / 30.0).round().max(1.0) as usize;
+        let start = first + 30.0 * random.random_range(0..recordings) as f64;
+        let bare = match if at.hard { random.random_range(1..3) } else { 0 } {
+            0 => bare,
+            1 => bare.formed("half-sine"),
+            _ => bare.formed("decaying"),
+        };
+        bare.with("start", start + random.random_range(5.0..21.0))
+            .with("duration", random.random_range(0.4..1.5))
+            .with("force", json!(direction))
+    },
+    size: Size::Changed(|injected, factor| {
+        let force = injected.parameters.get("force").and_then(Value::as_array);
+        let force = force.into_iter().flatten().filter_map(Value::as_f64);
+        vec![("force", json!(force.map(|part| factor * part).collect::<Vec<f64>>()))]
+    }),
+    read: |reader| {
+        let contact = Contact {
+            start: reader.number("start")?,
+            duration: reader.above("duration", 0.0)?,
+            force: Vector3::from(reader.numbers("force")?),
+            shape: [Shape::Step, Shape::HalfSine, Shape::Decaying][reader.form()?],
+        };
+        Ok(vec![What::Contact(contact).into()])
+    },
+    #[cfg(test)]
+    example: |bare| {
+        bare.with("start", 1.0)
+            .with("duration", 1.0)
+            .with("force", json!([10.0, -15.0, 20.0]))
+    },
+    ..Fault::ON_THE_ARM
+};
+
+/// A force on the tool (N, in the base's frame).
+pub(crate) struct Contact {
+    start: f64,
+    duration: f64,
+    pub force: Vector3<f64>,
+    shape: Shape,
+}
+
+/// How a force comes and goes.
+#[derive(Clone, Copy)]
+enum Shape {
+    Step,
+    HalfSine,
+    Decaying,
+}
+
+impl Contact {
+    /// The force's part at `time` (s, on the recordings' clock).
+    pub(crate) fn at(&self, time: f64) -> f64 {
+        let x = (time - self.start) / self.duration;
+        if !(0.0..1.0).contains(&x) {
+            return 0.0;
+        }
+        match self.shape {
+            Shape::Step => 1.0,
+            Shape::HalfSine => (PI * x).sin(),
+            Shape::Decaying => (-3.0 * x).exp() * (20.0 * x).min(1.0),
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! Dry friction that is larger in one direction than in the other.
+
+use super::coulomb_friction::Level;
+use super::prelude::*;
+
+pub(super) const FAULT: Fault = Fault {
+    name: "friction_asymmetry",
+    leaves: Leaves::DryFriction,
+    sets_in: true,
+    draw: |bare, at, random| {
+        let (coulomb, _) = at.dry_friction(random);
+        let coulomb = coulomb.max(at.spread() * random.random_range(0.1..0.3));
+        let half = coulomb * random.random_range(0.15..0.5) * sign(random);
+        bare.with("positive", coulomb + half).with("negative", coulomb - half)
+    },
+    size: Size::Changed(|injected, factor| {
+        let [positive, negative] = ["positive", "negative"].map(|name| injected.number(name).unwrap_or(0.0));
+        let mean = 0.5 * (positive + negative);
+        let half = (factor * (positive - mean)).clamp(-0.95 * mean, 0.95 * mean);
+        vec![("positive", json!(mean + half)), ("negative", json!(mean - half))]
+    }),
+    read: |reader| {
+        let joint = reader.joint()?;
+        let (positive, negative) = (reader.at_least_zero("positive")?, reader.at_least_zero("negative")?);
+        let tilt = Tilt(0.5 * (positive - negative));
+        Ok(vec![
+            Level(0.5 * (positive + negative)).beneath(joint),
+            What::Dry(joint, Box::new(tilt)).into(),
+        ])
+    },
+    #[cfg(test)]
+    example: |bare| bare.with("positive", 2.0).with("negative", 1.0),
+    ..Fault::ON_A_JOINT
+};
+
+/// More forwards and as much less backwards (N m or N).
+struct Tilt(f64);
+
+impl DryLaw for Tilt {
+    fn add_to(&self, sum: &mut DrySum, _: &DryAt) {
+        sum.bias += self.0;
+    }
+}

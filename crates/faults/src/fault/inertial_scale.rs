@@ -1,0 +1,19 @@
+//! All masses and inertias times a factor.
+
+use super::prelude::*;
+
+pub(super) const FAULT: Fault = Fault {
+    name: "inertial_scale",
+    alone_among: Some(Alike::Scales),
+    draw: |bare, at, random| {
+        let part = random.random_range(if at.hard { 0.03..0.1 } else { 0.06..0.2 });
+        bare.with("factor", 1.0 + part * sign(random))
+    },
+    read: |reader| {
+        let factor = reader.above("factor", 0.0)?;
+        Ok(vec![Body::changed(move |arm| arm.with_scaled_inertias(factor))])
+    },
+    #[cfg(test)]
+    example: |bare| bare.with("factor", 1.2),
+    ..Fault::ON_THE_ARM
+};

@@ -1,0 +1,75 @@
+//! A spring between the rotor of a drive and its link.
+
+use super::prelude::*;
+
+pub(super) const FAULT: Fault = Fault {
+    name: "joint_elasticity",
+    forms: &["hardening"],
+    form_parameters: &["rotor", "hardening_torque"],
+    leaves: Leaves::Rotor,
+    alone_among: Some(Alike::BetweenCommandAndLink),
+    draw: |bare, at, random| {
+        let (link, own) = (at.link_inertia(), at.rotor_inertia());
+        let rotor = if own > 0.0 {
+            own
+        } else {
+            link * random.random_range(0.5..1.2)
+        };
+        let frequency: f64 = random.random_range(18.0..45.0);
+        let stiffness = rotor.max(if own > 0.0 { link } else { 0.0 }) * frequency * frequency;
+        let hardens = at.hard && random.random_bool(0.5);
+        let elastic = bare
+            .with("stiffness", stiffness)
+            .with("damping", 0.08 * (stiffness * rotor).sqrt())
+            .with("rotor", rotor);
+        if hardens {
+            elastic.formed("hardening").with("hardening_torque", 6.0 * at.spread())
+        } else {
+            elastic
+        }
+    },
+    read: |reader| {
+        let hardens = reader.form()? == 1;
+        elastic(reader, |more_rotor| {
+            Ok(Connection {
+                stiffness: Some(reader.above("stiffness", 0.0)?),
+                damping: Some(reader.at_least_zero("damping")?),
+                halfgap: 0.0,
+                more_rotor,
+                hardening: if hardens {
+                    reader.above("hardening_torque", 0.0)?
+                } else {
+                    f64::INFINITY
+                },
+                round: false,
+            })
+        })
+    },
+    #[cfg(test)]
+    example: |bare| {
+        bare.with("stiffness", 160.0)
+            .with("damping", 0.4)
+            .with("rotor", 0.2)
+            .with("hardening_torque", 20.0)
+    },
+    ..Fault::ON_A_JOINT
+};
+
+/// What lies between rotor and link, and the rotor, which turns with its link until there is something between them; the connection is
+/// told what the rotor has beyond the drive's known inertia (kg m²).
+pub(super) fn elastic(
+    reader: &Reader<'_>,
+    connection: impl FnOnce(f64) -> Result<Connection, FaultError>,
+) -> Result<Vec<Piece>, FaultError> {
+    let joint = reader.joint()?;
+    let own = reader.arm.joints()[joint].rotor_inertia;
+    let rotor = reader.number_or("rotor", own)?;
+    if rotor < own {
+        return Err(reader.fail(format!("rotor is {rotor}; the drive alone has {own} kg m²")));
+    }
+    let more_rotor = rotor - own;
+    Ok(vec![
+        What::Body(Body::Rotor(joint, more_rotor)).stays(),
+        What::Elastic(joint, connection(more_rotor)?).into(),
+    ])
+}

@@ -1,0 +1,17 @@
+//! A drive that reports its torque times a factor.
+
+use super::prelude::*;
+
+pub(super) const FAULT: Fault = Fault {
+    name: "torque_scale",
+    sets_in: true,
+    alone_among: Some(Alike::Scales),
+    draw: |bare, at, random| {
+        let part = random.random_range(if at.hard { 0.04..0.12 } else { 0.08..0.25 });
+        bare.with("factor", 1.0 + part * sign(random))
+    },
+    read: |reader| Ok(vec![What::Scale(reader.joint()?, reader.above("factor", 0.0)?).into()]),
+    #[cfg(test)]
+    example: |bare| bare.with("factor", 1.2),
+    ..Fault::ON_A_JOINT
+};

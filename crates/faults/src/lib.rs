@@ -1,0 +1,37 @@
+//! Injected faults: recordings of a simulated arm with faults that its URDF leaves out, and the sealed truth about them.
+//!
+//! A [`Robot`] is what its user believes. A [`Campaign`] decides which cases there are; [`conceal_case`] draws one, [`conceal_effects`]
+//! takes what it is given: either drives the plant in a 1 kHz position loop with faults in it, records what encoders and drives report,
+//! and keeps the [`Truth`]. [`write_case`] puts the two in different places, a [`Seal`] holds their hashes.
+
+mod campaign;
+mod case;
+mod case_machine;
+mod conceal;
+mod draw;
+mod error;
+mod expressed_share;
+mod fault;
+mod machine;
+mod motion;
+mod part;
+mod record_again;
+mod robot;
+mod seal;
+mod sensor;
+#[cfg(test)]
+mod test_robots;
+mod truth;
+
+pub use campaign::{Campaign, CasePlan};
+pub use case::write_case;
+pub use case_machine::{CaseMachine, Driven};
+pub use conceal::{Concealment, RATES, Settings, conceal_case, conceal_effects};
+pub use error::FaultError;
+pub use fault::{catalogue, families, form_parameters, outside};
+pub use machine::{Inverse, LinkMotion, Seen, VelocityFilter};
+pub use motion::{DURATION, PAUSE};
+pub use record_again::record_again;
+pub use robot::Robot;
+pub use seal::{Program, Seal, SealError, SealedCase, sha256, sha256_of};
+pub use truth::{Injected, Truth};

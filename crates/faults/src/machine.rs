@@ -1,0 +1,398 @@
+//! The true machine: the plant and its drives under a law, with all that its URDF leaves out.
+
+use arm::{Arm, Matrix6xX, Workspace};
+use plant::{Plant, PlantOptions};
+
+use crate::error::FaultError;
+use crate::motion::Reference;
+use crate::part::{At, DryAt, resistance};
+use crate::robot::Robot;
+use crate::truth::Injected;
+
+mod drive;
+mod friction;
+mod inverse;
+mod law;
+mod parts;
+
+pub(crate) use drive::LONGEST_DELAY;
+pub use drive::VelocityFilter;
+use drive::{Drive, Rotor};
+use friction::Friction;
+pub use inverse::{Inverse, LinkMotion};
+pub(crate) use law::Begin;
+pub use law::Seen;
+use law::{Law, PositionLoop};
+use parts::Parts;
+
+/// The loop's period, and the plant's step (s).
+pub(crate) const TICK: f64 = 1e-3;
+/// rapier's plain step: another than the diagnosis' own simulation takes.
+const ORDER: usize = 1;
+/// The furthest a joint may be from its reference (rad or m).
+pub(crate) const FURTHEST: f64 = 0.35;
+/// Time constant of the drive load that friction feels (s).
+const LOAD_FILTER: f64 = 0.02;
+
+/// What the drives saw at every tick of a run; `[tick × dof + joint]`.
+#[derive(Clone, Debug)]
+pub(crate) struct Run {
+    /// Encoder positions (rad or m).
+    pub q: Vec<f64>,
+    /// Filtered velocities.
+    pub qd: Vec<f64>,
+    /// Torques as the drives report them: commanded (N m or N).
+    pub tau: Vec<f64>,
+}
+
+/// A robot with what it really has.
+pub(crate) struct Machine<'a> {
+    robot: &'a Robot,
+    parts: Parts,
+}
+
+impl<'a> Machine<'a> {
+    /// `robot`, its drives' inertias, and `effects`; of effect `without` only what stays when it is taken away.
+    pub(crate) fn new(robot: &'a Robot, effects: &[&Injected], without: Option<usize>) -> Result<Self, FaultError> {
+        let arm = robot.driven();
+        let mut parts = Vec::new();
+        for (i, effect) in effects.iter().enumerate() {
+            parts.extend(crate::fault::parts(effect, &arm, Some(i) != without)?);
+        }
+        Ok(Self {
+            robot,
+            parts: Parts::new(parts, arm.dof()),
+        })
+    }
+
+    /// Drives the machine along `reference`; the encoders count steps of `quantum` (rad or m; 0: none).
+    ///
+    /// # Errors
+    /// [`FaultError::Lost`] if it cannot follow; [`FaultError::Plant`] if it cannot be simulated.
+    pub(crate) fn run(&self, reference: &Reference, quantum: f64) -> Result<Run, FaultError> {
+        let n = self.robot.arm().dof();
+        let begin = Begin {
+            time: reference.time(0),
+            q: &reference.q[..n],
+            holding: &reference.ff[..n],
+        };
+        let mut law = PositionLoop::new(reference, self.robot, &self.parts);
+        let mut simulation = Simulation::new(self, &begin, quantum, reference.ticks())?;
+        for tick in 0..reference.ticks() {
+            simulation.tick(tick, reference.time(tick), &mut law)?;
+        }
+        let run = simulation.run;
+        let names = self.robot.arm().joints();
+        for (k, (q, wanted)) in run.q.iter().zip(&reference.q).enumerate() {
+            let by = (q - wanted).abs();
+            if by.is_nan() || by > FURTHEST {
+                let joint = names[k % names.len()].name.clone();
+                let most = FURTHEST;
+                return Err(FaultError::Lost { joint, by, most });
+            }
+        }
+        Ok(run)
+    }
+
+    /// Drives the machine by `law` for so many ticks; what the drives saw, and where the links were at every tick.
+    ///
+    /// # Errors
+    /// [`FaultError::Plant`] if it cannot be simulated, or leaves all bounds.
+    pub(crate) fn drive(
+        &self,
+        begin: &Begin<'_>,
+        quantum: f64,
+        ticks: usize,
+        law: &mut dyn Law,
+    ) -> Result<(Run, Vec<f64>), FaultError> {
+        let mut simulation = Simulation::new(self, begin, quantum, ticks)?;
+        let mut links = Vec::with_capacity(ticks * begin.q.len());
+        for tick in 0..ticks {
+            links.extend_from_slice(simulation.plant.q());
+            simulation.tick(tick, begin.time + tick as f64 * TICK, law)?;
+        }
+        Ok((simulation.run, links))
+    }
+}
+
+/// A run under way.
+struct Simulation<'a> {
+    parts: &'a Parts,
+    holding: Vec<f64>,
+    robot: &'a Robot,
+    quantum: f64,
+    /// The arm as it is now, without the rotors that move by themselves.
+    arm: Arm,
+    plant: Plant,
+    workspace: Workspace,
+    drives: Vec<Drive>,
+    rotors: Vec<Option<Rotor>>,
+    /// When the arm changes next (s, on the recordings' clock).
+    next_change: f64,
+    states: Vec<f64>,
+    /// Accelerations and velocities of the last tick.
+    qdd: Vec<f64>,
+    qd_before: Vec<f64>,
+    loads: Vec<[f64; 2]>,
+    /// Torque on each link's side.
+    net: Vec<f64>,
+    levels: Vec<f64>,
+    friction: Friction,
+    rigid: Vec<f64>,
+    contact: Matrix6xX<f64>,
+    /// Positions and velocities as the drives see them.
+    sensed: [Vec<f64>; 2],
+    commands: Vec<f64>,
+    run: Run,
+}
+
+impl<'a> Simulation<'a> {
+    fn new(machine: &'a Machine<'a>, begin: &Begin<'_>, quantum: f64, ticks: usize) -> Result<Self, FaultError> {
+        let n = machine.robot.arm().dof();
+        let start = begin.time;
+        let parts = &machine.parts;
+        let arm = machine.robot.driven();
+        let plant = Plant::new(&arm, &options())?;
+        let size = ticks * n;
+        let mut simulation = Self {
+            parts,
+            holding: begin.holding.to_vec(),
+            robot: machine.robot,
+            quantum,
+            workspace: Workspace::new(&arm),
+            drives: Vec::new(),
+            rotors: (0..n).map(|_| None).collect(),
+            next_change: start,
+            states: vec![0.0; parts.links.len()],
+            qdd: vec![0.0; n],
+            qd_before: vec![0.0; n],
+            loads: vec![[0.0; 2]; n],
+            net: vec![0.0; n],
+            levels: vec![0.0; n],
+            friction: Friction::new(n),
+            rigid: vec![0.0; n],
+            contact: Matrix6xX::zeros(n),
+            sensed: [vec![0.0; n], vec![0.0; n]],
+            commands: vec![0.0; n],
+            run: Run {
+                q: Vec::with_capacity(size),
+                qd: Vec::with_capacity(size),
+                tau: Vec::with_capacity(size),
+            },
+            arm,
+            plant,
+        };
+        let mut q: Vec<f64> = begin.q.to_vec();
+        for (j, q) in q.iter_mut().enumerate() {
+            let bias = parts.encoder(j, start);
+            *q -= bias;
+            simulation.drives.push(Drive::new(*q + bias, begin.holding[j]));
+            simulation.loads[j] = [begin.holding[j]; 2];
+        }
+        simulation.plant.set_state(&q, &vec![0.0; n])?;
+        simulation.change(start, true)?;
+        Ok(simulation)
+    }
+
+    /// The arm, its plant and its rotors as they are from `time` on.
+    fn change(&mut self, time: f64, first: bool) -> Result<(), FaultError> {
+        let n = self.drives.len();
+        let mut arm = self.parts.arm_at(self.robot.driven(), time);
+        let mut inertias: Vec<f64> = arm.joints().iter().map(|joint| joint.rotor_inertia).collect();
+        let mut q = self.plant.q().to_vec();
+        let qd = self.plant.qd().to_vec();
+        for j in 0..n {
+            let Some(connection) = self.parts.connection_at(j, time) else {
+                continue;
+            };
+            let inertia = std::mem::take(&mut inertias[j]);
+            if self.rotors[j].is_some() {
+                continue;
+            }
+            if inertia <= 0.0 {
+                return Err(FaultError::Effect {
+                    effect: if connection.halfgap > 0.0 {
+                        "backlash"
+                    } else {
+                        "joint_elasticity"
+                    }
+                    .into(),
+                    reason: "its rotor has no inertia; add rotor = … (kg m²), or a rotor_inertia on the joint".into(),
+                });
+            }
+            let rotor = Rotor::new(connection, inertia, self.robot.link_inertia(j), q[j], qd[j]);
+            if first {
+                // The encoder's side starts on its reference, the spring already under its load.
+                q[j] -= rotor.deflection(self.holding[j]);
+            }
+            self.rotors[j] = Some(rotor);
+        }
+        arm = arm.with_rotor_inertias(&inertias);
+        self.plant = Plant::new(&arm, &options())?;
+        self.plant.set_state(&q, &qd)?;
+        self.arm = arm;
+        self.friction.forget();
+        self.next_change = self.parts.next_change(time);
+        Ok(())
+    }
+
+    fn tick(&mut self, tick: usize, time: f64, law: &mut dyn Law) -> Result<(), FaultError> {
+        let n = self.drives.len();
+        if time >= self.next_change {
+            self.change(time, false)?;
+        }
+        for j in 0..n {
+            let position = self.rotors[j].as_ref().map_or(self.plant.q()[j], Rotor::seen);
+            let drive = &mut self.drives[j];
+            drive.sense(position + self.parts.encoder(j, time), self.quantum);
+            (self.sensed[0][j], self.sensed[1][j]) = (drive.sensed.position, drive.sensed.velocity);
+        }
+        let [q, qd] = &self.sensed;
+        law.command(&Seen { tick, q, qd }, &mut self.commands);
+        for (drive, command) in self.drives.iter_mut().zip(&self.commands) {
+            drive.take(*command);
+        }
+        self.run.q.extend_from_slice(q);
+        self.run.qd.extend_from_slice(qd);
+        self.run.tau.extend_from_slice(&self.commands);
+        self.feel_loads();
+        for j in 0..n {
+            self.net[j] = self.joint_torque(j, time);
+        }
+        self.add_link_side(time);
+        self.add_contacts(time);
+        self.couple(time)?;
+        self.rub();
+        self.plant.step(&self.net)?;
+        for j in 0..n {
+            self.qdd[j] = (self.plant.qd()[j] - self.qd_before[j]) / TICK;
+        }
+        self.qd_before.copy_from_slice(self.plant.qd());
+        Ok(())
+    }
+
+    /// The rigid torques that load-dependent friction feels.
+    fn feel_loads(&mut self) {
+        if !self.parts.feels_rigid_load() {
+            return;
+        }
+        self.arm.inverse_dynamics(
+            &mut self.workspace,
+            self.plant.q(),
+            self.plant.qd(),
+            &self.qdd,
+            &mut self.rigid,
+        );
+        for (j, loads) in self.loads.iter_mut().enumerate() {
+            loads[0] = self.rigid[j] - self.arm.joints()[j].rotor_inertia * self.qdd[j];
+        }
+    }
+
+    /// What the drive of joint `j` puts on its link; its dry friction, where it is the plant's, goes to the levels.
+    fn joint_torque(&mut self, j: usize, time: f64) -> f64 {
+        let applied = self.drives[j].applied(&self.parts.drive_at(j, time));
+        let (parts, loads) = (self.parts, self.loads[j]);
+        let dry = |v: f64| resistance(parts.dry(j, time), &DryAt::new(v, time, loads));
+        let smooth = |q: f64, v: f64| parts.smooth(j, time).map(|law| law.torque(q, v)).sum::<f64>();
+        let (q, v) = (self.plant.q()[j], self.plant.qd()[j]);
+        let inner = match &mut self.rotors[j] {
+            Some(rotor) => {
+                let friction = dry(rotor.velocity);
+                self.levels[j] = 0.0;
+                let net = applied - smooth(rotor.seen(), rotor.velocity) - friction.bias;
+                rotor.advance(net, friction.level, q, v)
+            }
+            None => {
+                let friction = dry(v);
+                self.levels[j] = friction.level;
+                applied - smooth(q, v) - friction.bias
+            }
+        };
+        self.loads[j][1] += TICK / LOAD_FILTER * (applied - self.loads[j][1]);
+        inner
+    }
+
+    fn add_link_side(&mut self, time: f64) {
+        for (link, state) in self.parts.links.iter().zip(&mut self.states) {
+            if time < link.onset {
+                continue;
+            }
+            let at = At {
+                time,
+                joint: link.joint,
+                q: self.plant.q(),
+                qd: self.plant.qd(),
+            };
+            self.net[link.joint] -= link.law.torque(at, state, TICK);
+        }
+    }
+
+    fn add_contacts(&mut self, time: f64) {
+        let parts = self.parts;
+        for contact in &parts.contacts {
+            let part = contact.at(time);
+            if part == 0.0 {
+                continue;
+            }
+            let tool = self.arm.tool_frame();
+            self.arm
+                .jacobian(&mut self.workspace, self.plant.q(), &tool, &mut self.contact);
+            for (j, net) in self.net.iter_mut().enumerate() {
+                *net += part * self.contact.fixed_view::<3, 1>(3, j).dot(&contact.force);
+            }
+        }
+    }
+
+    /// Drives that two joints turn: their inertia acts through accelerations, found by iteration from those of the last tick.
+    fn couple(&mut self, time: f64) -> Result<(), FaultError> {
+        let parts = self.parts;
+        if !parts.couplings(time).any(|(_, _, inertia)| inertia != 0.0) {
+            return Ok(());
+        }
+        let couple = |net: &[f64], qdd: &[f64]| {
+            let mut coupled = net.to_vec();
+            for (j, o, inertia) in parts.couplings(time) {
+                coupled[j] -= inertia * qdd[o];
+                coupled[o] -= inertia * qdd[j];
+            }
+            coupled
+        };
+        let first = couple(&self.net, &self.qdd);
+        // With the dry friction of the last tick, that of this one is not known yet.
+        let rubbed: Vec<f64> = first
+            .iter()
+            .zip(&self.friction.torques)
+            .map(|(net, f)| net + f)
+            .collect();
+        let mut qdd = self.qdd.clone();
+        self.plant.accelerations(&rubbed, &mut qdd)?;
+        self.net = couple(&self.net, &qdd);
+        Ok(())
+    }
+}
+
+impl Simulation<'_> {
+    /// Adds the dry friction of joints whose rotor turns with their link.
+    fn rub(&mut self) {
+        if self.levels.iter().all(|&level| level == 0.0) {
+            return;
+        }
+        let state = [self.plant.q(), self.plant.qd()];
+        self.friction
+            .find(&self.arm, &mut self.workspace, state, &self.net, &self.levels);
+        for (net, torque) in self.net.iter_mut().zip(&self.friction.torques) {
+            *net += torque;
+        }
+    }
+}
+
+fn options() -> PlantOptions {
+    PlantOptions {
+        step: TICK,
+        order: ORDER,
+        ..PlantOptions::default()
+    }
+}
+
+#[cfg(test)]
+mod tests;

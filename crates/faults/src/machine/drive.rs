@@ -1,0 +1,250 @@
+//! A joint's drive: encoder, what becomes of its command, and a rotor that moves by itself.
+
+use super::TICK;
+use super::parts::DriveNow;
+use crate::part::Connection;
+
+/// The drives' velocity filter (Hz).
+const VELOCITY_FILTER: f64 = 40.0;
+/// How many commands a drive remembers: the longest delay, in ticks.
+const MEMORY: usize = 128;
+/// Parts of a tick in which a rotor moves.
+const ROTOR_STEPS: usize = 10;
+/// The ends of a gap swing at this against the lighter side (rad/s): stiff, and resolved by the plant's step.
+const GAP_FREQUENCY: f64 = 160.0;
+
+/// The longest delay (s) that a drive can have.
+pub(crate) const LONGEST_DELAY: f64 = (MEMORY - 2) as f64 * TICK;
+
+/// What a drive makes of its encoder: the difference over each tick, through a low-pass filter of first order at 40 Hz.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VelocityFilter {
+    /// What the encoder said last (rad or m).
+    pub position: f64,
+    /// The velocity, about 4 ms late (rad/s or m/s).
+    pub velocity: f64,
+}
+
+impl VelocityFilter {
+    /// At rest at `position`.
+    pub fn new(position: f64) -> Self {
+        Self {
+            position,
+            velocity: 0.0,
+        }
+    }
+
+    /// Takes what the encoder says a tick of 1 ms later.
+    pub fn take(&mut self, read: f64) {
+        let weight = 1.0 - (-std::f64::consts::TAU * VELOCITY_FILTER * TICK).exp();
+        self.velocity += weight * ((read - self.position) / TICK - self.velocity);
+        self.position = read;
+    }
+}
+
+/// Encoder and command of a joint.
+pub(super) struct Drive {
+    /// What the encoder says, and at what rate.
+    pub(super) sensed: VelocityFilter,
+    commands: [f64; MEMORY],
+    /// Where the next command goes.
+    next: usize,
+    lagging: f64,
+}
+
+impl Drive {
+    /// At rest at `position` under the torque `holding`.
+    pub(super) fn new(position: f64, holding: f64) -> Self {
+        Self {
+            sensed: VelocityFilter::new(position),
+            commands: [holding; MEMORY],
+            next: 0,
+            lagging: holding,
+        }
+    }
+
+    pub(super) fn sense(&mut self, position: f64, quantum: f64) {
+        let read = if quantum > 0.0 {
+            (position / quantum).round() * quantum
+        } else {
+            position
+        };
+        self.sensed.take(read);
+    }
+
+    /// The command of this tick (N m or N).
+    pub(super) fn take(&mut self, command: f64) {
+        self.commands[self.next] = command;
+        self.next = (self.next + 1) % MEMORY;
+    }
+
+    /// The mean over the coming tick of what the drive applies (N m or N, true): late, limited, and reported with a factor.
+    pub(super) fn applied(&mut self, now: &DriveNow) -> f64 {
+        let ago = |ticks: usize| self.commands[(self.next + MEMORY - 1 - ticks.min(MEMORY - 1)) % MEMORY];
+        let command = if now.delay == 0.0 {
+            self.lagging = ago(0);
+            self.lagging
+        } else if now.lags {
+            self.lagging += (1.0 - (-TICK / now.delay).exp()) * (ago(0) - self.lagging);
+            self.lagging
+        } else {
+            // Commands are held for a tick: a delay between ticks passes on a part of either.
+            let ticks = now.delay / TICK;
+            let (whole, part) = (ticks.floor(), ticks.fract());
+            (1.0 - part) * ago(whole as usize) + part * ago(whole as usize + 1)
+        };
+        let limit = now.limit;
+        let limited = if now.soft && command.abs() > 0.9 * limit {
+            command.signum() * limit * (0.9 + 0.1 * ((command.abs() / limit - 0.9) / 0.1).tanh())
+        } else {
+            command.clamp(-limit, limit)
+        };
+        limited / now.factor
+    }
+}
+
+/// A rotor on a spring, in a gap or both; the encoder is on it.
+pub(super) struct Rotor {
+    /// Where it was half a tick before the link's position now, as the link's velocity is of then.
+    position: f64,
+    pub(super) velocity: f64,
+    inertia: f64,
+    stiffness: f64,
+    damping: f64,
+    connection: Connection,
+}
+
+impl Rotor {
+    /// A rotor of `inertia` that moves with its link, of inertia `link` (kg m²), at `position` and `velocity`.
+    pub(super) fn new(connection: Connection, inertia: f64, link: f64, position: f64, velocity: f64) -> Self {
+        let stiffness = connection
+            .stiffness
+            .unwrap_or_else(|| inertia.min(link) * GAP_FREQUENCY * GAP_FREQUENCY);
+        let damping = connection.damping.unwrap_or_else(|| 0.5 * (stiffness * inertia).sqrt());
+        Self {
+            position: position - 0.5 * TICK * velocity,
+            velocity,
+            inertia,
+            stiffness,
+            damping,
+            connection,
+        }
+    }
+
+    /// Where its encoder sees it, at the time of the link's position.
+    pub(super) fn seen(&self) -> f64 {
+        self.position + 0.5 * TICK * self.velocity
+    }
+
+    /// How far the rotor is ahead of its link under `torque`, spring and gap taken as straight.
+    pub(super) fn deflection(&self, torque: f64) -> f64 {
+        let gap = if torque == 0.0 {
+            0.0
+        } else {
+            self.connection.halfgap.copysign(torque)
+        };
+        gap + torque / self.stiffness
+    }
+
+    /// The torque on the link at a deflection and its rate.
+    fn torque(&self, deflection: f64, rate: f64) -> f64 {
+        let gap = self.connection.halfgap;
+        let (stretched, touching) = if gap == 0.0 {
+            (deflection, 1.0)
+        } else if self.connection.round {
+            // log(1 + e^x) without overflow.
+            let soft = |x: f64| x.max(0.0) + (-x.abs()).exp().ln_1p();
+            let width = 0.25 * gap;
+            let stretched = width * (soft((deflection - gap) / width) - soft((-deflection - gap) / width));
+            (stretched, 1.0 - (-stretched.abs() / (0.2 * gap)).exp())
+        } else {
+            let stretched = deflection - deflection.clamp(-gap, gap);
+            (stretched, if stretched == 0.0 { 0.0 } else { 1.0 })
+        };
+        let straight = self.stiffness * stretched;
+        straight * (1.0 + (straight / self.connection.hardening).powi(2)) + touching * self.damping * rate
+    }
+
+    /// Moves for a tick under `net` and dry friction of `level` while the link passes `q` at `v`: the mean torque on the link.
+    ///
+    /// The plant's plain step keeps velocities half a step behind positions (leapfrog): a force is right if it is that of the time
+    /// about `q`, half a tick before it to half a tick after. Taken from `q` on, it would add a damping of stiffness × tick / 2.
+    pub(super) fn advance(&mut self, net: f64, level: f64, q: f64, v: f64) -> f64 {
+        let step = TICK / ROTOR_STEPS as f64;
+        let mut sum = 0.0;
+        for k in 0..ROTOR_STEPS {
+            let link = q + v * (step * k as f64 - 0.5 * TICK);
+            let through = self.torque(self.position - link, self.velocity - v);
+            let free = self.velocity + step / self.inertia * (net - through);
+            // Friction takes what it can, and no more than stops the rotor.
+            let most = step / self.inertia * level;
+            self.velocity = if free.abs() <= most {
+                0.0
+            } else {
+                free - most.copysign(free)
+            };
+            self.position += step * self.velocity;
+            sum += through;
+        }
+        sum / ROTOR_STEPS as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A rotor and a link on a spring, let go: their oscillation dies as fast as its damping says.
+    #[test]
+    fn a_spring_is_damped_as_it_says() {
+        let (rotor, link, stiffness, damping): (f64, f64, f64, f64) = (0.8, 2.0, 900.0, 2.0);
+        let connection = Connection {
+            stiffness: Some(stiffness),
+            damping: Some(damping),
+            halfgap: 0.0,
+            more_rotor: 0.0,
+            hardening: f64::INFINITY,
+            round: false,
+        };
+        let mut rotor_side = Rotor::new(connection, rotor, link, 0.01, 0.0);
+        let (mut q, mut v) = (0.0, 0.0);
+        let reduced = rotor * link / (rotor + link);
+        let mut energies = Vec::new();
+        for tick in 0..1500 {
+            v += TICK / link * rotor_side.advance(0.0, 0.0, q, v);
+            q += TICK * v;
+            if tick % 500 == 0 {
+                let (stretch, rate) = (rotor_side.position - q + 0.5 * TICK * v, rotor_side.velocity - v);
+                energies.push(0.5 * stiffness * stretch * stretch + 0.5 * reduced * rate * rate);
+            }
+        }
+        for pair in energies.windows(2) {
+            let expected = (-damping / reduced * 500.0 * TICK).exp();
+            assert!(
+                (pair[1] / pair[0] / expected - 1.0).abs() < 0.1,
+                "{} {expected}",
+                pair[1] / pair[0]
+            );
+        }
+    }
+
+    /// Rotor and link go on together, with nothing between them: the encoder says where the link is, not where it was.
+    #[test]
+    fn what_moves_evenly_is_seen_where_it_is() {
+        let connection = Connection {
+            stiffness: Some(900.0),
+            damping: Some(2.0),
+            halfgap: 0.0,
+            more_rotor: 0.0,
+            hardening: f64::INFINITY,
+            round: false,
+        };
+        let (speed, mut q) = (1.0, 0.3);
+        let mut rotor = Rotor::new(connection, 0.8, 2.0, q, speed);
+        for _ in 0..1000 {
+            assert!((rotor.seen() - q).abs() < 1e-9, "{} {q}", rotor.seen());
+            assert!(rotor.advance(0.0, 0.0, q, speed).abs() < 1e-6);
+            q += TICK * speed;
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! The parts of a machine, sorted by where they act.
+
+use arm::Arm;
+
+use crate::fault::external_contact::Contact;
+use crate::part::{Body, Connection, DriveLaw, DryLaw, LinkLaw, Part, What};
+
+/// Of each joint, what is on its drive; and what is on the whole.
+pub(super) struct Parts {
+    joints: Vec<Joint>,
+    pub(super) links: Vec<OnLink>,
+    couplings: Vec<(usize, usize, f64, f64)>,
+    bodies: Vec<(Body, f64)>,
+    pub(super) contacts: Vec<Contact>,
+}
+
+/// A law on the link's side of a joint.
+pub(super) struct OnLink {
+    pub joint: usize,
+    pub law: Box<dyn LinkLaw>,
+    /// When it sets in (s).
+    pub onset: f64,
+}
+
+#[derive(Default)]
+struct Joint {
+    dry: Vec<(Box<dyn DryLaw>, f64)>,
+    smooth: Vec<(Box<dyn DriveLaw>, f64)>,
+    drive: Vec<(What, f64)>,
+}
+
+/// What a drive does to its command at a moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct DriveNow {
+    /// Reported over true torque.
+    pub factor: f64,
+    /// N m or N, as reported.
+    pub limit: f64,
+    pub soft: bool,
+    /// s.
+    pub delay: f64,
+    pub lags: bool,
+}
+
+impl Parts {
+    pub(super) fn new(parts: Vec<Part>, dof: usize) -> Self {
+        let mut sorted = Self {
+            joints: (0..dof).map(|_| Joint::default()).collect(),
+            links: Vec::new(),
+            couplings: Vec::new(),
+            bodies: Vec::new(),
+            contacts: Vec::new(),
+        };
+        for Part { onset, what } in parts {
+            match what {
+                What::Dry(j, law) => sorted.joints[j].dry.push((law, onset)),
+                What::Drive(j, law) => sorted.joints[j].smooth.push((law, onset)),
+                What::Link(joint, law) => sorted.links.push(OnLink { joint, law, onset }),
+                What::CouplingInertia(j, o, inertia) => sorted.couplings.push((j, o, inertia, onset)),
+                What::Body(body) => sorted.bodies.push((body, onset)),
+                What::Contact(contact) => sorted.contacts.push(contact),
+                What::Scale(j, _)
+                | What::Limit(j, ..)
+                | What::Delay(j, ..)
+                | What::Encoder(j, _)
+                | What::Elastic(j, _) => sorted.joints[j].drive.push((what, onset)),
+            }
+        }
+        // Payloads are not scaled with the links.
+        sorted.bodies.sort_by_key(|(body, _)| matches!(body, Body::Payload(_)));
+        sorted
+    }
+
+    /// `arm` with the bodies that are there at `time`.
+    pub(super) fn arm_at(&self, arm: Arm, time: f64) -> Arm {
+        let there = self.bodies.iter().filter(|(_, onset)| time >= *onset);
+        there.fold(arm, |arm, (body, _)| body.put_into(arm))
+    }
+
+    /// The inertia that the rotor of joint `j` has, from the start, beyond what is known of its drive (kg m²).
+    pub(super) fn more_rotor(&self, j: usize) -> f64 {
+        let of = |(body, onset): &(Body, f64)| match body {
+            Body::Rotor(joint, inertia) if *joint == j && *onset == f64::NEG_INFINITY => *inertia,
+            _ => 0.0,
+        };
+        self.bodies.iter().map(of).sum()
+    }
+
+    /// When the arm changes after `time` (s); infinite if never.
+    pub(super) fn next_change(&self, time: f64) -> f64 {
+        let bodies = self.bodies.iter().map(|(_, onset)| *onset);
+        let elastic = self.joints.iter().flat_map(|joint| &joint.drive);
+        let elastic = elastic.filter(|(what, _)| matches!(what, What::Elastic(..)));
+        bodies
+            .chain(elastic.map(|(_, onset)| *onset))
+            .filter(|onset| *onset > time)
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// What is between rotor and link of joint `j`: springs and gaps in one.
+    pub(super) fn connection_at(&self, j: usize, time: f64) -> Option<Connection> {
+        self.drive(j, time)
+            .fold(None, |found: Option<Connection>, what| match what {
+                What::Elastic(_, connection) => Some(match found {
+                    None => *connection,
+                    Some(found) => Connection {
+                        stiffness: found.stiffness.or(connection.stiffness),
+                        damping: found.damping.or(connection.damping),
+                        halfgap: found.halfgap + connection.halfgap,
+                        more_rotor: found.more_rotor,
+                        hardening: found.hardening.min(connection.hardening),
+                        round: found.round || connection.round,
+                    },
+                }),
+                _ => found,
+            })
+    }
+
+    fn drive(&self, j: usize, time: f64) -> impl Iterator<Item = &What> {
+        let drive = self.joints[j].drive.iter();
+        drive.filter(move |(_, onset)| time >= *onset).map(|(what, _)| what)
+    }
+
+    pub(super) fn drive_at(&self, j: usize, time: f64) -> DriveNow {
+        let mut now = DriveNow {
+            factor: 1.0,
+            limit: f64::INFINITY,
+            soft: false,
+            delay: 0.0,
+            lags: false,
+        };
+        for what in self.drive(j, time) {
+            match *what {
+                What::Scale(_, factor) => now.factor *= factor,
+                What::Limit(_, limit, soft) => {
+                    now.limit = now.limit.min(limit);
+                    now.soft = soft;
+                }
+                What::Delay(_, delay, lags) => {
+                    now.delay += delay;
+                    now.lags = lags;
+                }
+                _ => {}
+            }
+        }
+        now
+    }
+
+    /// How much more than where it stands the encoder of joint `j` says.
+    pub(super) fn encoder(&self, j: usize, time: f64) -> f64 {
+        let offset = |what: &What| {
+            if let What::Encoder(_, offset) = what {
+                *offset
+            } else {
+                0.0
+            }
+        };
+        self.drive(j, time).map(offset).sum()
+    }
+
+    pub(super) fn dry(&self, j: usize, time: f64) -> impl Iterator<Item = &dyn DryLaw> {
+        let dry = self.joints[j].dry.iter();
+        dry.filter(move |(_, onset)| time >= *onset)
+            .map(|(law, _)| law.as_ref())
+    }
+
+    pub(super) fn smooth(&self, j: usize, time: f64) -> impl Iterator<Item = &dyn DriveLaw> {
+        let smooth = self.joints[j].smooth.iter();
+        smooth
+            .filter(move |(_, onset)| time >= *onset)
+            .map(|(law, _)| law.as_ref())
+    }
+
+    pub(super) fn feels_rigid_load(&self) -> bool {
+        let mut dry = self.joints.iter().flat_map(|joint| &joint.dry);
+        dry.any(|(law, _)| law.feels_rigid_load())
+    }
+
+    /// Joint, other joint and inertia of the drives that two joints turn.
+    pub(super) fn couplings(&self, time: f64) -> impl Iterator<Item = (usize, usize, f64)> {
+        let there = self.couplings.iter().filter(move |coupling| time >= coupling.3);
+        there.map(|&(j, o, inertia, _)| (j, o, inertia))
+    }
+}

@@ -1,0 +1,173 @@
+//! The robots that cases are made of, and how large things are on them.
+
+use std::path::Path;
+
+use arm::{Arm, DMatrix, Workspace};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use crate::error::FaultError;
+use crate::truth::Injected;
+
+/// At how many poses the mass matrix is looked at.
+const POSES: usize = 20;
+
+/// A robot: what its user believes, and which ordinary drive inertias the URDF leaves out.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    urdf: String,
+    arm: Arm,
+    rotors: Vec<f64>,
+    home: Vec<f64>,
+    /// Of each joint, the mean over poses of M_jj and of 1 / (M⁻¹)_jj, without rotors (kg m² or kg).
+    inertias: Vec<(f64, f64)>,
+    /// Of each joint, the root mean square over poses of the torque that holds it (N m or N).
+    holding: Vec<f64>,
+}
+
+impl Robot {
+    /// The robot of a URDF; `path` is what errors call it.
+    ///
+    /// # Errors
+    /// [`FaultError::Arm`] if it is no serial arm, [`FaultError::Plant`] if it cannot be simulated.
+    pub fn new(urdf: impl Into<String>, path: impl AsRef<Path>) -> Result<Self, FaultError> {
+        let urdf = urdf.into();
+        let arm = Arm::from_urdf_text(&urdf, path)?;
+        plant::Plant::new(&arm, &plant::PlantOptions::default())?;
+        let home = arm.joints().iter().map(home).collect();
+        let mut robot = Self {
+            urdf,
+            rotors: vec![0.0; arm.dof()],
+            inertias: vec![(0.0, 0.0); arm.dof()],
+            holding: vec![0.0; arm.dof()],
+            home,
+            arm,
+        };
+        robot.weigh();
+        Ok(robot)
+    }
+
+    /// With the ordinary inertias of its drives, seen at the joints (kg m² or kg), which its URDF leaves out.
+    ///
+    /// # Errors
+    /// [`FaultError::Setting`] if there is not one number a joint that is not negative.
+    pub fn with_rotor_inertias(mut self, rotors: &[f64]) -> Result<Self, FaultError> {
+        if rotors.len() != self.arm.dof() || rotors.iter().any(|&rotor| rotor.is_nan() || rotor < 0.0) {
+            let reason = format!("give {} rotor inertias, none of them negative", self.arm.dof());
+            return Err(FaultError::Setting(reason));
+        }
+        self.rotors = rotors.to_vec();
+        Ok(self)
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        self.arm.name()
+    }
+
+    /// The URDF that its user believes.
+    pub fn urdf(&self) -> &str {
+        &self.urdf
+    }
+
+    /// The arm of that URDF.
+    pub fn arm(&self) -> &Arm {
+        &self.arm
+    }
+
+    /// The drives' ordinary inertias (kg m² or kg), one a joint.
+    pub fn rotor_inertias(&self) -> &[f64] {
+        &self.rotors
+    }
+
+    /// Whether its drives have inertias that the URDF leaves out.
+    pub fn has_rotors(&self) -> bool {
+        self.rotors.iter().any(|&rotor| rotor > 0.0)
+    }
+
+    /// Whether what a truth has is one of its drives' ordinary inertias, which the robot brings itself.
+    pub(crate) fn brings(&self, effect: &Injected) -> bool {
+        let joints = self.arm.joints().iter().zip(&self.rotors);
+        effect.effect == "rotor_inertia"
+            && effect.expressed_share.is_none()
+            && joints.into_iter().any(|(joint, &rotor)| {
+                effect.joint.as_deref() == Some(&joint.name) && effect.number("inertia") == Some(rotor)
+            })
+    }
+
+    /// The arm with its drives' inertias.
+    pub(crate) fn driven(&self) -> Arm {
+        self.arm.clone().with_rotor_inertias(&self.rotors)
+    }
+
+    /// Where its motions are centred (rad or m).
+    pub(crate) fn home(&self) -> &[f64] {
+        &self.home
+    }
+
+    /// What joint `j` moves, with its drive: between what it moves with the others held and with the others free.
+    pub(crate) fn inertia(&self, j: usize) -> f64 {
+        let (held, free) = self.inertias[j];
+        (held * free).sqrt() + self.rotors[j]
+    }
+
+    /// What joint `j` moves with the others held, without its drive (kg m² or kg).
+    pub(crate) fn link_inertia(&self, j: usize) -> f64 {
+        self.inertias[j].0
+    }
+
+    /// The torque that holds joint `j` (N m or N, root mean square over poses).
+    pub(crate) fn holding(&self, j: usize) -> f64 {
+        self.holding[j]
+    }
+
+    /// The mass of all that moves (kg).
+    pub(crate) fn mass(&self) -> f64 {
+        self.arm.joints().iter().map(|joint| joint.inertia.mass).sum()
+    }
+
+    fn weigh(&mut self) {
+        let n = self.arm.dof();
+        let mut workspace = Workspace::new(&self.arm);
+        let mut random = ChaCha8Rng::seed_from_u64(0);
+        let mut matrix = DMatrix::zeros(n, n);
+        let mut gravity = vec![0.0; n];
+        for _ in 0..POSES {
+            let q: Vec<f64> = self
+                .home
+                .iter()
+                .map(|home| home + random.random_range(-0.5..0.5))
+                .collect();
+            self.arm.mass_matrix(&mut workspace, &q, &mut matrix);
+            let inverse = matrix.clone().try_inverse();
+            self.arm.gravity_torque(&mut workspace, &q, &mut gravity);
+            for (holding, gravity) in self.holding.iter_mut().zip(&gravity) {
+                *holding += gravity * gravity / POSES as f64;
+            }
+            for (j, (held, free)) in self.inertias.iter_mut().enumerate() {
+                let alone = inverse.as_ref().map_or(matrix[(j, j)], |inverse| 1.0 / inverse[(j, j)]);
+                *held += matrix[(j, j)] / POSES as f64;
+                *free += alone.clamp(0.0, matrix[(j, j)]) / POSES as f64;
+            }
+        }
+        for holding in &mut self.holding {
+            *holding = holding.sqrt();
+        }
+    }
+}
+
+/// Whether there are two joints at least.
+pub(crate) fn has_another_joint(robot: &Robot) -> bool {
+    robot.arm().dof() > 1
+}
+
+/// Zero, where the joint has room about it; else the middle of its range.
+fn home(joint: &arm::Joint) -> f64 {
+    let (lower, upper) = (joint.limits.lower, joint.limits.upper);
+    let room = 0.25 * (upper - lower);
+    if room.is_infinite() || (lower + room <= 0.0 && upper - room >= 0.0) {
+        0.0
+    } else {
+        0.5 * (lower + upper)
+    }
+}

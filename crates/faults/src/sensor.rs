@@ -1,0 +1,156 @@
+//! What a logger makes of a run: every so many ticks, with noise, late stamps and lost rows.
+
+use rand::Rng;
+use rand_distr::{Distribution, StandardNormal};
+use recording::Recording;
+
+use crate::machine::{Run, TICK};
+use crate::motion::{LEAD, Reference};
+use crate::robot::Robot;
+
+/// How many standard deviations a stamp is late or early at most.
+const MOST_JITTER: f64 = 3.5;
+/// Standard deviation of the stamps, of a period.
+const JITTER: f64 = 0.1;
+/// The part of the rows that is lost.
+const LOST: f64 = 0.01;
+
+/// The sensors and the logger of a case.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Sensors {
+    /// Ticks of 1 ms from row to row.
+    pub ticks: usize,
+    /// Whether stamps jitter by a tenth of the period.
+    pub jitter: bool,
+    /// Whether a hundredth of the rows is lost.
+    pub lost: bool,
+    /// The encoders' step (rad or m).
+    pub quantum: f64,
+    /// Standard deviation of the noise on each torque (N m or N).
+    pub noise: Vec<f64>,
+}
+
+impl Sensors {
+    /// The nominal period (s).
+    pub(crate) fn period(&self) -> f64 {
+        self.ticks as f64 * TICK
+    }
+
+    /// The recording of `run` along `reference`.
+    pub(crate) fn record(&self, robot: &Robot, reference: &Reference, run: &Run, random: &mut impl Rng) -> Recording {
+        let joints = robot.arm().joints();
+        let n = joints.len();
+        let mut recording = Recording {
+            joints: joints.iter().map(|joint| joint.name.clone()).collect(),
+            q: vec![Vec::new(); n],
+            qd: Some(vec![Vec::new(); n]),
+            tau: vec![Vec::new(); n],
+            ..Recording::default()
+        };
+        let mut qd = vec![Vec::new(); n];
+        // The last tick is the end of the last interval, not a row.
+        for tick in (LEAD..reference.ticks() - 1).step_by(self.ticks) {
+            let mut normal = || -> f64 { StandardNormal.sample(random) };
+            let late = normal().clamp(-MOST_JITTER, MOST_JITTER) * JITTER * self.period();
+            let noise: Vec<f64> = self.noise.iter().map(|noise| noise * normal()).collect();
+            let keep = random.random::<f64>() >= LOST;
+            if self.lost && !keep {
+                continue;
+            }
+            let time = reference.time(tick) + if self.jitter { late } else { 0.0 };
+            recording.time.push(rounded(time, 6));
+            for j in 0..n {
+                let at = tick * n + j;
+                recording.q[j].push(rounded(run.q[at], 5));
+                qd[j].push(rounded(run.qd[at], 4));
+                recording.tau[j].push(significant(run.tau[at] + noise[j], 5));
+            }
+        }
+        recording.qd = Some(qd);
+        recording
+    }
+}
+
+/// To so many decimals, as a file would have them.
+fn rounded(value: f64, decimals: i32) -> f64 {
+    let scale = 10_f64.powi(decimals);
+    (value * scale).round() / scale
+}
+
+/// To so many digits.
+fn significant(value: f64, digits: i32) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return value;
+    }
+    let decimals = digits - 1 - value.abs().log10().floor() as i32;
+    if decimals >= 0 {
+        rounded(value, decimals)
+    } else {
+        let scale = 10_f64.powi(-decimals);
+        (value / scale).round() * scale
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+    use crate::expressed_share::deviation;
+    use crate::motion::excitation;
+    use crate::test_robots::seven_axis;
+
+    /// Rows, stamps and noise are as the settings say; what a logger does not touch is the run.
+    #[test]
+    fn a_logger_does_what_it_is_told() {
+        let robot = seven_axis();
+        let n = robot.arm().dof();
+        let reference = excitation(&robot, 30.0, &mut ChaCha8Rng::seed_from_u64(4));
+        let run = Run {
+            q: reference.q.clone(),
+            qd: reference.qd.clone(),
+            tau: reference.ff.clone(),
+        };
+        let clean = Sensors {
+            ticks: 4,
+            jitter: false,
+            lost: false,
+            quantum: 1e-5,
+            noise: vec![0.5; n],
+        };
+        let record = |sensors: &Sensors| sensors.record(&robot, &reference, &run, &mut ChaCha8Rng::seed_from_u64(9));
+        let recording = record(&clean);
+        assert_eq!(recording.len(), 6250);
+        assert_eq!((recording.time[0], recording.time[6249]), (30.0, 54.996));
+        let noise: Vec<f64> = (0..6250)
+            .map(|row| recording.tau[2][row] - run.tau[(LEAD + 4 * row) * n + 2])
+            .collect();
+        assert!((deviation(&noise) - 0.5).abs() < 0.02, "{}", deviation(&noise));
+        assert!((recording.q[1][100] - run.q[(LEAD + 400) * n + 1]).abs() <= 0.51e-5);
+
+        let rough = record(&Sensors {
+            jitter: true,
+            lost: true,
+            ..clean
+        });
+        let lost = 6250 - rough.len();
+        assert!((30..100).contains(&lost), "{lost}");
+        assert!(rough.time.windows(2).all(|pair| pair[0] < pair[1]));
+        let late: Vec<f64> = rough
+            .time
+            .iter()
+            .map(|time| time - (time / 0.004).round() * 0.004)
+            .collect();
+        assert!((deviation(&late) - 4e-4).abs() < 2e-5, "{}", deviation(&late));
+    }
+
+    #[test]
+    fn numbers_are_rounded_as_files_have_them() {
+        assert_eq!(significant(123.456_789, 5), 123.46);
+        assert_eq!(significant(-0.000_123_456_78, 5), -0.000_123_46);
+        assert_eq!(significant(123_456.0, 5), 123_460.0);
+        assert_eq!(significant(0.0, 5), 0.0);
+        assert_eq!(rounded(0.123_456, 5), 0.123_46);
+    }
+}

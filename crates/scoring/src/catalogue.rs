@@ -1,0 +1,101 @@
+//! What the score knows of effects by name. It repeats the catalogue of effects: `effects::Spec` is to replace it.
+
+/// What every machine has and a URDF leaves out: it is scored apart.
+pub const ORDINARY: &[&str] = &["coulomb_friction", "viscous_friction"];
+
+/// The same where the robot's drives have inertia that its URDF leaves out.
+pub const ORDINARY_WITH_DRIVES: &[&str] = &["coulomb_friction", "viscous_friction", DRIVE_INERTIA];
+
+/// The inertia of a drive.
+pub const DRIVE_INERTIA: &str = "rotor_inertia";
+
+/// Names that a wrong term on a joint is taken from.
+pub const ON_A_JOINT: [&str; 9] = [
+    "quadratic_drag",
+    "rotor_inertia",
+    "torque_offset",
+    "spring",
+    "torque_scale",
+    "stribeck_friction",
+    "load_dependent_friction",
+    "friction_asymmetry",
+    "encoder_offset",
+];
+
+/// Names that a wrong term on the whole arm is taken from.
+pub const ON_THE_ARM: [&str; 3] = ["payload", "gravity_misalignment", "inertial_scale"];
+
+/// The catalogue's name, also of what was written under another.
+pub fn canonical(effect: &str) -> &str {
+    match effect {
+        "link_mass_error" => "link_inertial_error",
+        "gravity_tilt" => "gravity_misalignment",
+        name => name,
+    }
+}
+
+/// Whether no name of the catalogue fits it.
+pub fn is_outside(effect: &str) -> bool {
+    effect.ends_with("_unknown")
+}
+
+/// The scored parameters of an effect, the main one first. Phases, times of day, directions and what depends on a choice of zero
+/// have no relative error and are left out.
+pub fn parameters(effect: &str) -> &'static [&'static str] {
+    match effect {
+        "viscous_friction" | "quadratic_drag" => &["coefficient"],
+        "coulomb_friction" => &["level"],
+        "friction_asymmetry" => &["positive", "negative"],
+        "stribeck_friction" => &["breakaway", "coulomb", "velocity"],
+        "load_dependent_friction" => &["gain", "coulomb"],
+        "thermal_drift" => &["amplitude", "coulomb", "time_constant"],
+        "rotor_inertia" => &["inertia"],
+        "torque_scale" | "inertial_scale" => &["factor"],
+        "torque_offset" | "encoder_offset" => &["offset"],
+        "torque_ripple" => &["amplitude", "periods"],
+        "torque_saturation" => &["limit"],
+        "actuation_delay" => &["delay"],
+        "joint_elasticity" => &["stiffness", "damping"],
+        "backlash" => &["halfgap"],
+        "transmission_coupling" => &["viscous", "coulomb", "inertia"],
+        "payload" => &["mass", "com_x", "com_y", "com_z"],
+        "link_inertial_error" => &["relative"],
+        "gravity_misalignment" => &["angle"],
+        "spring" => &["stiffness"],
+        "external_contact" => &["force", "duration"],
+        _ => &[],
+    }
+}
+
+/// Whether an effect is dry friction in some form.
+pub fn is_dry_friction(effect: &str) -> bool {
+    matches!(
+        effect,
+        "coulomb_friction" | "friction_asymmetry" | "stribeck_friction" | "load_dependent_friction" | "thermal_drift"
+    )
+}
+
+/// Whether an effect is a part of a joint's friction against speed.
+pub fn is_friction_curve(effect: &str) -> bool {
+    is_dry_friction(effect) && effect != "thermal_drift" || matches!(effect, "viscous_friction" | "quadratic_drag")
+}
+
+/// The value of an effect's size at which it changes nothing: one of a factor.
+pub fn neutral(effect: &str) -> f64 {
+    if matches!(effect, "torque_scale" | "inertial_scale") {
+        1.0
+    } else {
+        0.0
+    }
+}
+
+/// What comes with an effect, and is neither right nor wrong beside it: plain friction is a part of every friction curve,
+/// the drive's inertia moves behind a spring or a gap.
+pub fn brings(effect: &str) -> &'static [&'static str] {
+    match effect {
+        "stribeck_friction" | "load_dependent_friction" | "thermal_drift" => &["coulomb_friction"],
+        "friction_asymmetry" => &["coulomb_friction", "torque_offset"],
+        "joint_elasticity" | "backlash" => &["rotor_inertia"],
+        _ => &[],
+    }
+}

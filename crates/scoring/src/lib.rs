@@ -1,0 +1,41 @@
+//! The score of diagnoses: truths against answers, as pure functions.
+//!
+//! A [`Tried`] case holds its [`Truth`] and the [`Answer`]s to it; [`score()`] adds up what came of all. [`Published`] is what publishers
+//! say of a real robot, where nobody made a truth. Both kinds of file are read through this crate's own types.
+
+mod answer;
+mod calibration;
+mod catalogue;
+mod controls;
+mod experiments;
+mod intervals;
+mod numbers;
+mod outcome;
+mod plain;
+mod published;
+mod rules;
+mod score;
+mod summary;
+mod targets;
+mod truth;
+
+pub use answer::{
+    Answer, DeclaredUnseen, EffectOnJoint, Fit, Named, NextExperiment, NotSeparated, Number, Refused, Rollout,
+    Separated,
+};
+pub use calibration::{Bin, Calibration};
+pub use controls::{HeldOut, WrongTerm, true_terms, wrong_term};
+pub use experiments::{After, Again, Confusion, Experiments, InCase};
+pub use intervals::{Counted, quantile, wilson};
+pub use numbers::ScoredNumber;
+pub use outcome::{FalseName, Fate, Outcome, OutsideOutcome};
+pub use plain::Plain;
+pub use published::{
+    Besides, Compared, Denied, Evidence, HeldOutErrors, Published, PublishedNumber, RobotScore, Said, SaidFate,
+    SaidOutcome, compared_parameters,
+};
+pub use rules::{LEAST_SHARE, Name};
+pub use score::{Family, Score, Tried, score};
+pub use summary::{Curve, Errors, ParameterScore, SizeBin};
+pub use targets::{Figure, Target};
+pub use truth::{Injected, Truth};

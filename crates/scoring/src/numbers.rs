@@ -1,0 +1,105 @@
+//! The numbers of an effect that are scored, and how far a finding's are from the truth's.
+
+use serde::{Deserialize, Serialize};
+
+use crate::answer::Named;
+use crate::catalogue::{is_dry_friction, is_friction_curve, neutral, parameters};
+use crate::truth::{Injected, Truth};
+
+/// One number of a finding against the truth's.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScoredNumber {
+    /// The case.
+    pub case: String,
+    /// The effect.
+    pub effect: String,
+    /// The joint; `None` for the whole arm.
+    pub joint: Option<String>,
+    /// The parameter's name in the catalogue.
+    pub parameter: String,
+    /// Whether it is the number that says how large the effect is.
+    pub main: bool,
+    /// What it is.
+    pub truth: f64,
+    /// What was said.
+    pub value: f64,
+    /// |said − true| over |true|; of a factor, over its distance from one; of a centre of mass, over its distance from the
+    /// tool's origin.
+    pub error: f64,
+    /// Whether the 95 % interval holds the truth.
+    pub covered: bool,
+}
+
+/// A parameter of the truth under the name that findings have for it.
+pub fn truth_value(concealed: &Injected, parameter: &str) -> Option<f64> {
+    let at = |key: &str, k: usize| concealed.parameters.get(key)?.get(k)?.as_f64();
+    match parameter {
+        "com_x" => at("com", 0),
+        "com_y" => at("com", 1),
+        "com_z" => at("com", 2),
+        "force" => match (at("force", 0), at("force", 1), at("force", 2)) {
+            (Some(x), Some(y), Some(z)) => Some((x * x + y * y + z * z).sqrt()),
+            _ => concealed.parameters.get("force")?.as_f64(),
+        },
+        parameter => concealed.parameters.get(parameter)?.as_f64(),
+    }
+}
+
+/// What an error is told in parts of.
+fn scale(concealed: &Injected, parameter: &str, truth: f64) -> f64 {
+    if parameter.starts_with("com_") {
+        let com = ["com_x", "com_y", "com_z"].map(|key| truth_value(concealed, key).unwrap_or(0.0));
+        return com.iter().map(|x| x * x).sum::<f64>().sqrt();
+    }
+    (truth - neutral(concealed.name())).abs()
+}
+
+/// Whether several forms of dry friction are on the joint: how much of the level is whose is then a matter of words.
+fn shares_a_level(truth: &Truth, concealed: &Injected) -> bool {
+    let same = |other: &&Injected| other.joint == concealed.joint && is_dry_friction(other.name());
+    is_dry_friction(concealed.name()) && truth.concealed.iter().filter(same).count() > 1
+}
+
+/// Whether the numbers mean something else than the catalogue's: the effect, or another part of the joint's friction curve, has
+/// another form than the textbook's.
+fn is_of_another_form(truth: &Truth, concealed: &Injected) -> bool {
+    let bends = |other: &Injected| {
+        let of_the_curve = is_friction_curve(other.name()) && is_friction_curve(concealed.name());
+        other.form.is_some() && other.joint == concealed.joint && of_the_curve
+    };
+    concealed.form.is_some() || truth.concealed.iter().any(bends)
+}
+
+/// The numbers of a finding of `concealed`.
+pub fn sized(truth: &Truth, concealed: &Injected, finding: &Named) -> Vec<ScoredNumber> {
+    let is_level = |key: &str| matches!(key, "level" | "coulomb" | "breakaway" | "positive" | "negative");
+    let shared = shares_a_level(truth, concealed);
+    let mut list = Vec::new();
+    if is_of_another_form(truth, concealed) {
+        return list;
+    }
+    for (k, key) in parameters(concealed.name()).iter().enumerate() {
+        if shared && (is_level(key) || *key == "amplitude") {
+            continue;
+        }
+        let (Some(true_value), Some(number)) = (truth_value(concealed, key), finding.parameters.get(*key)) else {
+            continue;
+        };
+        let scale = scale(concealed, key, true_value);
+        let Some(value) = number.value.filter(|_| scale > 0.0) else {
+            continue;
+        };
+        list.push(ScoredNumber {
+            case: truth.case.clone(),
+            effect: concealed.name().to_owned(),
+            joint: concealed.joint.clone(),
+            parameter: (*key).to_owned(),
+            main: k == 0,
+            truth: true_value,
+            value,
+            error: (value - true_value).abs() / scale,
+            covered: number.holds(true_value),
+        });
+    }
+    list
+}

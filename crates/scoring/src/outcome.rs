@@ -1,0 +1,317 @@
+//! What came of each thing concealed in a case.
+
+use serde::{Deserialize, Serialize};
+
+use crate::answer::{Answer, EffectOnJoint, Named};
+use crate::intervals::quantile;
+use crate::numbers::{ScoredNumber, sized};
+use crate::rules::{Key, LEAST_SHARE, Name, found, found_or_confusable, is_declared_unseen, is_ordinary, same_machine};
+use crate::score::Tried;
+use crate::truth::Injected;
+
+/// What came of a concealed effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Fate {
+    /// Named, on its joint.
+    Found,
+    /// Named by another name of the same machine, with this one as what it could be instead.
+    SameMachine,
+    /// In the confusable set of a finding.
+    Covered,
+    /// Not named, and said not to show at its size.
+    NotObservable,
+    /// Not named, and its joint said to be unexplained.
+    Refused,
+    /// None of these.
+    Missed,
+}
+
+/// A concealed effect that is not ordinary.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// The case.
+    pub case: String,
+    /// The catalogue's name.
+    pub effect: String,
+    /// The joint; `None` for the whole arm.
+    pub joint: Option<String>,
+    /// Its form, where it is not the textbook's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub form: Option<String>,
+    /// Its expressed share.
+    pub share: Option<f64>,
+    /// Its standard deviation over that of the noise on one sample of its joint's torque; of the whole arm, of the joints'
+    /// middle noise.
+    pub over_noise: Option<f64>,
+    /// Whether it is large enough to be asked for.
+    pub counts: bool,
+    /// What came of it.
+    pub fate: Fate,
+    /// The name it was found by, where that is another of the same machine.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub found_as: Option<Name>,
+    /// False names on its joint or on the whole arm, the largest first.
+    pub instead: Vec<Name>,
+}
+
+impl Fate {
+    /// Whether the diagnosis is right about it.
+    pub fn is_found(self) -> bool {
+        matches!(self, Self::Found | Self::SameMachine)
+    }
+
+    /// Whether it is right, or says that it could be that.
+    pub fn is_covered(self) -> bool {
+        self.is_found() || self == Self::Covered
+    }
+}
+
+impl Outcome {
+    /// Whether it counts, and was not declared not observable.
+    pub fn is_asked(&self) -> bool {
+        self.counts && self.fate != Fate::NotObservable
+    }
+}
+
+/// A finding that is neither concealed nor brought by what is, nor ordinary.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FalseName {
+    /// The case.
+    pub case: String,
+    /// The catalogue's name.
+    pub effect: String,
+    /// The joint; `None` for the whole arm.
+    pub joint: Option<String>,
+    /// The share it was given.
+    pub share: f64,
+    /// The probability it was given.
+    pub probability: Option<f64>,
+    /// What is concealed on its joint or on the whole arm.
+    pub concealed_there: Vec<String>,
+    /// Whether what is true is in its confusable set.
+    pub admits_the_truth: bool,
+}
+
+/// A case that should be refused, or was without cause.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OutsideOutcome {
+    /// The case.
+    pub case: String,
+    /// What is outside the catalogue, with its joint.
+    pub concealed: Vec<Name>,
+    /// Its largest expressed share.
+    pub share: Option<f64>,
+    /// Whether such a joint was called unexplained.
+    pub refused: bool,
+    /// The joints that were.
+    pub unexplained: Vec<String>,
+    /// False names in the case.
+    pub named: Vec<Name>,
+}
+
+/// All of a case.
+#[derive(Clone, Debug, Default)]
+pub struct CaseOutcome {
+    /// The concealed that is not ordinary and has a name.
+    pub concealed: Vec<Outcome>,
+    /// The false names that are not ordinary.
+    pub false_names: Vec<FalseName>,
+    /// Whether each of the ordinary that is concealed was found.
+    pub ordinary: Vec<bool>,
+    /// Ordinary names that are false.
+    pub ordinary_false: usize,
+    /// Whether nothing but the ordinary is concealed.
+    pub is_empty: bool,
+    /// What is outside the catalogue.
+    pub outside: Option<OutsideOutcome>,
+    /// A refusal with nothing outside the catalogue.
+    pub refused_without_cause: Option<OutsideOutcome>,
+    /// The numbers of right findings.
+    pub sizes: Vec<ScoredNumber>,
+    /// Probabilities of findings that are not ordinary, and whether they are right.
+    pub said: Vec<(f64, bool)>,
+    /// The same of all.
+    pub said_of_all: Vec<(f64, bool)>,
+    baseline: &'static [&'static str],
+}
+
+impl CaseOutcome {
+    /// Whether a number is of an ordinary effect.
+    pub fn is_ordinary(&self, sized: &ScoredNumber) -> bool {
+        self.baseline.contains(&sized.effect.as_str())
+    }
+}
+
+/// What came of a case. One without an answer is one in which nothing was found.
+pub fn outcomes(case: &Tried) -> CaseOutcome {
+    let truth = &case.truth;
+    let empty = Answer::default();
+    let answer = case.answer.as_ref().unwrap_or(&empty);
+    let key = Key::new(truth);
+    let named = found(answer);
+    let covered = found_or_confusable(answer);
+    let ordinary = |name: &Name| is_ordinary(truth, &name.0);
+    // What is concealed by the name that it was given, where that is another of the same machine.
+    let other_names: Vec<(Name, Name)> = truth
+        .concealed
+        .iter()
+        .filter_map(|concealed| {
+            let (given, meant) = (
+                same_machine(truth, concealed)?,
+                (concealed.name().to_owned(), concealed.joint.clone()),
+            );
+            let finding = answer.findings.iter().find(|finding| name_of(finding) == given)?;
+            let admits = |other: &EffectOnJoint| (&other.effect, &other.joint) == (&meant.0, &meant.1);
+            (!named.contains(&meant) && finding.confusable_with.iter().any(admits)).then_some((meant, given))
+        })
+        .collect();
+    let is_other_name = |name: &Name| other_names.iter().any(|(_, given)| given == name);
+    let mut false_names: Vec<&Named> = answer
+        .findings
+        .iter()
+        .filter(|f| {
+            let name = name_of(f);
+            !key.allows(&name) && !is_other_name(&name) && !is_ordinary(truth, &f.effect)
+        })
+        .collect();
+    false_names.sort_by(|a, b| b.share.total_cmp(&a.share));
+    let unexplained: Vec<String> = answer.unexplained.iter().map(|left| left.joint.clone()).collect();
+    let mut result = CaseOutcome {
+        baseline: truth.baseline(),
+        ..CaseOutcome::default()
+    };
+    result.is_empty = key.unknown.is_empty() && key.known.iter().all(ordinary);
+    result.ordinary = key
+        .known
+        .iter()
+        .filter(|k| ordinary(k))
+        .map(|k| named.contains(k))
+        .collect();
+    result.ordinary_false = named.iter().filter(|n| !key.allows(n) && ordinary(n)).count();
+    for name in key.known.iter().filter(|name| !ordinary(name)) {
+        // Of several of one name, the most expressed.
+        let same = truth
+            .concealed
+            .iter()
+            .filter(|c| c.name() == name.0 && c.joint == name.1);
+        let Some(concealed) = same.max_by(|a, b| share(a).total_cmp(&share(b))) else {
+            continue;
+        };
+        let near = |other: &&&Named| other.joint == name.1 || other.joint.is_none() || name.1.is_none();
+        let found_as = other_names.iter().find(|(meant, _)| meant == name);
+        let found_as = found_as.map(|(_, given)| given.clone());
+        let fate = if named.contains(name) {
+            Fate::Found
+        } else if found_as.is_some() {
+            Fate::SameMachine
+        } else if covered.contains(name) {
+            Fate::Covered
+        } else if is_declared_unseen(answer, concealed) {
+            Fate::NotObservable
+        } else if name.1.as_ref().is_some_and(|joint| unexplained.contains(joint)) {
+            Fate::Refused
+        } else {
+            Fate::Missed
+        };
+        result.concealed.push(Outcome {
+            case: truth.case.clone(),
+            effect: name.0.clone(),
+            joint: name.1.clone(),
+            form: concealed.form.clone(),
+            share: concealed.expressed_share,
+            over_noise: over_noise(case, answer, concealed),
+            counts: concealed.expressed_share.is_none_or(|share| share > LEAST_SHARE),
+            fate,
+            found_as,
+            instead: false_names.iter().filter(near).map(|f| name_of(f)).collect(),
+        });
+    }
+    for finding in &false_names {
+        let there = truth.concealed.iter().filter(|c| {
+            let name = (c.name().to_owned(), c.joint.clone());
+            !ordinary(&name) && (c.joint == finding.joint || c.joint.is_none() || finding.joint.is_none())
+        });
+        let admits = |other: &EffectOnJoint| key.known.contains(&(other.effect.clone(), other.joint.clone()));
+        result.false_names.push(FalseName {
+            case: truth.case.clone(),
+            effect: finding.effect.clone(),
+            joint: finding.joint.clone(),
+            share: finding.share,
+            probability: finding.probability,
+            concealed_there: there.map(|c| c.name().to_owned()).collect(),
+            admits_the_truth: finding.confusable_with.iter().any(admits),
+        });
+    }
+    let verdict = OutsideOutcome {
+        case: truth.case.clone(),
+        concealed: key.unknown.iter().cloned().collect(),
+        share: truth
+            .concealed
+            .iter()
+            .filter(|c| c.is_outside_the_catalogue())
+            .filter_map(|c| c.expressed_share)
+            .reduce(f64::max),
+        refused: key
+            .unknown
+            .iter()
+            .any(|(_, joint)| joint.as_ref().is_some_and(|j| unexplained.contains(j))),
+        unexplained,
+        named: false_names.iter().map(|f| name_of(f)).collect(),
+    };
+    if !key.unknown.is_empty() {
+        result.outside = Some(verdict);
+    } else if !verdict.unexplained.is_empty() {
+        result.refused_without_cause = Some(verdict);
+    }
+    for finding in &answer.findings {
+        let name = name_of(finding);
+        if key.brought.contains(&name) {
+            continue;
+        }
+        let right = key.known.contains(&name) || is_other_name(&name);
+        if let Some(probability) = finding.probability {
+            result.said_of_all.push((probability, right));
+            if !ordinary(&name) {
+                result.said.push((probability, right));
+            }
+        }
+        let same = truth
+            .concealed
+            .iter()
+            .filter(|c| c.name() == name.0 && c.joint == name.1);
+        // Of several of one name, the one that it is nearest to.
+        let nearest = same.map(|concealed| sized(truth, concealed, finding)).min_by(|a, b| {
+            let first = |list: &Vec<ScoredNumber>| list.first().map_or(f64::INFINITY, |sized| sized.error);
+            first(a).total_cmp(&first(b))
+        });
+        result.sizes.extend(nearest.into_iter().flatten());
+    }
+    result
+}
+
+fn name_of(finding: &Named) -> Name {
+    (finding.effect.clone(), finding.joint.clone())
+}
+
+fn share(concealed: &Injected) -> f64 {
+    concealed.expressed_share.unwrap_or(0.0)
+}
+
+/// An effect's torque over the noise on one sample. The spread of a joint's torque is a fact of its recordings, which any
+/// diagnosis reports.
+fn over_noise(case: &Tried, answer: &Answer, concealed: &Injected) -> Option<f64> {
+    let noise_share = |joint: usize| -> Option<f64> {
+        let spread = answer.fit.get(case.joints.get(joint)?)?.torque_std;
+        let noise = *case.truth.torque_noise.get(joint)?;
+        (spread > 0.0 && noise > 0.0).then(|| noise / spread)
+    };
+    let hidden = match &concealed.joint {
+        Some(name) => noise_share(case.joints.iter().position(|joint| joint == name)?)?,
+        None => {
+            let all: Vec<f64> = (0..case.joints.len()).filter_map(noise_share).collect();
+            quantile(&all, 0.5)?
+        }
+    };
+    Some(concealed.expressed_share? / hidden)
+}

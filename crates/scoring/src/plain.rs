@@ -1,0 +1,117 @@
+//! The count of the open cases' own script: every concealed effect counts, whatever its size, and what was said not to show
+//! counts as missed.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::answer::Answer;
+use crate::rules::{Key, Name, found, found_or_confusable, is_ordinary};
+use crate::score::Tried;
+
+/// The numbers that the script prints.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Plain {
+    /// Found and concealed, by family.
+    pub families: BTreeMap<String, [usize; 2]>,
+    /// False names that are not ordinary, by family.
+    pub false_names: BTreeMap<String, usize>,
+    /// Ordinary effects concealed, found, named falsely.
+    pub ordinary: [usize; 3],
+    /// Injected effects, not ordinary.
+    pub concealed: usize,
+    /// Of these found.
+    pub found: usize,
+    /// Of these found or in a confusable set.
+    pub covered: usize,
+    /// Cases with nothing but the ordinary.
+    pub empty: usize,
+    /// Of these without another name.
+    pub clean: usize,
+    /// Cases with something outside the catalogue.
+    pub outside: usize,
+    /// Of these refused on the right joint.
+    pub refused: usize,
+    /// Cases refused with nothing outside the catalogue.
+    pub refused_without_cause: usize,
+    /// Cases without an answer.
+    pub missing: usize,
+    /// The median over joints of the held-out error with the findings over the nominal one.
+    pub held_out: Option<f64>,
+    /// Over all effects.
+    pub micro_f1: f64,
+    /// F1 averaged over the families concealed.
+    pub macro_f1: f64,
+}
+
+impl Plain {
+    /// False names in all.
+    pub fn false_in_all(&self) -> usize {
+        self.false_names.values().sum()
+    }
+}
+
+/// Counts `cases`.
+pub fn plain(cases: &[Tried]) -> Plain {
+    let mut count = Plain::default();
+    let mut ratios = Vec::new();
+    for case in cases {
+        let key = Key::new(&case.truth);
+        let empty = Answer::default();
+        let answer = case.answer.as_ref().unwrap_or(&empty);
+        count.missing += usize::from(case.answer.is_none());
+        let (named, sets) = (found(answer), found_or_confusable(answer));
+        let ordinary = |name: &Name| is_ordinary(&case.truth, &name.0);
+        for name in &key.known {
+            let is_found = usize::from(named.contains(name));
+            if ordinary(name) {
+                count.ordinary[0] += 1;
+                count.ordinary[1] += is_found;
+                continue;
+            }
+            let family = count.families.entry(name.0.clone()).or_default();
+            family[0] += is_found;
+            family[1] += 1;
+            count.concealed += 1;
+            count.found += is_found;
+            count.covered += usize::from(sets.contains(name));
+        }
+        for name in named.iter().filter(|name| !key.allows(name)) {
+            if ordinary(name) {
+                count.ordinary[2] += 1;
+            } else {
+                *count.false_names.entry(name.0.clone()).or_default() += 1;
+            }
+        }
+        if key.unknown.is_empty() && key.known.iter().all(ordinary) {
+            count.empty += 1;
+            count.clean += usize::from(named.iter().all(ordinary));
+        }
+        let left: Vec<&String> = answer.unexplained.iter().map(|left| &left.joint).collect();
+        if key.unknown.is_empty() {
+            count.refused_without_cause += usize::from(!left.is_empty());
+        } else {
+            count.outside += 1;
+            let is_left = |(_, joint): &Name| joint.as_ref().is_some_and(|joint| left.contains(&joint));
+            count.refused += usize::from(key.unknown.iter().any(is_left));
+        }
+        for fit in answer.fit.values() {
+            if let (Some(nominal), Some(diagnosed)) = (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented)
+                && nominal > 0.0
+            {
+                ratios.push(diagnosed / nominal);
+            }
+        }
+    }
+    ratios.sort_by(f64::total_cmp);
+    count.held_out = ratios.get(ratios.len() / 2).copied();
+    let (tp, fp) = (count.found as f64, count.false_in_all() as f64);
+    let (precision, recall) = (tp / f64::max(1.0, tp + fp), tp / (count.concealed as f64).max(1.0));
+    count.micro_f1 = 2.0 * precision * recall / (precision + recall).max(1e-9);
+    let f1 = |(name, &[found, concealed]): (&String, &[usize; 2])| {
+        let wrong = count.false_names.get(name).copied().unwrap_or(0);
+        2.0 * found as f64 / (concealed + found + wrong) as f64
+    };
+    count.macro_f1 = count.families.iter().map(f1).sum::<f64>() / count.families.len().max(1) as f64;
+    count
+}

@@ -1,0 +1,383 @@
+//! What publishers say of a real robot, and what a diagnosis that was not told makes of its recordings.
+
+mod readings;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
+
+use crate::answer::{Answer, Named, Rollout};
+use crate::catalogue::{brings, parameters};
+use crate::rules::{Name, is_declared_unseen};
+use crate::truth::Injected;
+use readings::{Reading, readings};
+
+/// What publishers know of a robot that its URDF leaves out: the truth of a case whose truth nobody made.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Published {
+    /// The robot, the name of its folder.
+    pub robot: String,
+    /// What they say is there.
+    pub said: Vec<Said>,
+    /// What they say is not there.
+    pub denied: Vec<Denied>,
+}
+
+/// An effect that is said to be there.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Said {
+    /// Names of the catalogue; where there are several, one of them is meant, and it is not said which.
+    pub effects: Vec<String>,
+    /// The joint; `None` for the whole arm.
+    pub joint: Option<String>,
+    /// Its numbers, by the catalogue's names.
+    pub parameters: BTreeMap<String, PublishedNumber>,
+    /// How well it is known.
+    pub evidence: Evidence,
+    /// Where it is said.
+    pub place: String,
+}
+
+/// A published number.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PublishedNumber {
+    /// In SI units at the joint.
+    pub value: f64,
+    /// The SI unit.
+    pub unit: String,
+}
+
+/// How well something is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Evidence {
+    /// The publishers give the number, as a result of measuring this machine or its kind.
+    Number,
+    /// It follows from a law that they give.
+    Derived,
+    /// A constant of a model that they use, of which it is not said that it was measured on this machine.
+    Constant,
+    /// They say that it is there, or it almost surely is; no number is known.
+    Statement,
+}
+
+/// Effects that are said not to be there: naming one is wrong.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Denied {
+    /// Names of the catalogue.
+    pub effects: Vec<String>,
+    /// On these joints; empty: anywhere.
+    pub joints: Vec<String>,
+    /// Where it is said.
+    pub place: String,
+}
+
+/// What came of something said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SaidFate {
+    /// Named, on its joint.
+    Named,
+    /// The same torque was named in other words: asymmetric friction is Coulomb friction and an offset, a friction curve holds
+    /// Coulomb friction, a coupling acts on both its joints.
+    SameTorque,
+    /// In the confusable set of a finding.
+    Confusable,
+    /// Not named, and said not to show at its size; of unknown size, said not to show.
+    NotObservable,
+    /// Not named, and its joint said to have structure without a name.
+    Unexplained,
+    /// None of these.
+    Missed,
+}
+
+/// Something said, and what came of it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SaidOutcome {
+    /// What was said.
+    pub said: Said,
+    /// What came of it.
+    pub fate: SaidFate,
+    /// The finding that it is, or whose confusable set has it.
+    pub named_as: Option<Name>,
+    /// All findings that it is, in words.
+    pub sentences: Vec<String>,
+    /// Its numbers beside the finding's.
+    pub numbers: Vec<Compared>,
+}
+
+/// A published number beside the one found.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Compared {
+    /// The parameter's name in the catalogue.
+    pub parameter: String,
+    /// As published (SI).
+    pub published: f64,
+    /// The SI unit.
+    pub unit: String,
+    /// As found; `None` where the finding has no such number.
+    pub found: Option<f64>,
+    /// Its 95 % interval; `None` where it is open.
+    pub ci95: [Option<f64>; 2],
+    /// (found − published) over |published|.
+    pub difference: Option<f64>,
+    /// Whether the interval holds the published number.
+    pub covered: bool,
+}
+
+/// A finding that nobody published.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Besides {
+    /// The finding.
+    pub name: Name,
+    /// Where publishers say that it is not there.
+    pub contradicted_by: Option<String>,
+    /// Whether it comes with something that is said: plain friction under a friction curve, a drive behind a spring.
+    pub comes_with: bool,
+    /// Its part of the joint's torque.
+    pub share: f64,
+    /// How likely it is said to be right.
+    pub probability: Option<f64>,
+    /// What it could be instead.
+    pub confusable_with: Vec<Name>,
+    /// In words.
+    pub sentence: String,
+}
+
+/// Held-out errors of a joint (NRMSE).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct HeldOutErrors {
+    /// Of the URDF's model.
+    pub nominal: Option<f64>,
+    /// With what was named.
+    pub diagnosed: Option<f64>,
+    /// With what publishers say, its sizes fitted to the same recordings.
+    pub said: Option<f64>,
+    /// With a learned correction.
+    pub learned: Option<f64>,
+}
+
+/// What a diagnosis made of a robot.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct RobotScore {
+    /// The robot.
+    pub robot: String,
+    /// The verdict; `None` without an answer.
+    pub verdict: Option<String>,
+    /// Everything said, in its order.
+    pub said: Vec<SaidOutcome>,
+    /// Findings that nobody published.
+    pub besides: Vec<Besides>,
+    /// Joints with structure that was given no name.
+    pub unexplained: Vec<String>,
+    /// What could not be seen: joints, by effect; the whole arm is left out.
+    pub not_observable: BTreeMap<String, Vec<String>>,
+    /// Held-out errors, by joint.
+    pub held_out: BTreeMap<String, HeldOutErrors>,
+    /// Distance of the simulated from the recorded motion, by joint; empty where it was not simulated.
+    pub rollout: BTreeMap<String, Rollout>,
+}
+
+/// The parameters of an effect that may be published: those that are scored, and where a spring is at rest.
+pub fn compared_parameters(effect: &str) -> Vec<&'static str> {
+    let mut list = parameters(effect).to_vec();
+    if effect == "spring" {
+        list.push("rest");
+    }
+    list
+}
+
+impl Published {
+    /// Everything said in the form that `--only` fits, each once: of several names the first.
+    pub fn terms(&self) -> Vec<Name> {
+        let mut list = Vec::new();
+        for said in &self.said {
+            let name = said.effects.first().map(|effect| (effect.clone(), said.joint.clone()));
+            if let Some(name) = name.filter(|name| !list.contains(name)) {
+                list.push(name);
+            }
+        }
+        list
+    }
+
+    /// What `answer`, the blind diagnosis, made of it; `with_said` is the fit of [`Self::terms`] alone. Without an answer
+    /// everything is missed.
+    pub fn score(&self, answer: Option<&Answer>, with_said: Option<&Answer>) -> RobotScore {
+        let nothing = Answer::default();
+        let given = answer.unwrap_or(&nothing);
+        let readings = readings(given);
+        let said: Vec<SaidOutcome> = self.said.iter().map(|said| outcome(said, given, &readings)).collect();
+        let mut not_observable: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        for unseen in &given.not_observable {
+            if let Some(joint) = &unseen.joint {
+                not_observable
+                    .entry(unseen.effect.clone())
+                    .or_default()
+                    .push(joint.clone());
+            }
+        }
+        let held_out = given.fit.iter().map(|(joint, fit)| {
+            let said = with_said.and_then(|answer| answer.fit.get(joint));
+            let errors = HeldOutErrors {
+                nominal: fit.held_out_nrmse_nominal,
+                diagnosed: fit.held_out_nrmse_augmented,
+                said: said.and_then(|fit| fit.held_out_nrmse_augmented),
+                learned: fit.held_out_nrmse_learned,
+            };
+            (joint.clone(), errors)
+        });
+        RobotScore {
+            robot: self.robot.clone(),
+            verdict: answer.map(|answer| answer.verdict.clone()),
+            besides: self.besides(given, &readings),
+            said,
+            unexplained: given.unexplained.iter().map(|refused| refused.joint.clone()).collect(),
+            not_observable,
+            held_out: held_out.collect(),
+            rollout: given.rollout.clone(),
+        }
+    }
+
+    /// The findings that are nothing that was said, in whatever words.
+    fn besides(&self, answer: &Answer, readings: &[Reading]) -> Vec<Besides> {
+        let is_said = |name: &Name| self.said.iter().any(|said| said.is(name));
+        let known: BTreeSet<usize> = readings
+            .iter()
+            .filter(|reading| is_said(&reading.name))
+            .flat_map(|reading| reading.of.iter().copied())
+            .collect();
+        let mut list = Vec::new();
+        let findings = answer.findings.iter().enumerate();
+        for (_, finding) in findings.filter(|(k, _)| !known.contains(k)) {
+            let name = name_of(finding);
+            let denied = self.denied.iter().find(|denied| denied.is(&name));
+            let comes_with = self.said.iter().any(|said| {
+                said.joint == name.1
+                    && said
+                        .effects
+                        .iter()
+                        .any(|effect| brings(effect).contains(&name.0.as_str()))
+            });
+            let rivals = finding.confusable_with.iter();
+            list.push(Besides {
+                contradicted_by: denied.map(|denied| denied.place.clone()),
+                comes_with,
+                share: finding.share,
+                probability: finding.probability,
+                confusable_with: rivals
+                    .map(|other| (other.effect.clone(), other.joint.clone()))
+                    .collect(),
+                sentence: finding.sentence.clone(),
+                name,
+            });
+        }
+        list
+    }
+}
+
+impl Said {
+    /// Whether a name is what is said.
+    fn is(&self, (effect, joint): &Name) -> bool {
+        *joint == self.joint && self.effects.contains(effect)
+    }
+
+    /// As a truth is asked whether it was declared unseen.
+    fn concealed(&self, effect: &str) -> Injected {
+        let values = self.parameters.iter();
+        Injected {
+            effect: effect.to_owned(),
+            joint: self.joint.clone(),
+            parameters: values.map(|(key, number)| (key.clone(), number.value.into())).collect(),
+            form: None,
+            onset: None,
+            expressed_share: None,
+        }
+    }
+
+    /// Whether each effect that may be meant is declared not to show; of unknown size it is enough that it is listed.
+    fn is_unseen(&self, answer: &Answer) -> bool {
+        self.effects.iter().all(|effect| {
+            if !self.parameters.is_empty() {
+                return is_declared_unseen(answer, &self.concealed(effect));
+            }
+            let mut listed = answer.not_observable.iter();
+            listed.any(|unseen| unseen.effect == *effect && unseen.joint == self.joint)
+        })
+    }
+}
+
+impl Denied {
+    fn is(&self, (effect, joint): &Name) -> bool {
+        let there = joint.as_ref().is_some_and(|joint| self.joints.contains(joint));
+        self.effects.contains(effect) && (self.joints.is_empty() || there)
+    }
+}
+
+fn name_of(finding: &Named) -> Name {
+    (finding.effect.clone(), finding.joint.clone())
+}
+
+fn outcome(said: &Said, answer: &Answer, readings: &[Reading]) -> SaidOutcome {
+    let reading = readings.iter().find(|reading| said.is(&reading.name));
+    let is_rival = |finding: &&Named| {
+        let mut others = finding.confusable_with.iter();
+        others.any(|other| said.is(&(other.effect.clone(), other.joint.clone())))
+    };
+    let rival = answer.findings.iter().find(is_rival);
+    let refused = |joint: &String| answer.unexplained.iter().any(|refused| refused.joint == *joint);
+    let (fate, named_as) = match (reading, rival) {
+        (Some(reading), _) if reading.is_rewritten() => (SaidFate::SameTorque, reading.first(answer)),
+        (Some(reading), _) => (SaidFate::Named, reading.first(answer)),
+        (None, Some(finding)) => (SaidFate::Confusable, Some(name_of(finding))),
+        (None, None) if said.is_unseen(answer) => (SaidFate::NotObservable, None),
+        (None, None) if said.joint.as_ref().is_some_and(refused) => (SaidFate::Unexplained, None),
+        (None, None) => (SaidFate::Missed, None),
+    };
+    let numbers = reading.map_or_else(Vec::new, |reading| {
+        let order = |effect: &String| compared_parameters(effect);
+        let keys: Vec<&str> = said.effects.iter().flat_map(order).collect();
+        let place = |key: &String| keys.iter().position(|other| other == key);
+        let mut list: Vec<_> = said.parameters.iter().collect();
+        list.sort_by_key(|(key, _)| place(key));
+        list.into_iter()
+            .map(|(key, number)| compared(key, number, reading))
+            .collect()
+    });
+    let of = |reading: &Reading| reading.of.clone();
+    let all: BTreeSet<usize> = readings
+        .iter()
+        .filter(|reading| said.is(&reading.name))
+        .flat_map(of)
+        .collect();
+    let sentences = all
+        .iter()
+        .filter_map(|&k| Some(answer.findings.get(k)?.sentence.clone()));
+    SaidOutcome {
+        said: said.clone(),
+        fate,
+        named_as,
+        sentences: sentences.collect(),
+        numbers,
+    }
+}
+
+fn compared(key: &str, number: &PublishedNumber, reading: &Reading) -> Compared {
+    let found = reading.parameters.get(key);
+    let value = found.and_then(|found| found.value);
+    let ci95 = found.map_or([None; 2], |found| found.ci95);
+    let published = number.value;
+    Compared {
+        parameter: key.to_owned(),
+        published,
+        unit: number.unit.clone(),
+        found: value,
+        ci95,
+        difference: value
+            .filter(|_| published != 0.0)
+            .map(|value| (value - published) / published.abs()),
+        covered: value.is_some() && found.is_some_and(|found| found.holds(published)),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,136 @@
+//! What counts as right: names, what an effect brings with it, what is ordinary, what cannot be seen.
+
+use std::collections::BTreeSet;
+
+use crate::answer::{Answer, DeclaredUnseen};
+use crate::catalogue::{brings, is_dry_friction, neutral};
+use crate::numbers::truth_value;
+use crate::truth::{Injected, Truth};
+
+/// An effect's name and its joint; `None` is the whole arm.
+pub type Name = (String, Option<String>);
+
+/// An effect below this expressed share is not asked for.
+pub const LEAST_SHARE: f64 = 0.015;
+
+/// Whether it is in the machine's baseline, and scored apart.
+pub fn is_ordinary(truth: &Truth, effect: &str) -> bool {
+    truth.baseline().contains(&effect)
+}
+
+/// Another name for the very machine that `concealed` makes: no recording tells the two apart. Dry friction that differs by
+/// direction is a level and a constant, ½ (F₊ + F₋) sgn q̇ + ½ (F₊ − F₋), in motion and, as its two limits, at rest.
+pub fn same_machine(truth: &Truth, concealed: &Injected) -> Option<Name> {
+    let other = match concealed.name() {
+        "torque_offset" => "friction_asymmetry",
+        "friction_asymmetry" => "torque_offset",
+        _ => return None,
+    };
+    let number = |of: &Injected, key: &str| of.parameters.get(key).and_then(serde_json::Value::as_f64);
+    // Friction of another kind beside it tells. That the constant sets in later does not, if the level is there by then.
+    let beside: Vec<&Injected> = truth
+        .concealed
+        .iter()
+        .filter(|c| c.joint == concealed.joint && is_dry_friction(c.name()) && c.name() != concealed.name())
+        .collect();
+    let is_plain = concealed.form.is_none();
+    let same = match (concealed.name(), beside.as_slice()) {
+        ("friction_asymmetry", []) => is_plain,
+        // A constant beyond the level of friction would push by itself.
+        ("torque_offset", [friction]) => {
+            let (offset, level) = (number(concealed, "offset")?, number(friction, "level")?);
+            let start = |of: &Injected| of.onset.unwrap_or(f64::NEG_INFINITY);
+            is_plain
+                && friction.name() == "coulomb_friction"
+                && friction.form.is_none()
+                && offset.abs() < level
+                && start(friction) <= start(concealed)
+        }
+        _ => false,
+    };
+    same.then(|| (other.to_owned(), concealed.joint.clone()))
+}
+
+/// What is true of a case.
+#[derive(Clone, Debug, Default)]
+pub struct Key {
+    /// Injected, and in the catalogue.
+    pub known: BTreeSet<Name>,
+    /// Injected, and outside the catalogue.
+    pub unknown: BTreeSet<Name>,
+    /// Brought by what is concealed.
+    pub brought: BTreeSet<Name>,
+}
+
+impl Key {
+    /// The key to a case.
+    pub fn new(truth: &Truth) -> Self {
+        let (mut known, mut unknown) = (BTreeSet::new(), BTreeSet::new());
+        for concealed in &truth.concealed {
+            let set = if concealed.is_outside_the_catalogue() {
+                &mut unknown
+            } else {
+                &mut known
+            };
+            set.insert((concealed.name().to_owned(), concealed.joint.clone()));
+        }
+        let brought: BTreeSet<Name> = known
+            .iter()
+            .flat_map(|(effect, joint)| brings(effect).iter().map(|with| ((*with).to_owned(), joint.clone())))
+            .collect();
+        let brought = brought.difference(&known).cloned().collect();
+        Self {
+            known,
+            unknown,
+            brought,
+        }
+    }
+
+    /// Whether a finding is right, or comes with what is: otherwise it is false.
+    pub fn allows(&self, name: &Name) -> bool {
+        self.known.contains(name) || self.brought.contains(name)
+    }
+}
+
+/// What a diagnosis names.
+pub fn found(answer: &Answer) -> BTreeSet<Name> {
+    answer
+        .findings
+        .iter()
+        .map(|f| (f.effect.clone(), f.joint.clone()))
+        .collect()
+}
+
+/// What a diagnosis names or says that it could be instead.
+pub fn found_or_confusable(answer: &Answer) -> BTreeSet<Name> {
+    let rivals = answer.findings.iter().flat_map(|f| &f.confusable_with);
+    let mut set = found(answer);
+    set.extend(rivals.map(|rival| (rival.effect.clone(), rival.joint.clone())));
+    set
+}
+
+/// Whether a diagnosis says that an effect of this size would not show in these recordings.
+pub fn is_declared_unseen(answer: &Answer, concealed: &Injected) -> bool {
+    answer
+        .not_observable
+        .iter()
+        .filter(|unseen| unseen.effect == concealed.name() && unseen.joint == concealed.joint)
+        .any(|unseen| hides(unseen, concealed))
+}
+
+fn hides(unseen: &DeclaredUnseen, concealed: &Injected) -> bool {
+    let (above, below) = (&unseen.would_be_seen_above, &unseen.would_be_seen_below);
+    if above.is_empty() && below.is_empty() {
+        return true;
+    }
+    let size = |key: &String| truth_value(concealed, key).map(|value| (value - neutral(concealed.name())).abs());
+    let under = |(key, bound): (&String, &Option<f64>)| match (size(key), bound) {
+        (Some(size), Some(bound)) => size < *bound,
+        _ => false,
+    };
+    let over = |(key, bound): (&String, &Option<f64>)| match (size(key), bound) {
+        (Some(size), Some(bound)) => size > *bound,
+        _ => false,
+    };
+    above.iter().any(under) || below.iter().any(over)
+}

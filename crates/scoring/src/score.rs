@@ -1,0 +1,344 @@
+//! The score: truths against diagnoses, as numbers.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
+
+use crate::answer::Answer;
+use crate::calibration::{Calibration, calibration};
+use crate::catalogue::brings;
+use crate::controls::{HeldOut, held_out};
+use crate::experiments::{Again, Experiments, experiments};
+use crate::intervals::Counted;
+use crate::numbers::ScoredNumber;
+use crate::outcome::{FalseName, Fate, Outcome, OutsideOutcome, outcomes};
+use crate::plain::{Plain, plain};
+use crate::summary::{Curve, Errors, ParameterScore, curves, errors, parameter_scores};
+use crate::targets::{Target, targets};
+use crate::truth::{Injected, Truth};
+
+/// A case after everything was tried on it.
+#[derive(Clone, Debug)]
+pub struct Tried {
+    /// What was concealed.
+    pub truth: Truth,
+    /// The joints' names, base to tip: the order of the truth's noise.
+    pub joints: Vec<String>,
+    /// What was diagnosed; `None` if the program gave no answer.
+    pub answer: Option<Answer>,
+    /// The true terms fitted by name.
+    pub true_terms: Option<Answer>,
+    /// A wrong term in place of a true one.
+    pub wrong_term: Option<Answer>,
+    /// The tracking error of a task with the diagnosed causes over that with the exact model, where a task was tracked.
+    pub tracking_over_exact: Option<f64>,
+    /// The same in a loop where nothing but the model is left between the two: without the velocity filter's lag.
+    pub tracking_over_exact_without_lag: Option<f64>,
+    /// A second diagnosis, with the experiment that the first proposed; `None` if it was not tried.
+    pub again: Option<Again>,
+}
+
+/// What the diagnoses of all cases are worth. Everything is counted in names: an effect on a joint.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Score {
+    /// Cases scored.
+    pub cases: usize,
+    /// Cases that got no answer: nothing was found in them. In shares of names given, in errors and in intervals they do not count.
+    pub unanswered: Vec<String>,
+    /// Cases with nothing but the ordinary.
+    pub empty: usize,
+    /// The figures that were asked for, and whether they are reached.
+    pub targets: Vec<Target>,
+    /// By family: the effects that are not ordinary, and have an expressed share above [`crate::LEAST_SHARE`].
+    pub families: BTreeMap<String, Family>,
+    /// F1 of each family, averaged over the families concealed.
+    pub macro_f1: Option<f64>,
+    /// The same if what was declared not observable counts as missed, and another name of the same machine as false.
+    pub macro_f1_strict: Option<f64>,
+    /// Ordinary friction and drive inertia: found.
+    pub ordinary: Counted,
+    /// Ordinary effects named where they were not concealed.
+    pub ordinary_false: usize,
+    /// Cases with nothing but the ordinary in which something else was named, of those answered.
+    pub empty_with_a_false_name: Counted,
+    /// Cases with something outside the catalogue that was refused on its joint.
+    pub outside_refused: Counted,
+    /// Such cases in which a false name was given, on whatever joint, of those answered.
+    pub outside_with_a_wrong_name: Counted,
+    /// Cases with nothing outside the catalogue in which a joint was said to be unexplained, of those answered.
+    pub refused_without_cause: Counted,
+    /// Injected effects that are a finding or in a finding's confusable set.
+    pub covered: Counted,
+    /// The same if what was declared not observable counts as not covered.
+    pub covered_strict: Counted,
+    /// Detection against the effect's size.
+    pub detection: Vec<Curve>,
+    /// Errors of the parameters of effects found, by effect and parameter.
+    pub parameters: Vec<ParameterScore>,
+    /// Of the main parameters of all effects that are not ordinary: relative errors.
+    pub main_parameters: Errors,
+    /// Of all scored parameters of these effects: intervals that hold the truth.
+    pub intervals: Counted,
+    /// Errors of prediction on the recording held out, over the true terms', case by case.
+    pub over_true_terms: Errors,
+    /// The same over joints instead of cases.
+    pub over_true_terms_by_joint: Errors,
+    /// Tracking error with the diagnosed causes over the exact model's, of the cases in which a task was tracked.
+    pub tracking_over_exact: Errors,
+    /// The same without the velocity filter's lag.
+    pub tracking_over_exact_without_lag: Errors,
+    /// What was concealed (rows) against what it was called (columns).
+    pub confusion: BTreeMap<String, BTreeMap<String, usize>>,
+    /// Probability against outcome, of findings that are not ordinary.
+    pub calibration: Calibration,
+    /// The same of all findings.
+    pub calibration_of_all: Calibration,
+    /// The count of the open cases' own script, without any of the distinctions above.
+    pub plain: Plain,
+    /// Every concealed effect that is not ordinary, with its fate.
+    pub concealed: Vec<Outcome>,
+    /// Every false name that is not ordinary.
+    pub false_names: Vec<FalseName>,
+    /// Every case with something outside the catalogue.
+    pub outside: Vec<OutsideOutcome>,
+    /// Joints called unexplained in cases with nothing outside the catalogue.
+    pub refusals_without_cause: Vec<OutsideOutcome>,
+    /// Every scored number.
+    pub sizes: Vec<ScoredNumber>,
+    /// The controls, case by case.
+    pub held_out: Vec<HeldOut>,
+    /// The experiments that were proposed.
+    pub experiments: Experiments,
+}
+
+/// The effects of one name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Family {
+    /// Injected with an expressed share that asks for them.
+    pub concealed: usize,
+    /// Of these found, by this name or another of the same machine.
+    pub found: usize,
+    /// Of these by another name of the same machine.
+    pub same_machine: usize,
+    /// Of these found or in the confusable set of a finding.
+    pub covered: usize,
+    /// Of these not found, and declared not observable at their size.
+    pub not_observable: usize,
+    /// Of these not found, and the joint refused instead.
+    pub refused: usize,
+    /// Injected with a smaller share: nobody asks for these.
+    pub too_small: usize,
+    /// Of those too small, found.
+    pub too_small_found: usize,
+    /// Named where they were not.
+    pub false_names: usize,
+    /// 2 found over (asked for + found + false); what was declared not observable is not asked for.
+    pub f1: Option<f64>,
+    /// The same if that is asked for, too, and another name of the same machine is false.
+    pub f1_strict: Option<f64>,
+}
+
+impl Family {
+    /// Those asked for: visible, or not declared otherwise.
+    pub fn asked(&self) -> usize {
+        self.concealed - self.not_observable
+    }
+}
+
+/// Scores `cases`, which are in the order of their names.
+pub fn score(cases: &[Tried]) -> Score {
+    let all: Vec<_> = cases.iter().map(outcomes).collect();
+    let concealed: Vec<Outcome> = all.iter().flat_map(|case| case.concealed.clone()).collect();
+    let false_names: Vec<FalseName> = all.iter().flat_map(|case| case.false_names.clone()).collect();
+    let outside: Vec<OutsideOutcome> = all.iter().filter_map(|case| case.outside.clone()).collect();
+    let refusals: Vec<OutsideOutcome> = all
+        .iter()
+        .filter_map(|case| case.refused_without_cause.clone())
+        .collect();
+    let families = families(&concealed, &false_names);
+    let mean = |pick: &dyn Fn(&Family) -> Option<f64>| -> Option<f64> {
+        let values: Vec<f64> = families.values().filter_map(pick).collect();
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    };
+    let sizes: Vec<ScoredNumber> = all.iter().flat_map(|case| case.sizes.clone()).collect();
+    let special: Vec<&ScoredNumber> = all
+        .iter()
+        .flat_map(|case| case.sizes.iter().filter(|s| !case.is_ordinary(s)))
+        .collect();
+    let held: Vec<HeldOut> = cases
+        .iter()
+        .filter_map(|case| {
+            let answer = case.answer.as_ref()?;
+            Some(held_out(
+                &case.truth,
+                answer,
+                case.true_terms.as_ref(),
+                case.wrong_term.as_ref(),
+            ))
+        })
+        .collect();
+    // A case without an answer names nothing, which is no merit of it.
+    let answered = || {
+        all.iter()
+            .zip(cases)
+            .filter_map(|(outcome, case)| case.answer.is_some().then_some(outcome))
+    };
+    let asked: Vec<&Outcome> = concealed.iter().filter(|outcome| outcome.is_asked()).collect();
+    let mut score = Score {
+        cases: cases.len(),
+        unanswered: cases
+            .iter()
+            .filter(|c| c.answer.is_none())
+            .map(|c| c.truth.case.clone())
+            .collect(),
+        empty: all.iter().filter(|case| case.is_empty).count(),
+        targets: Vec::new(),
+        experiments: experiments(cases),
+        macro_f1: mean(&|family| family.f1),
+        macro_f1_strict: mean(&|family| family.f1_strict),
+        families,
+        ordinary: Counted::of(all.iter().flat_map(|case| case.ordinary.iter().copied())),
+        ordinary_false: all.iter().map(|case| case.ordinary_false).sum(),
+        empty_with_a_false_name: Counted::of(
+            answered()
+                .filter(|case| case.is_empty)
+                .map(|case| !case.false_names.is_empty()),
+        ),
+        outside_refused: Counted::of(outside.iter().map(|case| case.refused)),
+        outside_with_a_wrong_name: Counted::of(
+            answered()
+                .filter_map(|case| case.outside.as_ref())
+                .map(|case| !case.named.is_empty()),
+        ),
+        refused_without_cause: Counted::of(
+            answered()
+                .filter(|case| case.outside.is_none())
+                .map(|case| case.refused_without_cause.is_some()),
+        ),
+        covered: Counted::of(asked.iter().map(|o| o.fate.is_covered())),
+        covered_strict: Counted::of(concealed.iter().filter(|o| o.counts).map(|o| o.fate.is_covered())),
+        detection: curves(&concealed),
+        parameters: parameter_scores(&sizes),
+        main_parameters: errors(special.iter().filter(|s| s.main).map(|s| s.error)),
+        intervals: Counted::of(special.iter().map(|s| s.covered)),
+        over_true_terms: errors(
+            held.iter()
+                .filter(|case| !case.outside_the_catalogue)
+                .filter_map(HeldOut::over_true_terms),
+        ),
+        over_true_terms_by_joint: errors(cases.iter().flat_map(by_joint)),
+        tracking_over_exact: errors(cases.iter().filter_map(|case| case.tracking_over_exact)),
+        tracking_over_exact_without_lag: errors(cases.iter().filter_map(|case| case.tracking_over_exact_without_lag)),
+        confusion: confusion(&concealed, &false_names, &outside),
+        calibration: calibration(&all.iter().flat_map(|case| case.said.clone()).collect::<Vec<_>>()),
+        calibration_of_all: calibration(&all.iter().flat_map(|case| case.said_of_all.clone()).collect::<Vec<_>>()),
+        plain: plain(cases),
+        concealed,
+        false_names,
+        outside,
+        refusals_without_cause: refusals,
+        sizes,
+        held_out: held,
+    };
+    score.targets = targets(&score);
+    score
+}
+
+fn families(concealed: &[Outcome], false_names: &[FalseName]) -> BTreeMap<String, Family> {
+    let mut families: BTreeMap<String, Family> = BTreeMap::new();
+    for outcome in concealed {
+        let family = families.entry(outcome.effect.clone()).or_default();
+        if !outcome.counts {
+            family.too_small += 1;
+            family.too_small_found += usize::from(outcome.fate.is_found());
+            continue;
+        }
+        family.concealed += 1;
+        family.found += usize::from(outcome.fate.is_found());
+        family.same_machine += usize::from(outcome.fate == Fate::SameMachine);
+        family.covered += usize::from(outcome.fate.is_covered());
+        family.not_observable += usize::from(outcome.fate == Fate::NotObservable);
+        family.refused += usize::from(outcome.fate == Fate::Refused);
+    }
+    for false_name in false_names {
+        families.entry(false_name.effect.clone()).or_default().false_names += 1;
+    }
+    // By how many names of the same machine a family's name was given that the truth does not bring.
+    let mut given: BTreeMap<&str, usize> = BTreeMap::new();
+    for outcome in concealed {
+        let name = outcome.found_as.as_ref();
+        if let Some((name, _)) = name.filter(|(name, _)| !brings(&outcome.effect).contains(&name.as_str())) {
+            *given.entry(name).or_default() += 1;
+        }
+    }
+    for (name, family) in &mut families {
+        let f1 = |asked: usize, found: usize, false_names: usize| {
+            (asked > 0).then(|| 2.0 * found as f64 / (asked + found + false_names) as f64)
+        };
+        family.f1 = f1(family.asked(), family.found, family.false_names);
+        let strictly_false = family.false_names + given.get(name.as_str()).copied().unwrap_or(0);
+        family.f1_strict = f1(family.concealed, family.found - family.same_machine, strictly_false);
+    }
+    families
+}
+
+/// The errors of the diagnosis over the true terms', joint by joint, where nothing is outside the catalogue.
+fn by_joint(case: &Tried) -> Vec<f64> {
+    let (Some(answer), Some(oracle)) = (&case.answer, &case.true_terms) else {
+        return Vec::new();
+    };
+    if case.truth.concealed.iter().any(Injected::is_outside_the_catalogue) {
+        return Vec::new();
+    }
+    let ratio = |(joint, fit): (&String, &crate::answer::Fit)| -> Option<f64> {
+        let best = oracle.fit.get(joint)?.held_out_nrmse_augmented?;
+        Some(fit.held_out_nrmse_augmented? / best.max(1e-12))
+    };
+    answer.fit.iter().filter_map(ratio).collect()
+}
+
+/// Rows: what was concealed and asked for, "outside the catalogue", "nothing there". Columns: names, "refused",
+/// "not observable", "not named".
+fn confusion(
+    concealed: &[Outcome],
+    false_names: &[FalseName],
+    outside: &[OutsideOutcome],
+) -> BTreeMap<String, BTreeMap<String, usize>> {
+    let mut matrix: BTreeMap<String, BTreeMap<String, usize>> = BTreeMap::new();
+    let mut add = |row: &str, column: &str| {
+        *matrix
+            .entry(row.to_owned())
+            .or_default()
+            .entry(column.to_owned())
+            .or_default() += 1;
+    };
+    let mut explained: BTreeSet<(&str, &str, Option<&str>)> = BTreeSet::new();
+    for outcome in concealed.iter().filter(|outcome| outcome.counts) {
+        let instead = outcome.instead.first();
+        let column = match (outcome.fate, instead) {
+            (Fate::Found | Fate::SameMachine, _) => outcome.effect.as_str(),
+            (_, Some(name)) => name.0.as_str(),
+            (Fate::NotObservable, None) => "not observable",
+            (Fate::Refused, None) => "refused",
+            (Fate::Covered | Fate::Missed, None) => "not named",
+        };
+        if let (false, Some(name)) = (outcome.fate.is_found(), instead) {
+            explained.insert((&outcome.case, &name.0, name.1.as_deref()));
+        }
+        add(&outcome.effect, column);
+    }
+    for case in outside {
+        match (case.named.first(), case.refused) {
+            (Some(name), _) => add("outside the catalogue", &name.0),
+            (None, true) => add("outside the catalogue", "refused"),
+            (None, false) => add("outside the catalogue", "not named"),
+        }
+    }
+    for name in false_names {
+        let is_known = explained.contains(&(&name.case, &name.effect, name.joint.as_deref()));
+        if !is_known && !outside.iter().any(|case| case.case == name.case) {
+            add("nothing there", &name.effect);
+        }
+    }
+    matrix
+}

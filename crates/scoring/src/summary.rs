@@ -1,0 +1,117 @@
+//! Detection against size, and errors of numbers, over all cases.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::intervals::{Counted, quantile};
+use crate::numbers::ScoredNumber;
+use crate::outcome::{Fate, Outcome};
+
+/// Found or not, against one measure of size.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Curve {
+    /// The measure: `expressed_share`, or `over_noise` (see [`Outcome::over_noise`]).
+    pub measure: String,
+    /// From small to large; empty bins are left out.
+    pub bins: Vec<SizeBin>,
+}
+
+/// Effects of about one size.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SizeBin {
+    /// Sizes from …
+    pub from: f64,
+    /// … to; `None` has no end.
+    pub to: Option<f64>,
+    /// Those found.
+    pub found: Counted,
+    /// Those found or in a finding's confusable set.
+    pub covered: Counted,
+    /// Those not found and declared not observable; they are among those that `found` is of.
+    pub not_observable: usize,
+}
+
+/// Absolute relative errors, or ratios.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Errors {
+    /// How many.
+    pub count: usize,
+    /// Half are below.
+    pub median: Option<f64>,
+    /// Nine tenths are below.
+    pub ninetieth: Option<f64>,
+}
+
+/// The errors of one parameter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ParameterScore {
+    /// The effect.
+    pub effect: String,
+    /// The parameter.
+    pub parameter: String,
+    /// Whether it is the effect's main one.
+    pub main: bool,
+    /// Relative errors.
+    pub errors: Errors,
+    /// Intervals that hold the truth.
+    pub covered: Counted,
+}
+
+/// The median and the 90th percentile.
+pub fn errors(values: impl IntoIterator<Item = f64>) -> Errors {
+    let values: Vec<f64> = values.into_iter().collect();
+    Errors {
+        count: values.len(),
+        median: quantile(&values, 0.5),
+        ninetieth: quantile(&values, 0.9),
+    }
+}
+
+/// Detection against both measures of size, over all concealed effects, also the small ones.
+pub fn curves(concealed: &[Outcome]) -> Vec<Curve> {
+    let shares: &[f64] = &[0.0, 0.0075, 0.015, 0.03, 0.06, 0.12, 0.25];
+    let noises: &[f64] = &[0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
+    vec![
+        curve("expressed_share", shares, concealed, &|outcome| outcome.share),
+        curve("over_noise", noises, concealed, &|outcome| outcome.over_noise),
+    ]
+}
+
+fn curve(measure: &str, bounds: &[f64], concealed: &[Outcome], size: &dyn Fn(&Outcome) -> Option<f64>) -> Curve {
+    let bin = |k: usize| {
+        let (from, to) = (bounds[k], bounds.get(k + 1).copied());
+        let inside = |outcome: &&Outcome| size(outcome).is_some_and(|s| s >= from && to.is_none_or(|to| s < to));
+        let mine: Vec<&Outcome> = concealed.iter().filter(inside).collect();
+        (!mine.is_empty()).then(|| SizeBin {
+            from,
+            to,
+            found: Counted::of(mine.iter().map(|o| o.fate.is_found())),
+            covered: Counted::of(mine.iter().map(|o| o.fate.is_covered())),
+            not_observable: mine.iter().filter(|o| o.fate == Fate::NotObservable).count(),
+        })
+    };
+    Curve {
+        measure: measure.to_owned(),
+        bins: (0..bounds.len()).filter_map(bin).collect(),
+    }
+}
+
+/// By effect and parameter.
+pub fn parameter_scores(sizes: &[ScoredNumber]) -> Vec<ParameterScore> {
+    let mut groups: BTreeMap<(&str, bool, &str), Vec<&ScoredNumber>> = BTreeMap::new();
+    for sized in sizes {
+        groups
+            .entry((&sized.effect, !sized.main, &sized.parameter))
+            .or_default()
+            .push(sized);
+    }
+    let score = |((effect, minor, parameter), list): ((&str, bool, &str), Vec<&ScoredNumber>)| ParameterScore {
+        effect: effect.to_owned(),
+        parameter: parameter.to_owned(),
+        main: !minor,
+        errors: errors(list.iter().map(|sized| sized.error)),
+        covered: Counted::of(list.iter().map(|sized| sized.covered)),
+    };
+    groups.into_iter().map(score).collect()
+}

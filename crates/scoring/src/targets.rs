@@ -1,0 +1,183 @@
+//! The figures that a proof must reach, and whether it does.
+
+use serde::Serialize;
+
+use crate::intervals::Counted;
+use crate::score::{Family, Score};
+
+/// Which figure it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Figure {
+    /// F1 averaged over the families.
+    MacroF1,
+    /// Empty cases with a false name.
+    EmptyCases,
+    /// Outside the catalogue, refused.
+    OutsideRefused,
+    /// Outside the catalogue, given a wrong name.
+    OutsideNamed,
+    /// Relative errors of the main parameters.
+    ParameterErrors,
+    /// Intervals that hold the truth.
+    Intervals,
+    /// The truth is named, or in a finding's confusable set.
+    Covered,
+    /// Held-out errors over the true terms'.
+    HeldOut,
+    /// Tracking errors over the exact model's.
+    Tracking,
+    /// Confusions that the proposed experiment resolved.
+    Confusions,
+}
+
+/// A figure that was asked for.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Target {
+    /// Which it is.
+    #[serde(skip)]
+    pub id: Figure,
+    /// The same in words.
+    pub what: String,
+    /// The figure; `None` if nothing was there to count.
+    pub figure: Option<f64>,
+    /// At least this …
+    pub at_least: Option<f64>,
+    /// … and at most that.
+    pub at_most: Option<f64>,
+    /// What it was counted from, where it is a share.
+    pub counted: Option<Counted>,
+    /// Over how many.
+    pub of: usize,
+    /// Whether it is reached; `None` if nothing was there to count, or nothing is wanted of it: it says more of the one above.
+    pub reached: Option<bool>,
+}
+
+fn target(id: Figure, what: &str, figure: Option<f64>, [at_least, at_most]: [Option<f64>; 2], of: usize) -> Target {
+    let is_within = |figure: f64| at_least.is_none_or(|low| figure >= low) && at_most.is_none_or(|high| figure <= high);
+    Target {
+        id,
+        what: what.to_owned(),
+        figure,
+        at_least,
+        at_most,
+        counted: None,
+        of,
+        reached: figure
+            .map(is_within)
+            .filter(|_| at_least.is_some() || at_most.is_some()),
+    }
+}
+
+fn share(id: Figure, what: &str, counted: Counted, bounds: [Option<f64>; 2]) -> Target {
+    Target {
+        counted: Some(counted),
+        ..target(id, what, counted.share(), bounds, counted.of)
+    }
+}
+
+/// What is asked of `score`.
+pub fn targets(score: &Score) -> Vec<Target> {
+    let at_least = |value: f64| [Some(value), None];
+    let at_most = |value: f64| [None, Some(value)];
+    let asked: usize = score.families.values().map(Family::asked).sum();
+    let (main, over) = (score.main_parameters, score.over_true_terms);
+    let (tracking, stricter) = (score.tracking_over_exact, score.tracking_over_exact_without_lag);
+    let experiments = &score.experiments;
+    let without = match &experiments.most_frequent {
+        Some([a, b]) => format!("… of those proposed for, without `{a}` and `{b}`, the most frequent pair"),
+        None => "… of those proposed for, without the most frequent pair".to_owned(),
+    };
+    let (wrong, refused) = (score.outside_with_a_wrong_name, score.outside_refused);
+    vec![
+        target(
+            Figure::MacroF1,
+            "macro F1 over the families",
+            score.macro_f1,
+            at_least(0.95),
+            asked,
+        ),
+        share(
+            Figure::EmptyCases,
+            "empty cases with a false name",
+            score.empty_with_a_false_name,
+            at_most(0.02),
+        ),
+        share(
+            Figure::OutsideRefused,
+            "outside the catalogue, refused on the right joint",
+            refused,
+            at_least(0.90),
+        ),
+        share(
+            Figure::OutsideNamed,
+            "outside the catalogue, given a wrong name",
+            wrong,
+            at_most(0.03),
+        ),
+        target(
+            Figure::ParameterErrors,
+            "relative error of parameters, median",
+            main.median,
+            at_most(0.05),
+            main.count,
+        ),
+        share(
+            Figure::Intervals,
+            "95 % intervals that hold the truth",
+            score.intervals,
+            [Some(0.90), Some(0.99)],
+        ),
+        share(
+            Figure::Covered,
+            "truth in the finding or its confusable set",
+            score.covered,
+            at_least(0.98),
+        ),
+        target(
+            Figure::HeldOut,
+            "held-out error over the true terms’, median",
+            over.median,
+            at_most(1.1),
+            over.count,
+        ),
+        target(
+            Figure::HeldOut,
+            "held-out error over the true terms’, 90th percentile",
+            over.ninetieth,
+            at_most(1.5),
+            over.count,
+        ),
+        target(
+            Figure::Tracking,
+            "tracking error with the diagnosed cause over the exact model’s, median",
+            tracking.median,
+            at_most(1.5),
+            tracking.count,
+        ),
+        target(
+            Figure::Tracking,
+            "tracking error likewise, without the velocity filter’s lag, median",
+            stricter.median,
+            at_most(1.5),
+            stricter.count,
+        ),
+        share(
+            Figure::Confusions,
+            "confusions resolved by the proposed experiment, of those it was proposed for",
+            experiments.resolved,
+            at_least(0.70),
+        ),
+        share(
+            Figure::Confusions,
+            "… of all in the cases tried",
+            experiments.resolved_of_all,
+            [None, None],
+        ),
+        share(
+            Figure::Confusions,
+            &without,
+            experiments.resolved_of_rarer,
+            [None, None],
+        ),
+    ]
+}

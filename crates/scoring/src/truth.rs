@@ -1,0 +1,73 @@
+//! The truth about a case, as far as it is scored.
+//!
+//! The files are written by whoever made the case, here by the crate `faults`. This crate reads them through types of its own, as it reads
+//! diagnoses: so neither of the two crates depends on the other, and cases that others made are scored alike.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+use crate::catalogue::{DRIVE_INERTIA, ORDINARY, ORDINARY_WITH_DRIVES, canonical, is_outside};
+
+/// What a case's machine has and its URDF has not; what is not scored is not read.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct Truth {
+    /// The case's name, that of its folder.
+    pub case: String,
+    /// Everything that was injected, ordinary friction among it.
+    pub concealed: Vec<Injected>,
+    /// Standard deviation of the noise on each torque (N m or N), base to tip.
+    pub torque_noise: Vec<f64>,
+}
+
+/// One injected fault.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct Injected {
+    /// The catalogue's name; outside the catalogue a name that ends in `_unknown`.
+    pub effect: String,
+    /// The URDF joint's name; `None` for the whole arm.
+    pub joint: Option<String>,
+    /// The functional form, where it is not the textbook's.
+    #[serde(default)]
+    pub form: Option<String>,
+    /// When it sets in (s, on the recordings' clock), where it is not there from the start.
+    #[serde(default)]
+    pub onset: Option<f64>,
+    /// The largest part of a joint's torque (in standard deviations, over the training recordings) that vanishes when the machine is run
+    /// without it; `None` where nobody said.
+    #[serde(default)]
+    pub expressed_share: Option<f64>,
+    /// The catalogue's parameters (SI), by name.
+    #[serde(flatten)]
+    pub parameters: BTreeMap<String, serde_json::Value>,
+}
+
+impl Truth {
+    /// The effects that every machine like this one has and its URDF leaves out, so that they are scored apart: plain friction, and the
+    /// drives' inertias where the robot comes with them. Faults are injected on a joint: inertia on every one of several joints is the
+    /// robot's own.
+    pub fn baseline(&self) -> &'static [&'static str] {
+        let joints = self.torque_noise.len();
+        let drives = self
+            .concealed
+            .iter()
+            .filter(|injected| injected.effect == DRIVE_INERTIA);
+        if joints > 1 && drives.count() == joints {
+            ORDINARY_WITH_DRIVES
+        } else {
+            ORDINARY
+        }
+    }
+}
+
+impl Injected {
+    /// The catalogue's name, also of truths that were written under another.
+    pub fn name(&self) -> &str {
+        canonical(&self.effect)
+    }
+
+    /// Whether no name of the catalogue fits it.
+    pub fn is_outside_the_catalogue(&self) -> bool {
+        is_outside(&self.effect)
+    }
+}
