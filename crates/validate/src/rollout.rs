@@ -11,7 +11,6 @@ mod start;
 mod tests;
 mod variant;
 
-use anyhow::{Context, ensure};
 use arm::Arm;
 use diagnosis::JointRollout;
 use recording::RegularRecording;
@@ -19,6 +18,8 @@ use torque::Effect;
 
 use self::start::Start;
 use self::variant::Variant;
+use crate::error::ValidateError;
+use crate::statistics::mean_square;
 
 /// How a rollout is run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,7 +91,7 @@ struct Course<'a> {
 /// bound) and is told in [`Rollout`].
 ///
 /// # Errors
-/// If a joint is not in the recording, an effect does not fit the arm, no window fits in the recording, or the plant
+/// [`ValidateError`], if a joint is not in the recording, an effect does not fit the arm, no window fits in the recording, or the plant
 /// cannot simulate the arm.
 pub fn rollout(
     arm: &Arm,
@@ -98,25 +99,21 @@ pub fn rollout(
     augmented: &[Effect],
     recording: &RegularRecording,
     options: &RolloutOptions,
-) -> anyhow::Result<Rollout> {
+) -> Result<Rollout, ValidateError> {
     let columns = arm
         .joints()
         .iter()
         .map(|joint| {
             let found = recording.joints.iter().position(|name| *name == joint.name);
-            found.with_context(|| {
-                format!(
-                    "joint \"{}\" is not in the recording: it cannot be simulated",
-                    joint.name
-                )
+            found.ok_or_else(|| ValidateError::Joint {
+                joint: joint.name.clone(),
             })
         })
-        .collect::<anyhow::Result<Vec<usize>>>()?;
+        .collect::<Result<Vec<usize>, _>>()?;
     let period = recording.period;
-    ensure!(
-        period > 0.0 && options.step > 0.0,
-        "the recording's period is {period} s; it must be positive"
-    );
+    if !(period > 0.0 && options.step > 0.0) {
+        return Err(ValidateError::Period { period });
+    }
     let stride = ((options.step / period + 1e-9).floor() as usize).max(1);
     let interval = stride as f64 * period;
     let substeps = (interval / options.step - 1e-9).ceil().max(1.0) as usize;
@@ -131,8 +128,8 @@ pub fn rollout(
     let instants = (options.window / interval).round().max(1.0) as usize;
     let starts = course.starts(instants, options)?;
 
-    let run = |effects: &[Effect]| -> anyhow::Result<Run> {
-        let mut variant = Variant::new(arm, effects, &course)?;
+    let run = |which: &'static str, effects: &[Effect]| -> Result<Run, ValidateError> {
+        let mut variant = Variant::new(which, arm, effects, &course)?;
         let remarks = std::mem::take(&mut variant.remarks);
         let mut acting = effects.to_vec();
         let mut paths = Vec::with_capacity(starts.len());
@@ -144,16 +141,18 @@ pub fn rollout(
             };
             let now: Vec<Effect> = effects.iter().filter(is_there).cloned().collect();
             if now != acting {
-                variant = Variant::new(arm, &now, &course)?;
+                variant = Variant::new(which, arm, &now, &course)?;
                 acting = now;
             }
             paths.push(variant.run(&course, start, instants));
         }
         Ok(Run { paths, remarks })
     };
-    let (nominal, augmented) = rayon::join(|| run(nominal), || run(augmented));
-    let nominal = nominal.context("the nominal arm cannot be simulated")?;
-    let augmented = augmented.context("the arm with the named effects cannot be simulated")?;
+    let (nominal, augmented) = rayon::join(
+        || run("the nominal arm", nominal),
+        || run("the arm with the named effects", augmented),
+    );
+    let (nominal, augmented) = (nominal?, augmented?);
 
     let mut result = Rollout {
         runaway_nominal: nominal.runaways(),
@@ -201,20 +200,16 @@ impl Run {
 
 /// The root of the mean square of simulated less measured over all windows (their common start left out).
 fn rms(windows: &[Window], joint: usize, simulated: impl Fn(&Window) -> &Vec<Vec<f64>>) -> f64 {
-    let mut sum = 0.0;
-    let mut count = 0;
-    for window in windows {
-        for (q, measured) in simulated(window)[joint].iter().zip(&window.measured[joint]).skip(1) {
-            sum += (q - measured).powi(2);
-            count += 1;
-        }
-    }
-    (sum / f64::from(count.max(1))).sqrt()
+    let distances = windows.iter().flat_map(|window| {
+        let pairs = simulated(window)[joint].iter().zip(&window.measured[joint]);
+        pairs.skip(1).map(|(q, measured)| q - measured)
+    });
+    mean_square(distances).sqrt()
 }
 
 impl Course<'_> {
     /// Evenly spread windows of `instants` intervals, with the measured state at the start of each.
-    fn starts(&self, instants: usize, options: &RolloutOptions) -> anyhow::Result<Vec<Start>> {
+    fn starts(&self, instants: usize, options: &RolloutOptions) -> Result<Vec<Start>, ValidateError> {
         let side = start::side(self.recording.period);
         let length = instants * self.stride;
         // A start needs measured samples on both sides.
@@ -227,11 +222,9 @@ impl Course<'_> {
                 first..segment.ticks.end.saturating_sub(length.max(side)).max(first)
             })
             .collect();
-        ensure!(
-            !possible.is_empty(),
-            "no stretch of the recording is as long as a rollout's window, {} s",
-            options.window
-        );
+        if possible.is_empty() {
+            return Err(ValidateError::Window { window: options.window });
+        }
         let affordable = (options.simulated / options.window).floor().max(1.0) as usize;
         let apart = possible.len().div_ceil(length).min(affordable).max(1);
         let starts = (0..apart).map(|k| possible[(2 * k + 1) * possible.len() / (2 * apart)]);

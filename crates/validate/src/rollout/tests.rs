@@ -6,7 +6,7 @@ use recording::Recording;
 use torque::Corrected;
 
 fn puma() -> Arm {
-    Arm::from_urdf_text(include_str!("../../../../../assets/puma560.urdf"), "puma560.urdf").expect("it is an arm")
+    Arm::from_urdf_text(include_str!("../../../../assets/puma560.urdf"), "puma560.urdf").expect("it is an arm")
 }
 
 /// `seconds` of the plant of `arm` with viscous and dry friction, held near slow sines by a stiff loop, at 250 Hz;

@@ -3,6 +3,8 @@
 use arm::Arm;
 use torque::{Inputs, Learned, LengthScales, Prediction, Sample, Samples, TorqueModel, TrainingOptions, Workspace};
 
+use crate::error::ValidateError;
+
 /// Motion and torque of one recording, `[joint][row]`, joints as the arm's: rad, rad/s, rad/s², N m (or m …, N).
 #[derive(Clone, Copy)]
 pub struct Motion<'a> {
@@ -59,11 +61,11 @@ impl Motion<'_> {
 /// over those at which any moves. The same inputs give the same bits.
 ///
 /// # Errors
-/// If no row can be learned from or a regression fails.
+/// [`ValidateError::Learning`], if no row can be learned from or a regression fails.
 ///
 /// # Panics
 /// If a signal has not one row a joint of the arm, or rows of different lengths.
-pub fn learn(arm: &Arm, training: &[Motion<'_>], options: &LearnedOptions) -> anyhow::Result<Learned> {
+pub fn learn(arm: &Arm, training: &[Motion<'_>], options: &LearnedOptions) -> Result<Learned, ValidateError> {
     let dof = arm.dof();
     let mut samples = Samples::new(dof);
     let mut row_of = [vec![0.0; dof], vec![0.0; dof], vec![0.0; dof], vec![0.0; dof]];
@@ -73,14 +75,11 @@ pub fn learn(arm: &Arm, training: &[Motion<'_>], options: &LearnedOptions) -> an
             Motion::row(signal, row, into);
         }
         let [q, qd, qdd, tau] = &row_of;
-        samples.push(Sample { q, qd, qdd, tau })?;
+        samples
+            .push(Sample { q, qd, qdd, tau })
+            .map_err(ValidateError::Learning)?;
     }
-    Ok(Learned::on_top_of(
-        arm,
-        Inputs::NewtonEuler13,
-        &samples,
-        &options.training,
-    )?)
+    Learned::on_top_of(arm, Inputs::NewtonEuler13, &samples, &options.training).map_err(ValidateError::Learning)
 }
 
 /// Learns as [`learn`] does, and predicts the whole torque of the rows of `held_out`: `[recording][joint][row]` (N m or N).
@@ -95,7 +94,7 @@ pub fn predict(
     training: &[Motion<'_>],
     held_out: &[Motion<'_>],
     options: &LearnedOptions,
-) -> anyhow::Result<Vec<Vec<Vec<f64>>>> {
+) -> Result<Vec<Vec<Vec<f64>>>, ValidateError> {
     let dof = arm.dof();
     let model = learn(arm, training, options)?;
     let mut row_of = [vec![0.0; dof], vec![0.0; dof], vec![0.0; dof], vec![0.0; dof]];
@@ -142,6 +141,7 @@ fn chosen(training: &[Motion<'_>], samples: usize) -> Vec<(usize, usize)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::statistics::mean_square;
     use std::time::Instant;
     use torque::{Corrected, Effect};
 
@@ -193,7 +193,7 @@ mod tests {
     }
 
     fn puma() -> Arm {
-        Arm::from_urdf_text(include_str!("../../../../assets/puma560.urdf"), "puma560.urdf").expect("it is an arm")
+        Arm::from_urdf_text(include_str!("../../../assets/puma560.urdf"), "puma560.urdf").expect("it is an arm")
     }
 
     #[test]
@@ -215,10 +215,7 @@ mod tests {
         let nominal = Data::new(&Corrected::new(&arm, &[]).expect("nothing is physical"), 2500, 0.1);
         for joint in 0..6 {
             let tau = &held_out.0[3][joint];
-            let rms = |other: &[f64]| -> f64 {
-                let sum: f64 = tau.iter().zip(other).map(|(a, b)| (a - b).powi(2)).sum();
-                (sum / tau.len() as f64).sqrt()
-            };
+            let rms = |other: &[f64]| mean_square(tau.iter().zip(other).map(|(a, b)| a - b)).sqrt();
             let (before, after) = (rms(&nominal.0[3][joint]), rms(&predicted[0][joint]));
             assert!(after < 0.5 * before, "joint {joint}: {before} → {after}");
         }

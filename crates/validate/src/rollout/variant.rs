@@ -1,13 +1,13 @@
 //! One arm in the plant, with its effects, over a window.
 
-use anyhow::Context;
 use arm::{Arm, DMatrix};
-use plant::{Plant, PlantOptions};
+use plant::{Plant, PlantError, PlantOptions};
 use torque::{Corrected, Effect, Workspace};
 
 use super::drive::{Connection, Drives};
 use super::start::Start;
 use super::{Course, Path};
+use crate::error::ValidateError;
 
 /// Farther off than this (rad or m), a simulated joint is lost.
 const LOST: f64 = std::f64::consts::TAU;
@@ -31,8 +31,14 @@ pub(super) struct Variant {
 }
 
 impl Variant {
-    pub(super) fn new(arm: &Arm, effects: &[Effect], course: &Course<'_>) -> anyhow::Result<Self> {
-        let model = Corrected::new(arm, effects)?;
+    /// The plant of `arm` with `effects` along `course`; `which` of the two it is, an error says.
+    pub(super) fn new(
+        which: &'static str,
+        arm: &Arm,
+        effects: &[Effect],
+        course: &Course<'_>,
+    ) -> Result<Self, ValidateError> {
+        let model = Corrected::new(arm, effects).map_err(|source| ValidateError::Effects { which, source })?;
         let dof = arm.dof();
         let names: Vec<String> = arm.joints().iter().map(|joint| joint.name.clone()).collect();
         let mut rotors: Vec<f64> = model.arm().joints().iter().map(|joint| joint.rotor_inertia).collect();
@@ -49,7 +55,8 @@ impl Variant {
             viscous: model.viscous(),
             coulomb: Vec::new(),
         };
-        let plant = Plant::new(&model.arm().clone().with_rotor_inertias(&rotors), &options)?;
+        let plant = Plant::new(&model.arm().clone().with_rotor_inertias(&rotors), &options)
+            .map_err(|source| ValidateError::Plant { which, source })?;
         let zeros = || vec![0.0; dof];
         Ok(Self {
             is_loaded: !effects.is_empty(),
@@ -105,7 +112,7 @@ impl Variant {
     }
 
     /// Puts the plant into the measured state.
-    fn begin(&mut self, course: &Course<'_>, start: &Start) -> anyhow::Result<()> {
+    fn begin(&mut self, course: &Course<'_>, start: &Start) -> Result<(), PlantError> {
         let time = course.recording.time(start.tick);
         let mut q = start.q.clone();
         for (j, q) in q.iter_mut().enumerate() {
@@ -122,7 +129,7 @@ impl Variant {
     }
 
     /// Moves on from `tick` to the next compared instant.
-    fn advance(&mut self, course: &Course<'_>, tick: usize) -> anyhow::Result<()> {
+    fn advance(&mut self, course: &Course<'_>, tick: usize) -> Result<(), PlantError> {
         let step = course.step;
         for substep in 0..course.substeps {
             // All that acts is taken at the middle of the step.
@@ -155,7 +162,7 @@ impl Variant {
                 self.tau[j] -= self.opposing[j];
             }
             self.before.copy_from_slice(self.plant.qd());
-            self.plant.step(&self.tau).context("the simulated arm ran away")?;
+            self.plant.step(&self.tau)?;
             for ((qdd, after), before) in self.qdd.iter_mut().zip(self.plant.qd()).zip(&self.before) {
                 *qdd = (after - before) / step;
             }
