@@ -7,7 +7,7 @@ use arm::Arm;
 use diagnosis::{Diagnosis, Input, Options};
 
 use super::effect_file::EffectFile;
-use super::{inputs, next_file, page, terminal, urdf_file};
+use super::{inputs, next_file, urdf_file};
 use crate::cli::DiagnoseArgs;
 use crate::library::{self, Source};
 use crate::output;
@@ -63,7 +63,7 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
     // What is known is part of the model that the findings come on top of.
     let effects = [options.known.as_slice(), &diagnosis.effects].concat();
     let removed = write(args, &arm, &urdf_path, &diagnosis, effects)?;
-    output::print(&terminal::table(&diagnosis.report))?;
+    output::print(&report::terminal::diagnosis(&diagnosis.report))?;
     let is_written = |path: &&Path| args.next.as_deref() != Some(*path) || diagnosis.next.is_some();
     for path in args.outputs().into_iter().filter(is_written) {
         output::print(&format!("written: {}\n", path.display()))?;
@@ -100,8 +100,7 @@ fn write<'a>(
 ) -> anyhow::Result<Option<&'a Path>> {
     if let Some(path) = &args.urdf {
         let text = library::urdf_text(&args.robot, urdf_path)?;
-        let corrected = urdf_file::corrected_urdf(&text, arm, &effects)?;
-        recording::write_whole(path, |file| std::io::Write::write_all(file, corrected.as_bytes()))?;
+        output::write_text(path, &urdf_file::corrected_urdf(&text, arm, &effects)?)?;
     }
     if let Some(path) = &args.model {
         let file = EffectFile {
@@ -118,7 +117,7 @@ fn write<'a>(
         }
     }
     if let Some(path) = &args.report {
-        page::write(path, &diagnosis.report, &diagnosis.traces, arm)?;
+        output::write_text(path, &report::page(&diagnosis.report, &diagnosis.traces, arm))?;
     }
     if let Some(path) = &args.json {
         output::write_json(path, &diagnosis.report)?;

@@ -3,8 +3,8 @@
 use arm::{Arm, JointKind};
 use diagnosis::{TimeWindow, Trace, Traces};
 
-use super::chart::{Scale, Svg, thinned};
-use crate::diagnose::numbers;
+use crate::chart::{Scale, Svg, thinned};
+use crate::numbers;
 
 /// What the figures of one page share.
 pub struct Figures<'a> {

@@ -4,9 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use proof::{Errors, Family, HeldOut, Score, quantile};
 
-use super::command::percent;
 use super::figures;
-use super::report::{Block, counted, number, share, table, text};
+use super::words::{counted, number, share};
+use crate::block::{Block, table, text};
+use crate::numbers::percent_to_a_tenth as percent;
 
 /// By family, against size, and what was called what.
 pub fn found(score: &Score) -> Vec<Block> {

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use proof::{Score, Target};
 
-use super::command::percent;
 use super::experiments;
+use crate::numbers::percent_to_a_tenth as percent;
 
 /// In a sentence or two.
 pub fn reason(target: &Target, score: &Score) -> String {
@@ -34,7 +34,7 @@ pub fn reason(target: &Target, score: &Score) -> String {
         let missed = missed.filter(|o| !o.fate.is_covered());
         format!("neither: {}.", tally(missed.map(|o| o.effect.as_str())))
     } else if what.starts_with("confusions") {
-        experiments::words::reason(&score.experiments)
+        experiments::reason(&score.experiments)
     } else {
         held_out(score)
     }

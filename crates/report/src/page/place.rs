@@ -4,7 +4,7 @@ use arm::{Joint, JointKind};
 use diagnosis::{Located, Region, TimeWindow};
 use maud::{Markup, html};
 
-use crate::diagnose::numbers;
+use crate::numbers;
 
 /// Stretches of time.
 pub fn windows(windows: &[TimeWindow]) -> String {

@@ -3,9 +3,10 @@
 use diagnosis::{Finding, Trace};
 
 use super::against::Against;
-use super::chart::{Scale, Svg, quantile, sampled};
 use super::figures::{Figures, LEFT};
-use crate::diagnose::numbers;
+use crate::chart::{Scale, Svg, sampled};
+use crate::numbers;
+use crate::statistics::quantile;
 
 const PANEL: [f64; 2] = [530.0, 300.0];
 

@@ -1,19 +1,34 @@
-//! The diagnosis on the terminal: the verdict, a short table, a sentence a finding, and what is left.
+//! Tables on the terminal, and the diagnosis there: the verdict, a short table, a sentence a finding, and what is left.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement};
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, presets};
 use diagnosis::{Finding, NotObservable, Report};
 
-use super::{next_words, numbers, words};
-use crate::output;
+use crate::statistics::rms;
+use crate::{next_words, numbers, words};
 
 /// The widest that lines are where nothing forces them to be wider.
 const WIDTH: usize = 80;
 
+/// A table with its first column at the left and numbers at the right.
+pub fn table(header: impl IntoIterator<Item = String>) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
+    table.set_header(header.into_iter().collect::<Vec<_>>());
+    for (index, column) in table.column_iter_mut().enumerate() {
+        column.set_cell_alignment(if index == 0 {
+            CellAlignment::Left
+        } else {
+            CellAlignment::Right
+        });
+    }
+    table
+}
+
 /// Everything that is printed at the end of a diagnosis; ends with a newline.
-pub fn table(report: &Report) -> String {
+pub fn diagnosis(report: &Report) -> String {
     let mut text = wrapped(&words::verdict(report), "");
     if !report.findings.is_empty() {
         let _ = writeln!(text, "\n{}\n", findings(report));
@@ -56,8 +71,7 @@ pub fn table(report: &Report) -> String {
     text
 }
 
-/// The same without the table, as Markdown.
-#[cfg(feature = "viewer")]
+/// The diagnosis without the table, as Markdown.
 pub fn prose(report: &Report) -> String {
     let mut text = format!("**{}**\n\n", words::verdict(report));
     for finding in &report.findings {
@@ -91,7 +105,7 @@ pub fn alternatives(finding: &Finding) -> String {
 
 /// The findings by joint, the joint with the largest share first.
 fn findings(report: &Report) -> String {
-    let mut table = output::table(["joint", "cause", "size", "share", "held out"].map(str::to_owned));
+    let mut table = table(["joint", "cause", "size", "share", "held out"].map(str::to_owned));
     table.set_content_arrangement(ContentArrangement::Dynamic);
     table.set_width(WIDTH as u16);
     for (index, column) in table.column_iter_mut().enumerate() {
@@ -171,18 +185,16 @@ fn unseen(list: &[NotObservable]) -> String {
 
 /// How the simulated arm follows, where the named effects change most.
 fn rollout(report: &Report) -> String {
-    if report.rollout.is_empty() {
+    let over_joints =
+        |pick: fn(&diagnosis::JointRollout) -> f64| rms(report.rollout.values().map(pick)).map(|rms| 1e3 * rms);
+    let errors = over_joints(|joint| joint.nominal_rms_rad).zip(over_joints(|joint| joint.augmented_rms_rad));
+    let Some((before, after)) = errors else {
         return String::new();
-    }
-    let mean = |pick: fn(&diagnosis::JointRollout) -> f64| {
-        let squares = report.rollout.values().map(|joint| pick(joint).powi(2));
-        (squares.sum::<f64>() / report.rollout.len() as f64).sqrt()
     };
-    let [before, after] = [mean(|j| j.nominal_rms_rad), mean(|j| j.augmented_rms_rad)];
     format!(
         "simulated against recorded motion, RMS over the joints: {} → {} mrad (or mm)",
-        numbers::short(1e3 * before),
-        numbers::short(1e3 * after)
+        numbers::short(before),
+        numbers::short(after)
     )
 }
 
@@ -207,41 +219,4 @@ fn wrapped(text: &str, start: &str) -> String {
         is_fresh = false;
     }
     lines + &line + "\n"
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::diagnose::sample::{self, Plot};
-
-    #[test]
-    fn the_table_is_narrow_and_says_it_all() {
-        let (report, ..) = sample::diagnosis(6, Plot::Rich);
-        let text = table(&report);
-        println!("{text}");
-        for line in text.lines() {
-            assert!(line.chars().count() <= 80, "{line}");
-        }
-        for part in [
-            "shoulder_lift_joint",
-            "whole arm",
-            "62.0 ± 3.1 N m/rad",
-            "could also be payload",
-            "next: Sweep",
-            "could not be seen: ",
-            "backlash on 6 joints",
-        ] {
-            assert!(text.contains(part), "{part} is not in\n{text}");
-        }
-        assert!(text.starts_with("The model leaves out 8 effects on 4 joints and the whole arm, and something"));
-    }
-
-    #[test]
-    fn an_empty_diagnosis_has_no_table() {
-        let (report, ..) = sample::diagnosis(7, Plot::Clean);
-        let text = table(&report);
-        assert!(text.starts_with("The model explains the recordings") && !text.contains("cause"));
-        let (report, ..) = sample::diagnosis(1, Plot::TooShort);
-        assert!(table(&report).contains("not enough data: 1.9 s in motion"));
-    }
 }

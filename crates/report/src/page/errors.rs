@@ -4,9 +4,9 @@ use arm::JointKind;
 use diagnosis::JointFit;
 use maud::{Markup, PreEscaped, html};
 
-use super::chart::Svg;
 use super::{Page, key};
-use crate::diagnose::numbers;
+use crate::chart::Svg;
+use crate::numbers;
 
 const WIDTH: f64 = 1080.0;
 const ROW: f64 = 30.0;
@@ -172,10 +172,7 @@ fn dumbbells(fits: &[(usize, &str, &JointFit)]) -> String {
             (augmented, "dot-after", if meet { 4.5 } else { 6.0 }),
         ] {
             if let Some(value) = value {
-                let x = place(value);
-                svg.raw(format_args!(
-                    "<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\"/>"
-                ));
+                svg.circle([place(value), y], radius, class);
             }
         }
     }

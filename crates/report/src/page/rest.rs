@@ -7,7 +7,8 @@ use diagnosis::{NotObservable, Trace};
 use maud::{Markup, html};
 
 use super::Page;
-use crate::diagnose::{next_words, numbers, words};
+use crate::statistics::quantile;
+use crate::{next_words, numbers, words};
 
 impl Page<'_> {
     /// Effects that may be there all the same.
@@ -129,7 +130,7 @@ impl Page<'_> {
             return ("–".into(), "–".into(), "–".into());
         };
         let mut steps: Vec<f64> = trace.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let step = super::chart::quantile(&mut steps, 0.5);
+        let step = quantile(&mut steps, 0.5);
         let moving = trace.moving.iter().enumerate();
         let moving = moving.filter(|(_, rows)| rows.contains(&true));
         let moving: Vec<String> = moving.map(|(joint, _)| (joint + 1).to_string()).collect();

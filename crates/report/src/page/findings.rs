@@ -6,7 +6,7 @@ use maud::{Markup, PreEscaped, html};
 use super::against::Against;
 use super::place::regions;
 use super::{Page, key};
-use crate::diagnose::{numbers, terminal, words};
+use crate::{numbers, terminal, words};
 
 /// A joint shows a whole-arm effect's figure from this share of its torque on.
 const SHOWN_SHARE: f64 = 0.02;

@@ -5,6 +5,7 @@ use std::fmt::Write;
 
 use arm::Arm;
 use diagnosis::Trace;
+use report::statistics::rms;
 
 const NAMES: [&str; 7] = [
     "shoulder_pan_joint",
@@ -224,5 +225,5 @@ pub fn trace(name: &str, start: f64, held_out: bool, joints: usize, found: &[Row
 /// The standard deviation.
 pub fn spread(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
+    rms(values.iter().map(|value| value - mean)).unwrap_or_default()
 }

@@ -1,62 +1,25 @@
-//! The report as one HTML page that needs nothing beside it.
+//! Blocks as one HTML page that needs nothing beside it.
 
-use std::path::Path;
+use maud::{Markup, PreEscaped, html};
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use crate::block::Block;
+use crate::shell::shell;
 
-use super::command::Proof;
-use super::report::{Block, blocks};
-
+/// What these pages have beside the style of all.
 const STYLE: &str = concat!(
-    include_str!("../diagnose/page/style.css"),
     "pre { background: var(--raised); border: 1px solid var(--line); border-radius: 6px; padding: .7rem 1rem; overflow-x: auto; }\n",
     "figure { max-width: 800px; }\n",
     ".wide table { font-size: .8rem; } .wide th { max-width: 6.5rem; } .wide td, .wide th { padding-right: .45rem; }\n",
 );
 
-/// Writes the page, whole or not at all.
-///
-/// # Errors
-/// If it cannot be written.
-pub fn write(path: &Path, proof: &Proof) -> anyhow::Result<()> {
-    let eyebrow = format!(
-        "testbed proof · {} · sealed as `{}`",
-        proof.seal.source, proof.seal.whole
-    );
-    let made = format!(
-        "Made by testbed {} (`testbed prove`). The same seed and program give the same page, byte for byte.",
-        proof.seal.program.version
-    );
-    write_blocks(path, "Concealed physics: a proof", &eyebrow, &blocks(proof), &made)
-}
-
-/// Writes any report, whole or not at all: its title, what stands over it, and its last line.
-///
-/// # Errors
-/// If it cannot be written.
-pub fn write_blocks(path: &Path, title: &str, eyebrow: &str, blocks: &[Block], made: &str) -> anyhow::Result<()> {
-    let page = whole(title, eyebrow, blocks, made).into_string();
-    recording::write_whole(path, |file| file.write_all(page.as_bytes()))?;
-    Ok(())
-}
-
-fn whole(title: &str, eyebrow: &str, blocks: &[Block], made: &str) -> Markup {
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (title) }
-                style { (PreEscaped(STYLE)) }
-            }
-            body {
-                p.eyebrow { (inline(eyebrow)) }
-                @for block in blocks { (markup(block)) }
-                p.small.soft { (inline(made)) }
-            }
-        }
-    }
+/// The page of `blocks`: its title, what stands over it, and its last line.
+pub fn block_page(title: &str, eyebrow: &str, blocks: &[Block], made: &str) -> String {
+    let body = html! {
+        p.eyebrow { (inline(eyebrow)) }
+        @for block in blocks { (markup(block)) }
+        p.small.soft { (inline(made)) }
+    };
+    shell(title, STYLE, body)
 }
 
 fn markup(block: &Block) -> Markup {

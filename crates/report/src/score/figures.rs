@@ -2,8 +2,8 @@
 
 use proof::{Calibration, Counted, Curve};
 
-use super::command::percent;
-use crate::diagnose::page::chart::{Scale, Svg};
+use crate::chart::{Scale, Svg};
+use crate::numbers::percent_to_a_tenth as percent;
 
 const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 250.0;
@@ -29,10 +29,7 @@ fn point(svg: &mut Svg, y: &Scale, x: f64, counted: &Counted) {
     let Some(share) = counted.share() else { return };
     let [low, high] = counted.wilson.map(|bound| y.place(bound));
     svg.line([x, low], [x, high], "span");
-    let at = y.place(share);
-    svg.raw(format_args!(
-        "<circle class=\"dot-after\" cx=\"{x:.1}\" cy=\"{at:.1}\" r=\"5\"/>"
-    ));
+    svg.circle([x, y.place(share)], 5.0, "dot-after");
 }
 
 /// Detection against size, bin by bin.
@@ -43,10 +40,7 @@ pub fn detection(curve: &Curve) -> String {
     for (k, bin) in curve.bins.iter().enumerate() {
         let x = LEFT + (k as f64 + 0.5) * step;
         if let Some(covered) = bin.covered.share() {
-            let at = y.place(covered);
-            svg.raw(format_args!(
-                "<circle class=\"dot-learned\" cx=\"{x:.1}\" cy=\"{at:.1}\" r=\"7.5\"/>"
-            ));
+            svg.circle([x, y.place(covered)], 7.5, "dot-learned");
         }
         point(&mut svg, &y, x, &bin.found);
         let show = |value: f64| if is_share { percent(value) } else { format!("{value}×") };

@@ -1,4 +1,4 @@
-//! A made-up diagnosis to try page, table and viewer on: an arm of one to seven joints, moved by sines.
+//! A made-up diagnosis to try page, table and viewer on (the program's viewer tests take it from here): an arm of one to seven joints, moved by sines.
 
 mod motion;
 
@@ -9,6 +9,7 @@ use diagnosis::{
     Confusable, Finding, JointFit, JointRollout, Located, NotObservable, Parameter, Place, RecordingNames, Region,
     Report, TimeWindow, Trace, Traces, Unexplained, Verdict,
 };
+use report::statistics::rms;
 use torque::Effect;
 
 use motion::{EFFECTS, Row, acts, arm, spread, trace};
@@ -195,8 +196,9 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
 
 fn fit(traces: &Traces, j: usize, plot: Plot) -> JointFit {
     let [train, held_out] = [0, 2].map(|i| &traces.recordings[i]);
-    let rms = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt();
-    let nrmse = |trace: &Trace, residual: &[Vec<f64>]| rms(&residual[j]) / spread(&trace.tau[j]);
+    let nrmse = |trace: &Trace, residual: &[Vec<f64>]| {
+        rms(residual[j].iter().copied()).unwrap_or_default() / spread(&trace.tau[j])
+    };
     let some = |value: f64| (plot != Plot::TooShort).then_some(value);
     JointFit {
         torque_std: spread(&train.tau[j]),

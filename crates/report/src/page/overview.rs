@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::{Page, key};
-use crate::diagnose::{numbers, terminal, words};
+use crate::{numbers, terminal, words};
 
 impl Page<'_> {
     /// `3 recordings to learn from, 1 held out`.

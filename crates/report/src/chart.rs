@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use maud::Escaper;
 
-use crate::diagnose::numbers;
+use crate::numbers;
+use crate::statistics::quantile;
 
 /// A straight map from values to places in the figure.
 #[derive(Clone, Copy)]
@@ -109,6 +110,13 @@ impl Svg {
         ));
     }
 
+    /// A circle.
+    pub fn circle(&mut self, [x, y]: [f64; 2], radius: f64, class: &str) {
+        self.raw(format_args!(
+            "<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\"/>"
+        ));
+    }
+
     /// Runs of points, each a line of its own.
     pub fn lines(&mut self, runs: &[Vec<[f64; 2]>], class: &str) {
         self.raw(format_args!("<path class=\"{class}\" d=\""));
@@ -157,7 +165,8 @@ impl Svg {
 
 /// The parts of a series that lie together in time, thinned to the smallest and largest of each of `columns`.
 pub fn thinned(rows: &[[f64; 2]], columns: usize) -> Vec<Vec<[f64; 2]>> {
-    let gap = typical_step(rows) * 5.0;
+    let mut steps: Vec<f64> = rows.windows(2).map(|pair| pair[1][0] - pair[0][0]).collect();
+    let gap = quantile(&mut steps, 0.5) * 5.0;
     let (Some(first), Some(last)) = (rows.first(), rows.last()) else {
         return Vec::new();
     };
@@ -186,16 +195,6 @@ pub fn thinned(rows: &[[f64; 2]], columns: usize) -> Vec<Vec<[f64; 2]>> {
     runs
 }
 
-/// The median step of time.
-fn typical_step(rows: &[[f64; 2]]) -> f64 {
-    let mut steps: Vec<f64> = rows.windows(2).map(|pair| pair[1][0] - pair[0][0]).collect();
-    if steps.is_empty() {
-        return 0.0;
-    }
-    let middle = steps.len() / 2;
-    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
-}
-
 /// `most` of the points at the most, drawn evenly but in no step with any motion.
 pub fn sampled<T: Copy>(points: &[T], most: usize) -> Vec<T> {
     if points.len() <= most {
@@ -210,15 +209,6 @@ pub fn sampled<T: Copy>(points: &[T], most: usize) -> Vec<T> {
             points[(((k as f64 + random) * step) as usize).min(points.len() - 1)]
         })
         .collect()
-}
-
-/// The value below which `share` of the values lie; 0 of none.
-pub fn quantile(values: &mut [f64], share: f64) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let index = ((values.len() - 1) as f64 * share).round() as usize;
-    *values.select_nth_unstable_by(index, f64::total_cmp).1
 }
 
 #[cfg(test)]

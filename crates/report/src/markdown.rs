@@ -1,18 +1,9 @@
-//! The report as Markdown.
+//! Blocks as Markdown.
 
-use super::command::Proof;
-use super::report::{Block, blocks};
+use crate::block::Block;
 
-/// The whole of it; drawings are left out, their tables stay.
-pub fn text(proof: &Proof) -> String {
-    render(
-        blocks(proof),
-        "Made by `testbed prove`; the same seed and program give the same bytes.",
-    )
-}
-
-/// Any report, with its last line.
-pub fn render(blocks: Vec<Block>, made: &str) -> String {
+/// The blocks and a last line; drawings are left out, their tables stay.
+pub fn markdown(blocks: &[Block], made: &str) -> String {
     let mut text = String::new();
     for block in blocks {
         match block {
@@ -27,12 +18,12 @@ pub fn render(blocks: Vec<Block>, made: &str) -> String {
                     text.push_str("(none)\n\n");
                     continue;
                 }
-                text.push_str(&line(&head));
+                text.push_str(&line(head));
                 let rule: Vec<String> = (0..head.len())
-                    .map(|column| if column < words { "---" } else { "--:" }.to_owned())
+                    .map(|column| if column < *words { "---" } else { "--:" }.to_owned())
                     .collect();
                 text.push_str(&line(&rule));
-                for row in &rows {
+                for row in rows {
                     text.push_str(&line(row));
                 }
                 text.push('\n');

@@ -3,8 +3,8 @@
 use arm::{Arm, Vector3, Workspace};
 use diagnosis::{Report, Traces};
 
-use super::chart::Svg;
-use crate::diagnose::{numbers, words};
+use crate::chart::Svg;
+use crate::{numbers, words};
 
 const WIDTH: f64 = 800.0;
 const HEIGHT: f64 = 430.0;
@@ -95,9 +95,7 @@ pub fn draw(report: &Report, traces: &Traces, arm: &Arm) -> String {
         let name = &arm.joints()[i].name;
         let error = report.fit.get(name).map(|fit| fit.train_nrmse_nominal);
         let class = error.map_or("m-none".to_owned(), |error| format!("m{}", class_of(error)));
-        svg.raw(format_args!(
-            "<circle class=\"joint {class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{RADIUS}\"/>"
-        ));
+        svg.circle([*x, *y], RADIUS, &format!("joint {class}"));
         svg.text(
             [*x, y + 4.5],
             &format!("number {class}-ink"),

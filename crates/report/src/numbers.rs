@@ -88,7 +88,7 @@ pub fn quantity(value: f64, unit: &str) -> String {
     join(short(value / scaled.factor), &scaled.unit)
 }
 
-/// The same without noughts at the end, for thresholds: `2 ms`.
+/// A quantity without noughts at the end, for thresholds: `2 ms`.
 pub fn round_quantity(value: f64, unit: &str) -> String {
     let scaled = scaled(value.abs(), without_one(unit));
     let value = value / scaled.factor;
@@ -212,6 +212,29 @@ pub fn percent(share: f64) -> String {
         "<1 %".into()
     } else {
         format!("{:.0} %", 100.0 * share)
+    }
+}
+
+/// Per cents, to a tenth where they are not whole.
+pub fn percent_to_a_tenth(share: f64) -> String {
+    let percent = 100.0 * share;
+    if (percent - percent.round()).abs() < 0.05 {
+        format!("{percent:.0} %")
+    } else {
+        format!("{percent:.1} %")
+    }
+}
+
+/// `digits` significant digits, with an exponent where the number is far from one.
+pub fn rounded(value: f64, digits: usize) -> String {
+    let magnitude = value.abs();
+    if value == 0.0 {
+        "0".into()
+    } else if (1e-2..1e4).contains(&magnitude) {
+        let decimals = (digits as i32 - 1 - magnitude.log10().floor() as i32).max(0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.*e}", digits - 1)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use diagnosis::{Confusable, NextExperiment};
 
-use super::words;
+use crate::words;
 
 /// More pairs than this are counted, not listed.
 const LISTED: usize = 6;

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use proof::{After, Confusion, Experiments, InCase};
 
-use super::LOOKED_AT;
-use crate::prove::report::{Block, counted, name, table, text};
+use super::words::{counted, name};
+use crate::block::{Block, table, text};
 
-/// The section; nothing where no diagnosis left anything open.
-pub fn blocks(experiments: &Experiments) -> Vec<Block> {
+/// The section; nothing where no diagnosis left anything open. `looked_at` cases were looked at for a proposal.
+pub fn experiments(experiments: &Experiments, looked_at: usize) -> Vec<Block> {
     if experiments.confusions.is_empty() {
         return Vec::new();
     }
@@ -28,7 +28,7 @@ pub fn blocks(experiments: &Experiments) -> Vec<Block> {
         Block::Heading("The next experiment"),
         text(format!(
             "A confusion is a finding and one thing that it could be instead, one of the two concealed. The diagnosis proposes one motion for all of its \
-             confusions (`--next`). Of {LOOKED_AT} cases spread evenly over the campaign (all, of fewer) those with a proposal for a confusion, {} cases, were \
+             confusions (`--next`). Of {looked_at} cases spread evenly over the campaign (all, of fewer) those with a proposal for a confusion, {} cases, were \
              recorded once more along that motion, within the URDF's limits, by whoever concealed (made .7 or .5 as large about its middle where the position \
              loop could not hold the machine); a new process was given that recording beside the old ones. Resolved: what is concealed is named, and the other neither named nor among what it could be.",
             experiments.cases
