@@ -52,7 +52,7 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
     let mut remarks = Vec::new();
     if !args.torques_only {
         let complete = validate::complete(&arm, &options.known, &diagnosis, &list, &|doing| {
-            spinner.set_message(doing)
+            spinner.set_message(doing);
         })?;
         (diagnosis.report, remarks) = (complete.report, complete.remarks);
     }
