@@ -3,18 +3,9 @@
 mod command;
 pub mod effect_file;
 mod inputs;
-pub mod learned;
 mod next_file;
-mod next_words;
-pub mod numbers;
-pub mod page;
 #[cfg(feature = "viewer")]
 mod rerun;
-mod rollout;
-#[cfg(test)]
-mod sample;
-mod terminal;
 pub mod urdf_file;
-mod words;
 
 pub use command::run;

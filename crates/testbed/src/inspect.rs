@@ -156,7 +156,7 @@ fn shown(report: &FileReport<'_>) -> String {
     let header = [
         "joint", "position", "speed", "moves", "turns", "torque", "q step", "qd late",
     ];
-    let mut table = output::table(header.map(str::to_owned));
+    let mut table = report::terminal::table(header.map(str::to_owned));
     for column in table.column_iter_mut() {
         column.set_padding((0, 1));
     }

@@ -1,11 +1,10 @@
-//! What people read and files hold: tables, numbers, JSON.
+//! What leaves the program: text printed, files written, and the checks before.
 
 use std::io::Write;
 use std::path::Path;
 use std::time::Duration;
 
 use anyhow::bail;
-use comfy_table::{CellAlignment, LineStyle, Table, presets};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
@@ -31,39 +30,6 @@ impl Tracking {
             rms_error_rad: outcome.rms_error.clone(),
             max_error_rad: outcome.max_error.clone(),
         }
-    }
-}
-
-/// A table with its first column at the left and numbers at the right.
-pub fn table(header: impl IntoIterator<Item = String>) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
-    table.set_header(header.into_iter().collect::<Vec<_>>());
-    for (index, column) in table.column_iter_mut().enumerate() {
-        column.set_cell_alignment(if index == 0 {
-            CellAlignment::Left
-        } else {
-            CellAlignment::Right
-        });
-    }
-    table
-}
-
-/// Four significant digits, with an exponent where the number is far from one.
-pub fn number(value: f64) -> String {
-    rounded(value, 4)
-}
-
-/// `digits` significant digits, likewise.
-pub fn rounded(value: f64, digits: usize) -> String {
-    let magnitude = value.abs();
-    if value == 0.0 {
-        "0".into()
-    } else if (1e-2..1e4).contains(&magnitude) {
-        let decimals = (digits as i32 - 1 - magnitude.log10().floor() as i32).max(0) as usize;
-        format!("{value:.decimals$}")
-    } else {
-        format!("{value:.*e}", digits - 1)
     }
 }
 
@@ -99,6 +65,15 @@ pub fn spinner(message: &'static str) -> ProgressBar {
 pub fn write_json(path: &Path, value: &impl Serialize) -> anyhow::Result<()> {
     let text = serde_json::to_string_pretty(value)?;
     recording::write_whole(path, |file| writeln!(file, "{text}"))?;
+    Ok(())
+}
+
+/// Writes `text` to `path`, whole or not at all.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write_text(path: &Path, text: &str) -> anyhow::Result<()> {
+    recording::write_whole(path, |file| file.write_all(text.as_bytes()))?;
     Ok(())
 }
 

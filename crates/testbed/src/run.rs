@@ -6,6 +6,8 @@ mod observers;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
+use report::numbers::rounded;
+use report::terminal::table;
 use serde::Serialize;
 use torque::{Gp, Lengths, Samples, TorqueModel};
 
@@ -259,7 +261,7 @@ fn text(scenario: &Scenario, kind: ModelKind, sources: &[String], summary: &Summ
         kind.flag()
     );
     let header = ["joint", "RMS error", "largest error", "torque error, MSE", "saturated"];
-    let mut table = output::table(header.map(str::to_owned));
+    let mut table = table(header.map(str::to_owned));
     for (i, joint) in scenario.arm.joints().iter().enumerate() {
         let (small, square) = match joint.kind {
             arm::JointKind::Revolute => ("mrad", "(N m)²"),
@@ -267,9 +269,9 @@ fn text(scenario: &Scenario, kind: ModelKind, sources: &[String], summary: &Summ
         };
         table.add_row([
             joint.name.clone(),
-            format!("{} {small}", output::number(outcome.rms_error[i] * 1e3)),
-            format!("{} {small}", output::number(outcome.max_error[i] * 1e3)),
-            format!("{} {square}", output::number(summary.torque_mse[i])),
+            format!("{} {small}", rounded(outcome.rms_error[i] * 1e3, 4)),
+            format!("{} {small}", rounded(outcome.max_error[i] * 1e3, 4)),
+            format!("{} {square}", rounded(summary.torque_mse[i], 4)),
             format!("{:.1} %", 100.0 * outcome.saturated[i]),
         ]);
     }

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use anyhow::Context;
 use rayon::prelude::*;
+use report::numbers::rounded;
 use serde::Serialize;
 use torque::{Samples, TorqueModel, TrainingOptions};
 
@@ -162,14 +163,10 @@ fn text(report: &Report) -> String {
             .chain(joints)
             .chain([last.to_owned()])
             .collect();
-        output::table(cells)
+        report::terminal::table(cells)
     };
     let numbers = |values: &[f64], last: f64| -> Vec<String> {
-        values
-            .iter()
-            .chain([&last])
-            .map(|value| output::rounded(*value, 3))
-            .collect()
+        values.iter().chain([&last]).map(|value| rounded(*value, 3)).collect()
     };
     let mut text = String::new();
     for (table, number) in report.tables.iter().zip(["I", "II"]) {

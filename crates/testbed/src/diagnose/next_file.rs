@@ -5,10 +5,10 @@ use std::path::Path;
 
 use anyhow::{Context, ensure};
 use diagnosis::NextExperiment;
+use report::next_words::name;
+use report::{numbers, words};
 use torque::Reference;
 
-use super::next_words::name;
-use super::{numbers, words};
 use crate::library;
 
 /// How a file begins that is ours to replace and to remove.

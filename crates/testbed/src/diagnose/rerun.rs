@@ -14,7 +14,6 @@ use diagnosis::{Report, Trace, Traces};
 use rerun::components::FillMode;
 use rerun::{Color, Ellipsoids3D, EntityPath, RecordingStream, TextDocument, TimeColumn};
 
-use super::terminal;
 use crate::viewer::batch::{ARMS, TIMELINE, link_entity, send_poses, send_scalars};
 use crate::viewer::end::End;
 use crate::viewer::shapes::{self, reach};
@@ -127,7 +126,7 @@ impl Shown<'_> {
     }
 
     fn summary(&self, starts: &[f64]) -> String {
-        let text = terminal::prose(self.report);
+        let text = report::terminal::prose(self.report);
         let mut recordings = String::from("\n**Recordings on the timeline**\n");
         for (trace, start) in self.traces.recordings.iter().zip(starts) {
             let (Some(first), Some(last)) = (trace.time.first(), trace.time.last()) else {
@@ -239,25 +238,32 @@ fn colour(share: f64) -> Color {
     Color::from_rgb(mix(0), mix(1), mix(2))
 }
 
+/// The made-up diagnosis of the report's own tests.
+#[cfg(test)]
+#[path = "../../../report/tests/pages/made_up/mod.rs"]
+mod made_up;
+
 #[cfg(test)]
 mod tests {
+    use super::made_up::{self, Plot};
     use super::*;
-    use crate::diagnose::sample::{self, Plot};
 
     #[test]
     fn a_diagnosis_is_a_whole_file() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("diagnosis.rrd");
-        let (report, traces, arm) = sample::diagnosis(3, Plot::Rich);
-        write(&Sink::Save(path.clone()), &report, &traces, &arm, Path::new("six.urdf")).expect("a file");
-        let bytes = std::fs::read(&path).expect("a file");
-        assert!(bytes.starts_with(b"RRF2") && bytes.len() > 10_000);
-        assert_eq!(folder.path().read_dir().expect("a folder").count(), 1);
+        for (joints, plot) in [(6, Plot::Rich), (1, Plot::Rich), (3, Plot::TooShort)] {
+            let folder = tempfile::tempdir().expect("a folder");
+            let path = folder.path().join("diagnosis.rrd");
+            let (report, traces, arm) = made_up::diagnosis(joints, plot);
+            write(&Sink::Save(path.clone()), &report, &traces, &arm, Path::new("six.urdf")).expect("a file");
+            let bytes = std::fs::read(&path).expect("a file");
+            assert!(bytes.starts_with(b"RRF2") && bytes.len() > 10_000);
+            assert_eq!(folder.path().read_dir().expect("a folder").count(), 1);
+        }
     }
 
     #[test]
     fn recordings_on_one_another_follow_each_other() {
-        let (report, mut traces, arm) = sample::diagnosis(1, Plot::Clean);
+        let (report, mut traces, arm) = made_up::diagnosis(1, Plot::Clean);
         let (recording, _storage) = rerun::RecordingStreamBuilder::new("test")
             .memory()
             .expect("a recording");
@@ -280,18 +286,5 @@ mod tests {
         }
         let shifted = starts(&traces);
         assert!(shifted[0] == 0.0 && shifted[1] > 20.0 && shifted[2] > 2.0 * shifted[1] - 1.0);
-    }
-
-    /// `TESTBED_PAGE_OUT=folder` leaves a file there to be looked at.
-    #[test]
-    fn files_to_look_at() {
-        let Some(folder) = std::env::var_os("TESTBED_PAGE_OUT") else {
-            return;
-        };
-        for (joints, plot, name) in [(6, Plot::Rich, "rich.rrd"), (1, Plot::Rich, "one.rrd")] {
-            let (report, traces, arm) = sample::diagnosis(joints, plot);
-            let sink = Sink::Save(Path::new(&folder).join(name));
-            write(&sink, &report, &traces, &arm, Path::new("six.urdf")).expect("a file");
-        }
     }
 }

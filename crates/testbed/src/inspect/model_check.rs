@@ -2,12 +2,12 @@
 
 use arm::{Arm, Workspace};
 use recording::{FindingKind, Quality, RegularRecording};
+use report::numbers::rounded;
 use serde::Serialize;
 
 use super::smooth::Smooth;
 use super::torque_unit::{self, MOTOR_SIDE, deviation};
 use crate::library::nearest;
-use crate::output::number;
 
 /// A joint's torque is explained where this share of its variance is left at most.
 const EXPLAINED: f64 = 0.2;
@@ -48,8 +48,8 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
         if low < limits.lower - 1e-2 || high > limits.upper + 1e-2 {
             add(format!(
                 "positions {} … {} leave the URDF's limits {:.3} … {:.3}; check unit, zero and sign, or the limits",
-                number(low),
-                number(high),
+                rounded(low, 4),
+                rounded(high, 4),
                 limits.lower,
                 limits.upper
             ));

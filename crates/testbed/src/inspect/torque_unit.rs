@@ -1,7 +1,7 @@
 //! Torques of all joints in another unit, or on the motors' side.
 
 use super::model_check::Fit;
-use crate::output::rounded;
+use report::numbers::rounded;
 
 /// A torque less than this times the model's is on the motor's side; a payload only makes it larger.
 pub const MOTOR_SIDE: f64 = 0.05;

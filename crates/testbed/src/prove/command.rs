@@ -5,10 +5,12 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::time::Instant;
 
+use ::report::score::{figure, wanted};
+use ::report::terminal::table;
 use anyhow::Context;
 use arm::Arm;
 use faults::{Program, Seal, SealedCase, sha256};
-use scoring::{Figure, Score, Target, Truth, true_terms, wrong_term};
+use scoring::{Score, Truth, true_terms, wrong_term};
 use serde::Serialize;
 
 use super::cases::{Files, Place, Source};
@@ -18,7 +20,7 @@ use super::rows::{self, Row};
 use super::shards::{self, Label};
 use super::tracking::{self, CaseTracking};
 use super::vault::Vault;
-use super::{experiments, markdown, page, published, work};
+use super::{experiments, published, report, work};
 use crate::cli::ProveArgs;
 use crate::{interrupt, output};
 
@@ -241,15 +243,14 @@ fn row(vault: &Vault, place: &Place, sealed: &SealedCase, truth: String) -> anyh
 }
 
 fn write(args: &ProveArgs, out: &Path, proof: &Proof) -> anyhow::Result<()> {
-    let (report, score) = (out.join("report.html"), out.join("score.json"));
+    let (page, score) = (out.join("report.html"), out.join("score.json"));
     output::write_json(&score, proof)?;
-    page::write(&report, proof)?;
+    output::write_text(&page, &report::page(proof))?;
     if let Some(path) = &args.markdown {
-        let text = markdown::text(proof);
-        recording::write_whole(path, |file| file.write_all(text.as_bytes()))?;
+        output::write_text(path, &report::markdown(proof))?;
     }
     output::print(&summary(proof))?;
-    for path in [&report, &score].into_iter().chain(&args.markdown) {
+    for path in [&page, &score].into_iter().chain(&args.markdown) {
         output::print(&format!("written: {}\n", path.display()))?;
     }
     Ok(())
@@ -258,7 +259,7 @@ fn write(args: &ProveArgs, out: &Path, proof: &Proof) -> anyhow::Result<()> {
 /// The targets as a table.
 fn summary(proof: &Proof) -> String {
     let header = ["figure", "", "wanted", "of", ""].map(str::to_owned);
-    let mut table = output::table(header);
+    let mut table = table(header);
     for target in &proof.score.targets {
         let reached = match target.reached {
             Some(true) => "reached",
@@ -278,38 +279,6 @@ fn summary(proof: &Proof) -> String {
         "{}; sealed as {}\n{table}\n{paper}",
         proof.seal.source, proof.seal.whole
     )
-}
-
-/// A target's figure in words.
-pub fn figure(target: &Target) -> String {
-    match (target.figure, &target.counted) {
-        (None, _) => "–".to_owned(),
-        (Some(share), Some(_)) => percent(share),
-        (Some(figure), None) if target.id == Figure::ParameterErrors => percent(figure),
-        (Some(figure), None) => format!("{figure:.3}"),
-    }
-}
-
-/// What a target wants in words.
-pub fn wanted(target: &Target) -> String {
-    let is_share = target.counted.is_some() || target.id == Figure::ParameterErrors;
-    let show = |value: f64| if is_share { percent(value) } else { format!("{value}") };
-    match (target.at_least, target.at_most) {
-        (Some(low), Some(high)) => format!("{} to {}", show(low), show(high)),
-        (Some(low), None) => format!("≥ {}", show(low)),
-        (None, Some(high)) => format!("≤ {}", show(high)),
-        (None, None) => String::new(),
-    }
-}
-
-/// A share as a percentage.
-pub fn percent(share: f64) -> String {
-    let percent = 100.0 * share;
-    if (percent - percent.round()).abs() < 0.05 {
-        format!("{percent:.0} %")
-    } else {
-        format!("{percent:.1} %")
-    }
 }
 
 /// How long each phase took: the only thing that differs between two runs, and so in a file of its own.

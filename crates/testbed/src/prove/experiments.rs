@@ -14,10 +14,8 @@ use super::vault::{Vault, made_of};
 use crate::output;
 use crate::scenario::Scenario;
 
-pub mod words;
-
 /// Cases that are looked at for experiments, spread evenly over a campaign: a second diagnosis of all would take too long.
-const LOOKED_AT: usize = 60;
+pub const LOOKED_AT: usize = 60;
 
 /// A motion that the position loop cannot hold the machine on is made smaller about its centre, as a user does whose drive
 /// trips: the model that it was proposed with may be wrong.

@@ -22,7 +22,7 @@ use super::cases::Place;
 use super::child::Task;
 use super::command::{answers, list};
 use super::vault::Vault;
-use super::{markdown, page as html, work};
+use super::work;
 use crate::cli::ProveArgs;
 use crate::{interrupt, output};
 use file::{File, Robot};
@@ -150,18 +150,18 @@ fn parsed(text: Option<String>) -> anyhow::Result<Option<Answer>> {
 }
 
 fn write(args: &ProveArgs, out: &Path, real: &Real) -> anyhow::Result<()> {
-    let (report, score) = (out.join("report.html"), out.join("score.json"));
+    let (html, score) = (out.join("report.html"), out.join("score.json"));
     output::write_json(&score, real)?;
     let made = "Made by `testbed prove --published`; the same recordings, file and program give the same bytes.";
     let blocks = page::blocks(real);
     let eyebrow = format!("testbed proof · {} · sealed as `{}`", names(real), real.seal.whole);
-    html::write_blocks(&report, "Concealed in the real world", &eyebrow, &blocks, made)?;
+    let text = report::block_page("Concealed in the real world", &eyebrow, &blocks, made);
+    output::write_text(&html, &text)?;
     if let Some(path) = &args.markdown {
-        let text = markdown::render(blocks, made);
-        recording::write_whole(path, |file| file.write_all(text.as_bytes()))?;
+        output::write_text(path, &report::markdown(&blocks, made))?;
     }
     output::print(&summary(real))?;
-    let paths: Vec<&PathBuf> = [&report, &score].into_iter().chain(&args.markdown).collect();
+    let paths: Vec<&PathBuf> = [&html, &score].into_iter().chain(&args.markdown).collect();
     for path in paths {
         output::print(&format!("written: {}\n", path.display()))?;
     }
@@ -176,7 +176,7 @@ fn names(real: &Real) -> String {
 /// The robots as a table.
 fn summary(real: &Real) -> String {
     let header = ["robot", "said, found", "not observable", "contradicted", "held out"].map(str::to_owned);
-    let mut table = output::table(header);
+    let mut table = report::terminal::table(header);
     for Tried { robot, score, .. } in &real.robots {
         let count = |fates: &[SaidFate]| score.said.iter().filter(|said| fates.contains(&said.fate)).count();
         let found = count(&[SaidFate::Named, SaidFate::SameTorque]);

@@ -2,13 +2,13 @@
 
 use arm::{Arm, JointKind};
 use diagnosis::Report;
+use report::words;
 use rerun::datatypes::{TimeInt, TimeRange, TimeRangeBoundary};
 use rerun::external::re_sdk_types::blueprint::archetypes::{PlotLegend, TimeAxis};
 use rerun::external::re_sdk_types::blueprint::components::{ContainerKind, Corner2D, PlayState};
 use rerun::{AsComponents, Color, EntityPath, RecordingStream, RecordingStreamResult, SeriesLines};
 
 use super::SUMMARY;
-use crate::diagnose::words;
 use crate::viewer::joint_entity;
 use crate::viewer::layout::{self, Layout, Node};
 

@@ -1,9 +1,11 @@
 //! The paper's disturbance in the report.
 
+use report::block::{Block, table, text};
+use report::numbers::rounded;
+use report::score::name;
+
 use super::{Cause, Disturbance, EFFECT, Factor, Other, ROUNDING};
 use crate::models::ModelKind;
-use crate::output::rounded;
-use crate::prove::report::{Block, name, table, text};
 use crate::tables::mean;
 
 /// The heading, what was found, and the table.

@@ -1,9 +1,9 @@
 //! The drawing of a proof on published recordings: each number found over the one published, with its interval.
 
+use report::chart::{Scale, Svg};
 use scoring::{Compared, Evidence};
 
 use super::Tried;
-use crate::diagnose::page::chart::{Scale, Svg};
 
 const WIDTH: f64 = 760.0;
 const LEFT: f64 = 330.0;
@@ -54,10 +54,7 @@ pub fn numbers(robots: &[Tried]) -> Option<String> {
         } else {
             "dot-after"
         };
-        let at = place(over(number.found.unwrap_or_default()));
-        svg.raw(format_args!(
-            "<circle class=\"{class}\" cx=\"{at:.1}\" cy=\"{y:.1}\" r=\"4\"/>"
-        ));
+        svg.circle([place(over(number.found.unwrap_or_default())), y], 4.0, class);
     }
     Some(svg.finish())
 }

@@ -2,20 +2,18 @@
 
 use std::collections::BTreeMap;
 
+use report::numbers::nrmse;
+use report::statistics::rms;
 use scoring::{HeldOutErrors, RobotScore};
 
-use crate::diagnose::numbers::nrmse;
-
 /// The root mean square over the joints that have the figure; `None` if none has.
-pub fn rms<T>(joints: &BTreeMap<String, T>, figure: impl Fn(&T) -> Option<f64>) -> Option<f64> {
-    let list: Vec<f64> = joints.values().filter_map(figure).collect();
-    let sum: f64 = list.iter().map(|value| value * value).sum();
-    (!list.is_empty()).then(|| (sum / list.len() as f64).sqrt())
+pub fn over_joints<T>(joints: &BTreeMap<String, T>, figure: impl Fn(&T) -> Option<f64>) -> Option<f64> {
+    rms(joints.values().filter_map(figure))
 }
 
 /// `.72 → .04 → .76`: nominal, diagnosed, learned, root mean square over the joints.
 pub fn held_out(score: &RobotScore) -> String {
-    let of = |figure: fn(&HeldOutErrors) -> Option<f64>| error(rms(&score.held_out, figure));
+    let of = |figure: fn(&HeldOutErrors) -> Option<f64>| error(over_joints(&score.held_out, figure));
     let [nominal, diagnosed, learned] = [of(|e| e.nominal), of(|e| e.diagnosed), of(|e| e.learned)];
     format!("{nominal} → {diagnosed} → {learned}")
 }

@@ -1,10 +1,10 @@
 //! What does not agree with what is published, up front.
 
+use report::block::{Block, text};
+use report::numbers::percent_to_a_tenth as percent;
 use scoring::{Evidence, SaidFate};
 
 use super::Tried;
-use crate::prove::command::percent;
-use crate::prove::report::{Block, text};
 
 /// A number that is further off is told up front.
 const FAR: f64 = 0.2;

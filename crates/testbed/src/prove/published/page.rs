@@ -1,12 +1,12 @@
 //! What a proof on published recordings says, as blocks of its report.
 
+use report::block::{Block, table, text};
+use report::numbers::{percent_to_a_tenth as percent, rounded};
 use scoring::{Compared, Evidence, SaidFate, quantile};
 
-use super::fold::{error, rms};
+use super::fold::{error, over_joints};
 use super::robots::names;
 use super::{Real, Tried, figure, misses, robot_page};
-use crate::prove::command::percent;
-use crate::prove::report::{Block, table, text};
 
 /// The whole report.
 pub fn blocks(real: &Real) -> Vec<Block> {
@@ -222,10 +222,10 @@ pub const ERRORS: [&str; 6] = [
 fn errors(real: &Real) -> Vec<Block> {
     let row = |tried: &Tried| {
         let (robot, score) = (&tried.robot, &tried.score);
-        let of = |figure: fn(&scoring::HeldOutErrors) -> Option<f64>| error(rms(&score.held_out, figure));
+        let of = |figure: fn(&scoring::HeldOutErrors) -> Option<f64>| error(over_joints(&score.held_out, figure));
         let motion = |figure: fn(&scoring::Rollout) -> f64| {
-            let rms = rms(&score.rollout, |rollout| Some(figure(rollout)));
-            rms.map_or_else(|| "–".to_owned(), |rms| crate::output::rounded(1e3 * rms, 3))
+            let rms = over_joints(&score.rollout, |rollout| Some(figure(rollout)));
+            rms.map_or_else(|| "–".to_owned(), |rms| rounded(1e3 * rms, 3))
         };
         vec![
             robot.name.clone(),

@@ -3,15 +3,14 @@
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
+use report::block::{Block, table, text};
+use report::numbers::{percent_to_a_tenth as percent, rounded, scaled, short};
+use report::score::name;
 use scoring::{Besides, Compared, Evidence, SaidFate, SaidOutcome};
 
 use super::Tried;
 use super::fold::error;
 use super::page::ERRORS;
-use crate::diagnose::numbers::{scaled, short};
-use crate::output::rounded;
-use crate::prove::command::percent;
-use crate::prove::report::{Block, name, table, text};
 
 /// The robot's section.
 pub fn blocks(tried: &Tried) -> Vec<Block> {

@@ -1,6 +1,7 @@
 //! The closed loop on a case's machine: computed torque, the same gains whatever the model.
 
 use faults::{CaseMachine, FaultError, Robot, VelocityFilter};
+use report::statistics;
 use torque::{Command, Controller, RigidBody};
 
 use super::course::Course;
@@ -85,8 +86,8 @@ impl Run {
     pub fn tracked(&self, model: Model, other: &Self, course: &Course) -> Tracked {
         let (rms, largest) = self.errors(course);
         Tracked {
-            error: mean(&rms),
-            error_without_lag: mean(&other.errors(course).0),
+            error: statistics::rms(rms.iter().copied()),
+            error_without_lag: statistics::rms(other.errors(course).0),
             cut: match rms.is_empty() {
                 true => Vec::new(),
                 false => self
@@ -118,9 +119,4 @@ impl Run {
         }
         (rms.into_iter().map(f64::sqrt).collect(), largest)
     }
-}
-
-/// Root mean square over the joints; `None` without any.
-fn mean(rms: &[f64]) -> Option<f64> {
-    (!rms.is_empty()).then(|| (rms.iter().map(|rms| rms * rms).sum::<f64>() / rms.len() as f64).sqrt())
 }

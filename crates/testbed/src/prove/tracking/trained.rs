@@ -7,9 +7,9 @@ use arm::Arm;
 use diagnosis::{Input, Options, Trace};
 use recording::{Recording, RegularRecording};
 use torque::{Effect, Learned, Prediction, Workspace};
+use validate::learned::{self, LearnedOptions, Motion};
 
 use super::plan::correction;
-use crate::diagnose::learned::{self, LearnedOptions, Motion};
 
 /// Samples learned from: twice those of a diagnosis, which only compares; the cost grows with the cube.
 const SAMPLES: usize = 300;
@@ -99,7 +99,7 @@ impl Recorded {
             samples: SAMPLES,
             ..LearnedOptions::default()
         };
-        learned::learn(model.arm(), &motions, &options)
+        Ok(learned::learn(model.arm(), &motions, &options)?)
     }
 }
 

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeSet;
 
+use report::block::{Block, table, text};
+use report::numbers::rounded;
+use report::score::name;
 use scoring::{Name, quantile};
 
 use super::{CaseTracking, Model};
-use crate::output::rounded;
-use crate::prove::report::{Block, name, table, text};
 
 /// What is in every case of the robot and asked of nobody.
 const ORDINARY: [&str; 3] = ["coulomb_friction", "viscous_friction", "rotor_inertia"];

@@ -1,0 +1,45 @@
+//! The pieces that a report is made of, for the page and for Markdown.
+
+/// A piece of a report. Text may hold `code` between backticks.
+pub enum Block {
+    /// A title.
+    Title(String),
+    /// A heading.
+    Heading(&'static str),
+    /// A heading under it.
+    Section(String),
+    /// A paragraph.
+    Text(String),
+    /// A table; the columns after the first `words` hold numbers.
+    Table {
+        /// Over the columns.
+        head: Vec<String>,
+        /// Cells.
+        rows: Vec<Vec<String>>,
+        /// How many columns hold words.
+        words: usize,
+    },
+    /// A drawing and what it shows; only on the page.
+    Figure {
+        /// SVG.
+        svg: String,
+        /// In words.
+        caption: String,
+    },
+    /// Commands.
+    Code(String),
+}
+
+/// A table.
+pub fn table(head: &[&str], words: usize, rows: Vec<Vec<String>>) -> Block {
+    Block::Table {
+        head: head.iter().map(|&word| word.to_owned()).collect(),
+        rows,
+        words,
+    }
+}
+
+/// A paragraph.
+pub fn text(text: impl Into<String>) -> Block {
+    Block::Text(text.into())
+}

@@ -1,0 +1,21 @@
+//! What people read of a diagnosis and of a proof: blocks, charts, pages, Markdown, terminal. Strings come out; nothing is written here.
+//!
+//! A diagnosis is a [`page`](page()) with figures of its own and a text for the [`terminal`]. Any other report is a list of
+//! [`block`]s, which [`block_page`] and [`markdown`] both render; [`score`] has those that say what a proof is worth.
+
+pub mod block;
+mod block_page;
+pub mod chart;
+mod markdown;
+pub mod next_words;
+pub mod numbers;
+mod page;
+pub mod score;
+mod shell;
+pub mod statistics;
+pub mod terminal;
+pub mod words;
+
+pub use block_page::block_page;
+pub use markdown::markdown;
+pub use page::page;

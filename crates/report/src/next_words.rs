@@ -1,0 +1,131 @@
+//! The next experiment in sentences, for the terminal and the page.
+
+use diagnosis::{Confusable, NextExperiment};
+
+use crate::words;
+
+/// More pairs than this are counted, not listed.
+const LISTED: usize = 6;
+
+/// What the motion is for, and what no motion tells; two sentences or three.
+pub fn sentences(next: &NextExperiment) -> Vec<String> {
+    let mut list = Vec::new();
+    let told = pairs(next.separates.iter().map(|pair| (&pair.finding, &pair.rival)));
+    match next.duration {
+        Some(duration) if !told.is_empty() => list.push(format!(
+            "a motion of {duration:.0} s within the limits should tell {}",
+            listed(&told)
+        )),
+        Some(duration) => list.push(format!(
+            "a motion of {duration:.0} s within the limits would show what these recordings could not: {}",
+            shown(next)
+        )),
+        None => list.push("no motion within the limits would tell more".to_owned()),
+    }
+    let mut advice: Vec<&str> = Vec::new();
+    for untold in &next.not_separated {
+        if !advice.contains(&untold.instead.as_str()) {
+            advice.push(&untold.instead);
+        }
+    }
+    for instead in advice {
+        let same = next.not_separated.iter().filter(|untold| untold.instead == instead);
+        let left = pairs(same.map(|untold| (&untold.finding, &untold.rival)));
+        list.push(format!("not by that motion {}: {instead}", listed(&left)));
+    }
+    list
+}
+
+/// `A from B`, joints of one rival counted together.
+fn pairs<'a>(pairs: impl Iterator<Item = (&'a Confusable, &'a Confusable)>) -> Vec<String> {
+    let mut groups: Vec<(&Confusable, &'static str, Vec<&Confusable>)> = Vec::new();
+    for (finding, rival) in pairs {
+        let is_same =
+            |group: &&mut (&Confusable, &'static str, Vec<&Confusable>)| group.0 == finding && group.1 == rival.effect;
+        match groups.iter_mut().find(is_same) {
+            Some(group) => group.2.push(rival),
+            None => groups.push((finding, rival.effect, vec![rival])),
+        }
+    }
+    let said = groups.iter().map(|(finding, rival, places)| {
+        let rival = words::wording(rival).name;
+        let rival = match places.as_slice() {
+            [one] if one.joint == finding.joint => rival.to_owned(),
+            [one] => name(one),
+            several => format!("{rival} on {} joints", several.len()),
+        };
+        format!("{} from {rival}", name(finding))
+    });
+    said.collect()
+}
+
+fn listed(pairs: &[String]) -> String {
+    if pairs.len() <= LISTED {
+        return words::list(pairs);
+    }
+    format!("{}, and {} more", pairs[..LISTED].join(", "), pairs.len() - LISTED)
+}
+
+fn shown(next: &NextExperiment) -> String {
+    let mut names: Vec<String> = Vec::new();
+    for shows in &next.shows {
+        let name = words::wording(shows.effect).name.to_owned();
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    words::list(&names)
+}
+
+/// `viscous friction on joint2`.
+pub fn name(what: &Confusable) -> String {
+    let effect = words::wording(what.effect).name;
+    match &what.joint {
+        Some(joint) => format!("{effect} on {joint}"),
+        None => effect.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use diagnosis::{Left, Separation, Untold};
+
+    use super::*;
+
+    #[test]
+    fn what_a_motion_tells_and_what_none_does_is_said_once() {
+        let on = |effect: &'static str, joint: Option<&str>| Confusable {
+            effect,
+            joint: joint.map(str::to_owned),
+        };
+        let untold = |joint: &str| Untold {
+            finding: on("inertial_scale", None),
+            rival: on("torque_scale", Some(joint)),
+            best: 0.0,
+            needed: 4.0,
+            kind: Left::SameTorque,
+            because: String::new(),
+            instead: "weigh it".into(),
+        };
+        let next = NextExperiment {
+            duration: Some(25.0),
+            separates: vec![Separation {
+                finding: on("viscous_friction", Some("a")),
+                rival: on("quadratic_drag", Some("a")),
+                before: 1.0,
+                after: 20.0,
+                needed: 4.0,
+            }],
+            not_separated: vec![untold("a"), untold("b")],
+            shows: Vec::new(),
+            limits: Vec::new(),
+        };
+        let said = sentences(&next);
+        assert_eq!(said.len(), 2);
+        assert!(
+            said[0].ends_with("should tell viscous friction on a from quadratic drag"),
+            "{said:?}"
+        );
+        assert!(said[1].contains("torque scale on 2 joints: weigh it"), "{said:?}");
+    }
+}

@@ -1,0 +1,278 @@
+//! A section a joint: its residual in time, then every finding with its figures and parameters.
+
+use diagnosis::{Finding, Located, Unexplained};
+use maud::{Markup, PreEscaped, html};
+
+use super::against::Against;
+use super::place::regions;
+use super::{Page, key};
+use crate::{numbers, terminal, words};
+
+/// A joint shows a whole-arm effect's figure from this share of its torque on.
+const SHOWN_SHARE: f64 = 0.02;
+
+impl Page<'_> {
+    fn findings_on(&self, joint: Option<&str>) -> Vec<(usize, &Finding)> {
+        let all = self.report.findings.iter().enumerate();
+        all.filter(|(_, finding)| finding.joint.as_deref() == joint).collect()
+    }
+
+    fn located(&self, joint: &str) -> Option<&Located> {
+        self.report.located.iter().find(|located| located.joint == joint)
+    }
+
+    /// Whether there is anything to show of the joint.
+    pub(super) fn has_section(&self, joint: usize) -> bool {
+        let name = self.figures.arm.joints()[joint].name.as_str();
+        let touches = |finding: &Finding| {
+            finding.joint.as_deref() == Some(name)
+                || finding
+                    .share_by_joint
+                    .get(name)
+                    .is_some_and(|share| *share >= SHOWN_SHARE)
+        };
+        self.report.findings.iter().any(touches)
+            || self.report.unexplained.iter().any(|left| left.joint == name)
+            || self.located(name).is_some()
+    }
+
+    /// The findings of the whole arm, each drawn on the joint where it shows most.
+    pub(super) fn whole_arm(&self) -> Markup {
+        let findings = self.findings_on(None);
+        html! {
+            @if !findings.is_empty() {
+                h2 #whole-arm { "Whole arm" }
+                @for (index, finding) in findings { (self.finding(index, finding)) }
+            }
+        }
+    }
+
+    /// Everything about one joint.
+    pub(super) fn joint(&self, joint: usize) -> Markup {
+        if !self.has_section(joint) {
+            return html! {};
+        }
+        let name = self.figures.arm.joints()[joint].name.as_str();
+        let located = self.located(name);
+        let windows = located.map_or(&[][..], |located| &located.time);
+        html! {
+            h2 id={ "joint-" (joint + 1) } { "Joint " (joint + 1) " · " (name) }
+            (self.stats(joint, name, located))
+            @if let Some(strip) = self.figures.over_time(joint, windows) {
+                figure {
+                    (PreEscaped(strip))
+                    figcaption { (self.residual_key(!windows.is_empty())) }
+                }
+            }
+            @if let Some(located) = located { (regions(located, &self.figures.arm.joints()[joint])) }
+            @for (index, finding) in self.findings_on(Some(name)) { (self.finding(index, finding)) }
+            @let others = self.shared(name);
+            @if !others.is_empty() {
+                p { "Effects of the whole arm or of other joints act here too: "
+                    @for (number, (index, finding)) in others.iter().enumerate() {
+                        @if number > 0 { ", " }
+                        a href={ "#finding-" (index + 1) } { (words::cause(finding)) }
+                        @if let Some(share) = finding.share_by_joint.get(name) { " (" (numbers::percent(*share)) " of the torque)" }
+                    }
+                    "."
+                }
+            }
+            @for left in self.report.unexplained.iter().filter(|left| left.joint == name) {
+                div.finding.open {
+                    h4 { "Unexplained" span.size { (numbers::percent(left.share)) " of the torque" } }
+                    p.sentence {
+                        @if left.depends_on.is_empty() {
+                            "What is left has structure, but nothing that was tried predicts it."
+                        } @else {
+                            @let on: Vec<String> = left.depends_on.iter().map(|code| words::dependence(code)).collect();
+                            "What is left depends on " (words::list(&on)) ", in a way that is none of the catalogue's."
+                        }
+                    }
+                    (self.leftovers(joint, left))
+                    @if !left.next.is_empty() { p { b { "Measure next: " } (left.next) } }
+                }
+            }
+        }
+    }
+
+    /// What is left against what it depends on: two figures at the most.
+    fn leftovers(&self, joint: usize, left: &Unexplained) -> Markup {
+        let arm = self.figures.arm;
+        let states = left
+            .depends_on
+            .iter()
+            .filter_map(|code| Against::of_dependence(code, arm));
+        let panels: Vec<String> = states
+            .filter_map(|against| self.figures.leftover(joint, against))
+            .take(2)
+            .collect();
+        html! {
+            @if !panels.is_empty() {
+                div.pair {
+                    @for panel in panels {
+                        figure { (PreEscaped(panel)) figcaption { (key("k-after", "what is left, all named effects taken out")) } }
+                    }
+                }
+            }
+        }
+    }
+
+    /// The residuals of joints without a section, folded away.
+    pub(super) fn quiet_joints(&self) -> Markup {
+        let quiet = (0..self.figures.arm.dof()).filter(|&joint| !self.has_section(joint));
+        let strips: Vec<_> = quiet
+            .filter_map(|joint| Some((joint, self.figures.over_time(joint, &[])?)))
+            .collect();
+        html! {
+            @if !strips.is_empty() {
+                details {
+                    summary { "Residuals of the joints where nothing was found (" (strips.len()) ")" }
+                    @for (joint, strip) in strips {
+                        h3 { "Joint " (joint + 1) " · " (self.figures.arm.joints()[joint].name) }
+                        figure { (PreEscaped(strip)) figcaption { (self.residual_key(false)) } }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Findings not of this joint that act on it.
+    fn shared(&self, name: &str) -> Vec<(usize, &Finding)> {
+        let all = self.report.findings.iter().enumerate();
+        all.filter(|(_, finding)| {
+            finding.joint.as_deref() != Some(name)
+                && finding
+                    .share_by_joint
+                    .get(name)
+                    .is_some_and(|share| *share >= SHOWN_SHARE)
+        })
+        .collect()
+    }
+
+    fn stats(&self, joint: usize, name: &str, located: Option<&Located>) -> Markup {
+        let Some(fit) = self.report.fit.get(name) else {
+            return html! {};
+        };
+        let unit = self.figures.torque_unit(joint);
+        html! {
+            ul.stats {
+                @if fit.held_out_nrmse_nominal.is_some() {
+                    li { b { (numbers::before_after(fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented)) }
+                        "held-out error, before → after" }
+                } @else {
+                    li { b { (numbers::before_after(Some(fit.train_nrmse_nominal), Some(fit.train_nrmse_augmented))) }
+                        "error where fitted, before → after" }
+                }
+                li { b { (numbers::quantity(fit.torque_std, unit)) } "spread of the measured torque" }
+                li { b { (numbers::quantity(fit.noise, unit)) } "measured noise" }
+                @if let Some(located) = located {
+                    li { b { "× " (numbers::fixed(located.over_noise, usize::from(located.over_noise < 10.0))) }
+                        "residual over the noise left" }
+                    @if let Some(share) = located.repeatable {
+                        li { b { (numbers::percent(share)) } "of it repeats with the motion" }
+                    }
+                }
+            }
+        }
+    }
+
+    /// A finding's card.
+    fn finding(&self, index: usize, finding: &Finding) -> Markup {
+        let joint = words::shows_on(finding).and_then(|name| self.index(name));
+        let panels = joint.and_then(|joint| Some((joint, self.figures.against_state(finding, index, joint)?)));
+        html! {
+            div.finding id={ "finding-" (index + 1) } {
+                h4 {
+                    (words::capital(&words::cause(finding)))
+                    @if let Some(other) = &finding.other { " by " (other) }
+                    @if let Some((name, parameter)) = words::main_parameter(finding) {
+                        span.size { (numbers::with_interval(name, parameter)) }
+                    }
+                    span.odds {
+                        "probability " (numbers::probability(finding.probability)) " · "
+                        (numbers::percent(finding.share)) " of the torque"
+                        @if let Some(gain) = finding.held_out_gain {
+                            " · held-out error " (numbers::percent(gain)) " lower with it"
+                        }
+                    }
+                }
+                p.sentence { (finding.sentence) }
+                @if let Some((joint, [before, after])) = panels {
+                    div.pair {
+                        figure { (PreEscaped(before)) figcaption {
+                            (key("k-before", if self.figures.has_company(index, joint) {
+                                "before, other named effects taken out"
+                            } else {
+                                "before: measured − nominal model"
+                            }))
+                            (key("k-effect", "the effect"))
+                        } }
+                        figure { (PreEscaped(after)) figcaption {
+                            (key("k-after", "after: all named effects taken out"))
+                            @if finding.joint.is_none() { "(" (self.figures.arm.joints()[joint].name) ")" }
+                        } }
+                    }
+                }
+                div.facts { (parameters(finding)) (self.background(finding)) }
+            }
+        }
+    }
+
+    /// What it means, what it could be instead, where it acts.
+    fn background(&self, finding: &Finding) -> Markup {
+        let wording = words::wording(finding.effect);
+        let other = terminal::alternatives(finding);
+        html! {
+            dl {
+                @if !wording.meaning.is_empty() { dt { "What it is" } dd { (words::capital(wording.meaning)) "." } }
+                @if !other.is_empty() {
+                    dt { "It could also be" }
+                    dd { (words::capital(&other)) ": these recordings hardly tell them apart. "
+                        @if !wording.told_by.is_empty() { "To tell: " (wording.told_by) "." } }
+                }
+                @if finding.place.state.is_some() || !finding.place.time.is_empty() {
+                    dt { "Where" }
+                    dd {
+                        @if let Some(state) = &finding.place.state { (words::capital(state)) ". " }
+                        @for [from, to] in &finding.place.time {
+                            (format!("{from:.1} to {to:.1} s"))
+                            @if let Some(recording) = &finding.place.recording { " of " (recording) }
+                        }
+                    }
+                }
+                @if finding.joint.is_none() && finding.share_by_joint.len() > 1 {
+                    dt { "Share of the torque, joint by joint" }
+                    dd {
+                        @for (number, (joint, share)) in finding.share_by_joint.iter().enumerate() {
+                            @if number > 0 { ", " }
+                            (self.link(Some(joint))) " " (numbers::percent(*share))
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn parameters(finding: &Finding) -> Markup {
+    html! {
+        table {
+            thead { tr { th { "parameter" } th.n { "value" } th.n { "95 % interval" } } }
+            tbody {
+                @for (name, parameter) in &finding.parameters {
+                    @let (value, interval) = numbers::value_and_interval(name, parameter);
+                    tr {
+                        td { (name.replace('_', " ")) }
+                        td.n {
+                            (value)
+                            @if parameter.unit == "rad" && parameter.value.abs() > 1e-3 {
+                                " (" (numbers::short(parameter.value.to_degrees())) "°)"
+                            }
+                        }
+                        td.n { (interval) }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! The end of the page: what could not be seen, all parameters in SI units, where it all came from.
+
+use std::collections::BTreeMap;
+
+use arm::JointKind;
+use diagnosis::{NotObservable, Trace};
+use maud::{Markup, html};
+
+use super::Page;
+use crate::statistics::quantile;
+use crate::{next_words, numbers, words};
+
+impl Page<'_> {
+    /// Effects that may be there all the same.
+    pub(super) fn not_observable(&self) -> Markup {
+        let mut groups: BTreeMap<(&str, &str), Vec<&NotObservable>> = BTreeMap::new();
+        for entry in &self.report.not_observable {
+            groups.entry((entry.effect, &entry.because)).or_default().push(entry);
+        }
+        html! {
+            @if !groups.is_empty() {
+                h2 { "What these recordings could not show" }
+                p { "Not found does not mean not there: these effects would have been seen only above the sizes given." }
+                div.scroll { table {
+                    thead { tr { th { "effect" } th { "because" } th { "would be seen above" } } }
+                    tbody {
+                        @for entries in groups.values() {
+                            tr {
+                                td.nowrap { (words::wording(entries[0].effect).name) }
+                                td { (entries[0].because) }
+                                td { @for (number, entry) in entries.iter().enumerate() {
+                                    @if number > 0 { ", " }
+                                    span { (words::joint(entry.joint.as_deref())) " " b { (self.sizes(entry)) } }
+                                } }
+                            }
+                        }
+                    }
+                } }
+            }
+        }
+    }
+
+    /// What to record next, where that was asked for.
+    pub(super) fn next_experiment(&self) -> Markup {
+        html! {
+            @if let Some(next) = &self.report.next_experiment {
+                h2 { "The next experiment" }
+                ul { @for sentence in next_words::sentences(next) { li { (words::capital(&sentence)) "." } } }
+                @if !next.separates.is_empty() {
+                    div.scroll { table {
+                        thead { tr { th { "finding" } th { "or" } th.n { "apart now (nats)" } th.n { "with the motion" } th.n { "needed" } } }
+                        tbody { @for pair in &next.separates { tr {
+                            td { (next_words::name(&pair.finding)) }
+                            td { (next_words::name(&pair.rival)) }
+                            td.n { (numbers::short(pair.before)) }
+                            td.n { (numbers::short(pair.after)) }
+                            td.n { (numbers::short(pair.needed)) }
+                        } } }
+                    } }
+                }
+            }
+        }
+    }
+
+    /// Every number once more as programs take it.
+    pub(super) fn all_parameters(&self) -> Markup {
+        html! {
+            @if !self.report.findings.is_empty() {
+                h2 { "All parameters, in SI units at the joint" }
+                div.scroll { table {
+                    thead { tr {
+                        th { "joint" } th { "effect" } th { "parameter" } th.n { "value" } th.n { "from" } th.n { "to (95 %)" } th { "unit" }
+                    } }
+                    tbody {
+                        @for finding in &self.report.findings {
+                            @for (name, parameter) in &finding.parameters {
+                                tr {
+                                    td.name { (words::joint(finding.joint.as_deref())) }
+                                    td { code { (finding.effect) } }
+                                    td { code { (name) } }
+                                    td.n { (plain(parameter.value)) }
+                                    td.n { (plain(parameter.ci95[0])) }
+                                    td.n { (plain(parameter.ci95[1])) }
+                                    td.nowrap { (parameter.unit) }
+                                }
+                            }
+                        }
+                    }
+                } }
+            }
+        }
+    }
+
+    /// The recordings and the program.
+    pub(super) fn provenance(&self) -> Markup {
+        let names = &self.report.recordings;
+        let all = names.train.iter().map(|name| (name, "fitted"));
+        let all = all.chain(names.held_out.iter().map(|name| (name, "held out")));
+        let find = |name: &str| self.figures.traces.recordings.iter().find(|trace| trace.name == name);
+        html! {
+            h2 { "Recordings, and how this page was made" }
+            div.scroll { table {
+                thead { tr { th { "recording" } th { "used" } th.n { "length" } th.n { "diagnosed at" } th { "joints that move" } } }
+                tbody {
+                    @for (name, used) in all {
+                        @let facts = find(name).map(|trace| self.facts(trace));
+                        tr {
+                            td.name { code { (name) } }
+                            td { (used) }
+                            @if let Some((length, rate, moving)) = facts {
+                                td.n { (length) } td.n { (rate) } td { (moving) }
+                            } @else {
+                                td.n { "–" } td.n { "–" } td { "–" }
+                            }
+                        }
+                    }
+                }
+            } }
+            p.small.soft {
+                "Made by testbed " (env!("CARGO_PKG_VERSION")) " (" code { "testbed diagnose" } "), schema " code { (self.report.schema) }
+                ". Torques and motion went through the same zero-phase filter; residual is measured torque less the rigid model's. A share \
+                 is a ratio of standard deviations, so shares need not add up to one. Probability: how often the effect would be found again \
+                 on resampled recordings. The same recordings give the same page, byte for byte."
+            }
+        }
+    }
+
+    fn facts(&self, trace: &Trace) -> (String, String, String) {
+        let (Some(first), Some(last)) = (trace.time.first(), trace.time.last()) else {
+            return ("–".into(), "–".into(), "–".into());
+        };
+        let mut steps: Vec<f64> = trace.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let step = quantile(&mut steps, 0.5);
+        let moving = trace.moving.iter().enumerate();
+        let moving = moving.filter(|(_, rows)| rows.contains(&true));
+        let moving: Vec<String> = moving.map(|(joint, _)| (joint + 1).to_string()).collect();
+        let rate = if step > 0.0 {
+            format!("{:.0} Hz", 1.0 / step)
+        } else {
+            "–".into()
+        };
+        let moving = if moving.is_empty() {
+            "none".into()
+        } else {
+            words::list(&moving)
+        };
+        (format!("{:.1} s", last - first), rate, moving)
+    }
+
+    /// The sizes from which an effect would have been seen, with the units its parameters have.
+    fn sizes(&self, entry: &NotObservable) -> String {
+        let joint = entry.joint.as_deref().and_then(|name| self.index(name));
+        let slides = joint.is_some_and(|joint| self.figures.arm.joints()[joint].kind == JointKind::Prismatic);
+        let above = entry.would_be_seen_above.iter().map(|size| ("above", size));
+        let below = entry.would_be_seen_below.iter().map(|size| ("below", size));
+        let sizes = above.chain(below).map(|(side, (name, size))| {
+            let unit = unit_of(entry.effect, name);
+            let size = numbers::round_quantity(*size, if slides { for_sliding(unit) } else { unit });
+            format!("{} {side} {size}", name.replace('_', " "))
+        });
+        sizes.collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// The unit of a catalogue parameter on a turning joint.
+fn unit_of(effect: &str, parameter: &str) -> &'static str {
+    match (effect, parameter) {
+        ("rotor_inertia" | "transmission_coupling", "inertia") => "kg m²",
+        ("viscous_friction", "coefficient") | (_, "viscous" | "damping") => "N m s/rad",
+        ("quadratic_drag", "coefficient") => "N m s²/rad²",
+        ("encoder_offset", "offset") | (_, "halfgap" | "angle" | "rest" | "phase") => "rad",
+        ("external_contact", "force") => "N",
+        ("thermal_drift", "amplitude") => "",
+        (_, "time_constant" | "delay" | "start" | "duration") => "s",
+        (_, "stiffness") => "N m/rad",
+        (_, "velocity") => "rad/s",
+        (_, "mass") => "kg",
+        (_, "level" | "positive" | "negative" | "coulomb" | "breakaway" | "offset" | "amplitude" | "limit") => "N m",
+        _ => "",
+    }
+}
+
+/// The same on a sliding joint.
+fn for_sliding(unit: &'static str) -> &'static str {
+    match unit {
+        "N m" => "N",
+        "N m/rad" => "N/m",
+        "N m s/rad" => "N s/m",
+        "N m s²/rad²" => "N s²/m²",
+        "kg m²" => "kg",
+        "rad" => "m",
+        "rad/s" => "m/s",
+        other => other,
+    }
+}
+
+/// Five significant digits, as a program reads them.
+fn plain(value: f64) -> String {
+    if !value.is_finite() {
+        return "–".into();
+    }
+    if value == 0.0 {
+        return "0".into();
+    }
+    let magnitude = value.abs().log10().floor() as i32;
+    if (-4..6).contains(&magnitude) {
+        format!("{value:.*}", (4 - magnitude).max(0) as usize)
+    } else {
+        format!("{value:.4e}")
+    }
+}

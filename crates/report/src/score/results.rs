@@ -1,0 +1,272 @@
+//! The results of a proof, as blocks of its report.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use scoring::{Errors, Family, HeldOut, Score, quantile};
+
+use super::figures;
+use super::words::{counted, number, share};
+use crate::block::{Block, table, text};
+use crate::numbers::percent_to_a_tenth as percent;
+
+/// By family, against size, and what was called what.
+pub fn found(score: &Score) -> Vec<Block> {
+    let line = |(name, f): (&String, &Family)| {
+        vec![
+            format!("`{name}`"),
+            f.concealed.to_string(),
+            f.found.to_string(),
+            f.same_machine.to_string(),
+            (f.covered - f.found).to_string(),
+            f.refused.to_string(),
+            f.not_observable.to_string(),
+            (f.concealed - f.covered - f.refused - f.not_observable).to_string(),
+            f.false_names.to_string(),
+            number(f.f1),
+            format!("{} of {}", f.too_small_found, f.too_small),
+        ]
+    };
+    let head = [
+        "effect",
+        "concealed",
+        "found",
+        "of these by another name of the same machine",
+        "in a confusable set",
+        "joint refused",
+        "declared not observable",
+        "missed",
+        "named falsely",
+        "F1",
+        "found of those too small",
+    ];
+    let mut list = vec![
+        Block::Heading("What was found"),
+        text(format!(
+            "An effect is found if its name and its joint are named. What comes with it (plain friction under a friction curve, the drive's inertia behind a \
+             spring) is neither right nor wrong. Ordinary friction, and the drives' inertia of the PUMA, are counted apart: found {}, {} false. F1 does \
+             not ask for what a diagnosis declared not observable at its size, and takes dry friction that differs by direction and an offset beside \
+             dry friction for one, if each is said to be what the other could be: simulated, they give the same recording. If the former is counted \
+             as missed and the latter as false, macro F1 is {} instead of {}.",
+            counted(&score.ordinary),
+            score.ordinary_false,
+            number(score.macro_f1_strict),
+            number(score.macro_f1),
+        )),
+        table(&head, 1, score.families.iter().map(line).collect()),
+    ];
+    for curve in &score.detection {
+        let is_share = curve.measure == "expressed_share";
+        let caption = if is_share {
+            "Found against the effect's expressed share, with Wilson's 95 % interval; hollow: found or in a finding's confusable set."
+        } else {
+            "Found against the effect's size over what noise hides: the standard deviation of its torque over that of the noise on one sample of its joint's torque."
+        };
+        list.push(Block::Figure {
+            svg: figures::detection(curve),
+            caption: caption.into(),
+        });
+        let rows = curve.bins.iter().map(|bin| {
+            let show = |value: f64| if is_share { percent(value) } else { format!("{value}") };
+            let to = bin.to.map_or_else(|| "more".to_owned(), show);
+            let covered = format!("{} of {}", bin.covered.hits, bin.covered.of);
+            vec![
+                format!("{} to {to}", show(bin.from)),
+                counted(&bin.found),
+                covered,
+                bin.not_observable.to_string(),
+            ]
+        });
+        let size = if is_share {
+            "expressed share"
+        } else {
+            "over what noise hides"
+        };
+        let head = [size, "found", "found or confusable", "declared not observable"];
+        list.push(table(&head, 1, rows.collect()));
+    }
+    list.push(text(format!(
+        "Empty cases in which something was named: {}. Outside the catalogue, refused on the right joint: {}; given a wrong name, on whatever joint: {}. \
+         Refused with nothing outside the catalogue: {}.",
+        counted(&score.empty_with_a_false_name),
+        counted(&score.outside_refused),
+        counted(&score.outside_with_a_wrong_name),
+        counted(&score.refused_without_cause),
+    )));
+    list.push(Block::Heading("What it was called"));
+    list.extend(confusion(&score.confusion));
+    list
+}
+
+/// The matrix; columns have numbers, which the rows' names explain, so that it stays narrow.
+fn confusion(matrix: &BTreeMap<String, BTreeMap<String, usize>>) -> Vec<Block> {
+    const IN_WORDS: [&str; 5] = [
+        "outside the catalogue",
+        "nothing there",
+        "refused",
+        "not observable",
+        "not named",
+    ];
+    let label = |name: &str| name.replace('_', " ");
+    let is_effect = |name: &&String| !IN_WORDS.contains(&name.as_str());
+    let all = matrix.keys().chain(matrix.values().flat_map(BTreeMap::keys));
+    let effects: BTreeSet<&String> = all.filter(is_effect).collect();
+    let words = IN_WORDS.iter().map(|&word| word.to_owned());
+    let rows: Vec<String> = effects
+        .iter()
+        .map(|&name| name.clone())
+        .chain(words.clone().take(2))
+        .collect();
+    let columns: Vec<String> = effects.iter().map(|&name| name.clone()).chain(words.skip(2)).collect();
+    let mut head = vec!["concealed ↓, called →".to_owned()];
+    head.extend(columns.iter().enumerate().map(|(k, name)| match k < effects.len() {
+        true => (k + 1).to_string(),
+        false => label(name),
+    }));
+    let row = |(k, name): (usize, &String)| {
+        let cells = matrix.get(name);
+        let cell = |column: &String| match cells.and_then(|cells| cells.get(column)) {
+            Some(count) if column == name => format!("**{count}**"),
+            Some(count) => count.to_string(),
+            None => String::new(),
+        };
+        let number = if k < effects.len() {
+            format!("{} ", k + 1)
+        } else {
+            String::new()
+        };
+        let mut row = vec![format!("{number}{}", label(name))];
+        row.extend(columns.iter().map(cell));
+        row
+    };
+    vec![
+        text(
+            "A concealed effect that was not found is under the largest false name on its joint, or under what was said instead; a false name that stands for \
+             no such effect is in the row \"nothing there\".",
+        ),
+        Block::Table {
+            rows: rows.iter().enumerate().map(row).collect(),
+            head,
+            words: 1,
+        },
+    ]
+}
+
+fn two(errors: &Errors) -> [String; 2] {
+    [share(errors.median), share(errors.ninetieth)]
+}
+
+/// Errors and intervals of parameters.
+pub fn numbers(score: &Score) -> Vec<Block> {
+    let rows = score.parameters.iter().map(|p| {
+        let [median, ninetieth] = two(&p.errors);
+        let parameter = if p.main {
+            format!("**{}**", p.parameter)
+        } else {
+            p.parameter.clone()
+        };
+        vec![
+            format!("`{}`", p.effect),
+            parameter,
+            p.errors.count.to_string(),
+            median,
+            ninetieth,
+            counted(&p.covered),
+        ]
+    });
+    let head = [
+        "effect",
+        "parameter",
+        "found",
+        "median error",
+        "90th percentile",
+        "95 % intervals that hold the truth",
+    ];
+    let [median, ninetieth] = two(&score.main_parameters);
+    vec![
+        Block::Heading("How large it was said to be"),
+        text(format!(
+            "Of the effects found, ordinary ones left out, the parameter that says how large the effect is (bold) was wrong by {median} in the median and by \
+             {ninetieth} at the 90th percentile; the 95 % intervals of all parameters hold the truth in {}. A factor's error is told in parts of its distance \
+             from one. Where two forms of dry friction share a joint, their levels are not compared: whose part is whose is a matter of words.",
+            counted(&score.intervals),
+        )),
+        table(&head, 2, rows.collect()),
+    ]
+}
+
+/// Held-out errors.
+pub fn controls(score: &Score) -> Vec<Block> {
+    let cases: Vec<&HeldOut> = score
+        .held_out
+        .iter()
+        .filter(|case| !case.outside_the_catalogue)
+        .collect();
+    let of = |label: &str, pick: &dyn Fn(&HeldOut) -> Option<f64>| {
+        let errors: Vec<f64> = cases.iter().filter_map(|case| pick(case)).collect();
+        let ratios: Vec<f64> = cases
+            .iter()
+            .filter_map(|case| Some(pick(case)? / case.true_terms?.max(1e-12)))
+            .collect();
+        let show = |values: &[f64], at: f64| quantile(values, at).map_or_else(|| "–".into(), |v| format!("{v:.3}"));
+        vec![
+            label.to_owned(),
+            errors.len().to_string(),
+            show(&errors, 0.5),
+            show(&errors, 0.9),
+            show(&ratios, 0.5),
+            show(&ratios, 0.9),
+        ]
+    };
+    let head = [
+        "model",
+        "cases",
+        "median",
+        "90th percentile",
+        "over the true terms’, median",
+        "90th percentile",
+    ];
+    let rows = vec![
+        of("as it was given (nominal)", &|case| case.nominal),
+        of("a wrong term in place of a true one", &|case| case.wrong_term),
+        of("a learned correction alone", &|case| case.learned),
+        of("**as it was diagnosed**", &|case| case.diagnosed),
+        of("the true terms", &|case| case.true_terms),
+    ];
+    vec![
+        Block::Heading("Against controls"),
+        text(format!(
+            "Errors on the recording held out (NRMSE, root mean square over the joints), in cases with nothing outside the catalogue. \"The true terms\" are \
+             fitted by name with no search, after the truth was opened, to the same recordings; \"a wrong term\" has another name on the same joint in place of \
+             the largest. Joint by joint the diagnosis' error over the true terms' is {} in the median and {} at the 90th percentile.",
+            number(score.over_true_terms_by_joint.median),
+            number(score.over_true_terms_by_joint.ninetieth),
+        )),
+        table(&head, 1, rows),
+    ]
+}
+
+/// Probabilities.
+pub fn calibration(score: &Score) -> Vec<Block> {
+    let rows = score.calibration.bins.iter().map(|bin| {
+        vec![
+            format!("{:.2} to {:.2}", bin.from, bin.to),
+            format!("{:.3}", bin.said),
+            counted(&bin.right),
+        ]
+    });
+    vec![
+        Block::Heading("Whether its probabilities can be believed"),
+        text(format!(
+            "Findings that are not ordinary, by the probability they were given. Brier score {}, mean distance of said and found {}; of all findings {} and {}.",
+            number(score.calibration.brier),
+            number(score.calibration.error),
+            number(score.calibration_of_all.brier),
+            number(score.calibration_of_all.error),
+        )),
+        Block::Figure {
+            svg: figures::calibration(&score.calibration),
+            caption: "Share of findings that were right against the probability they were given; the line is where both are the same.".into(),
+        },
+        table(&["probability", "mean said", "right"], 1, rows.collect()),
+    ]
+}

@@ -1,0 +1,134 @@
+//! The report, completed: what `diagnosis` cannot know without a learned model and a simulated arm.
+
+use arm::Arm;
+use diagnosis::{Diagnosis, Input, JointRollout, Report, Trace};
+use recording::RegularRecording;
+use torque::Effect;
+
+use crate::error::ValidateError;
+use crate::learned::{self, LearnedOptions, Motion};
+use crate::rollout::{RolloutOptions, rollout};
+use crate::statistics::{mean_square, variance};
+
+/// A report with nothing left to fill in.
+#[derive(Clone, Debug)]
+pub struct Complete {
+    /// The diagnosis' report, with `held_out_nrmse_learned` of each joint and `rollout`.
+    pub report: Report,
+    /// What the simulation left out, or why there is none; in sentences.
+    pub remarks: Vec<String>,
+}
+
+/// Completes the report of `diagnosis`, which was made of `recordings` with the effects `known` in the model.
+///
+/// A correction is learned from the training traces and held against the held-out ones. The plant, with and without the
+/// effects named, is driven by the torques of the last recording held out, or of the last there is; where nothing was named
+/// there is nothing to compare. `progress` is told what is going on.
+///
+/// # Errors
+/// [`ValidateError::Learning`]. An arm that cannot be simulated (a link without mass) is a remark: a diagnosis in torque is of use
+/// without.
+pub fn complete(
+    arm: &Arm,
+    known: &[Effect],
+    diagnosis: &Diagnosis,
+    recordings: &[Input<'_>],
+    progress: &dyn Fn(&'static str),
+) -> Result<Complete, ValidateError> {
+    let mut report = diagnosis.report.clone();
+    progress("learning a correction to compare with");
+    learn(arm, &diagnosis.traces.recordings, &mut report)?;
+    progress("driving the simulated arm");
+    let simulated = recordings
+        .iter()
+        .rfind(|input| input.held_out)
+        .or(recordings.last())
+        .filter(|_| !diagnosis.effects.is_empty());
+    let remarks = simulated.map_or_else(Vec::new, |input| {
+        // What is known is part of the model that the findings come on top of.
+        let corrected = [known, &diagnosis.effects].concat();
+        simulate(arm, known, &corrected, input.recording, &mut report)
+    });
+    Ok(Complete { report, remarks })
+}
+
+fn motion(trace: &Trace) -> Motion<'_> {
+    Motion {
+        q: &trace.q,
+        qd: &trace.qd,
+        qdd: &trace.qdd,
+        tau: &trace.tau,
+        moving: &trace.moving,
+    }
+}
+
+/// Fills in the held-out error of a correction learned from the same recordings.
+fn learn(arm: &Arm, traces: &[Trace], report: &mut Report) -> Result<(), ValidateError> {
+    let of = |held_out: bool| -> Vec<&Trace> { traces.iter().filter(|trace| trace.held_out == held_out).collect() };
+    let (train, held) = (of(false), of(true));
+    let moves = |traces: &[&Trace]| {
+        traces
+            .iter()
+            .any(|trace| trace.moving.iter().flatten().any(|&moving| moving))
+    };
+    if held.is_empty() || !moves(&train) {
+        return Ok(());
+    }
+    let training: Vec<Motion<'_>> = train.iter().map(|trace| motion(trace)).collect();
+    let tried: Vec<Motion<'_>> = held.iter().map(|trace| motion(trace)).collect();
+    let predicted = learned::predict(arm, &training, &tried, &LearnedOptions::default())?;
+    for (joint, described) in arm.joints().iter().enumerate() {
+        // Where the joint moves, as the other errors are; over all where it hardly does.
+        let moving: usize = held
+            .iter()
+            .map(|trace| trace.moving[joint].iter().filter(|&&m| m).count())
+            .sum();
+        let (mut torques, mut misses) = (Vec::new(), Vec::new());
+        for (trace, prediction) in held.iter().zip(&predicted) {
+            for (row, tau) in trace.tau[joint].iter().enumerate() {
+                if moving < diagnosis::LEAST_ROWS || trace.moving[joint][row] {
+                    misses.push(tau - prediction[joint][row]);
+                    torques.push(*tau);
+                }
+            }
+        }
+        let power = variance(&torques);
+        if let Some(fit) = report.fit.get_mut(&described.name) {
+            fit.held_out_nrmse_learned = (power > 0.0).then(|| (mean_square(misses) / power).sqrt());
+        }
+    }
+    Ok(())
+}
+
+/// Drives the simulated arm with the recorded torques, with and without what was found; remarks to pass on.
+fn simulate(
+    arm: &Arm,
+    known: &[Effect],
+    corrected: &[Effect],
+    recording: &RegularRecording,
+    report: &mut Report,
+) -> Vec<String> {
+    let result = match rollout(arm, known, corrected, recording, &RolloutOptions::default()) {
+        Ok(result) => result,
+        Err(error) => return vec![format!("not done: {error}")],
+    };
+    report.rollout = arm
+        .joints()
+        .iter()
+        .zip(&result.joints)
+        .map(|(joint, rollout)| (joint.name.clone(), JointRollout { ..*rollout }))
+        .collect();
+    let mut remarks = result.remarks;
+    let windows = result.windows.len();
+    for (name, count) in [
+        ("nominal", result.runaway_nominal),
+        ("corrected", result.runaway_augmented),
+    ] {
+        if count > 0 {
+            remarks.push(format!(
+                "the {name} arm left the recorded motion by more than a turn or a metre in {count} of {windows} windows; its distance is a lower bound"
+            ));
+        }
+    }
+    remarks
+}

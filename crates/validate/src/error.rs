@@ -1,0 +1,46 @@
+//! Why a diagnosis cannot be compared.
+
+use plant::PlantError;
+use torque::TorqueError;
+
+/// What keeps a correction from being learned or an arm from being simulated.
+#[derive(Debug, thiserror::Error)]
+pub enum ValidateError {
+    /// There is no row to learn from, or a regression failed.
+    #[error("learning a correction: {0}")]
+    Learning(#[source] TorqueError),
+    /// The recording lacks a joint of the arm.
+    #[error("joint \"{joint}\" is not in the recording: it cannot be simulated")]
+    Joint {
+        /// The joint's name.
+        joint: String,
+    },
+    /// The recording's period or the plant's step is no length of time.
+    #[error("the recording's period is {period} s; it must be positive")]
+    Period {
+        /// The recording's period (s).
+        period: f64,
+    },
+    /// No segment of the recording is long enough.
+    #[error("no stretch of the recording is as long as a rollout's window, {window} s")]
+    Window {
+        /// The window's length (s).
+        window: f64,
+    },
+    /// An effect does not fit the arm.
+    #[error("{which} cannot be simulated: {source}")]
+    Effects {
+        /// Which of the two arms.
+        which: &'static str,
+        /// What is wrong with the effect.
+        source: TorqueError,
+    },
+    /// The plant cannot simulate the arm.
+    #[error("{which} cannot be simulated: {source}")]
+    Plant {
+        /// Which of the two arms.
+        which: &'static str,
+        /// What the plant says.
+        source: PlantError,
+    },
+}

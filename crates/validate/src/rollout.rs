@@ -1,0 +1,233 @@
+//! The simulated arm, with and without the named effects, driven by the recorded torques: does it move as the robot did?
+//!
+//! Over windows short enough that nothing has to hold the arm on its path (no tracking loop hides what the model lacks):
+//! each starts from the measured state, and the plant then runs on the recorded torques alone.
+
+mod drive;
+#[cfg(test)]
+mod shared_tests;
+mod start;
+#[cfg(test)]
+mod tests;
+mod variant;
+
+use arm::Arm;
+use diagnosis::JointRollout;
+use recording::RegularRecording;
+use torque::Effect;
+
+use self::start::Start;
+use self::variant::Variant;
+use crate::error::ValidateError;
+use crate::statistics::mean_square;
+
+/// How a rollout is run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RolloutOptions {
+    /// The length of a window (s).
+    pub window: f64,
+    /// Windows are spread evenly over the recording; together they are no longer than this (s).
+    pub simulated: f64,
+    /// The longest step of the plant (s); the step divides the recording's period, or is a whole number of them.
+    pub step: f64,
+    /// The plant's extrapolation order.
+    pub order: usize,
+}
+
+impl Default for RolloutOptions {
+    fn default() -> Self {
+        Self {
+            window: 0.25,
+            simulated: 6.0,
+            step: 2e-3,
+            order: 2,
+        }
+    }
+}
+
+/// How the simulated arm follows the recorded one. Joints are the arm's, base to tip.
+#[derive(Clone, Debug, Default)]
+pub struct Rollout {
+    /// RMS distance of the simulated from the measured position over all windows, one a joint (rad or m).
+    pub joints: Vec<JointRollout>,
+    /// The windows in order of time.
+    pub windows: Vec<Window>,
+    /// Windows that the nominal arm left (a joint more than a turn or a metre off, or without bounds).
+    pub runaway_nominal: usize,
+    /// Windows that the augmented arm left.
+    pub runaway_augmented: usize,
+    /// Effects that are only partly simulated, in words.
+    pub remarks: Vec<String>,
+}
+
+/// One window; signals are `[joint][instant]`, positions as the encoders say them (rad or m).
+#[derive(Clone, Debug, Default)]
+pub struct Window {
+    /// As recorded.
+    pub measured: Vec<Vec<f64>>,
+    /// Simulated without the effects. After a runaway the distance to the measured stays as it was.
+    pub nominal: Vec<Vec<f64>>,
+    /// Simulated with the effects, likewise.
+    pub augmented: Vec<Vec<f64>>,
+}
+
+/// The recording's grid, its columns in the arm's order, and the plant's step on it.
+struct Course<'a> {
+    recording: &'a RegularRecording,
+    /// The arm's joints among the recording's.
+    columns: Vec<usize>,
+    /// Ticks between two instants that are compared.
+    stride: usize,
+    /// Plant steps between two such instants.
+    substeps: usize,
+    /// The plant's step (s).
+    step: f64,
+    order: usize,
+}
+
+/// Drives the plant of `arm`, and that of `arm` with `effects`, by the torques of `recording` over windows.
+///
+/// The same inputs give the same bits. A window that a variant leaves counts with the distance at which it left (a lower
+/// bound) and is told in [`Rollout`].
+///
+/// # Errors
+/// [`ValidateError`], if a joint is not in the recording, an effect does not fit the arm, no window fits in the recording, or the plant
+/// cannot simulate the arm.
+pub fn rollout(
+    arm: &Arm,
+    nominal: &[Effect],
+    augmented: &[Effect],
+    recording: &RegularRecording,
+    options: &RolloutOptions,
+) -> Result<Rollout, ValidateError> {
+    let columns = arm
+        .joints()
+        .iter()
+        .map(|joint| {
+            let found = recording.joints.iter().position(|name| *name == joint.name);
+            found.ok_or_else(|| ValidateError::Joint {
+                joint: joint.name.clone(),
+            })
+        })
+        .collect::<Result<Vec<usize>, _>>()?;
+    let period = recording.period;
+    if !(period > 0.0 && options.step > 0.0) {
+        return Err(ValidateError::Period { period });
+    }
+    let stride = ((options.step / period + 1e-9).floor() as usize).max(1);
+    let interval = stride as f64 * period;
+    let substeps = (interval / options.step - 1e-9).ceil().max(1.0) as usize;
+    let course = Course {
+        recording,
+        columns,
+        stride,
+        substeps,
+        step: interval / substeps as f64,
+        order: options.order,
+    };
+    let instants = (options.window / interval).round().max(1.0) as usize;
+    let starts = course.starts(instants, options)?;
+
+    let run = |which: &'static str, effects: &[Effect]| -> Result<Run, ValidateError> {
+        let mut variant = Variant::new(which, arm, effects, &course)?;
+        let remarks = std::mem::take(&mut variant.remarks);
+        let mut acting = effects.to_vec();
+        let mut paths = Vec::with_capacity(starts.len());
+        for start in &starts {
+            // What is picked up within a window is not there in it.
+            let time = recording.time(start.tick);
+            let is_there = |effect: &&Effect| {
+                !matches!(effect, Effect::Payload { .. }) || effect.onset().is_none_or(|onset| onset <= time)
+            };
+            let now: Vec<Effect> = effects.iter().filter(is_there).cloned().collect();
+            if now != acting {
+                variant = Variant::new(which, arm, &now, &course)?;
+                acting = now;
+            }
+            paths.push(variant.run(&course, start, instants));
+        }
+        Ok(Run { paths, remarks })
+    };
+    let (nominal, augmented) = rayon::join(
+        || run("the nominal arm", nominal),
+        || run("the arm with the named effects", augmented),
+    );
+    let (nominal, augmented) = (nominal?, augmented?);
+
+    let mut result = Rollout {
+        runaway_nominal: nominal.runaways(),
+        runaway_augmented: augmented.runaways(),
+        remarks: augmented.remarks,
+        ..Rollout::default()
+    };
+    for ((start, nominal), augmented) in starts.iter().zip(nominal.paths).zip(augmented.paths) {
+        let ticks = || (0..=instants).map(|k| start.tick + k * stride);
+        result.windows.push(Window {
+            measured: course
+                .columns
+                .iter()
+                .map(|&c| ticks().map(|tick| recording.q[c][tick]).collect())
+                .collect(),
+            nominal: nominal.q,
+            augmented: augmented.q,
+        });
+    }
+    result.joints = (0..arm.dof())
+        .map(|joint| JointRollout {
+            nominal_rms_rad: rms(&result.windows, joint, |window| &window.nominal),
+            augmented_rms_rad: rms(&result.windows, joint, |window| &window.augmented),
+        })
+        .collect();
+    Ok(result)
+}
+
+/// Where one variant went.
+struct Path {
+    q: Vec<Vec<f64>>,
+    ran_away: bool,
+}
+
+struct Run {
+    paths: Vec<Path>,
+    remarks: Vec<String>,
+}
+
+impl Run {
+    fn runaways(&self) -> usize {
+        self.paths.iter().filter(|path| path.ran_away).count()
+    }
+}
+
+/// The root of the mean square of simulated less measured over all windows (their common start left out).
+fn rms(windows: &[Window], joint: usize, simulated: impl Fn(&Window) -> &Vec<Vec<f64>>) -> f64 {
+    let distances = windows.iter().flat_map(|window| {
+        let pairs = simulated(window)[joint].iter().zip(&window.measured[joint]);
+        pairs.skip(1).map(|(q, measured)| q - measured)
+    });
+    mean_square(distances).sqrt()
+}
+
+impl Course<'_> {
+    /// Evenly spread windows of `instants` intervals, with the measured state at the start of each.
+    fn starts(&self, instants: usize, options: &RolloutOptions) -> Result<Vec<Start>, ValidateError> {
+        let side = start::side(self.recording.period);
+        let length = instants * self.stride;
+        // A start needs measured samples on both sides.
+        let possible: Vec<usize> = self
+            .recording
+            .segments
+            .iter()
+            .flat_map(|segment| {
+                let first = segment.ticks.start + side;
+                first..segment.ticks.end.saturating_sub(length.max(side)).max(first)
+            })
+            .collect();
+        if possible.is_empty() {
+            return Err(ValidateError::Window { window: options.window });
+        }
+        let affordable = (options.simulated / options.window).floor().max(1.0) as usize;
+        let apart = possible.len().div_ceil(length).min(affordable).max(1);
+        let starts = (0..apart).map(|k| possible[(2 * k + 1) * possible.len() / (2 * apart)]);
+        Ok(starts.map(|tick| Start::measured(self, tick, side)).collect())
+    }
+}

@@ -1,0 +1,202 @@
+//! One arm in the plant, with its effects, over a window.
+
+use arm::{Arm, DMatrix};
+use plant::{Plant, PlantError, PlantOptions};
+use torque::{Corrected, Effect, Workspace};
+
+use super::drive::{Connection, Drives};
+use super::start::Start;
+use super::{Course, Path};
+use crate::error::ValidateError;
+
+/// Farther off than this (rad or m), a simulated joint is lost.
+const LOST: f64 = std::f64::consts::TAU;
+
+/// The plant of an arm with effects, and what drives it.
+pub(super) struct Variant {
+    model: Corrected,
+    plant: Plant,
+    drives: Drives,
+    workspace: Workspace,
+    is_loaded: bool,
+    /// What is only partly simulated.
+    pub(super) remarks: Vec<String>,
+    qdd: Vec<f64>,
+    encoder: Vec<f64>,
+    encoder_rate: Vec<f64>,
+    dry: Vec<f64>,
+    opposing: Vec<f64>,
+    tau: Vec<f64>,
+    before: Vec<f64>,
+}
+
+impl Variant {
+    /// The plant of `arm` with `effects` along `course`; `which` of the two it is, an error says.
+    pub(super) fn new(
+        which: &'static str,
+        arm: &Arm,
+        effects: &[Effect],
+        course: &Course<'_>,
+    ) -> Result<Self, ValidateError> {
+        let model = Corrected::new(arm, effects).map_err(|source| ValidateError::Effects { which, source })?;
+        let dof = arm.dof();
+        let names: Vec<String> = arm.joints().iter().map(|joint| joint.name.clone()).collect();
+        let mut rotors: Vec<f64> = model.arm().joints().iter().map(|joint| joint.rotor_inertia).collect();
+        let links = link_inertias(model.arm(), &rotors);
+        let drives = Drives::new(effects, &names, &rotors, &links, course.step);
+        for (j, rotor) in rotors.iter_mut().enumerate() {
+            if drives.is_separate(j) {
+                *rotor = 0.0;
+            }
+        }
+        let options = PlantOptions {
+            step: course.step,
+            order: course.order,
+            viscous: model.viscous(),
+            coulomb: Vec::new(),
+        };
+        let plant = Plant::new(&model.arm().clone().with_rotor_inertias(&rotors), &options)
+            .map_err(|source| ValidateError::Plant { which, source })?;
+        let zeros = || vec![0.0; dof];
+        Ok(Self {
+            is_loaded: !effects.is_empty(),
+            remarks: drives.remarks.clone(),
+            model,
+            plant,
+            drives,
+            workspace: Workspace::new(dof),
+            qdd: zeros(),
+            encoder: zeros(),
+            encoder_rate: zeros(),
+            dry: zeros(),
+            opposing: zeros(),
+            tau: zeros(),
+            before: zeros(),
+        })
+    }
+
+    /// Runs a window from the measured state, and gives the positions that the encoders would say.
+    pub(super) fn run(&mut self, course: &Course<'_>, start: &Start, instants: usize) -> Path {
+        let dof = start.q.len();
+        let mut q = vec![Vec::with_capacity(instants + 1); dof];
+        let mut ran_away = self.begin(course, start).is_err();
+        for (j, path) in q.iter_mut().enumerate() {
+            path.push(start.q[j]);
+        }
+        for k in 1..=instants {
+            let tick = start.tick + (k - 1) * course.stride;
+            ran_away = ran_away || self.advance(course, tick).is_err() || self.is_lost(course, tick + course.stride);
+            for (j, path) in q.iter_mut().enumerate() {
+                let measured = |tick: usize| course.recording.q[course.columns[j]][tick];
+                path.push(if ran_away {
+                    // As far off as it was.
+                    measured(tick + course.stride) + path[k - 1] - measured(tick)
+                } else {
+                    self.encoder(j)
+                });
+            }
+        }
+        Path { q, ran_away }
+    }
+
+    fn is_lost(&self, course: &Course<'_>, tick: usize) -> bool {
+        (0..self.tau.len()).any(|j| (self.encoder(j) - course.recording.q[course.columns[j]][tick]).abs() > LOST)
+    }
+
+    /// What the encoder of joint `j` says.
+    fn encoder(&self, j: usize) -> f64 {
+        let standing = self.drives.connections[j]
+            .as_ref()
+            .map_or(self.plant.q()[j], Connection::encoder);
+        standing - self.model.encoder_offsets()[j]
+    }
+
+    /// Puts the plant into the measured state.
+    fn begin(&mut self, course: &Course<'_>, start: &Start) -> Result<(), PlantError> {
+        let time = course.recording.time(start.tick);
+        let mut q = start.q.clone();
+        for (j, q) in q.iter_mut().enumerate() {
+            *q += self.model.encoder_offsets()[j];
+            if let Some(connection) = &mut self.drives.connections[j] {
+                let rotor = self.model.arm().joints()[j].rotor_inertia;
+                let carried = start.tau[j] / self.model.torque_factor(j, Some(time)) - rotor * start.qdd[j];
+                *q = connection.start(*q, start.qd[j], carried);
+            }
+        }
+        self.qdd.copy_from_slice(&start.qdd);
+        self.plant.set_state(&q, &start.qd)?;
+        Ok(())
+    }
+
+    /// Moves on from `tick` to the next compared instant.
+    fn advance(&mut self, course: &Course<'_>, tick: usize) -> Result<(), PlantError> {
+        let step = course.step;
+        for substep in 0..course.substeps {
+            // All that acts is taken at the middle of the step.
+            let into = (substep as f64 + 0.5) * step;
+            let time = course.recording.time(tick) + into;
+            for j in 0..self.tau.len() {
+                let commanded = commanded(course, j, tick, into - self.drives.delays[j]);
+                let limit = self.model.torque_limits()[j];
+                self.tau[j] = commanded.clamp(-limit, limit) / self.model.torque_factor(j, Some(time));
+                self.encoder_rate[j] = self.plant.qd()[j] + 0.5 * step * self.qdd[j];
+                self.encoder[j] = self.plant.q()[j] + 0.5 * step * self.plant.qd()[j] - self.model.encoder_offsets()[j];
+            }
+            if self.is_loaded {
+                self.model.joint_loads(
+                    time,
+                    &mut self.workspace,
+                    &self.encoder,
+                    &self.encoder_rate,
+                    &self.qdd,
+                    &mut self.dry,
+                    &mut self.opposing,
+                );
+                self.plant.set_dry_friction(&self.dry)?;
+            }
+            for j in 0..self.tau.len() {
+                if let Some(connection) = &mut self.drives.connections[j] {
+                    let (q, qd) = (self.plant.q()[j], self.plant.qd()[j]);
+                    self.tau[j] = connection.advance(self.tau[j], q, qd, self.qdd[j], step);
+                }
+                self.tau[j] -= self.opposing[j];
+            }
+            self.before.copy_from_slice(self.plant.qd());
+            self.plant.step(&self.tau)?;
+            for ((qdd, after), before) in self.qdd.iter_mut().zip(self.plant.qd()).zip(&self.before) {
+                *qdd = (after - before) / step;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The recorded torque of joint `j` (N m or N) at `into` seconds after `tick`: linear between ticks, and the mean over the
+/// step where it holds several.
+fn commanded(course: &Course<'_>, j: usize, tick: usize, into: f64) -> f64 {
+    let recording = course.recording;
+    let tau = &recording.tau[course.columns[j]];
+    let at = |place: f64| {
+        // A window never leaves its segment but by the delay, at the front.
+        let place = place.clamp(0.0, (tau.len() - 1) as f64);
+        let before = place.floor() as usize;
+        let share = place - before as f64;
+        let after = (before + 1).min(tau.len() - 1);
+        tau[before] + share * (tau[after] - tau[before])
+    };
+    let middle = tick as f64 + into / recording.period;
+    let half = (course.stride / 2) as f64;
+    if course.stride == 1 {
+        return at(middle);
+    }
+    let points = 2 * (course.stride / 2) + 1;
+    (0..points).map(|k| at(middle - half + k as f64)).sum::<f64>() / points as f64
+}
+
+/// What each joint alone moves at q = 0, its own rotor left out (kg m² or kg).
+fn link_inertias(arm: &Arm, rotors: &[f64]) -> Vec<f64> {
+    let dof = arm.dof();
+    let mut mass_matrix = DMatrix::zeros(dof, dof);
+    arm.mass_matrix(&mut arm::Workspace::new(arm), &vec![0.0; dof], &mut mass_matrix);
+    (0..dof).map(|j| mass_matrix[(j, j)] - rotors[j]).collect()
+}
