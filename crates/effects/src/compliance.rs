@@ -1,0 +1,115 @@
+//! The link behind a joint that gives: what its motion relative to the drive adds to the torques.
+
+use crate::motion::{Motion, Rigid};
+
+/// The motion δ (link less drive) of the link behind a joint that gives, tick by tick.
+#[derive(Clone, Debug)]
+pub struct Behind {
+    at: usize,
+    /// δ, δ̇, δ̈ (rad or m, and so on).
+    ticks: Vec<[f64; 3]>,
+}
+
+impl Behind {
+    /// The link of joint `at`, as [`sprung`] or [`gap`] says that it moves.
+    pub fn new(at: usize, ticks: Vec<[f64; 3]>) -> Self {
+        Self { at, ticks }
+    }
+
+    /// What it adds to the torque of `joint`: M δ̈ + ∂τ/∂q̇ δ̇ + ∂τ/∂q δ.
+    pub fn torque(&self, joint: usize, rigid: Rigid<'_>) -> Vec<f64> {
+        let (mass, drag, slope) = (
+            &rigid.mass[joint][self.at],
+            &rigid.by_velocity[joint][self.at],
+            &rigid.by_position[joint][self.at],
+        );
+        self.ticks
+            .iter()
+            .enumerate()
+            .map(|(k, [delta, speed, acceleration])| mass[k] * acceleration + drag[k] * speed + slope[k] * delta)
+            .collect()
+    }
+}
+
+/// δ behind a spring at joint `at`, in a gap of ± `halfgap` (none: zero) in which the link moves freely:
+/// M δ̈ + (D + ∂τ/∂q̇) δ̇ + ∂τ/∂q δ + K (δ ∓ halfgap) = −τ, driven by the drive's measured motion. `damping` gives D for M.
+///
+/// Integrated by the trapezoidal rule (Newmark, β = 1/4), from the quasi-static deflection.
+pub fn sprung(
+    at: usize,
+    halfgap: f64,
+    stiffness: f64,
+    damping: impl Fn(f64) -> f64,
+    motion: &Motion<'_>,
+) -> Vec<[f64; 3]> {
+    let (h, rigid) = (motion.period, motion.rigid);
+    let (mass, drag, slope) = (
+        &rigid.mass[at][at],
+        &rigid.by_velocity[at][at],
+        &rigid.by_position[at][at],
+    );
+    let tau = &rigid.tau[at];
+    let ticks = motion.ticks();
+    let mut out = Vec::with_capacity(ticks);
+    // Positive torque: the drive pushes the link in the positive direction, so the link lags behind.
+    let mut delta = -halfgap.copysign(tau[0]) - tau[0] / (stiffness + slope[0]);
+    let (mut speed, mut acceleration) = (0.0, 0.0);
+    for k in 0..ticks {
+        if k > 0 {
+            let place: f64 = delta + h * speed + 0.25 * h * h * acceleration;
+            let pace = speed + 0.5 * h * acceleration;
+            let solve = |damping: f64, spring: f64, rest: f64| {
+                let (d, s) = (drag[k] + damping, slope[k] + spring);
+                -(tau[k] + d * pace + s * place - spring * rest) / (mass[k] + 0.5 * h * d + 0.25 * h * h * s).max(1e-9)
+            };
+            let against = |end: f64| solve(damping(mass[k]), stiffness, end);
+            // On whichever side of the gap the link then is.
+            acceleration = if halfgap == 0.0 {
+                against(0.0)
+            } else {
+                let free = solve(0.0, 0.0, 0.0);
+                let end = (place + 0.25 * h * h * free).clamp(-halfgap, halfgap);
+                if end.abs() < halfgap { free } else { against(end) }
+            };
+            delta = place + 0.25 * h * h * acceleration;
+            speed = pace + 0.5 * h * acceleration;
+        }
+        out.push([delta, speed, acceleration]);
+    }
+    out
+}
+
+/// δ behind a gap of ± `halfgap` with rigid ends: the link lies against one side while its torque presses it there, and
+/// moves freely from one to the other when the torque turns; impacts are inelastic.
+pub fn gap(at: usize, halfgap: f64, motion: &Motion<'_>) -> Vec<[f64; 3]> {
+    let (h, rigid) = (motion.period, motion.rigid);
+    let tau = &rigid.tau[at];
+    let ticks = motion.ticks();
+    let mut out = Vec::with_capacity(ticks);
+    // Positive torque: the drive pushes the link in the positive direction, so the link lags behind, δ = −halfgap.
+    let mut delta = if tau[0] >= 0.0 { -halfgap } else { halfgap };
+    let mut speed = 0.0;
+    let mut free = false;
+    for k in 0..ticks {
+        let needed = tau[k] + rigid.by_position[at][at][k] * delta;
+        let mut acceleration = 0.0;
+        if !free && needed * delta > 0.0 {
+            free = true;
+        }
+        if free {
+            acceleration = -(needed + rigid.by_velocity[at][at][k] * speed) / rigid.mass[at][at][k].max(1e-9);
+            let before = speed;
+            speed += h * acceleration;
+            delta += h * speed;
+            if delta.abs() >= halfgap {
+                delta = delta.clamp(-halfgap, halfgap);
+                free = false;
+                speed = 0.0;
+                // The impact stops the link within this tick.
+                acceleration = -before / h;
+            }
+        }
+        out.push([delta, speed, acceleration]);
+    }
+    out
+}
