@@ -23,9 +23,9 @@ mod motion;
 mod quantity;
 pub mod sensor;
 mod spec;
+mod term;
 #[cfg(test)]
 mod test_support;
-mod term;
 pub mod unmodelled;
 
 pub use catalogue::{CATALOGUE, Kind, NAMES, UNMODELLED, spec};
@@ -39,5 +39,5 @@ pub use kind::{EffectKind, check};
 pub use machine::{Circumstance, Contact, Dry, Machine, Place, Scaled, Smooth, Sprung, State, sign};
 pub use motion::{Motion, Rigid, Scales};
 pub use quantity::Quantity;
-pub use spec::{Against, Experiment, InUrdf, ONSET, Parameter, Range, Scope, Shape, Spec};
+pub use spec::{Against, Experiment, InUrdf, ONSET, Parameter, Range, Scope, Shape, Spec, Unseen};
 pub use term::{Carried, Cone, Law, Size, Term};

@@ -86,7 +86,10 @@ impl Dry {
 
 impl fmt::Debug for Dry {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.debug_struct("Dry").field("bias", &self.bias).finish_non_exhaustive()
+        formatter
+            .debug_struct("Dry")
+            .field("bias", &self.bias)
+            .finish_non_exhaustive()
     }
 }
 
@@ -125,7 +128,10 @@ impl Smooth {
 impl fmt::Debug for Smooth {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut shown = formatter.debug_struct("Smooth");
-        shown.field("joint", &self.joint).field("onset", &self.onset).finish_non_exhaustive()
+        shown
+            .field("joint", &self.joint)
+            .field("onset", &self.onset)
+            .finish_non_exhaustive()
     }
 }
 

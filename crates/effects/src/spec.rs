@@ -164,7 +164,46 @@ impl Parameter {
     }
 }
 
-/// How an effect that these recordings did not show is spoken of.
+/// How it is told from which size on recordings would have shown an effect. Sizes are of its first main parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unseen {
+    /// It is not.
+    Never,
+    /// Below the largest torque.
+    Limit {
+        /// Why it was not seen.
+        because: &'static str,
+    },
+    /// By the sizes at which it was tried.
+    Sized {
+        /// Why it was not seen.
+        because: &'static str,
+        /// The same where none of the sizes would have been.
+        if_none: &'static str,
+        /// Whether small sizes are seen, not large ones.
+        is_seen_below: bool,
+    },
+    /// By the one coefficient that its torque is in proportion to.
+    Linear {
+        /// Why it was not seen where it has no form in these recordings.
+        if_no_form: Option<&'static str>,
+        /// Whether its size is a part of the first coefficient: without that it has none.
+        is_of_first: bool,
+        /// Whether it is a part of all of the joint's torque.
+        is_of_all_torque: bool,
+    },
+}
+
+impl Unseen {
+    /// In proportion to a coefficient, and nothing else.
+    pub const LINEAR: Self = Self::Linear {
+        if_no_form: None,
+        is_of_first: false,
+        is_of_all_torque: false,
+    };
+}
+
+/// What to do where no motion tells an effect from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Experiment {
     /// Of two effects that no motion tells apart, the one with the higher rank says what to do.
@@ -230,6 +269,10 @@ pub struct Spec {
     pub against: Against,
     /// What structure that has no name depends on, for a form without a name.
     pub depends_on: &'static str,
+    /// How it is told that recordings did not show it.
+    pub unseen: Unseen,
+    /// Its place among what recordings did not show.
+    pub unseen_turn: u8,
     /// What to do where no motion tells it from another.
     pub experiment: Option<Experiment>,
     /// The same against particular others, before [`Self::experiment`].
@@ -266,6 +309,8 @@ impl Spec {
         in_urdf: InUrdf::Nothing,
         against: Against::Predicted,
         depends_on: "",
+        unseen: Unseen::Never,
+        unseen_turn: u8::MAX,
         experiment: None,
         experiments_against: &[],
     };

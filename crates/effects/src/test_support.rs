@@ -39,7 +39,9 @@ fn state(tick: usize) -> [[f64; 2]; 3] {
 
 /// A signal of two joints, tick by tick.
 fn signals(pick: impl Fn(usize) -> [f64; 2]) -> Vec<Vec<f64>> {
-    (0..2).map(|joint| (0..TICKS).map(|tick| pick(tick)[joint]).collect()).collect()
+    (0..2)
+        .map(|joint| (0..TICKS).map(|tick| pick(tick)[joint]).collect())
+        .collect()
 }
 
 /// What moves it (N m).
@@ -68,7 +70,9 @@ fn along<T>(visit: impl FnOnce(&Motion<'_>) -> T) -> T {
     let tau = signals(|tick| torque(&arm, state(tick)));
     let square = |pick: &dyn Fn(usize, usize) -> [f64; 2]| -> Vec<Vec<Vec<f64>>> {
         let by: Vec<Vec<Vec<f64>>> = (0..2).map(|by| signals(|tick| pick(by, tick))).collect();
-        (0..2).map(|joint| by.iter().map(|by| by[joint].clone()).collect()).collect()
+        (0..2)
+            .map(|joint| by.iter().map(|by| by[joint].clone()).collect())
+            .collect()
     };
     let regressor = |tick: usize| {
         let [q, qd, qdd] = state(tick);
@@ -79,7 +83,11 @@ fn along<T>(visit: impl FnOnce(&Motion<'_>) -> T) -> T {
     let links = square(&|link, tick| {
         let regressor = regressor(tick);
         let from = link * PARAMETERS_PER_LINK;
-        [0, 1].map(|joint| (0..PARAMETERS_PER_LINK).map(|k| regressor[(joint, from + k)] * nominal[from + k]).sum())
+        [0, 1].map(|joint| {
+            (0..PARAMETERS_PER_LINK)
+                .map(|k| regressor[(joint, from + k)] * nominal[from + k])
+                .sum()
+        })
     });
     // A body's torque is linear in its parameters about the tool: those of unit mass, of unit first moments, and so on.
     let payload: Vec<Vec<Vec<f64>>> = {
@@ -94,11 +102,19 @@ fn along<T>(visit: impl FnOnce(&Motion<'_>) -> T) -> T {
             parameters[parameter] += if parameter == 0 { 0.0 } else { 1.0 };
             let from = if parameter == 0 { &tau } else { &of_mass };
             let with = with(parameters);
-            let less = |joint: usize| with[joint].iter().zip(&from[joint]).map(|(a, b)| a - b).collect::<Vec<f64>>();
+            let less = |joint: usize| {
+                with[joint]
+                    .iter()
+                    .zip(&from[joint])
+                    .map(|(a, b)| a - b)
+                    .collect::<Vec<f64>>()
+            };
             [less(0), less(1)]
         };
         let columns: Vec<[Vec<f64>; 2]> = (0..10).map(column).collect();
-        (0..2).map(|joint| columns.iter().map(|column| column[joint].clone()).collect()).collect()
+        (0..2)
+            .map(|joint| columns.iter().map(|column| column[joint].clone()).collect())
+            .collect()
     };
     let moved = |which: usize| {
         let arm = &arm;
@@ -112,11 +128,14 @@ fn along<T>(visit: impl FnOnce(&Motion<'_>) -> T) -> T {
     };
     let tilts: Vec<Vec<Vec<f64>>> = [Vector3::x(), Vector3::y()]
         .map(|axis| {
-            let turned = |step: f64, _: &mut [[f64; 2]; 3]| arm.clone().with_turned_base(axis * step.signum(), step.abs());
+            let turned =
+                |step: f64, _: &mut [[f64; 2]; 3]| arm.clone().with_turned_base(axis * step.signum(), step.abs());
             signals(|tick| derivative(&turned, tick))
         })
         .to_vec();
-    let tilt: Vec<[Vec<f64>; 2]> = (0..2).map(|joint| [tilts[0][joint].clone(), tilts[1][joint].clone()]).collect();
+    let tilt: Vec<[Vec<f64>; 2]> = (0..2)
+        .map(|joint| [tilts[0][joint].clone(), tilts[1][joint].clone()])
+        .collect();
     let ones = || vec![1.0; TICKS];
     let force: Vec<[Vec<f64>; 3]> = (0..2).map(|_| [ones(), ones(), ones()]).collect();
     let (by_position, by_velocity, mass) = (moved(0), moved(1), moved(2));
@@ -199,7 +218,10 @@ pub fn agree(effect: &Effect, columns: &[(Term, f64)]) {
                     .zip(columns)
                     .map(|(column, (_, value))| column.as_ref().map_or(0.0, |column| value * column[tick]))
                     .sum();
-                assert!((found - needed).abs() < 1e-9, "joint {joint}, tick {tick}: {found} is not {needed}");
+                assert!(
+                    (found - needed).abs() < 1e-9,
+                    "joint {joint}, tick {tick}: {found} is not {needed}"
+                );
             }
         }
     });

@@ -1,12 +1,12 @@
 //! Intervals by resampling: blocks of time weighted at random again and again, each time fitted anew (Rubin 1981, The
 //! Bayesian bootstrap). No block is ever left out, so that what acts once, like a push, keeps its rows.
 
+use effects::{Size, Term};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::regression::term::Term;
 use crate::search::problem::Chosen;
-use crate::search::refine::{Size, sizes, varied};
+use crate::search::refine::{sizes, varied};
 use crate::search::study::Study;
 
 /// Resamplings.

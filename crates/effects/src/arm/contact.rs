@@ -131,8 +131,8 @@ impl EffectKind for ExternalContact {
         });
         estimate.start(from, to - from);
         let duration = estimate.size(Systematic::OfForm, "duration", Size::Duration, to - from);
-        let force = [("force_x", x), ("force_y", y), ("force_z", z)]
-            .map(|(key, at)| estimate.coefficient(key, Some(at), 1.0));
+        let force =
+            [("force_x", x), ("force_y", y), ("force_z", z)].map(|(key, at)| estimate.coefficient(key, Some(at), 1.0));
         let effect = Effect::of(&Self).with("start", from);
         Some(effect.with("duration", duration).with("force", force))
     }

@@ -1,8 +1,8 @@
 //! Masses and inertias that are all a constant multiple of the model's.
 
 use crate::{
-    Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter, Place, Quantity, Range, Scope, Spec,
-    Term,
+    Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter, Place, Quantity, Range,
+    Scope, Spec, Term,
 };
 
 /// All masses and inertias are factor × the model's.

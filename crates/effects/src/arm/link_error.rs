@@ -1,8 +1,8 @@
 //! A link whose mass and inertia are not the model's.
 
 use crate::{
-    Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter, Place, Quantity, Range, Spec, Term,
-    Turn,
+    Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter, Place, Quantity, Range, Spec,
+    Term, Turn,
 };
 
 /// The mass and inertia of the link that the joint carries are (1 + relative) × the model's.

@@ -4,8 +4,8 @@ use ::arm::{Arm, Inertia, Matrix3, Vector3};
 
 use crate::fitted::moving_mass;
 use crate::{
-    Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter, Place, Quantity, Range,
-    Scope, SetsIn, Shape, Spec, Term,
+    Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter, Place, Quantity,
+    Range, Scope, SetsIn, Shape, Spec, Term,
 };
 
 /// A body fixed to the tool.

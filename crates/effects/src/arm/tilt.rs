@@ -1,8 +1,8 @@
 //! A base that does not stand level.
 
 use crate::{
-    Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range, Scope,
-    Shape, Spec, Term,
+    Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range,
+    Scope, Shape, Spec, Term,
 };
 
 /// The base is turned by `angle` about `axis` (unit, in the base's frame): gravity points elsewhere.
@@ -85,6 +85,9 @@ mod tests {
     fn its_columns_are_its_torque() {
         let effect = Effect::of(&GravityMisalignment).with("angle", 1e-6);
         let effect = effect.with("axis", [0.6, 0.8, 0.0]);
-        agree(&effect, &[(Term::about(&TILT, 0), 0.6e-6), (Term::about(&TILT, 1), 0.8e-6)]);
+        agree(
+            &effect,
+            &[(Term::about(&TILT, 0), 0.6e-6), (Term::about(&TILT, 1), 0.8e-6)],
+        );
     }
 }

@@ -5,8 +5,8 @@ use crate::compliance::{Behind, gap, sprung};
 use crate::fitted::is_near_one;
 use crate::laws::ACCELERATION;
 use crate::{
-    Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Motion, Parameter, Place, Quantity, Range, Size, Spec,
-    Systematic, Term, Turn,
+    Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Motion, Parameter, Place, Quantity, Range, Size,
+    Spec, Systematic, Term, Turn, Unseen,
 };
 
 /// The rotor drives the link through a gap of ± halfgap; q is the rotor's.
@@ -27,6 +27,12 @@ static SPEC: Spec = Spec {
     prior: 8.0,
     is_simulated: true,
     experiment: Some(SECOND_ENCODER),
+    unseen: Unseen::Sized {
+        because: "a smaller gap is crossed too quickly to be seen",
+        if_none: "the joint's load does not turn, so that a gap is never crossed",
+        is_seen_below: false,
+    },
+    unseen_turn: 3,
     ..Spec::EMPTY
 };
 
@@ -85,7 +91,9 @@ fn softened(term: &Term, mass: f64) -> Vec<Term> {
     if rigid.is_finite() {
         return Vec::new();
     }
-    let first = FIRST_STOPS.iter().flat_map(|&hertz| STOP_RATIOS.map(|ratio| (hertz, ratio)));
+    let first = FIRST_STOPS
+        .iter()
+        .flat_map(|&hertz| STOP_RATIOS.map(|ratio| (hertz, ratio)));
     first
         .map(|(hertz, ratio)| term.sized([halfgap, stop(mass, hertz), ratio]))
         .collect()

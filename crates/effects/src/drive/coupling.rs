@@ -1,8 +1,8 @@
 //! A drive that two joints turn.
 
 use crate::{
-    Against, Effect, EffectKind, Estimate, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Spec, State, Term, Turn,
-    sign,
+    Against, Effect, EffectKind, Estimate, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Spec, State, Term,
+    Turn, sign,
 };
 
 /// A drive that two joints turn, and its reaction: on each of the two, with o the other of them,
@@ -54,9 +54,8 @@ pub static PAIR_SIGN: Law = Law {
     column: |term, joint, motion| {
         let ([a, b], sense) = (term.of, term.sizes[0]);
         let turn = if joint == a { 1.0 } else { sense };
-        partner(term, joint).and_then(|_| {
-            motion.map(|k| turn * motion.scales.sign(a, motion.qd[a][k] + sense * motion.qd[b][k]))
-        })
+        partner(term, joint)
+            .and_then(|_| motion.map(|k| turn * motion.scales.sign(a, motion.qd[a][k] + sense * motion.qd[b][k])))
     },
     ..Law::PLAIN
 };
@@ -143,6 +142,9 @@ mod tests {
         let effect = effect.with("viscous", 2.0).with("coulomb", 0.5).with("inertia", 3.0);
         let term = |law| Term::about(law, 1).of(0);
         let dry = term(&PAIR_SIGN).sized([1.0]);
-        agree(&effect, &[(term(&PAIR_VELOCITY), 2.0), (dry, 0.5), (term(&PAIR_ACCELERATION), 3.0)]);
+        agree(
+            &effect,
+            &[(term(&PAIR_VELOCITY), 2.0), (dry, 0.5), (term(&PAIR_ACCELERATION), 3.0)],
+        );
     }
 }

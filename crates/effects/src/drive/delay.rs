@@ -1,8 +1,8 @@
 //! Torque that comes later than it was commanded.
 
 use crate::{
-    Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range, Size,
-    Spec, Systematic, Term, Turn, UNIT,
+    Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range,
+    Size, Spec, Systematic, Term, Turn, UNIT, Unseen,
 };
 
 /// The torque applied at t is the one commanded at t − delay.
@@ -26,6 +26,12 @@ static SPEC: Spec = Spec {
     main: &["delay"],
     is_simulated: true,
     experiment: Some(SECOND_ENCODER),
+    unseen: Unseen::Sized {
+        because: "a shorter delay shifts the torque by less than its noise",
+        if_none: "a shorter delay shifts the torque by less than its noise",
+        is_seen_below: false,
+    },
+    unseen_turn: 5,
     ..Spec::EMPTY
 };
 

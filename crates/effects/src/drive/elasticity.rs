@@ -5,8 +5,8 @@ use crate::compliance::{Behind, sprung};
 use crate::fitted::is_near_one;
 use crate::laws::ACCELERATION;
 use crate::{
-    Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range, Size, Spec, Sprung,
-    Systematic, Term, Turn,
+    Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range, Size, Spec,
+    Sprung, Systematic, Term, Turn, Unseen,
 };
 
 /// The rotor drives the link through a spring and a damper; q is the rotor's.
@@ -30,6 +30,12 @@ static SPEC: Spec = Spec {
     prior: 8.0,
     is_simulated: true,
     experiment: Some(SECOND_ENCODER),
+    unseen: Unseen::Sized {
+        because: "a stiffer joint deflects less than these recordings show",
+        if_none: "a stiffer joint deflects less than these recordings show",
+        is_seen_below: true,
+    },
+    unseen_turn: 4,
     ..Spec::EMPTY
 };
 

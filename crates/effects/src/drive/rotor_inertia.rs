@@ -2,8 +2,8 @@
 
 use crate::laws::ACCELERATION;
 use crate::{
-    Against, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity, Range,
-    Spec, Term, Turn,
+    Against, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity,
+    Range, Spec, Term, Turn, Unseen,
 };
 
 /// τ = inertia q̈: the drive's rotor, seen at the joint.
@@ -28,6 +28,8 @@ static SPEC: Spec = Spec {
         text: "put a body of known inertia on the tool: a drive's inertia does not change with the pose and the load, a link's does; \
                or take the drive's from its data sheet (--known)",
     }),
+    unseen: Unseen::LINEAR,
+    unseen_turn: 7,
     ..Spec::EMPTY
 };
 

@@ -211,7 +211,10 @@ fn from_entries<E: Error>(mut entries: Vec<(String, Raw)>) -> Result<Effect, E> 
             None => **key != "onset",
         }
     };
-    let missing = known.iter().filter(is_needed).find(|key| !given.iter().any(|given| given == *key));
+    let missing = known
+        .iter()
+        .filter(is_needed)
+        .find(|key| !given.iter().any(|given| given == *key));
     match missing {
         Some(key) => Err(E::missing_field(key)),
         None => Ok(effect),

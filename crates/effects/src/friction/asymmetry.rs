@@ -2,8 +2,8 @@
 
 use crate::laws::SIGN;
 use crate::{
-    Against, Cone, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Spec,
-    Term, Turn,
+    Against, Cone, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
+    Spec, Term, Turn,
 };
 
 /// τ = positive while q̇ > 0, −negative while q̇ < 0.

@@ -2,8 +2,8 @@
 
 use crate::laws::SIGN;
 use crate::{
-    Against, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Machine, Parameter, Place, Quantity, Range,
-    Spec, Term, Turn,
+    Against, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Machine, Parameter, Place, Quantity,
+    Range, Spec, Term, Turn,
 };
 
 /// τ = level sgn q̇.
@@ -25,6 +25,7 @@ static SPEC: Spec = Spec {
     is_simple: true,
     in_urdf: InUrdf::Friction,
     against: Against::Speed,
+    unseen_turn: 0,
     ..Spec::EMPTY
 };
 

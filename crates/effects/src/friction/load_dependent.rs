@@ -2,8 +2,8 @@
 
 use crate::laws::SIGN;
 use crate::{
-    Against, Cone, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range,
-    Spec, Term, Turn,
+    Against, Cone, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
+    Range, Spec, Term, Turn, Unseen,
 };
 
 /// τ = (coulomb + gain |τ rigid|) sgn q̇.
@@ -26,6 +26,8 @@ static SPEC: Spec = Spec {
     main: &["gain"],
     plain: Some("coulomb_friction"),
     against: Against::LoadAlong,
+    unseen: Unseen::LINEAR,
+    unseen_turn: 9,
     ..Spec::EMPTY
 };
 
@@ -72,9 +74,9 @@ impl EffectKind for LoadDependentFriction {
 
 /// The mean of the load's column.
 fn load(fitted: &dyn Fitted) -> f64 {
-    fitted.column(1).map_or(0.0, |x| {
-        x.iter().map(|v| v.abs()).sum::<f64>() / x.len().max(1) as f64
-    })
+    fitted
+        .column(1)
+        .map_or(0.0, |x| x.iter().map(|v| v.abs()).sum::<f64>() / x.len().max(1) as f64)
 }
 
 #[cfg(test)]

@@ -4,8 +4,8 @@ use ::arm::JointKind;
 
 use crate::laws::SIGN;
 use crate::{
-    Against, Cone, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range,
-    Size, Spec, Systematic, Term, Turn,
+    Against, Cone, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
+    Range, Size, Spec, Systematic, Term, Turn,
 };
 
 /// τ = (coulomb + (breakaway − coulomb) e^(−|q̇/velocity|^exponent)) sgn q̇.

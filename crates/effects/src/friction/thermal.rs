@@ -3,7 +3,7 @@
 use crate::laws::SIGN;
 use crate::{
     Against, Circumstance, Cone, Dry, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine,
-    Parameter, Place, Quantity, Range, Size, Spec, Systematic, Term, Turn,
+    Parameter, Place, Quantity, Range, Size, Spec, Systematic, Term, Turn, Unseen,
 };
 
 /// Dry friction coulomb (1 + amplitude e^(−t/time_constant)) sgn q̇, t on the recordings' own clock.
@@ -38,6 +38,12 @@ static SPEC: Spec = Spec {
         rank: 3,
         text: "record the same motion on the cold and on the warm drive, on one clock",
     }),
+    unseen: Unseen::Linear {
+        if_no_form: Some("the recordings are shorter than a drive takes to warm"),
+        is_of_first: true,
+        is_of_all_torque: false,
+    },
+    unseen_turn: 8,
     ..Spec::EMPTY
 };
 

@@ -2,8 +2,8 @@
 
 use crate::laws::VELOCITY;
 use crate::{
-    Against, Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Machine, Parameter, Place, Quantity, Range, Spec,
-    Term, Turn,
+    Against, Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Machine, Parameter, Place, Quantity, Range,
+    Spec, Term, Turn,
 };
 
 /// τ = coefficient q̇.
@@ -25,6 +25,7 @@ static SPEC: Spec = Spec {
     is_simple: true,
     in_urdf: InUrdf::Damping,
     against: Against::Speed,
+    unseen_turn: 1,
     ..Spec::EMPTY
 };
 

@@ -2,8 +2,8 @@
 
 use crate::laws::{ONE, POSITION, TENT, power, tent};
 use crate::{
-    Against, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity, SetsIn, Shape, Spec,
-    State, Term, Times, Turn,
+    Against, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity, SetsIn, Shape,
+    Spec, State, Term, Times, Turn, Unseen,
 };
 
 /// τ = stiffness (q − rest); or a curve through (q, τ) points where it bends: linear between, constant beyond.
@@ -20,7 +20,9 @@ static SPEC: Spec = Spec {
     parameters: &[
         Parameter::new("stiffness", Quantity::Stiffness),
         Parameter::new("rest", Quantity::Position),
-        Parameter::new("curve", Quantity::Torque).of(Shape::Points).remarked("rad, N m"),
+        Parameter::new("curve", Quantity::Torque)
+            .of(Shape::Points)
+            .remarked("rad, N m"),
     ],
     main: &["stiffness"],
     may_set_in: true,
@@ -28,6 +30,8 @@ static SPEC: Spec = Spec {
     excludes: &["own_position", "torque_offset", "friction_asymmetry"],
     is_behind_the_drive: true,
     against: Against::Position,
+    unseen: Unseen::LINEAR,
+    unseen_turn: 11,
     ..Spec::EMPTY
 };
 
@@ -116,7 +120,10 @@ impl EffectKind for Spring {
     }
 
     fn refuse(&self, effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
-        let pair = effect.points("curve").windows(2).find(|pair| pair[1][0] <= pair[0][0])?;
+        let pair = effect
+            .points("curve")
+            .windows(2)
+            .find(|pair| pair[1][0] <= pair[0][0])?;
         Some(("curve's next angle", pair[1][0], "larger than the one before"))
     }
 

@@ -1,8 +1,8 @@
 //! An encoder whose zero is not where the model has it.
 
 use crate::{
-    Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Spec, Term,
-    Turn,
+    Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Spec,
+    Term, Turn, Unseen,
 };
 
 /// The encoder says offset more than where the joint stands.
@@ -23,6 +23,8 @@ static SPEC: Spec = Spec {
         rank: 6,
         text: "drive the joint to a mechanical reference, or measure its angle: an encoder's offset shows there",
     }),
+    unseen: Unseen::LINEAR,
+    unseen_turn: 12,
     ..Spec::EMPTY
 };
 

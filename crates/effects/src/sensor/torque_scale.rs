@@ -3,8 +3,8 @@
 use super::KNOWN_LOAD;
 use crate::laws::RIGID;
 use crate::{
-    Against, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity, Range, Scaled, SetsIn,
-    Spec, Term, Turn,
+    Against, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity, Range, Scaled,
+    SetsIn, Spec, Term, Turn, Unseen,
 };
 
 /// The torque measured is factor × the true one.
@@ -27,15 +27,18 @@ static SPEC: Spec = Spec {
     is_certain_in_form: true,
     against: Against::Load,
     experiment: Some(KNOWN_LOAD),
-    experiments_against: &[
-        ("inertial_scale", KNOWN_BODY),
-        ("link_inertial_error", KNOWN_BODY),
-    ],
+    experiments_against: &[("inertial_scale", KNOWN_BODY), ("link_inertial_error", KNOWN_BODY)],
+    // It is told by the rigid torque alone, but it is a part of all of the joint's torque.
+    unseen: Unseen::Linear {
+        if_no_form: None,
+        is_of_first: false,
+        is_of_all_torque: true,
+    },
+    unseen_turn: 10,
     ..Spec::EMPTY
 };
 
-const KNOWN_BODY: &str =
-    "put a body of known mass on the tool and record the same motion: a wrong scale of the torque changes its weight, \
+const KNOWN_BODY: &str = "put a body of known mass on the tool and record the same motion: a wrong scale of the torque changes its weight, \
      wrong masses of the links do not";
 
 impl EffectKind for TorqueScale {
