@@ -208,10 +208,7 @@ fn a_motion_stays_within_a_torque_limit_that_was_found() {
     assert!(unlimited.limits[SHOULDER].torque > 1.1 * limit, "{unlimited:#?}");
     let options = Options {
         next: true,
-        known: vec![torque::Effect::TorqueSaturation {
-            joint: "shoulder".into(),
-            limit,
-        }],
+        known: vec![Effect::of(&TorqueSaturation).on("shoulder").with("limit", limit)],
         ..Options::default()
     };
     let diagnosis = diagnosed_with(&trio(), &trio(), &friction, &options).expect("it can be diagnosed");

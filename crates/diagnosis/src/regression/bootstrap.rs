@@ -32,12 +32,8 @@ pub struct Resampled {
 }
 
 impl Resampled {
-    /// The estimate and the 95 % interval of a function of the parameters.
-    pub fn interval(&self, f: impl Fn(&[f64]) -> f64) -> (f64, [f64; 2]) {
-        self.interval_within(SYSTEMATIC, f)
-    }
-
-    /// The same, where `systematic`, a part of the value, is what no repetition shows.
+    /// The estimate and the 95 % interval of a function of the parameters, where `systematic`, a part of the value, is what no
+    /// repetition shows.
     pub fn interval_within(&self, systematic: f64, f: impl Fn(&[f64]) -> f64) -> (f64, [f64; 2]) {
         let value = f(&self.estimate);
         let mut draws: Vec<f64> = self

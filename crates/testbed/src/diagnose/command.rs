@@ -160,8 +160,8 @@ fn learn(arm: &Arm, diagnosis: &mut Diagnosis) -> anyhow::Result<()> {
 /// Drives the simulated arm with the recorded torques, with and without what was found; remarks to pass on.
 fn simulate(
     arm: &Arm,
-    known: &[torque::Effect],
-    effects: &[torque::Effect],
+    known: &[effects::Effect],
+    effects: &[effects::Effect],
     recording: &RegularRecording,
     diagnosis: &mut Diagnosis,
 ) -> Vec<String> {
@@ -201,7 +201,7 @@ fn write<'a>(
     arm: &Arm,
     urdf_path: &Path,
     diagnosis: &Diagnosis,
-    effects: Vec<torque::Effect>,
+    effects: Vec<effects::Effect>,
 ) -> anyhow::Result<Option<&'a Path>> {
     if let Some(path) = &args.urdf {
         let text = library::urdf_text(&args.robot, urdf_path)?;

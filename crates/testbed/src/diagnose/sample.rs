@@ -9,7 +9,8 @@ use diagnosis::{
     Confusable, Finding, JointFit, JointRollout, Located, NotObservable, Parameter, Place, RecordingNames, Region,
     Report, TimeWindow, Trace, Traces, Unexplained, Verdict,
 };
-use torque::Effect;
+use effects::Effect;
+use effects::sensor::TorqueOffset;
 
 use motion::{EFFECTS, Row, acts, arm, spread, trace};
 
@@ -99,11 +100,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
                 row.0.replace('_', " ")
             ),
             corrects: true,
-            as_effect: Effect::TorqueOffset {
-                joint: String::new(),
-                offset: 0.0,
-                onset: None,
-            },
+            as_effect: Effect::of(&TorqueOffset).on(String::new()).with("offset", 0.0),
         }
     });
     let mut findings: Vec<Finding> = findings.collect();

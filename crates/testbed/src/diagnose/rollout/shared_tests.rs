@@ -31,10 +31,11 @@ fn concealed(truth: &Path) -> Option<Vec<Effect>> {
             item.insert("effect".into(), "link_inertial_error".into());
         }
         if let Some(rotor) = item.remove("rotor") {
-            effects.push(Effect::RotorInertia {
-                joint: item["joint"].as_str().expect("it has a joint").into(),
-                inertia: rotor.as_f64().expect("it is a number"),
-            });
+            effects.push(
+                Effect::of(&RotorInertia)
+                    .on(item["joint"].as_str().expect("it has a joint"))
+                    .with("inertia", rotor.as_f64().expect("it is a number")),
+            );
         }
         effects.push(serde_json::from_value(item.into()).ok()?);
     }
