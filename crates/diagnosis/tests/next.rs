@@ -3,6 +3,8 @@
 mod support;
 
 use diagnosis::{Diagnosis, Left, NextExperiment, Options, diagnose};
+use effects::Effect;
+use effects::drive::TorqueSaturation;
 use recording::{Recording, RegularRecording};
 use support::{ELBOW, Motion, SHOULDER, diagnosed_with, inputs, recorded, regular, trio};
 use torque::Reference;

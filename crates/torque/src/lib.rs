@@ -16,7 +16,6 @@ mod samples;
 
 pub use controller::{Command, Controller, Feedback};
 pub use corrected::Corrected;
-pub use effects::Effect;
 pub use error::TorqueError;
 pub use gp::{Gp, LengthScales, Lengths};
 pub use inputs::Inputs;

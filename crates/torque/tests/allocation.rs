@@ -2,10 +2,13 @@
 
 mod support;
 
+use effects::Effect;
+use effects::arm::ExternalContact;
+use effects::friction::LoadDependentFriction;
+use effects::joint::Spring;
 use support::{motion, puma560, samples};
 use torque::{
-    Command, Controller, Corrected, Effect, Feedback, Inputs, Learned, Prediction, TorqueModel, TrainingOptions,
-    Workspace,
+    Command, Controller, Corrected, Feedback, Inputs, Learned, Prediction, TorqueModel, TrainingOptions, Workspace,
 };
 
 #[test]

@@ -142,8 +142,10 @@ fn chosen(training: &[Motion<'_>], samples: usize) -> Vec<(usize, usize)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use effects::Effect;
+    use effects::friction::ViscousFriction;
     use std::time::Instant;
-    use torque::{Corrected, Effect};
+    use torque::Corrected;
 
     struct Data([Vec<Vec<f64>>; 4], Vec<Vec<bool>>);
 

@@ -1,6 +1,14 @@
 //! The forms of the effects against numbers worked out by hand, and what is refused.
 
 use arm::Arm;
+use effects::arm::{ExternalContact, GravityMisalignment, InertialScale, LinkInertialError, Payload};
+use effects::drive::{RotorInertia, TorqueRipple, TorqueSaturation, TransmissionCoupling};
+use effects::friction::{
+    CoulombFriction, FrictionAsymmetry, LoadDependentFriction, QuadraticDrag, StribeckFriction, ThermalDrift,
+    ViscousFriction,
+};
+use effects::joint::Spring;
+use effects::sensor::{EncoderOffset, TorqueOffset, TorqueScale};
 
 use super::*;
 
@@ -107,7 +115,7 @@ fn position_makes_springs_and_ripple() {
         .with("periods", 6.0)
         .with("phase", 0.1);
     near(added(ripple, 0.3, 0.0), 0.5 * 1.9_f64.sin());
-    let spring = |curve| {
+    let spring = |curve: Vec<[f64; 2]>| {
         Effect::of(&Spring)
             .on(a())
             .with("stiffness", 10.0)

@@ -1,6 +1,16 @@
 //! Effect files go round, and what is wrong with one is said with its line.
 
 use super::*;
+use effects::arm::{ExternalContact, GravityMisalignment, InertialScale, LinkInertialError, Payload};
+use effects::drive::{
+    ActuationDelay, Backlash, JointElasticity, RotorInertia, TorqueRipple, TorqueSaturation, TransmissionCoupling,
+};
+use effects::friction::{
+    CoulombFriction, FrictionAsymmetry, LoadDependentFriction, QuadraticDrag, StribeckFriction, ThermalDrift,
+    ViscousFriction,
+};
+use effects::joint::Spring;
+use effects::sensor::{EncoderOffset, TorqueOffset, TorqueScale};
 
 fn arm() -> Arm {
     Arm::from_urdf_text(include_str!("../../../../../assets/puma560.urdf"), "puma560.urdf").expect("it is an arm")

@@ -143,6 +143,17 @@ impl Drives {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use arm::Arm;
+    use effects::Effect;
+    use effects::drive::{ActuationDelay, Backlash, JointElasticity};
+
+    fn machine(effects: &[Effect]) -> Machine {
+        let urdf = r#"<robot name="one"><link name="base"/>
+<joint name="a" type="continuous"><parent link="base"/><child link="l"/><axis xyz="0 0 1"/></joint>
+<link name="l"><inertial><mass value="1"/><inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".1"/></inertial></link></robot>"#;
+        let arm = Arm::from_urdf_text(urdf, "one.urdf").expect("it is an arm");
+        Machine::new(&arm, effects).expect("they are physical")
+    }
 
     /// Rotor and link on a spring, in turn: they swing at ω² = K (1/J + 1/M) and keep their energy.
     #[test]
@@ -152,7 +163,7 @@ mod tests {
             .on("a")
             .with("stiffness", stiffness)
             .with("damping", 0.0)];
-        let mut drives = Drives::new(&effects, &["a".into()], &[inertia], &[mass], step);
+        let mut drives = Drives::new(&machine(&effects), &["a".into()], &[inertia], &[mass], step);
         assert!(drives.is_separate(0) && drives.remarks.is_empty());
         let connection = drives.connections[0].as_mut().expect("there is a spring");
         // Stretched by .01 at rest: what the rotor moves, the link moves back by as much times J/M.
@@ -182,7 +193,7 @@ mod tests {
             Effect::of(&Backlash).on("a").with("halfgap", 0.01),
             Effect::of(&ActuationDelay).on("a").with("delay", 0.004),
         ];
-        let mut drives = Drives::new(&effects, &["a".into()], &[0.0], &[1.0], 1e-3);
+        let mut drives = Drives::new(&machine(&effects), &["a".into()], &[0.0], &[1.0], 1e-3);
         assert_eq!(drives.delays, [0.004]);
         assert_eq!(drives.remarks.len(), 1);
         let connection = drives.connections[0].as_mut().expect("there is a spring");

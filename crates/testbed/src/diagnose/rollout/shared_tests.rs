@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::*;
+use effects::drive::RotorInertia;
 use recording::Recording;
 
 fn blind() -> Option<PathBuf> {

@@ -1,6 +1,8 @@
 //! Rollouts of motions that the plant itself made.
 
 use super::*;
+use effects::friction::{CoulombFriction, ViscousFriction};
+use effects::sensor::{EncoderOffset, TorqueOffset, TorqueScale};
 use plant::{Plant, PlantOptions};
 use recording::Recording;
 use torque::Corrected;

@@ -1,6 +1,8 @@
 //! The URDF that is written says, read again, what the corrected model says.
 
 use super::*;
+use effects::friction::{CoulombFriction, ViscousFriction};
+use effects::sensor::TorqueOffset;
 use torque::{Prediction, TorqueModel, Workspace};
 
 /// Welded links, one of them without inertial, comments, odd spacing, a transmission with a joint of the same name.

@@ -1,7 +1,10 @@
 //! A machine whose effects are known: what each model is worth on it.
 
+use effects::Effect;
+use effects::drive::{ActuationDelay, JointElasticity, RotorInertia};
+use effects::friction::QuadraticDrag;
+use effects::sensor::{EncoderOffset, TorqueScale};
 use proof::{Concealed, Settings, conceal_effects, write_case};
-use torque::Effect;
 
 use super::*;
 
