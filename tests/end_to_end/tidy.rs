@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use arm::JointKind;
+use effects::{EffectKind, Shape};
+
 const LONGEST_FILE: usize = 400;
 
 fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -81,4 +84,49 @@ fn every_scenario_and_robot_comes_with_the_program() {
             assert!(library.contains(&name), "{name} is not in library.rs");
         }
     }
+}
+
+/// A row of the catalogue's table: name, what it adds, parameters with their units on a turning joint.
+fn row(kind: &dyn EffectKind) -> String {
+    let spec = kind.spec();
+    let parameter = |parameter: &effects::Parameter| {
+        let unit = parameter.quantity.unit(JointKind::Revolute);
+        let remark = match (parameter.remark, parameter.shape) {
+            (Some(remark), _) => remark,
+            (None, Shape::Points) => "points",
+            (None, _) => unit,
+        };
+        let key = parameter.key;
+        if remark.is_empty() {
+            format!("`{key}`")
+        } else {
+            format!("`{key}` ({remark})")
+        }
+    };
+    let other = kind.has_other().then(|| "`other` (a joint)".to_owned());
+    let onset = spec.may_set_in.then(|| "`onset` (s)".to_owned());
+    let parameters = other
+        .into_iter()
+        .chain(spec.parameters.iter().map(parameter))
+        .chain(onset);
+    let parameters = parameters.collect::<Vec<_>>().join(", ");
+    let formula = spec.formula.replace('|', "\\|");
+    format!("| `{}` | {formula} | {parameters} |\n", spec.name)
+}
+
+/// `UPDATE_DOCS=1` writes the table anew.
+#[test]
+fn the_catalogues_table_is_the_catalogue() {
+    let path = crate::support::root().join("docs/diagnosis.md");
+    let page = read(&path);
+    let head = "| effect | torque or meaning | parameters |\n|---|---|---|\n";
+    let start = page.find(head).expect("the table is there") + head.len();
+    let end = start + page[start..].find("\n\n").expect("the table ends") + 1;
+    let table: String = effects::CATALOGUE.iter().map(|kind| row(*kind)).collect();
+    if std::env::var_os("UPDATE_DOCS").is_some() {
+        let page = [&page[..start], &table, &page[end..]].concat();
+        std::fs::write(&path, page).expect("the page can be written");
+        return;
+    }
+    assert_eq!(&page[start..end], table, "UPDATE_DOCS=1 writes the table anew");
 }

@@ -5,4 +5,3 @@ pub mod measure;
 pub mod motion;
 pub mod rigid;
 pub mod signal;
-pub mod units;

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use arm::Arm;
+use effects::Effect;
 use rayon::prelude::*;
-use torque::{Effect, Reference};
+use torque::Reference;
 
 use crate::data::known;
 use crate::data::motion::Input;

@@ -7,14 +7,17 @@
 use std::collections::BTreeSet;
 
 use arm::Arm;
+use effects::arm::InertialScale;
+use effects::drive::TorqueSaturation;
+use effects::sensor::TorqueScale;
+use effects::{Effect, EffectKind, Kind, Unseen};
 use rayon::prelude::*;
-use torque::{Effect, Reference};
+use torque::Reference;
 
 use crate::findings::observability;
 use crate::findings::report::{Confusable, Finding, NotObservable, Unexplained};
 use crate::findings::rivals;
 use crate::regression::fit::Products;
-use crate::search::candidate::Cause;
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
 
@@ -242,8 +245,8 @@ fn confusions(
             let instead: Vec<(Vec<usize>, Vec<usize>)> = if is_alias {
                 // Fitted in the finding's place it is the finding itself.
                 vec![(chosen.fit.columns.clone(), Vec::new())]
-            } else if this.cause == Cause::InertialScale && rival.effect == "torque_scale" {
-                let is_factor = |c: &usize| study.candidates[*c].cause == Cause::TorqueScale;
+            } else if this.cause.is(&InertialScale) && is(rival.effect, &TorqueScale) {
+                let is_factor = |c: &usize| study.candidates[*c].cause.is(&TorqueScale);
                 let all: Vec<usize> = (0..study.candidates.len()).filter(is_factor).collect();
                 vec![(with(&all), all)]
             } else {
@@ -274,12 +277,17 @@ fn confusions(
     list
 }
 
+/// Whether a name is that of a kind of effect.
+fn is(name: &str, kind: &'static dyn EffectKind) -> bool {
+    Kind::named(name).is_some_and(|named| named.is(kind))
+}
+
 /// Those of `hidden` whose size a motion can be tried on without simulating it: torque limits, and what is linear.
 fn visible<'a>(study: &Study, chosen: &Chosen, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> {
     let of = |entry: &'a NotObservable| {
         let name = entry.joint.as_deref()?;
         let joint = study.arm.joints().iter().position(|joint| joint.name == name)?;
-        if entry.effect == "torque_saturation" {
+        if is(entry.effect, &TorqueSaturation) {
             let (parameter, before) = entry.would_be_seen_below.iter().next()?;
             return Some(Hidden {
                 entry,
@@ -289,11 +297,11 @@ fn visible<'a>(study: &Study, chosen: &Chosen, hidden: &'a [NotObservable]) -> V
                 column: None,
             });
         }
-        let (cause, parameter) = observability::LINEAR
-            .into_iter()
-            .find(|(cause, _)| cause.name() == Some(entry.effect))?;
+        let spec = effects::spec(entry.effect).filter(|spec| matches!(spec.unseen, Unseen::Linear { .. }))?;
+        let parameter = *spec.main.first()?;
         let mut candidates = study.candidates.iter();
-        let candidate = candidates.find(|candidate| candidate.cause == cause && candidate.joint == Some(joint))?;
+        let candidate = candidates
+            .find(|candidate| candidate.cause.name() == Some(entry.effect) && candidate.joint == Some(joint))?;
         let column = candidate
             .columns
             .iter()

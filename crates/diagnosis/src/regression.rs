@@ -2,7 +2,5 @@
 
 pub mod bootstrap;
 pub mod columns;
-pub mod compliance;
 pub mod fit;
 pub mod table;
-pub mod term;

@@ -16,7 +16,5 @@ pub const YIELDING: f64 = 0.02;
 pub const EXPLAINED: f64 = 0.03;
 /// … may be wrong by this part.
 pub const HARMLESS: f64 = 0.001;
-/// Of elastic joints, until it is refined.
-pub const DAMPING_RATIO: f64 = 0.06;
 /// The usual cut-off (Hz).
 pub const CUTOFF: f64 = 12.0;

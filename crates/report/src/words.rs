@@ -28,152 +28,19 @@ pub fn cause(finding: &Finding) -> String {
 
 /// The wording of a catalogue name; an unknown name stands for itself.
 pub fn wording(effect: &'static str) -> Wording {
-    let (name, meaning, told_by, main): (_, _, _, &[&str]) = match effect {
-        "viscous_friction" => (
-            "viscous friction",
-            "a torque against the motion, in proportion to its speed",
-            "several constant speeds, slow to fast",
-            &["coefficient"],
-        ),
-        "coulomb_friction" => (
-            "Coulomb friction",
-            "dry friction: a constant torque against the motion, whatever its speed",
-            "slow reversals of this joint alone",
-            &["level"],
-        ),
-        "friction_asymmetry" => (
-            "asymmetric friction",
-            "dry friction that differs between the two directions",
-            "rests between moves of both directions: an offset stays at rest, asymmetric friction does not",
-            &["positive"],
-        ),
-        "stribeck_friction" => (
-            "Stribeck friction",
-            "dry friction that is larger at very low speed (breakaway) than in motion",
-            "constant speeds from creeping upwards",
-            &["breakaway"],
-        ),
-        "load_dependent_friction" => (
-            "load-dependent friction",
-            "gear friction that grows with the torque the gear carries",
-            "the same speed under several loads or postures",
-            &["gain"],
-        ),
-        "thermal_drift" => (
-            "warming friction",
-            "dry friction that falls as the drive warms up",
-            "a longer recording from cold, one motion repeated",
-            &["amplitude"],
-        ),
-        "quadratic_drag" => (
-            "quadratic drag",
-            "a torque against the motion that grows with the square of its speed",
-            "a wider range of speeds",
-            &["coefficient"],
-        ),
-        "rotor_inertia" => (
-            "rotor inertia",
-            "the drive's own rotor, which the gear makes heavy at the joint",
-            "the same accelerations in other postures, with and without a payload",
-            &["inertia"],
-        ),
-        "torque_scale" => (
-            "torque scale",
-            "the measured torque is a constant multiple of the true one (a gain or a torque constant is wrong)",
-            "a known payload",
-            &["factor"],
-        ),
-        "torque_offset" => (
-            "torque offset",
-            "a constant added to the measured torque",
-            "rests in several postures",
-            &["offset"],
-        ),
-        "torque_ripple" => (
-            "torque ripple",
-            "a torque that repeats with the joint's angle (cogging, gear teeth)",
-            "the same sweep at two speeds: a ripple keeps its angle, a resonance its frequency",
-            &["amplitude"],
-        ),
-        "torque_saturation" => (
-            "torque saturation",
-            "the drive gives no more than a limit, whatever is commanded",
-            "a motion that asks for more than the limit, and one that does not",
-            &["limit"],
-        ),
-        "actuation_delay" => (
-            "actuation delay",
-            "the torque comes later than it was commanded",
-            "sines at several frequencies",
-            &["delay"],
-        ),
-        "joint_elasticity" => (
-            "joint elasticity",
-            "the drive turns the link through a spring (belt, harmonic drive)",
-            "a second encoder, or a resonance that moves with the load",
-            &["stiffness"],
-        ),
-        "backlash" => (
-            "backlash",
-            "a gap in the gear, crossed at each reversal",
-            "the same reversals with gravity loading the gear: the gap is then closed",
-            &["halfgap"],
-        ),
-        "transmission_coupling" => (
-            "transmission coupling",
-            "another joint's motion turns this joint's drive (a geared wrist)",
-            "moves of each of the two joints alone",
-            &["viscous", "inertia", "coulomb"],
-        ),
-        "payload" => (
-            "payload",
-            "a body at the tool that the model does not have",
-            "the same motion with and without the tool's load",
-            &["mass"],
-        ),
-        "link_inertial_error" => (
-            "link inertia error",
-            "a link's mass or inertia differs from the model's",
-            "more postures and faster moves of the neighbouring joints",
-            &["relative"],
-        ),
-        "inertial_scale" => (
-            "inertial scale",
-            "all masses and inertias are a constant multiple of the model's",
-            "a known payload: a torque scale would change it too",
-            &["factor"],
-        ),
-        "gravity_misalignment" => (
-            "tilted base",
-            "the base does not stand level: gravity points elsewhere than in the model",
-            "a level, or rests in postures all around the base",
-            &["angle"],
-        ),
-        "encoder_offset" => (
-            "encoder offset",
-            "the joint's zero is not where the model has it",
-            "a mechanical reference for the zero, or rests in many postures",
-            &["offset"],
-        ),
-        "spring" => (
-            "spring",
-            "a torque that depends on the joint's position (counterbalance, gas spring, cable)",
-            "slow sweeps over the whole range, with and without a payload",
-            &["stiffness"],
-        ),
-        "external_contact" => (
-            "external contact",
-            "a force on the arm for a while (a touch, a collision, a person)",
-            "the same motion once more, untouched",
-            &["force"],
-        ),
-        other => (other, "", "", &[]),
-    };
-    Wording {
-        name,
-        meaning,
-        told_by,
-        main,
+    match effects::spec(effect) {
+        Some(spec) => Wording {
+            name: spec.title,
+            meaning: spec.meaning,
+            told_by: spec.told_by,
+            main: spec.main,
+        },
+        None => Wording {
+            name: effect,
+            meaning: "",
+            told_by: "",
+            main: &[],
+        },
     }
 }
 

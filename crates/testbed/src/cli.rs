@@ -104,7 +104,15 @@ pub struct InspectArgs {
     pub json: Option<PathBuf>,
 }
 
+/// The catalogue's effects, one a line.
+fn effects_help() -> String {
+    let line = |kind: &&dyn effects::EffectKind| format!("\n  {:<24} {}", kind.spec().name, kind.spec().meaning);
+    let lines: String = effects::CATALOGUE.iter().map(line).collect();
+    format!("Effects:{lines}")
+}
+
 #[derive(Debug, Args)]
+#[command(after_long_help = effects_help())]
 pub struct DiagnoseArgs {
     /// The robot's URDF
     #[arg(long, value_name = "URDF")]

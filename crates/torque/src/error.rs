@@ -34,28 +34,7 @@ pub enum TorqueError {
         /// What the regression says.
         source: gp::GpError,
     },
-    /// An effect on a joint that the arm has not.
-    #[error("{effect}: the robot has no joint \"{joint}\"; it has {}", known.join(", "))]
-    UnknownJoint {
-        /// The catalogue's name of the effect.
-        effect: &'static str,
-        /// The name that was given.
-        joint: String,
-        /// The arm's joints.
-        known: Vec<String>,
-    },
-    /// A parameter of an effect that no physics has.
-    #[error("{effect} of {joint}: {parameter} is {value}; it must be {requirement}")]
-    Parameter {
-        /// The catalogue's name of the effect.
-        effect: &'static str,
-        /// The joint's name, or `the whole arm`.
-        joint: String,
-        /// The parameter.
-        parameter: &'static str,
-        /// What was found.
-        value: f64,
-        /// What it must be.
-        requirement: &'static str,
-    },
+    /// An effect that does not fit the arm.
+    #[error(transparent)]
+    Effect(#[from] effects::EffectError),
 }

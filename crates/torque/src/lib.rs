@@ -6,7 +6,6 @@
 
 mod controller;
 mod corrected;
-mod effect;
 mod error;
 mod inputs;
 mod learned;
@@ -17,7 +16,6 @@ mod samples;
 
 pub use controller::{Command, Controller, Feedback};
 pub use corrected::Corrected;
-pub use effect::Effect;
 pub use error::TorqueError;
 pub use gp::{Gp, LengthScales, Lengths};
 pub use inputs::Inputs;

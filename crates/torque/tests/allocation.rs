@@ -2,10 +2,13 @@
 
 mod support;
 
+use effects::Effect;
+use effects::arm::ExternalContact;
+use effects::friction::LoadDependentFriction;
+use effects::joint::Spring;
 use support::{motion, puma560, samples};
 use torque::{
-    Command, Controller, Corrected, Effect, Feedback, Inputs, Learned, Prediction, TorqueModel, TrainingOptions,
-    Workspace,
+    Command, Controller, Corrected, Feedback, Inputs, Learned, Prediction, TorqueModel, TrainingOptions, Workspace,
 };
 
 #[test]
@@ -38,23 +41,19 @@ fn no_control_step_allocates() {
 fn a_corrected_model_does_not_allocate() {
     let joint = || puma560().joints()[1].name.clone();
     let effects = [
-        Effect::LoadDependentFriction {
-            joint: joint(),
-            coulomb: 1.0,
-            gain: 0.1,
-        },
-        Effect::Spring {
-            joint: joint(),
-            stiffness: 1.0,
-            rest: 0.0,
-            curve: vec![[0.0, 0.0], [1.0, 2.0]],
-            onset: None,
-        },
-        Effect::ExternalContact {
-            start: 0.0,
-            duration: 1.0,
-            force: [1.0, 2.0, 3.0],
-        },
+        Effect::of(&LoadDependentFriction)
+            .on(joint())
+            .with("coulomb", 1.0)
+            .with("gain", 0.1),
+        Effect::of(&Spring)
+            .on(joint())
+            .with("stiffness", 1.0)
+            .with("rest", 0.0)
+            .with("curve", vec![[0.0, 0.0], [1.0, 2.0]]),
+        Effect::of(&ExternalContact)
+            .with("start", 0.0)
+            .with("duration", 1.0)
+            .with("force", [1.0, 2.0, 3.0]),
     ];
     let model = Corrected::new(&puma560(), &effects).expect("they are physical");
     let mut workspace = Workspace::new(6);

@@ -2,8 +2,8 @@
 
 use arm::Arm;
 use diagnosis::{Diagnosis, Input, JointRollout, Report, Trace};
+use effects::Effect;
 use recording::RegularRecording;
-use torque::Effect;
 
 use crate::error::ValidateError;
 use crate::learned::{self, LearnedOptions, Motion};

@@ -142,8 +142,10 @@ fn chosen(training: &[Motion<'_>], samples: usize) -> Vec<(usize, usize)> {
 mod tests {
     use super::*;
     use crate::statistics::mean_square;
+    use effects::Effect;
+    use effects::friction::ViscousFriction;
     use std::time::Instant;
-    use torque::{Corrected, Effect};
+    use torque::Corrected;
 
     struct Data([Vec<Vec<f64>>; 4], Vec<Vec<bool>>);
 
@@ -199,9 +201,10 @@ mod tests {
     #[test]
     fn friction_is_learned_in_a_moment() {
         let arm = puma();
-        let viscous = |joint: usize| Effect::ViscousFriction {
-            joint: arm.joints()[joint].name.clone(),
-            coefficient: 8.0,
+        let viscous = |joint: usize| {
+            Effect::of(&ViscousFriction)
+                .on(arm.joints()[joint].name.clone())
+                .with("coefficient", 8.0)
         };
         let effects: Vec<Effect> = (0..6).map(viscous).collect();
         let truth = Corrected::new(&arm, &effects).expect("they are physical");

@@ -13,8 +13,9 @@ mod variant;
 
 use arm::Arm;
 use diagnosis::JointRollout;
+use effects::Effect;
+use effects::arm::Payload;
 use recording::RegularRecording;
-use torque::Effect;
 
 use self::start::Start;
 use self::variant::Variant;
@@ -136,9 +137,7 @@ pub fn rollout(
         for start in &starts {
             // What is picked up within a window is not there in it.
             let time = recording.time(start.tick);
-            let is_there = |effect: &&Effect| {
-                !matches!(effect, Effect::Payload { .. }) || effect.onset().is_none_or(|onset| onset <= time)
-            };
+            let is_there = |effect: &&Effect| !effect.is(&Payload) || effect.onset().is_none_or(|onset| onset <= time);
             let now: Vec<Effect> = effects.iter().filter(is_there).cloned().collect();
             if now != acting {
                 variant = Variant::new(which, arm, &now, &course)?;

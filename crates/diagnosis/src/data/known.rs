@@ -1,7 +1,8 @@
 //! Effects that the user has already.
 
 use arm::Arm;
-use torque::{Corrected, Effect, Prediction, Workspace};
+use effects::Effect;
+use torque::{Corrected, Prediction, Workspace};
 
 use crate::data::motion::Motions;
 use crate::error::DiagnosisError;
@@ -64,11 +65,5 @@ impl Known {
 
 /// Whether an effect depends on the past of the motion or on the commanded torque.
 fn has_memory(effect: &Effect) -> bool {
-    matches!(
-        effect,
-        Effect::ActuationDelay { .. }
-            | Effect::JointElasticity { .. }
-            | Effect::Backlash { .. }
-            | Effect::TorqueSaturation { .. }
-    )
+    effect.spec().is_simulated
 }

@@ -1,36 +1,15 @@
-//! What is measured of the recordings before anything is fitted: scales, noise, sizes to try.
+//! What is measured of the recordings before anything is fitted: scales, noise, the largest torques.
 
-use arm::{Inertia, Matrix3, Vector3};
+use effects::Scales;
 
 use crate::data::motion::{Chunk, Motions};
 use crate::data::rigid::Rigid;
-use crate::regression::columns::Scales;
-use crate::regression::term::Term;
-use crate::search::candidate::{Cause, GAPS, STOP_RATIOS};
 use crate::thresholds;
-
-/// A torque limit is at least this part of what the motion needs, by a model that may be wrong.
-const BELOW_NEED: f64 = 0.7;
-
-/// Where the ends of a gap may swing against the link, before they are refined (Hz).
-const STOP_FREQUENCY: f64 = 20.0;
 
 /// A torque that varies by less than this part of what the model needs …
 const DEAD: f64 = 0.05;
 /// … and by no more than so many times its noise behind both filters is a dead channel.
 const NOISE_ALONE: f64 = 4.0;
-
-/// The body of ten inertial parameters about a frame's origin; possible or not.
-pub fn inertia(parameters: &[f64; 10]) -> Inertia {
-    let [mass, hx, hy, hz, xx, xy, yy, xz, yz, zz] = *parameters;
-    let com = Vector3::new(hx, hy, hz) / mass;
-    let about_origin = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    Inertia {
-        mass,
-        com,
-        tensor: about_origin - mass * (Matrix3::identity() * com.norm_squared() - com * com.transpose()),
-    }
-}
 
 /// The mean; zero of nothing.
 pub fn mean<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
@@ -42,65 +21,29 @@ pub fn mean<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
     if count > 0.0 { sum / count } else { 0.0 }
 }
 
-/// Elasticities by their resonance, gaps with sprung ends, and torque limits by the largest torque.
-pub fn drives(
-    joint: usize,
-    mass: f64,
-    scales: &Scales,
-    motions: &Motions,
-    rigid: &[Rigid],
-) -> Vec<(Cause, Option<usize>, Vec<Term>)> {
-    let mut list = Vec::new();
-    if scales.speed[joint] <= scales.rest[joint] {
-        return list;
-    }
-    if mass > 0.0 {
-        for hertz in [2.5, 3.5, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0] {
-            let omega = 2.0 * std::f64::consts::PI * hertz;
-            let elastic = Term::Elastic {
-                joint,
-                stiffness: mass * omega * omega,
-                damping: 2.0 * thresholds::DAMPING_RATIO * mass * omega,
-            };
-            list.push((Cause::Elasticity, Some(joint), vec![elastic, Term::Acceleration(joint)]));
+/// The largest measured torque of each joint (N m or N).
+pub fn largest(motions: &Motions) -> Vec<f64> {
+    let torques = |joint: usize| motions.chunks.iter().flat_map(move |chunk| &chunk.tau[joint]);
+    (0..motions.dof)
+        .map(|joint| torques(joint).fold(0.0_f64, |largest, tau| largest.max(tau.abs())))
+        .collect()
+}
+
+/// The torque that the model says each joint needs, but for the largest tenth of a per cent (N m or N).
+pub fn needed(motions: &Motions, rigid: &[Rigid]) -> Vec<f64> {
+    let needed = |joint: usize| {
+        let mut needed: Vec<f64> = rigid
+            .iter()
+            .flat_map(|rigid| rigid.tau[joint].iter().map(|tau| tau.abs()))
+            .collect();
+        let at = (0.999 * needed.len() as f64) as usize;
+        if needed.is_empty() {
+            0.0
+        } else {
+            *needed.select_nth_unstable_by(at, f64::total_cmp).1
         }
-        for (share, ratio) in GAPS.iter().flat_map(|&share| STOP_RATIOS.map(|ratio| (share, ratio))) {
-            let gap = Term::Gap {
-                joint,
-                halfgap: share * scales.range[joint].min(1.5),
-                stop: mass * (2.0 * std::f64::consts::PI * STOP_FREQUENCY).powi(2),
-                ratio,
-            };
-            list.push((Cause::Backlash, Some(joint), vec![gap, Term::Acceleration(joint)]));
-        }
-    }
-    let largest = motions
-        .chunks
-        .iter()
-        .flat_map(|chunk| &chunk.tau[joint])
-        .fold(0.0_f64, |largest, tau| largest.max(tau.abs()));
-    // A drive that moved or held the arm against this torque is not limited far below it.
-    let mut needed: Vec<f64> = rigid
-        .iter()
-        .flat_map(|rigid| rigid.tau[joint].iter().map(|tau| tau.abs()))
-        .collect();
-    let at = (0.999 * needed.len() as f64) as usize;
-    let needed = if needed.is_empty() {
-        0.0
-    } else {
-        *needed.select_nth_unstable_by(at, f64::total_cmp).1
     };
-    // A position loop may ask for many times what the drive can give.
-    let wound_up = [0.027, 0.036, 0.048, 0.064, 0.085, 0.11, 0.15];
-    let usual = [0.2, 0.27, 0.36, 0.45, 0.55, 0.65, 0.73, 0.8, 0.86, 0.91, 0.95];
-    for share in wound_up.into_iter().chain(usual) {
-        let limit = share * largest;
-        if limit < BELOW_NEED * needed {
-            continue;
-        }
-        list.push((Cause::Saturation, Some(joint), vec![Term::Excess { joint, limit }]));
-    }
-    list
+    (0..motions.dof).map(needed).collect()
 }
 
 /// The standard deviation of each joint's measured torque in the recordings to be fitted (N m or N).

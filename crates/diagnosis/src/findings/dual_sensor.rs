@@ -2,8 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use effects::drive::JointElasticity;
+use effects::friction::{CoulombFriction, ViscousFriction};
+use effects::{Effect, Quantity};
 use nalgebra::{DMatrix, DVector};
-use torque::Effect;
 
 use crate::data::motion::Input;
 use crate::data::signal::Kernel;
@@ -40,7 +42,7 @@ pub fn findings(study: &Study, named: &Chosen, inputs: &[Input<'_>]) -> Vec<Find
     for joint in 0..study.motions.dof {
         let already = named.set.iter().any(|&c| {
             let candidate = &study.candidates[c];
-            candidate.joint == Some(joint) && candidate.cause == crate::search::candidate::Cause::Elasticity
+            candidate.joint == Some(joint) && candidate.cause.is(&JointElasticity)
         });
         if !already {
             list.extend(deflection(study, joint, inputs));
@@ -193,19 +195,16 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
     if !credible {
         return None;
     }
-    let revolute = study.arm.joints()[joint].kind == arm::JointKind::Revolute;
-    let unit = if revolute { "N m/rad" } else { "N/m" };
+    let kind = study.arm.joints()[joint].kind;
+    let unit = Quantity::Stiffness.unit(kind);
     let stiffness = Parameter {
         value: 1.0 / compliance,
         ci95: [1.0 / (compliance + 1.96 * error), 1.0 / (compliance - 1.96 * error)],
         unit,
     };
     let name = study.arm.joints()[joint].name.clone();
-    let effect = Effect::JointElasticity {
-        joint: name.clone(),
-        stiffness: stiffness.value,
-        damping: 0.0,
-    };
+    let effect = Effect::of(&JointElasticity).on(name.clone());
+    let effect = effect.with("stiffness", stiffness.value).with("damping", 0.0);
     let gain = result.held_out.map(|explained| 1.0 - (1.0 - explained).max(0.0).sqrt());
     Some(finding(
         effect,
@@ -240,18 +239,16 @@ fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>])
     if !result.follows(FRICTION_EXPLAINS) {
         return Vec::new();
     }
-    let revolute = study.arm.joints()[joint].kind == arm::JointKind::Revolute;
+    let kind = study.arm.joints()[joint].kind;
     let name = study.arm.joints()[joint].name.clone();
     let torque = study.scales.torque[joint].max(1e-300);
     let gain = result.held_out.map(|explained| 1.0 - (1.0 - explained).max(0.0).sqrt());
     let place = "between the motor's current and the torque sensor";
     let mut list = Vec::new();
     if result.coefficients[0] > 0.0 && result.is_clear(0) {
-        let level = result.parameter(0, if revolute { "N m" } else { "N" });
-        let effect = Effect::CoulombFriction {
-            joint: name.clone(),
-            level: level.value,
-        };
+        let level = result.parameter(0, Quantity::Torque.unit(kind));
+        let effect = Effect::of(&CoulombFriction).on(name.clone());
+        let effect = effect.with("level", level.value);
         let share = level.value / torque;
         list.push(finding(
             effect,
@@ -263,11 +260,9 @@ fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>])
         ));
     }
     if result.coefficients[1] > 0.0 && result.is_clear(1) {
-        let coefficient = result.parameter(1, if revolute { "N m s/rad" } else { "N s/m" });
-        let effect = Effect::ViscousFriction {
-            joint: name.clone(),
-            coefficient: coefficient.value,
-        };
+        let coefficient = result.parameter(1, Quantity::Damping.unit(kind));
+        let effect = Effect::of(&ViscousFriction).on(name.clone());
+        let effect = effect.with("coefficient", coefficient.value);
         let share = coefficient.value * study.scales.speed[joint] / torque;
         list.push(finding(
             effect,

@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use effects::arm::{ExternalContact, contact_window};
+use effects::laws::ACCELERATION;
 use rayon::prelude::*;
 
 use crate::findings::report::{Confusable, Finding, Place};
 use crate::findings::rivals::{Standing, standing};
 use crate::regression::bootstrap::Resampled;
 use crate::regression::fit::{Fit, Products};
-use crate::regression::term::Term;
 use crate::search::candidate::Cause;
 use crate::search::problem::Problem;
 use crate::search::study::Study;
@@ -136,7 +137,7 @@ fn rotor_share(study: &Study, judged: &Judged, candidate: usize) -> f64 {
     let rotor: Vec<usize> = columns
         .iter()
         .copied()
-        .filter(|&column| matches!(study.table.terms[column], Term::Acceleration(_)))
+        .filter(|&column| study.table.terms[column].is(&ACCELERATION))
         .collect();
     let values: Vec<f64> = rotor
         .iter()
@@ -157,7 +158,7 @@ fn held_out_gain(
 ) -> Option<f64> {
     let table = &study.table;
     let without = problem.choose(judged.named.others(member.candidate), &judged.named.fit.weights);
-    if study.candidates[member.candidate].cause == Cause::Contact {
+    if study.candidates[member.candidate].cause.is(&ExternalContact) {
         let columns = &study.candidates[member.candidate].columns;
         return Some(crate::search::scan::contact_gain(study, &without.fit, columns));
     }
@@ -204,28 +205,19 @@ fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joi
 
 fn place(study: &Study, cause: Cause, candidate: usize) -> Place {
     let terms = study.terms(candidate);
-    match (cause, terms.first()) {
-        (Cause::Contact, Some(&Term::Force { from, to, .. })) => {
-            let at = study.motions.recording_at(0.5 * (from + to));
-            let own = |time: f64| at.map_or(time, |at| study.motions.own_time(at, time));
-            let recording = at.map(|at| study.motions.sources[at].name.clone());
-            Place {
-                time: vec![[own(from), own(to)]],
-                recording,
-                state: None,
-            }
-        }
-        (Cause::Stribeck, _) => Place {
-            state: terms.iter().find_map(|term| match term {
-                Term::Stribeck { velocity, .. } => Some(format!("below about {:.3} rad/s", 2.0 * velocity)),
-                _ => None,
-            }),
-            ..Place::default()
-        },
-        (Cause::Saturation, Some(Term::Excess { limit, .. })) => Place {
-            state: Some(format!("where more than {limit:.3} N m are commanded")),
-            ..Place::default()
-        },
-        _ => Place::default(),
+    if let Some([from, to]) = terms.first().and_then(contact_window) {
+        let at = study.motions.recording_at(0.5 * (from + to));
+        let own = |time: f64| at.map_or(time, |at| study.motions.own_time(at, time));
+        let recording = at.map(|at| study.motions.sources[at].name.clone());
+        return Place {
+            time: vec![[own(from), own(to)]],
+            recording,
+            state: None,
+        };
+    }
+    let joint = &study.arm.joints()[study.candidates[candidate].joint.unwrap_or(0)];
+    Place {
+        state: cause.kind.get().region(&terms, joint.kind),
+        ..Place::default()
     }
 }

@@ -2,29 +2,18 @@
 
 use std::collections::BTreeMap;
 
+use effects::{Kind, Unseen};
 use rayon::prelude::*;
 
 use crate::findings::report::NotObservable;
 use crate::regression::fit::Products;
-use crate::regression::term::Term;
-use crate::search::candidate::{Candidate, Cause};
+use crate::search::candidate::Candidate;
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
 use crate::selection::judge::{LEAST_EVIDENCE, LEAST_SHARE};
 
 /// A linear effect is said to be hidden if it could be as large as this part of the joint's torque unseen.
 const HIDDEN: f64 = 0.06;
-
-/// Effects whose torque is in proportion to one parameter, and that parameter.
-pub const LINEAR: [(Cause, &str); 7] = [
-    (Cause::Drag, "coefficient"),
-    (Cause::RotorInertia, "inertia"),
-    (Cause::Thermal, "amplitude"),
-    (Cause::LoadDependent, "gain"),
-    (Cause::TorqueScale, "factor"),
-    (Cause::Spring, "stiffness"),
-    (Cause::EncoderOffset, "offset"),
-];
 
 /// How well a column shows on a joint.
 pub struct Visibility {
@@ -62,9 +51,9 @@ pub fn unseen(study: &Study, products: &Products, chosen: &Chosen) -> Vec<NotObs
         if products.count[joint] > 0.0 {
             continue;
         }
-        for effect in ["coulomb_friction", "viscous_friction", "rotor_inertia"] {
+        for kind in in_turn().filter(|kind| kind.spec().is_ordinary) {
             list.push(NotObservable {
-                effect,
+                effect: kind.spec().name,
                 joint: Some(study.arm.joints()[joint].name.clone()),
                 because: "the joint does not move in the training recordings".into(),
                 would_be_seen_above: BTreeMap::new(),
@@ -80,140 +69,117 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
     if products.count[joint] == 0.0 {
         return Vec::new();
     }
-    let found: Vec<Cause> = chosen
+    let found: Vec<Kind> = chosen
         .set
         .iter()
         .map(|&c| &study.candidates[c])
         .filter(|candidate| candidate.joint == Some(joint))
-        .map(|candidate| candidate.cause)
+        .map(|candidate| candidate.cause.kind)
         .collect();
     let mut list = Vec::new();
-    let mut add =
-        |effect: Cause, because: String, above: Option<(&'static str, f64)>, below: Option<(&'static str, f64)>| {
+    for kind in in_turn().filter(|kind| !found.contains(kind)) {
+        let Some(&key) = kind.spec().main.first() else { continue };
+        let mut add = |because: &str, above: Option<f64>, below: Option<f64>| {
             list.push(NotObservable {
-                effect: effect.name().unwrap_or_default(),
+                effect: kind.spec().name,
                 joint: Some(name.clone()),
-                because,
-                would_be_seen_above: above.into_iter().collect(),
-                would_be_seen_below: below.into_iter().collect(),
+                because: because.to_owned(),
+                would_be_seen_above: above.map(|size| (key, size)).into_iter().collect(),
+                would_be_seen_below: below.map(|size| (key, size)).into_iter().collect(),
             });
         };
-    if !found.contains(&Cause::Saturation) {
-        let largest = study
-            .motions
-            .chunks
-            .iter()
-            .filter(|chunk| study.fitted[chunk.recording])
-            .flat_map(|chunk| &chunk.tau[joint])
-            .fold(0.0_f64, |largest, tau| largest.max(tau.abs()));
-        add(
-            Cause::Saturation,
-            "no torque limit was reached".into(),
-            None,
-            Some(("limit", largest)),
-        );
-    }
-    for cause in [Cause::Backlash, Cause::Elasticity, Cause::Delay] {
-        if found.contains(&cause) {
-            continue;
-        }
-        // Sizes from the least to the most visible.
-        let mut visible: Vec<(f64, bool)> = of(study, cause, joint)
-            .map(|candidate| {
-                (
-                    size(study, candidate),
-                    is_seen(study, products, chosen, candidate, joint),
-                )
-            })
-            .collect();
-        visible.sort_by(|a, b| a.0.total_cmp(&b.0));
-        match cause {
-            Cause::Elasticity => {
-                // The stiffest that is seen, with all softer ones.
-                let stiffest = visible.iter().take_while(|(_, seen)| *seen).last();
-                let because = "a stiffer joint deflects less than these recordings show";
-                add(
-                    cause,
-                    because.into(),
-                    None,
-                    stiffest.map(|&(size, _)| ("stiffness", size)),
-                );
+        match kind.spec().unseen {
+            Unseen::Never => {}
+            Unseen::Limit { because } => add(because, None, Some(largest_torque(study, joint))),
+            Unseen::Sized {
+                because,
+                if_none,
+                is_seen_below,
+            } => {
+                // Sizes from the least to the largest.
+                let mut sizes: Vec<(f64, bool)> = of(study, kind, joint)
+                    .map(|candidate| {
+                        let size = study.table.terms[candidate.columns[0]].sizes[0];
+                        (size, is_seen(study, products, chosen, candidate, joint))
+                    })
+                    .collect();
+                sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
+                if is_seen_below {
+                    // The largest that is seen, with all smaller ones.
+                    let last = sizes.iter().take_while(|(_, seen)| *seen).last();
+                    add(because, None, last.map(|&(size, _)| size));
+                } else {
+                    let least = sizes.iter().rev().take_while(|(_, seen)| *seen).last();
+                    let because = if least.is_none() { if_none } else { because };
+                    add(because, least.map(|&(size, _)| size), None);
+                }
             }
-            _ => {
-                let key = if cause == Cause::Backlash { "halfgap" } else { "delay" };
-                let least = visible.iter().rev().take_while(|(_, seen)| *seen).last();
-                let because = match (cause, least) {
-                    (Cause::Backlash, None) => "the joint's load does not turn, so that a gap is never crossed",
-                    (Cause::Backlash, _) => "a smaller gap is crossed too quickly to be seen",
-                    _ => "a shorter delay shifts the torque by less than its noise",
+            Unseen::Linear {
+                if_no_form,
+                is_of_first,
+                is_of_all_torque,
+            } => {
+                let Some(candidate) = of(study, kind, joint).next() else {
+                    if let Some(because) = if_no_form {
+                        add(because, None, None);
+                    }
+                    continue;
                 };
-                add(cause, because.into(), least.map(|&(size, _)| (key, size)), None);
+                let is_new = |column: &&usize| !chosen.fit.columns.contains(*column);
+                let Some(&column) = candidate.columns.iter().rev().find(is_new) else {
+                    continue;
+                };
+                let visibility = Visibility {
+                    own: products.drop_of(&study.table, &chosen.fit, column),
+                    spread: spread(study, joint, column),
+                    count: products.count[joint],
+                    evidence: products.evidence[joint],
+                    torque: study.scales.torque[joint],
+                };
+                let least = visibility.least(needed(candidate));
+                let share = if is_of_all_torque {
+                    least
+                } else {
+                    least * visibility.spread / visibility.torque.max(1e-300)
+                };
+                if share > HIDDEN {
+                    let because = "other effects found explain the same torque in these motions";
+                    let size = if is_of_first {
+                        least / chosen.fit.coefficient(candidate.columns[0]).max(0.0)
+                    } else {
+                        least
+                    };
+                    add(because, size.is_finite().then_some(size), None);
+                }
             }
-        }
-    }
-    for (cause, key) in LINEAR {
-        if found.contains(&cause) {
-            continue;
-        }
-        let Some(candidate) = of(study, cause, joint).next() else {
-            if cause == Cause::Thermal {
-                add(
-                    cause,
-                    "the recordings are shorter than a drive takes to warm".into(),
-                    None,
-                    None,
-                );
-            }
-            continue;
-        };
-        let Some(&column) = candidate
-            .columns
-            .iter()
-            .rev()
-            .find(|c| !chosen.fit.columns.contains(*c))
-        else {
-            continue;
-        };
-        let visibility = Visibility {
-            own: products.drop_of(&study.table, &chosen.fit, column),
-            spread: spread(study, joint, column),
-            count: products.count[joint],
-            evidence: products.evidence[joint],
-            torque: study.scales.torque[joint],
-        };
-        let least = visibility.least(needed(candidate));
-        // A scale is told by the rigid torque alone, but it is a part of all of the joint's torque.
-        let share = match cause {
-            Cause::TorqueScale => least,
-            _ => least * visibility.spread / visibility.torque.max(1e-300),
-        };
-        if share > HIDDEN {
-            let because = "other effects found explain the same torque in these motions";
-            // What warms is a part of the dry friction; without that it has no size.
-            let size = match cause {
-                Cause::Thermal => least / chosen.fit.coefficient(candidate.columns[0]).max(0.0),
-                _ => least,
-            };
-            add(cause, because.into(), size.is_finite().then_some((key, size)), None);
         }
     }
     list
 }
 
-fn of(study: &Study, cause: Cause, joint: usize) -> impl Iterator<Item = &Candidate> {
+/// The kinds of effects in the order in which they are said not to be seen.
+fn in_turn() -> impl Iterator<Item = Kind> {
+    let mut kinds: Vec<Kind> = Kind::all().filter(|kind| kind.name().is_some()).collect();
+    kinds.sort_by_key(|kind| kind.spec().unseen_turn);
+    kinds.into_iter()
+}
+
+/// The largest torque of a joint in the training recordings (N m or N).
+fn largest_torque(study: &Study, joint: usize) -> f64 {
+    study
+        .motions
+        .chunks
+        .iter()
+        .filter(|chunk| study.fitted[chunk.recording])
+        .flat_map(|chunk| &chunk.tau[joint])
+        .fold(0.0_f64, |largest, tau| largest.max(tau.abs()))
+}
+
+fn of(study: &Study, kind: Kind, joint: usize) -> impl Iterator<Item = &Candidate> {
     study
         .candidates
         .iter()
-        .filter(move |candidate| candidate.cause == cause && candidate.joint == Some(joint))
-}
-
-fn size(study: &Study, candidate: &Candidate) -> f64 {
-    match study.table.terms[candidate.columns[0]] {
-        Term::Gap { halfgap, .. } => halfgap,
-        Term::Elastic { stiffness, .. } => stiffness,
-        Term::Late { delay, .. } => delay,
-        _ => f64::NAN,
-    }
+        .filter(move |candidate| candidate.cause.kind == kind && candidate.joint == Some(joint))
 }
 
 /// The evidence that a name needs here (nats).

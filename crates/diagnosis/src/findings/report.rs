@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use effects::Effect;
 use serde::Serialize;
-use torque::Effect;
 
 use crate::next::NextExperiment;
 

@@ -1,5 +1,8 @@
 //! What a finding could be instead: other causes, fitted in its place with all else refitted.
 
+use effects::arm::{InertialScale, LinkInertialError};
+use effects::friction::{CoulombFriction, FrictionAsymmetry};
+use effects::sensor::{TorqueOffset, TorqueScale};
 use rayon::prelude::*;
 
 use crate::search::candidate::Cause;
@@ -68,14 +71,14 @@ pub fn beside(study: &Study, chosen: &Chosen, member: usize) -> Vec<usize> {
 pub fn alias(study: &Study, chosen: &Chosen, member: usize, set: &[usize]) -> Option<(Cause, Option<usize>)> {
     let finding = &study.candidates[member];
     let constant = *finding.columns.first()?;
-    let sets_in = finding.cause == Cause::TorqueOffset && study.table.terms[constant].onset().is_some();
+    let sets_in = finding.cause.is(&TorqueOffset) && study.table.terms[constant].onset().is_some();
     let is_larger_friction = |&c: &usize| {
         let other = &study.candidates[c];
-        other.cause == Cause::Coulomb
+        other.cause.is(&CoulombFriction)
             && other.joint == finding.joint
             && chosen.fit.coefficient(other.columns[0]) > chosen.fit.coefficient(constant).abs()
     };
-    (sets_in && set.iter().any(is_larger_friction)).then_some((Cause::Asymmetry, finding.joint))
+    (sets_in && set.iter().any(is_larger_friction)).then_some((Cause::of(&FrictionAsymmetry), finding.joint))
 }
 
 /// Tries everything else in the place of `member`.
@@ -89,7 +92,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         // What holds all of the finding's columns and more is a finer form of it, not another cause.
         let finer = finding.columns.iter().all(|column| other.columns.contains(column));
         // A body's inertia is felt by all joints before it: what one link has too much, its neighbour may have.
-        let are_links = finding.cause == Cause::LinkError && other.cause == Cause::LinkError;
+        let are_links = finding.cause.is(&LinkInertialError) && other.cause.is(&LinkInertialError);
         !same_name
             && !finer
             && other.cause.name().is_some()
@@ -123,13 +126,13 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         .iter()
         .map(|&c| (study.candidates[c].cause, study.candidates[c].joint, vec![c]))
         .collect();
-    if finding.cause == Cause::InertialScale {
+    if finding.cause.is(&InertialScale) {
         // Masses all too large, or torques all measured too large: one and the same without a known load.
         let factors: Vec<usize> = (0..study.candidates.len())
-            .filter(|&c| study.candidates[c].cause == Cause::TorqueScale)
+            .filter(|&c| study.candidates[c].cause.is(&TorqueScale))
             .collect();
         for &c in &factors {
-            sets.push((Cause::TorqueScale, study.candidates[c].joint, factors.clone()));
+            sets.push((Cause::of(&TorqueScale), study.candidates[c].joint, factors.clone()));
         }
     }
     let explained = without.fit.loss - chosen.fit.loss;

@@ -17,76 +17,30 @@ fn number(value: f64) -> String {
     }
 }
 
+/// The sentence of the finding's effect with its numbers.
+fn filled(finding: &Finding) -> String {
+    let mut parts = finding.as_effect.spec().sentence.split('{');
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (key, rest) = part.split_once('}').unwrap_or((part, ""));
+        let number = |key: &str, factor: f64| finding.parameters.get(key).map(|p| (number(factor * p.value), p.unit));
+        match (key, key.strip_suffix('%')) {
+            ("other", _) => text.push_str(finding.other.as_deref().unwrap_or("another joint")),
+            (_, Some(key)) => text.push_str(&number(key, 100.0).map_or_else(String::new, |(number, _)| number)),
+            _ => match number(key, 1.0) {
+                Some((number, "1")) => text.push_str(&number),
+                Some((number, unit)) => text.push_str(&format!("{number} {unit}")),
+                None => {}
+            },
+        }
+        text.push_str(rest);
+    }
+    text
+}
+
 /// A finding in one sentence.
 pub fn of(finding: &Finding, fit: &BTreeMap<String, JointFit>) -> String {
-    let value = |key: &str| -> String {
-        finding.parameters.get(key).map_or_else(String::new, |p| {
-            format!("{} {}", number(p.value), p.unit)
-                .trim_end_matches(" 1")
-                .to_owned()
-        })
-    };
-    let scaled = |key: &str, factor: f64| -> String {
-        let parameter = finding.parameters.get(key);
-        parameter.map_or_else(String::new, |p| number(factor * p.value))
-    };
-    let what = match finding.effect {
-        "viscous_friction" => format!("viscous friction of {}", value("coefficient")),
-        "coulomb_friction" => format!("dry friction of {}", value("level")),
-        "friction_asymmetry" => format!(
-            "dry friction that depends on the direction, {} forwards and {} backwards",
-            value("positive"),
-            value("negative")
-        ),
-        "stribeck_friction" => format!(
-            "dry friction that falls from {} to {} within about {}",
-            value("breakaway"),
-            value("coulomb"),
-            value("velocity")
-        ),
-        "load_dependent_friction" => format!("dry friction of {} and {} of the load", value("coulomb"), value("gain")),
-        "thermal_drift" => format!(
-            "dry friction of {}, larger by a factor {} at first, fading within {}",
-            value("coulomb"),
-            value("amplitude"),
-            value("time_constant")
-        ),
-        "quadratic_drag" => format!("a drag of {}", value("coefficient")),
-        "rotor_inertia" => format!("a drive's inertia of {}", value("inertia")),
-        "torque_scale" => format!("torque measured {} times too large", value("factor")),
-        "torque_offset" => format!("a constant torque of {}", value("offset")),
-        "torque_ripple" => format!(
-            "a ripple of {} with {} periods a turn",
-            value("amplitude"),
-            value("periods")
-        ),
-        "torque_saturation" => format!("torque limited at {}", value("limit")),
-        "actuation_delay" => format!("torque applied {} late", value("delay")),
-        "joint_elasticity" => format!("a spring of {} between drive and link", value("stiffness")),
-        "backlash" => format!("a gap of ± {}", value("halfgap")),
-        "transmission_coupling" => format!(
-            "a drive turned by {} too, with {} of friction and {} of inertia",
-            finding.other.as_deref().unwrap_or("another joint"),
-            value("viscous"),
-            value("inertia")
-        ),
-        "payload" => format!("a payload of {} at the tool", value("mass")),
-        "link_inertial_error" => format!(
-            "a link whose mass and inertia are off by {} %",
-            scaled("relative", 100.0)
-        ),
-        "inertial_scale" => format!("all masses and inertias {} times the model's", value("factor")),
-        "gravity_misalignment" => format!("a base tilted by {}", value("angle")),
-        "encoder_offset" => format!("an encoder off by {}", value("offset")),
-        "spring" => format!("a spring-like torque of {} about {}", value("stiffness"), value("rest")),
-        "external_contact" => format!(
-            "a force of {} on the tool for {} from {}",
-            value("force"),
-            value("duration"),
-            value("start")
-        ),
-        other => other.replace('_', " "),
-    };
+    let what = filled(finding);
     let what = match finding.parameters.get("onset") {
         Some(onset) => format!("{what} from {} s on", number(onset.value)),
         None => what,

@@ -1,10 +1,10 @@
 //! What the figures are drawn from.
 
+use effects::drive::RotorInertia;
+use effects::laws::ACCELERATION;
 use rayon::prelude::*;
 
 use crate::findings::report::{Finding, Trace, Traces};
-use crate::regression::term::Term;
-use crate::search::candidate::Cause;
 use crate::search::study::Study;
 use crate::selection::judge::Judged;
 
@@ -19,13 +19,13 @@ pub fn traces(study: &Study, judged: &Judged, findings: &[(Finding, Option<usize
                 return vec![Vec::new(); dof];
             };
             // A drive's inertia named with a spring or a gap has a column of its own.
-            let is_rotor = finding.effect == "rotor_inertia" && study.candidates[member].cause != Cause::RotorInertia;
+            let is_rotor = finding.as_effect.is(&RotorInertia) && !study.candidates[member].cause.is(&RotorInertia);
             let columns: Vec<usize> = study.candidates[member]
                 .columns
                 .iter()
                 .copied()
                 .filter(|&column| {
-                    let accelerates = matches!(table.terms[column], Term::Acceleration(_));
+                    let accelerates = table.terms[column].is(&ACCELERATION);
                     let alone = study.candidates[member].columns.len() == 1;
                     alone || accelerates == is_rotor
                 })

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use effects::arm::ExternalContact;
+use effects::{Effect, EffectKind};
 use nalgebra::{Matrix3, Vector3};
-use torque::Effect;
 
 use crate::findings::report::{Finding, Parameter, Place, TimeWindow};
-use crate::search::candidate::Cause;
 use crate::search::scan;
 use crate::search::study::Study;
 use crate::selection::judge::Judged;
@@ -68,7 +68,7 @@ pub fn bursts(study: &Study, judged: &Judged, left: &[Vec<f64>]) -> Bursts {
         .named
         .set
         .iter()
-        .filter(|&&c| study.candidates[c].cause == Cause::Contact)
+        .filter(|&&c| study.candidates[c].cause.is(&ExternalContact))
         .count();
     let mut pushes: Vec<Push> = Vec::new();
     for (from, to) in windows {
@@ -260,7 +260,7 @@ fn contact(study: &Study, left: &[Vec<f64>], pushes: &[Push]) -> Option<Finding>
         })
         .collect();
     Some(Finding {
-        effect: "external_contact",
+        effect: ExternalContact.spec().name,
         joint: None,
         other: None,
         parameters: BTreeMap::from([
@@ -280,10 +280,9 @@ fn contact(study: &Study, left: &[Vec<f64>], pushes: &[Push]) -> Option<Finding>
         },
         sentence: String::new(),
         corrects: false,
-        as_effect: Effect::ExternalContact {
-            start: from,
-            duration: to - from,
-            force: force.into(),
-        },
+        as_effect: Effect::of(&ExternalContact)
+            .with("start", from)
+            .with("duration", to - from)
+            .with("force", [force.x, force.y, force.z]),
     })
 }

@@ -7,7 +7,6 @@ use crate::findings::report::{Finding, JointFit, Located, TimeWindow, Unexplaine
 use crate::findings::sentences;
 use crate::findings::transients::Bursts;
 use crate::regression::fit::Products;
-use crate::search::candidate::Cause;
 use crate::search::study::Study;
 use crate::selection::judge::Judged;
 
@@ -17,14 +16,10 @@ pub fn unexplained(study: &Study, judged: &Judged, bursts: &Bursts, left: &[Vec<
     for member in &judged.nameless {
         let candidate = &study.candidates[member.candidate];
         let Some(joint) = candidate.joint else { continue };
-        let other = |joint: usize| format!("other_joint:{}", study.arm.joints()[joint].name);
-        let on = match candidate.cause {
-            Cause::OwnPosition => "own_position".to_owned(),
-            Cause::OtherPosition(of) | Cause::OtherSpeed(of) => other(of),
-            Cause::History => "history".to_owned(),
-            Cause::Product => "own_position_times_speed".to_owned(),
-            Cause::Periodic | Cause::Time => "time".to_owned(),
-            _ => continue,
+        let on = match (candidate.cause.spec().depends_on, candidate.cause.other) {
+            ("", _) => continue,
+            (kind, Some(other)) => format!("{kind}:{}", study.arm.joints()[other].name),
+            (kind, None) => kind.to_owned(),
         };
         let entry = by_joint.entry(joint).or_default();
         entry.0 = entry.0.hypot(member.share());

@@ -1,5 +1,7 @@
 //! What would tell where no motion does.
 
+use effects::Spec;
+
 use super::report::{Left, Untold};
 use crate::findings::report::Confusable;
 
@@ -60,39 +62,19 @@ pub fn untold(
 
 /// The experiment that tells two effects apart which no motion does.
 fn instead(finding: &str, rival: &str) -> &'static str {
-    let is = |a: &str, b: &str| (finding == a && rival == b) || (finding == b && rival == a);
-    let has = |a: &str| finding == a || rival == a;
-    if has("friction_asymmetry") && (has("torque_offset") || has("spring")) {
-        return "read the drive's torque with its brake closed and no current: an offset of the reading stays, friction does not";
-    }
-    if is("inertial_scale", "torque_scale") || (has("torque_scale") && has("link_inertial_error")) {
-        return "put a body of known mass on the tool and record the same motion: a wrong scale of the torque changes its weight, \
-                wrong masses of the links do not";
-    }
-    if has("payload") {
-        return "take off what the tool carries and record the same motion: what is left is not a payload";
-    }
-    if has("rotor_inertia") {
-        return "put a body of known inertia on the tool: a drive's inertia does not change with the pose and the load, a link's does; \
-                or take the drive's from its data sheet (--known)";
-    }
-    if has("gravity_misalignment") {
-        return "put a level on the base: what is left then is not a tilt";
-    }
-    if has("encoder_offset") {
-        return "drive the joint to a mechanical reference, or measure its angle: an encoder's offset shows there";
-    }
-    if has("torque_offset") || has("torque_scale") {
-        return "read the torque under a known load at rest, once on either side of upright: offset and scale show there";
-    }
-    if has("backlash") || has("joint_elasticity") || has("actuation_delay") {
-        return "record a second encoder behind the gear: it sees a gap or a spring, and no delay";
-    }
-    if has("thermal_drift") {
-        return "record the same motion on the cold and on the warm drive, on one clock";
-    }
-    if has("external_contact") {
-        return "record the same motion again with nothing in the arm's way";
-    }
-    "another sensor: a torque sensor or an encoder behind the gear, or a known load on the tool"
+    let specs = [finding, rival].map(effects::spec);
+    let against = |spec: Option<&'static Spec>, other: &str| {
+        let all = spec?.experiments_against;
+        all.iter().find(|(name, _)| *name == other).map(|(_, text)| *text)
+    };
+    let of_two = against(specs[0], rival).or_else(|| against(specs[1], finding));
+    let of_one = || {
+        let experiments = specs.iter().flatten().filter_map(|spec| spec.experiment);
+        experiments
+            .max_by_key(|experiment| experiment.rank)
+            .map(|experiment| experiment.text)
+    };
+    of_two
+        .or_else(of_one)
+        .unwrap_or("another sensor: a torque sensor or an encoder behind the gear, or a known load on the tool")
 }

@@ -1,7 +1,9 @@
 //! What a motion may ask of the joints, and whether it stays within.
 
 use arm::Arm;
-use torque::{Corrected, Effect, Motion, Prediction, Reference, TorqueError, Workspace};
+use effects::Effect;
+use effects::drive::TorqueSaturation;
+use torque::{Corrected, Motion, Prediction, Reference, TorqueError, Workspace};
 
 use super::report::JointLimits;
 use crate::search::study::Study;
@@ -41,7 +43,7 @@ impl Limits {
     /// # Errors
     /// If the effects cannot be put into the model.
     pub fn new(study: &Study, (arm, effects): (&Arm, &[Effect]), explain: bool) -> Result<Self, TorqueError> {
-        let is_limit = |effect: &&Effect| matches!(effect, Effect::TorqueSaturation { .. });
+        let is_limit = |effect: &&Effect| effect.is(&TorqueSaturation);
         let (found, others): (Vec<&Effect>, Vec<&Effect>) = effects.iter().partition(is_limit);
         let with = |effects: Vec<&Effect>| Corrected::new(arm, &effects.into_iter().cloned().collect::<Vec<_>>());
         let (found, model) = (with(found)?, with(others)?);

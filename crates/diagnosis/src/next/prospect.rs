@@ -1,5 +1,6 @@
 //! What the recordings and a motion that nobody has made yet would say together.
 
+use effects::Term;
 use torque::{Motion, Reference};
 
 use super::designs::DURATION;
@@ -11,7 +12,6 @@ use crate::findings::rivals;
 use crate::regression::columns::values;
 use crate::regression::fit::{Products, evidence_rate};
 use crate::regression::table::{Moving, Table};
-use crate::regression::term::Term;
 use crate::search::physics::is_possible;
 use crate::search::problem::Chosen;
 use crate::search::study::{About, Study};
@@ -78,7 +78,7 @@ impl<'a> Prospect<'a> {
         let template = fitted().max_by_key(|chunk| chunk.ticks())?;
         // A sum of slow sines needs no finer grid.
         let (period, stride) = (COARSER as f64 * template.period, template.stride.div_ceil(COARSER));
-        let needs = |term: &Term| matches!(term, Term::Elastic { .. } | Term::Gap { .. } | Term::EncoderOffset(_));
+        let needs = |term: &Term| term.law.needs_derivatives;
         let dof = study.motions.dof;
         let end = study.motions.chunks.iter().map(|chunk| chunk.time(chunk.ticks()));
         let mut torque = vec![[0.0; 3]; dof];
@@ -223,10 +223,10 @@ impl<'a> Prospect<'a> {
         for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
             let term = self.study.table.terms[column];
             // A motion within a limit that was found has nothing beyond it.
-            if is_carried(term) || matches!(term, Term::Excess { .. }) {
+            if is_carried(term) || term.law.cuts {
                 continue;
             }
-            if matches!(term, Term::Late { .. }) {
+            if term.law.is_of_torque {
                 own.push((term, value));
                 continue;
             }

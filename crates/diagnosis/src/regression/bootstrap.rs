@@ -1,12 +1,12 @@
 //! Intervals by resampling: blocks of time weighted at random again and again, each time fitted anew (Rubin 1981, The
 //! Bayesian bootstrap). No block is ever left out, so that what acts once, like a push, keeps its rows.
 
+use effects::{Size, Term};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::regression::term::Term;
 use crate::search::problem::Chosen;
-use crate::search::refine::{Size, sizes, varied};
+use crate::search::refine::{sizes, varied};
 use crate::search::study::Study;
 
 /// Resamplings.
@@ -32,12 +32,8 @@ pub struct Resampled {
 }
 
 impl Resampled {
-    /// The estimate and the 95 % interval of a function of the parameters.
-    pub fn interval(&self, f: impl Fn(&[f64]) -> f64) -> (f64, [f64; 2]) {
-        self.interval_within(SYSTEMATIC, f)
-    }
-
-    /// The same, where `systematic`, a part of the value, is what no repetition shows.
+    /// The estimate and the 95 % interval of a function of the parameters, where `systematic`, a part of the value, is what no
+    /// repetition shows.
     pub fn interval_within(&self, systematic: f64, f: impl Fn(&[f64]) -> f64) -> (f64, [f64; 2]) {
         let value = f(&self.estimate);
         let mut draws: Vec<f64> = self

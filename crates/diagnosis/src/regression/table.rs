@@ -2,13 +2,12 @@
 
 use std::ops::Range;
 
+use effects::{Behind, Scales, Term};
 use rayon::prelude::*;
 
 use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
-use crate::regression::columns::{Scales, values};
-use crate::regression::compliance::Behind;
-use crate::regression::term::Term;
+use crate::regression::columns::{behind, behind_torque, values};
 use crate::thresholds;
 
 mod gram;
@@ -202,12 +201,12 @@ impl Table {
             .collect();
         for (terms, copies) in terms.chunks(BATCH).zip(copies.chunks(BATCH)) {
             // What lies behind a joint that gives is simulated once, for all joints that feel it.
-            let behind: Vec<Vec<Behind>> = terms
+            let links: Vec<Vec<Behind>> = terms
                 .par_iter()
                 .map(|&term| {
                     let along = motions.chunks.iter().zip(rigid);
                     along
-                        .filter_map(|(chunk, rigid)| Behind::new(term, chunk, rigid))
+                        .filter_map(|(chunk, rigid)| behind(term, chunk, rigid, scales))
                         .collect()
                 })
                 .collect();
@@ -217,7 +216,7 @@ impl Table {
                 .enumerate()
                 .map(|(joint, table)| {
                     let mut places = Vec::with_capacity(terms.len());
-                    for ((&term, &copy), behind) in terms.iter().zip(copies).zip(&behind) {
+                    for ((&term, &copy), links) in terms.iter().zip(copies).zip(&links) {
                         if let (Some(copy), Some(known)) = (copy, known) {
                             places.push(known.place[joint][copy].map(|place| {
                                 table.x.push(known.joints[joint].x[place].clone());
@@ -227,8 +226,8 @@ impl Table {
                         }
                         let mut column = Vec::new();
                         for (c, (chunk, rigid)) in motions.chunks.iter().zip(rigid).enumerate() {
-                            let values = match behind.get(c) {
-                                Some(behind) => Some(behind.torque(joint, rigid)),
+                            let values = match links.get(c) {
+                                Some(link) => Some(behind_torque(link, joint, chunk, rigid, scales)),
                                 None => values(term, joint, chunk, rigid, scales),
                             };
                             match values {

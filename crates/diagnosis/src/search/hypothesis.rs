@@ -1,7 +1,9 @@
 //! A hypothesis: the effects that were asked for, fitted together, with no search and no judgement.
 
+use effects::Scope;
+use effects::drive::FARTHEST_COUPLED;
+
 use crate::error::DiagnosisError;
-use crate::search::candidate::{Cause, FARTHEST_COUPLED};
 use crate::search::problem::{Chosen, Problem};
 use crate::search::refine::resize;
 use crate::search::study::Study;
@@ -123,17 +125,15 @@ fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, Diag
         {
             return Err(one.refused("is looked for between joints that are next to each other, or one apart"));
         }
-        let on_arm = |effect: &str| Cause::ON_THE_ARM.iter().any(|cause| cause.name() == Some(effect));
-        let on_joint = |effect: &str| Cause::ON_A_JOINT.iter().any(|cause| cause.name() == Some(effect));
-        match (joint, on_arm(&one.effect), on_joint(&one.effect)) {
-            (_, false, false) => return Err(one.refused("no such effect is in the catalogue")),
-            (Some(_), true, _) => return Err(one.refused("is on the whole arm; leave the joint out")),
-            (None, false, _) => return Err(one.refused("is on a joint; give it as effect:joint")),
+        let Some(spec) = effects::spec(&one.effect) else {
+            return Err(one.refused("no such effect is in the catalogue"));
+        };
+        match (joint, spec.scope) {
+            (Some(_), Scope::Arm) => return Err(one.refused("is on the whole arm; leave the joint out")),
+            (None, Scope::Joint) => return Err(one.refused("is on a joint; give it as effect:joint")),
             _ => {}
         }
-        // Two pushes may be, and two ripples on a joint.
-        let may_repeat = ["external_contact", "torque_ripple"].contains(&one.effect.as_str());
-        if !may_repeat && wanted[..k].contains(one) {
+        if !spec.may_repeat && wanted[..k].contains(one) {
             return Err(one.refused("is given twice"));
         }
         let wanted = one;
@@ -157,10 +157,8 @@ fn best(
         let candidate = &problem.candidates[c];
         // What was asked for twice is there twice, not once in two sizes.
         let is_twin = |&other: &usize| problem.candidates[other].cause == candidate.cause && problem.exclude(c, other);
-        let is_pair = match candidate.cause {
-            Cause::Coupling(with) => other.is_none_or(|other| other == with),
-            _ => true,
-        };
+        let with = candidate.cause.other;
+        let is_pair = with.is_none() || other.is_none() || other == with;
         candidate.cause.name() == Some(wanted.effect.as_str())
             && candidate.joint == joint
             && is_pair

@@ -1,6 +1,8 @@
 //! The order of the search: suggest, grow, refine, relinearise, swap.
 
-use crate::search::candidate::Cause;
+use effects::arm::ExternalContact;
+use effects::drive::TorqueRipple;
+
 use crate::search::problem::Chosen;
 use crate::search::refine::refine;
 use crate::search::study::Study;
@@ -19,7 +21,7 @@ const LAST: usize = 3;
 pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
     let fitted = study.fitted.clone();
     let ordinary: Vec<usize> = (0..study.candidates.len())
-        .filter(|&c| matches!(study.candidates[c].cause, Cause::Viscous | Cause::Coulomb))
+        .filter(|&c| study.candidates[c].cause.is_friction())
         .collect();
     let products = study.products(|r| fitted[r]);
     let mut chosen = study.problem(&products).choose(ordinary, &products.first_weights());
@@ -35,7 +37,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
             .filter(|&c| {
                 let cause = study.candidates[c].cause;
                 let sets_in = study.terms(c).iter().any(|term| term.onset().is_some());
-                cause.name().is_some() && !sets_in && !matches!(cause, Cause::Ripple | Cause::Contact)
+                cause.name().is_some() && !sets_in && !cause.is(&TorqueRipple) && !cause.is(&ExternalContact)
             })
             .collect();
         chosen = study.problem(&products).choose(named, &chosen.fit.weights);

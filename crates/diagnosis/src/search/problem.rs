@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use arm::Arm;
+use effects::drive::RotorInertia;
 use rayon::prelude::*;
 
 use crate::regression::fit::{Fit, Products};
@@ -82,7 +83,7 @@ impl Problem<'_> {
         let counted: usize = set.iter().map(|&c| self.candidates[c].columns.len()).sum();
         let drives = set
             .iter()
-            .filter(|&&c| self.candidates[c].cause == Cause::RotorInertia)
+            .filter(|&&c| self.candidates[c].cause.is(&RotorInertia))
             .count();
         own - crate::search::candidate::PER_COEFFICIENT * (counted - self.columns(set).len()) as f64
             - KNOWN_DRIVE * drives.saturating_sub(TELLING_DRIVES) as f64

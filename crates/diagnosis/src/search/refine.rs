@@ -1,10 +1,9 @@
 //! Sizes that a column is not linear in, found by trying sizes between the catalogue's.
 
+use effects::{Size, Term};
 use rayon::prelude::*;
 
 use crate::data::measure::mean;
-use crate::regression::term::Term;
-use crate::search::candidate::STOP_RATIOS;
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
 
@@ -16,27 +15,8 @@ const ROUNDS: [[f64; 4]; 4] = [
     [0.988, 0.994, 1.006, 1.012],
 ];
 
-/// The shortest memory that is none of friction (s).
-const SHORTEST_MEMORY: f64 = 0.1;
 /// The first step about an onset (s).
 const ONSET_STEP: f64 = 0.4;
-
-/// A size that a column is not linear in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Size {
-    /// A velocity, a time, a limit, a stiffness, a gap.
-    Main,
-    /// The damping beside a stiffness.
-    Damping,
-    /// What the ends of a gap give.
-    Stop,
-    /// How long a contact lasts.
-    Duration,
-    /// The periods of a ripple.
-    Periods,
-    /// The exponent of a drag; a form rather than a size, it has no interval.
-    Exponent,
-}
 
 /// The sizes that some terms have, of which there are intervals.
 pub fn sizes(terms: &[Term]) -> Vec<Size> {
@@ -48,31 +28,7 @@ pub fn sizes(terms: &[Term]) -> Vec<Size> {
 
 /// The same terms with one size times `factor`.
 pub fn varied(terms: &[Term], size: Size, factor: f64) -> Vec<Term> {
-    let mut terms = terms.to_vec();
-    for term in &mut terms {
-        match (size, term) {
-            (
-                Size::Main,
-                Term::Stribeck { velocity: value, .. }
-                | Term::Warm {
-                    time_constant: value, ..
-                }
-                | Term::Excess { limit: value, .. }
-                | Term::Late { delay: value, .. }
-                | Term::Elastic { stiffness: value, .. }
-                | Term::Gap { halfgap: value, .. },
-            )
-            | (Size::Damping, Term::Elastic { damping: value, .. })
-            | (Size::Stop, Term::Gap { stop: value, .. })
-            | (Size::Periods, Term::Ripple { periods: value, .. })
-            | (Size::Exponent, Term::Drag { exponent: value, .. }) => *value *= factor,
-            // What is forgotten sooner is the velocity itself.
-            (Size::Main, Term::Memory(_, value, _)) => *value = (*value * factor).max(SHORTEST_MEMORY),
-            (Size::Duration, Term::Force { from, to, .. }) => *to = *from + factor * (*to - *from),
-            _ => {}
-        }
-    }
-    terms
+    terms.iter().map(|term| term.varied(size, factor)).collect()
 }
 
 /// The same terms with their main size, or exponent, times `factor`; empty if they have none.
@@ -91,23 +47,10 @@ fn forms(terms: &[Term]) -> Vec<Vec<Term>> {
         let mut other = terms.to_vec();
         let mut changed = false;
         for term in &mut other {
-            match term {
-                Term::Stribeck { exponent, velocity, .. } => {
-                    *exponent = 3.0 - *exponent;
-                    *velocity *= factor;
-                    changed = true;
-                }
-                Term::Gap { stop, ratio, .. } if stop.is_finite() => {
-                    *ratio *= factor.powi(2);
-                    changed |= factor != 1.0;
-                }
-                Term::Force { from, to, round, .. } => {
-                    *round = !*round;
-                    let (middle, half) = (0.5 * (*from + *to), 0.5 * factor * (*to - *from));
-                    (*from, *to) = (middle - half, middle + half);
-                    changed = true;
-                }
-                _ => {}
+            if let (Some(other_form), None) = (term.law.other_form, term.onset()) {
+                let (form, is_other) = other_form(term, factor);
+                *term = form;
+                changed |= is_other;
             }
         }
         if changed {
@@ -117,25 +60,19 @@ fn forms(terms: &[Term]) -> Vec<Vec<Term>> {
     list
 }
 
-/// Where the ends of a gap that were rigid may swing against the link, first (Hz).
-const FIRST_STOPS: [f64; 3] = [12.0, 20.0, 32.0];
-
-/// The same terms with each of the first stiffnesses of a gap's ends, if they are rigid; `mass` is of the link (kg m²).
+/// The same terms with ends that give, where they were rigid; `mass` is of the link (kg m²).
 fn softened(terms: &[Term], mass: f64) -> Vec<Vec<Term>> {
-    let soften = |(hertz, first): (f64, f64)| -> Option<Vec<Term>> {
-        let mut terms = terms.to_vec();
-        let (stop, ratio) = terms.iter_mut().find_map(|term| match term {
-            Term::Gap { stop, ratio, .. } if stop.is_infinite() => Some((stop, ratio)),
-            _ => None,
-        })?;
-        *stop = mass * (2.0 * std::f64::consts::PI * hertz).powi(2);
-        *ratio = first;
-        Some(terms)
+    let soft = |term: &Term| (term.law.softened)(term, mass);
+    let Some((at, soft)) = terms.iter().map(soft).enumerate().find(|(_, soft)| !soft.is_empty()) else {
+        return Vec::new();
     };
-    let first = FIRST_STOPS
-        .iter()
-        .flat_map(|&hertz| STOP_RATIOS.map(|ratio| (hertz, ratio)));
-    first.filter_map(soften).collect()
+    soft.into_iter()
+        .map(|term| {
+            let mut terms = terms.to_vec();
+            terms[at] = term;
+            terms
+        })
+        .collect()
 }
 
 /// Variants of a candidate's terms in a round of refinement; `mass` is the inertia of its link (kg m² or kg).
@@ -159,59 +96,29 @@ fn variants(terms: &[Term], round: usize, mass: f64) -> Vec<Vec<Term>> {
     list.extend(if round < FORMS { forms(terms) } else { Vec::new() });
     // A finer step about a ripple's period, relative to one period over the range.
     let nudges = [-1.0, -0.4, 0.4, 1.0].map(|step| step * 0.25_f64.powi(round as i32));
-    let mut nudged = |change: &dyn Fn(&mut Term, f64) -> bool| {
+    for kind in 0..NUDGES {
         for step in nudges {
-            let mut terms = terms.to_vec();
-            let mut changed = false;
-            for term in &mut terms {
-                changed |= change(term, step);
-            }
-            if changed {
-                list.push(terms);
+            let nudged = terms.iter().map(|term| nudged(term, kind, step));
+            let new: Vec<Option<Term>> = nudged.collect();
+            if new.iter().any(Option::is_some) {
+                let both = new.into_iter().zip(terms);
+                list.push(both.map(|(new, old)| new.unwrap_or(*old)).collect());
             }
         }
-    };
-    nudged(&|term, step| match term {
-        Term::Ripple { periods, .. } => {
-            *periods *= 1.0 + 0.02 * step;
-            true
-        }
-        Term::Wave { omega, .. } => {
-            *omega *= 1.0 + 0.01 * step;
-            true
-        }
-        Term::Since { from, .. } => {
-            *from += ONSET_STEP * step;
-            true
-        }
-        Term::Force { from, to, .. } => {
-            *from += 0.25 * step * (*to - *from).max(0.3);
-            true
-        }
-        _ => false,
-    });
-    nudged(&|term, step| match term {
-        Term::Force { from, to, .. } => {
-            *to += 0.25 * step * (*to - *from).max(0.3);
-            true
-        }
-        _ => false,
-    });
-    nudged(&|term, step| match term {
-        Term::Force { from, to, .. } => {
-            let (middle, half) = (0.5 * (*from + *to), 0.5 * (*to - *from) * (0.4 * step).exp());
-            (*from, *to) = (middle - half, middle + half);
-            true
-        }
-        _ => false,
-    });
-    list.retain(|terms| {
-        terms.iter().all(|term| match term {
-            Term::Force { from, to, .. } => to - from > 0.05,
-            _ => true,
-        })
-    });
+    }
+    list.retain(|terms| terms.iter().all(|term| (term.law.is_sound)(term)));
     list
+}
+
+/// The most kinds of finer steps that a law has.
+const NUDGES: usize = 3;
+
+/// A term a finer step on, of the step's `kind`; `None` if it has none.
+fn nudged(term: &Term, kind: usize, step: f64) -> Option<Term> {
+    match term.onset() {
+        Some(from) => (kind == 0).then(|| term.since(from + ONSET_STEP * step)),
+        None => term.law.nudges.get(kind).map(|nudge| nudge(term, step)),
+    }
 }
 
 /// Finds the sizes of what is in `chosen`, coarsely first if they were not refined before, and takes out what then does not pay.

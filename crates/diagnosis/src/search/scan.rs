@@ -1,12 +1,11 @@
 //! Candidates that the residual itself suggests: when a contact was, which period a ripple has.
 
+use effects::Scales;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::data::motion::Motions;
-use crate::regression::columns::Scales;
 use crate::regression::fit::Fit;
 use crate::regression::table::Table;
-use crate::regression::term::Term;
 use crate::search::study::Study;
 
 mod onsets;
@@ -224,11 +223,6 @@ pub fn golden(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
         }
     }
     0.5 * (low + high)
-}
-
-/// The terms of a contact in a window.
-pub fn contact_terms(from: f64, to: f64, round: bool) -> Vec<Term> {
-    (0..3).map(|axis| Term::Force { axis, from, to, round }).collect()
 }
 
 /// How well a contact's force predicts its own window: fitted to every other piece of .15 s, tried on the rest; the

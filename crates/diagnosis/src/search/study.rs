@@ -1,19 +1,18 @@
 //! Everything the search works on: recordings filtered, the model along them, columns, candidates.
 
 use arm::Arm;
+use effects::arm::contact_columns;
+use effects::{Grounds, Scales, Term};
 use rayon::prelude::*;
 
 use crate::data::known::Known;
-use crate::data::measure::{self, drives, mean, noise, scales, seconds, spans};
+use crate::data::measure::{self, mean, noise, scales, seconds, spans};
 use crate::data::motion::{Input, Motions};
 use crate::data::rigid::Rigid;
-use crate::regression::columns::Scales;
 use crate::regression::fit::{Fit, Products};
 use crate::regression::table::{Moving, Table};
-use crate::regression::term::Term;
 use crate::search::candidate::{Candidate, Cause, MayBe, catalogue};
 use crate::search::problem::Problem;
-use crate::search::scan;
 use crate::thresholds;
 
 mod about;
@@ -105,11 +104,15 @@ impl Study {
         let span = times.last().map_or(1.0, |span| span.1 - first).max(1.0);
         let mut terms: Vec<Term> = Vec::new();
         let mut candidates = Vec::new();
-        let mut list = catalogue(&scales, motions.one_clock.then_some(span), &times);
-        for joint in 0..motions.dof {
-            let mass = mean(rigid.iter().flat_map(|r| &r.mass[joint][joint]));
-            list.extend(drives(joint, mass, &scales, &motions, &rigid));
-        }
+        let mass = |joint: usize| mean(rigid.iter().flat_map(|r| &r.mass[joint][joint]));
+        let mut list = catalogue(&Grounds {
+            scales: &scales,
+            span: motions.one_clock.then_some(span),
+            times: &times,
+            mass: &(0..motions.dof).map(mass).collect::<Vec<f64>>(),
+            largest: &measure::largest(&motions),
+            needed: &measure::needed(&motions, &rigid),
+        });
         if motions.cutoff < thresholds::LEAST_FOR_DYNAMICS {
             list.retain(|(cause, ..)| !cause.is_unit());
         }
@@ -126,7 +129,7 @@ impl Study {
                 .collect();
             candidates.push(Candidate::new(cause, joint, columns));
         }
-        let always = scan::contact_terms(f64::NEG_INFINITY, f64::INFINITY, false);
+        let always = contact_columns(f64::NEG_INFINITY, f64::INFINITY, false);
         let force = [0, 1, 2].map(|k| terms.len() + k);
         terms.extend(always);
         let table = Table::new(&motions, &rigid, &scales, terms, &[], Moving::Steadily);

@@ -1,8 +1,11 @@
 //! Candidates that the residual of a choice suggests: contacts, ripples, sinusoids in time, onsets.
 
+use effects::arm::{ExternalContact, contact_columns};
+use effects::drive::{TorqueRipple, ripple_columns};
+use effects::unmodelled::{Periodic, periodic_columns};
+use effects::{EffectKind, Term};
 use rayon::prelude::*;
 
-use crate::regression::term::Term;
 use crate::search::candidate::Cause;
 use crate::search::problem::Chosen;
 use crate::search::scan;
@@ -36,20 +39,19 @@ impl Study {
                 )
             })
             .collect();
+        let of = |kind: &'static dyn EffectKind| Cause::of(kind);
         let mut new = scan::onsets(self, &chosen.fit.weights, &times, &residual);
         for (from, to) in windows {
             for round in [false, true] {
-                new.push((Cause::Contact, None, scan::contact_terms(from, to, round)));
+                new.push((of(&ExternalContact), None, contact_columns(from, to, round)));
             }
         }
         for (joint, (ripples, waves)) in found.into_iter().enumerate() {
             for periods in ripples {
-                let term = |cosine| Term::Ripple { joint, periods, cosine };
-                new.push((Cause::Ripple, Some(joint), vec![term(false), term(true)]));
+                new.push((of(&TorqueRipple), Some(joint), ripple_columns(joint, periods)));
             }
             for omega in waves {
-                let term = |cosine| Term::Wave { joint, omega, cosine };
-                new.push((Cause::Periodic, Some(joint), vec![term(false), term(true)]));
+                new.push((of(&Periodic), Some(joint), periodic_columns(joint, omega)));
             }
         }
         let missing: Vec<Term> = new

@@ -1,11 +1,12 @@
 //! The last fit: about the arm that the named effects make, and without what does not prove itself.
 
+use effects::drive::RotorInertia;
+use effects::sensor::TorqueOffset;
 use torque::Corrected;
 
 use crate::findings::found::useless;
 use crate::findings::verdict::structured;
 use crate::regression::bootstrap::{Resampled, resample};
-use crate::search::candidate::Cause;
 use crate::search::problem::{Chosen, Problem};
 use crate::search::study::Study;
 use crate::selection::judge::{self, Judged};
@@ -115,10 +116,11 @@ fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<usiz
             return true;
         }
         named.first().is_some_and(|named| {
-            let effect = named.effect.name();
-            // A factor of one changes nothing.
-            let nothing = if effect.ends_with("_scale") { 1.0 } else { 0.0 };
-            let size = named.parameters.get(main_parameter(effect));
+            let spec = named.effect.spec();
+            // Which of several parameters says how large it is hangs on the machine.
+            let [main] = spec.main else { return false };
+            let nothing = spec.parameter(main).map_or(0.0, |parameter| parameter.neutral);
+            let size = named.parameters.get(main);
             size.is_some_and(|size| size.ci95[0] <= nothing && nothing <= size.ci95[1])
         })
     };
@@ -134,38 +136,17 @@ const BESIDE_THE_REST: f64 = 1.25;
 /// Whether it is a constant or a drive's inertia no larger than what is left beside it with structure.
 fn is_part_of_the_rest(study: &Study, judged: &Judged, member: &judge::Member) -> bool {
     let candidate = &study.candidates[member.candidate];
-    let factor = match candidate.cause {
-        Cause::TorqueOffset => 1.0,
-        Cause::RotorInertia => BESIDE_THE_REST,
-        _ => return false,
+    let factor = if candidate.cause.is(&TorqueOffset) {
+        1.0
+    } else if candidate.cause.is(&RotorInertia) {
+        BESIDE_THE_REST
+    } else {
+        return false;
     };
     let Some(joint) = candidate.joint else { return false };
     let nameless = judged.nameless.iter().map(|member| member.shares[joint]);
     let left = structured(&errors(study, joint, &augmented(study, &judged.named, joint)));
     factor * nameless.chain(left).fold(0.0, f64::max) > member.shares[joint]
-}
-
-/// The parameter that says how large an effect is.
-fn main_parameter(effect: &str) -> &'static str {
-    match effect {
-        "viscous_friction" | "quadratic_drag" => "coefficient",
-        "coulomb_friction" => "level",
-        "friction_asymmetry" => "positive",
-        "stribeck_friction" => "breakaway",
-        "load_dependent_friction" => "gain",
-        "thermal_drift" | "torque_ripple" => "amplitude",
-        "rotor_inertia" => "inertia",
-        "torque_scale" | "inertial_scale" => "factor",
-        "torque_offset" | "encoder_offset" => "offset",
-        "actuation_delay" => "delay",
-        "backlash" => "halfgap",
-        "payload" => "mass",
-        "link_inertial_error" => "relative",
-        "gravity_misalignment" => "angle",
-        "external_contact" => "force",
-        "joint_elasticity" | "spring" => "stiffness",
-        _ => "",
-    }
 }
 
 /// Drops findings until no joint's held-out error is larger than the nominal model's.

@@ -1,9 +1,12 @@
 //! Which of the chosen candidates deserve their name.
 
+use effects::arm::ExternalContact;
+use effects::drive::{ActuationDelay, Backlash, JointElasticity, RotorInertia};
+use effects::friction::LoadDependentFriction;
+use effects::sensor::TorqueScale;
 use rayon::prelude::*;
 
 use crate::regression::fit::Products;
-use crate::search::candidate::Cause;
 use crate::search::physics::is_at_its_size;
 use crate::search::problem::{Chosen, Problem};
 use crate::search::study::Study;
@@ -271,7 +274,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
         let nameless = largest(&|m| !is_named(m), at);
         if cause(member).is_ordinary() {
             // Beside larger structure without a name a drive's inertia may be a part of that.
-            return cause(member) == Cause::RotorInertia && share < nameless.max(LEAST_DRIVE);
+            return cause(member).is(&RotorInertia) && share < nameless.max(LEAST_DRIVE);
         }
         let needed = if cause(member).plain().is_some() {
             LEAST_BEYOND
@@ -289,13 +292,13 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
                 largest(&is_other, joint)
             };
             let share = member.shares[joint];
-            let alike = match cause(member) {
-                Cause::TorqueScale => BESIDE_LOADED_FRICTION * largest(&|m| cause(m) == Cause::LoadDependent, joint),
-                Cause::Delay => {
-                    let loose = |m: &Member| matches!(cause(m), Cause::Backlash | Cause::Elasticity);
-                    BESIDE_A_LOOSE_LINK * largest(&loose, joint)
-                }
-                _ => 0.0,
+            let alike = if cause(member).is(&TorqueScale) {
+                BESIDE_LOADED_FRICTION * largest(&|m| cause(m).is(&LoadDependentFriction), joint)
+            } else if cause(member).is(&ActuationDelay) {
+                let loose = |m: &Member| cause(m).is(&Backlash) || cause(m).is(&JointElasticity);
+                BESIDE_A_LOOSE_LINK * largest(&loose, joint)
+            } else {
+                0.0
             };
             share >= LEAST_SHARE
                 && share >= alike
@@ -337,7 +340,7 @@ fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut chos
             })
             .collect();
         let exempt = |candidate: usize| {
-            study.candidates[candidate].cause == Cause::Contact || is_idle(study, &chosen, candidate)
+            study.candidates[candidate].cause.is(&ExternalContact) || is_idle(study, &chosen, candidate)
         };
         let useless = gains
             .iter()

@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use effects::{Cone, Term};
+
 use crate::findings::report::JointFit;
-use crate::regression::term::Term;
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
 
@@ -36,11 +37,11 @@ pub fn augmented(study: &Study, named: &Chosen, joint: usize) -> Vec<f64> {
     for ((&row, load), time) in rests.iter().zip(loads).zip(times) {
         let (mut cone, mut middle) = (0.0, 0.0);
         for &(column, value) in &dry {
-            match table.terms[column] {
-                Term::LoadSign(_) => cone += value * load.abs(),
-                Term::Warm { time_constant, .. } => cone += value * (-time / time_constant).exp(),
-                Term::AbsSign(_) => middle += value,
-                _ => cone += value,
+            let term = table.terms[column];
+            match term.law.cone {
+                Cone::Level(level) => cone += value * level(&term, load, time),
+                Cone::Middle => middle += value,
+                Cone::No => {}
             }
         }
         let free = residual[row] + as_moving[row] - middle;
@@ -51,11 +52,7 @@ pub fn augmented(study: &Study, named: &Chosen, joint: usize) -> Vec<f64> {
 
 /// Whether a term is dry friction of a joint.
 fn is_dry(term: Term, joint: usize) -> bool {
-    let dry = matches!(
-        term,
-        Term::Sign(_) | Term::AbsSign(_) | Term::Stribeck { .. } | Term::LoadSign(_) | Term::Warm { .. }
-    );
-    dry && term.joint() == Some(joint)
+    !matches!(term.law.cone, Cone::No) && term.onset().is_none() && term.joint() == Some(joint)
 }
 
 fn rms(values: impl Iterator<Item = f64>) -> Option<f64> {

@@ -6,8 +6,8 @@ use std::f64::consts::TAU;
 
 use arm::{Arm, Workspace};
 use diagnosis::{Diagnosis, DiagnosisError, Input, Options, diagnose};
+use effects::Effect;
 use recording::{Recording, RegularRecording};
-use torque::Effect;
 
 /// Three joints: a turning column, a shoulder and an elbow.
 pub const TRIO: &str = r#"<robot name="trio">

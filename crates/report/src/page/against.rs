@@ -25,22 +25,22 @@ pub enum Against {
 impl Against {
     /// What tells most about `finding`.
     pub fn of(finding: &Finding, arm: &Arm) -> Self {
-        match finding.effect {
-            "load_dependent_friction" => Self::LoadAlong,
-            "thermal_drift" => Self::TimeAlong,
-            "external_contact" => Self::Time,
-            "rotor_inertia" => Self::Acceleration,
-            "torque_scale" => Self::Load,
-            "transmission_coupling" => {
+        use effects::Against as Of;
+        let spec = effects::spec(finding.effect);
+        match spec.map_or(Of::Predicted, |spec| spec.against) {
+            Of::Position => Self::Position,
+            Of::Speed => Self::Speed,
+            Of::Acceleration => Self::Acceleration,
+            Of::Time => Self::Time,
+            Of::TimeAlong => Self::TimeAlong,
+            Of::Load => Self::Load,
+            Of::LoadAlong => Self::LoadAlong,
+            Of::OtherSpeed => {
                 let other = finding.other.as_deref();
                 let other = arm.joints().iter().position(|joint| Some(joint.name.as_str()) == other);
                 other.map_or(Self::Predicted, Self::OtherSpeed)
             }
-            "spring" | "torque_ripple" | "torque_offset" => Self::Position,
-            "viscous_friction" | "coulomb_friction" | "friction_asymmetry" | "stribeck_friction" | "quadratic_drag" => {
-                Self::Speed
-            }
-            _ => Self::Predicted,
+            Of::Predicted => Self::Predicted,
         }
     }
 

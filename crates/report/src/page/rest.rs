@@ -150,47 +150,15 @@ impl Page<'_> {
     /// The sizes from which an effect would have been seen, with the units its parameters have.
     fn sizes(&self, entry: &NotObservable) -> String {
         let joint = entry.joint.as_deref().and_then(|name| self.index(name));
-        let slides = joint.is_some_and(|joint| self.figures.arm.joints()[joint].kind == JointKind::Prismatic);
+        let kind = joint.map_or(JointKind::Revolute, |joint| self.figures.arm.joints()[joint].kind);
         let above = entry.would_be_seen_above.iter().map(|size| ("above", size));
         let below = entry.would_be_seen_below.iter().map(|size| ("below", size));
         let sizes = above.chain(below).map(|(side, (name, size))| {
-            let unit = unit_of(entry.effect, name);
-            let size = numbers::round_quantity(*size, if slides { for_sliding(unit) } else { unit });
+            let unit = effects::spec(entry.effect).and_then(|spec| spec.unit(name, kind));
+            let size = numbers::round_quantity(*size, unit.filter(|unit| *unit != "1").unwrap_or_default());
             format!("{} {side} {size}", name.replace('_', " "))
         });
         sizes.collect::<Vec<_>>().join(", ")
-    }
-}
-
-/// The unit of a catalogue parameter on a turning joint.
-fn unit_of(effect: &str, parameter: &str) -> &'static str {
-    match (effect, parameter) {
-        ("rotor_inertia" | "transmission_coupling", "inertia") => "kg m²",
-        ("viscous_friction", "coefficient") | (_, "viscous" | "damping") => "N m s/rad",
-        ("quadratic_drag", "coefficient") => "N m s²/rad²",
-        ("encoder_offset", "offset") | (_, "halfgap" | "angle" | "rest" | "phase") => "rad",
-        ("external_contact", "force") => "N",
-        ("thermal_drift", "amplitude") => "",
-        (_, "time_constant" | "delay" | "start" | "duration") => "s",
-        (_, "stiffness") => "N m/rad",
-        (_, "velocity") => "rad/s",
-        (_, "mass") => "kg",
-        (_, "level" | "positive" | "negative" | "coulomb" | "breakaway" | "offset" | "amplitude" | "limit") => "N m",
-        _ => "",
-    }
-}
-
-/// The same on a sliding joint.
-fn for_sliding(unit: &'static str) -> &'static str {
-    match unit {
-        "N m" => "N",
-        "N m/rad" => "N/m",
-        "N m s/rad" => "N s/m",
-        "N m s²/rad²" => "N s²/m²",
-        "kg m²" => "kg",
-        "rad" => "m",
-        "rad/s" => "m/s",
-        other => other,
     }
 }
 

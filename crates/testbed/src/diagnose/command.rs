@@ -96,7 +96,7 @@ fn write<'a>(
     arm: &Arm,
     urdf_path: &Path,
     diagnosis: &Diagnosis,
-    effects: Vec<torque::Effect>,
+    effects: Vec<effects::Effect>,
 ) -> anyhow::Result<Option<&'a Path>> {
     if let Some(path) = &args.urdf {
         let text = library::urdf_text(&args.robot, urdf_path)?;

@@ -4,11 +4,12 @@ use std::ops::Range;
 use std::path::Path;
 
 use anyhow::{Context, anyhow, ensure};
-use arm::Arm;
+use arm::{Arm, JointKind};
+use effects::{Effect, EffectError};
 use recording::{nearest, toml_reason};
 use serde::Deserialize;
 use toml::Spanned;
-use torque::{Corrected, Effect, TorqueError};
+use torque::{Corrected, TorqueError};
 
 use crate::library::Source;
 
@@ -187,19 +188,9 @@ pub fn effect(source: &Source, span: Range<usize>, table: toml::Table, arm: &Arm
 
 /// Whether two effects are one and the same, said twice (perhaps with other sizes).
 fn is_twin(a: &Effect, b: &Effect) -> bool {
-    let same = match (a, b) {
-        // A joint has as many ripples as it has parts that turn at other ratios; of contacts, each is another.
-        (Effect::TorqueRipple { periods, .. }, Effect::TorqueRipple { periods: other, .. }) => periods == other,
-        (Effect::TransmissionCoupling { other, .. }, Effect::TransmissionCoupling { other: another, .. }) => {
-            other == another
-        }
-        (Effect::ExternalContact { .. }, Effect::ExternalContact { .. }) => a == b,
-        // A straight spring may stand beside a curve.
-        (Effect::Spring { curve, .. }, Effect::Spring { curve: other, .. }) => curve.is_empty() == other.is_empty(),
-        _ => true,
-    };
     // What sets in later comes on top of what always acts.
-    same && a.onset() == b.onset() && a.name() == b.name() && a.joint() == b.joint()
+    let same = a.kind() == b.kind() && a.onset() == b.onset() && a.joint() == b.joint();
+    same && a.kind().get().is_twin(a, b)
 }
 
 /// What TOML's or serde's message means to the one who wrote the file.
@@ -234,11 +225,13 @@ fn joints(arm: &Arm) -> Vec<String> {
 /// The key that an effect is refused for, and why.
 fn refusal(error: &TorqueError) -> (Option<String>, String) {
     match error {
-        TorqueError::UnknownJoint { joint, known, .. } => {
+        TorqueError::Effect(EffectError::UnknownJoint { joint, known, .. }) => {
             let hint = nearest(joint, known).map_or(String::new(), |near| format!("; did you mean \"{near}\"?"));
             (Some(joint.clone()), format!("{error}{hint}"))
         }
-        TorqueError::Parameter { parameter, .. } => (Some((*parameter).to_owned()), error.to_string()),
+        TorqueError::Effect(EffectError::Parameter { parameter, .. }) => {
+            (Some((*parameter).to_owned()), error.to_string())
+        }
         _ => (None, error.to_string()),
     }
 }
@@ -263,33 +256,12 @@ fn key_span(text: &str, table: &Range<usize>, key: Option<&str>) -> Range<usize>
 }
 
 /// The unit of a parameter, for a comment.
-fn unit(effect: &Effect, parameter: &str) -> Option<&'static str> {
-    Some(match (effect, parameter) {
-        (Effect::QuadraticDrag { .. }, "coefficient") => "N m s²/rad²",
-        (Effect::ThermalDrift { .. }, "amplitude") => "of the warm level, at time 0",
-        (Effect::ThermalDrift { .. }, "coulomb") => "N m, when warm",
-        (Effect::Payload { .. }, "inertia") => {
-            "kg m²: Ixx Ixy Iyy Ixz Iyz Izz about the centre of mass, along the tool's axes"
-        }
-        (Effect::EncoderOffset { .. }, "offset") | (_, "phase" | "halfgap" | "angle" | "rest") => "rad",
-        (Effect::LoadDependentFriction { .. }, "gain") => "N m per N m of load",
-        (Effect::TorqueScale { .. }, "factor") => "measured over true",
-        (Effect::InertialScale { .. }, "factor") => "true over model",
-        (_, "relative") => "true over model, less one",
-        (_, "level" | "positive" | "negative" | "coulomb" | "breakaway" | "amplitude" | "offset" | "limit") => "N m",
-        (_, "inertia") => "kg m²",
-        (_, "velocity") => "rad/s",
-        (_, "time_constant" | "delay" | "start" | "duration" | "onset") => "s",
-        (_, "periods") => "a turn",
-        (_, "stiffness") => "N m/rad",
-        (Effect::ViscousFriction { .. }, "coefficient") | (_, "damping" | "viscous") => "N m s/rad",
-        (_, "mass") => "kg",
-        (_, "com") => "m, in the tool's frame",
-        (_, "axis") => "in the base's frame",
-        (_, "curve") => "rad, N m",
-        (_, "force") => "N, in the base's frame",
-        _ => return None,
-    })
+fn unit(effect: &Effect, key: &str) -> Option<&'static str> {
+    let parameter = effect.spec().parameter(key)?;
+    let remark = parameter
+        .remark
+        .unwrap_or_else(|| parameter.quantity.unit(JointKind::Revolute));
+    (!remark.is_empty()).then_some(remark)
 }
 
 #[cfg(test)]

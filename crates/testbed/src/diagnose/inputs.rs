@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail, ensure};
 use arm::Arm;
 use diagnosis::Wanted;
+use effects::Effect;
 use indicatif::ProgressBar;
 use recording::{ColumnMap, FindingKind, Quality, Recording, RegularRecording, Signal, nearest};
-use torque::Effect;
 
 use super::effect_file::EffectFile;
 use super::next_file;
@@ -78,10 +78,7 @@ pub fn only(args: &DiagnoseArgs, arm: &Arm) -> anyhow::Result<Option<Vec<Wanted>
         let wanted = effects.iter().map(|effect| Wanted {
             effect: effect.name().to_owned(),
             joint: effect.joint().map(str::to_owned),
-            other: match effect {
-                Effect::TransmissionCoupling { other, .. } => Some(other.clone()),
-                _ => None,
-            },
+            other: effect.other().map(str::to_owned),
             sets_in: Some(effect.onset().is_some()),
         });
         return Ok(Some(wanted.collect()));

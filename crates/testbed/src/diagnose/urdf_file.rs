@@ -7,8 +7,10 @@ mod tests;
 use std::ops::Range;
 
 use anyhow::Context;
-use arm::{Arm, Inertia, Matrix3, Vector3};
-use torque::{Corrected, Effect};
+use arm::{Arm, Inertia};
+use effects::arm::{InertialScale, LinkInertialError, Payload};
+use effects::{Effect, InUrdf};
+use torque::Corrected;
 
 use self::scan::{JointPlaces, LinkPlaces, Places};
 
@@ -42,22 +44,15 @@ fn edited(urdf: &str, arm: &Arm, effects: &[Effect], remark: String) -> anyhow::
         edits.push(found.edit(factor, &payloads));
     }
     for joint in arm.joints() {
-        let of = |wanted: fn(&Effect) -> Option<f64>| {
-            let found: Vec<f64> = effects
-                .iter()
-                .filter(|effect| effect.joint() == Some(&joint.name))
-                .filter_map(wanted)
+        let of = |wanted: InUrdf| {
+            let on_joint = effects.iter().filter(|effect| effect.joint() == Some(&joint.name));
+            let found: Vec<f64> = on_joint
+                .filter(|effect| effect.spec().in_urdf == wanted)
+                .filter_map(|effect| effect.spec().main.first().map(|main| effect.number(main)))
                 .collect();
             (!found.is_empty()).then(|| found.iter().sum::<f64>())
         };
-        let damping = of(|effect| match effect {
-            Effect::ViscousFriction { coefficient, .. } => Some(*coefficient),
-            _ => None,
-        });
-        let friction = of(|effect| match effect {
-            Effect::CoulombFriction { level, .. } => Some(*level),
-            _ => None,
-        });
+        let (damping, friction) = (of(InUrdf::Damping), of(InUrdf::Friction));
         if damping.is_none() && friction.is_none() {
             continue;
         }
@@ -88,10 +83,14 @@ fn changed_links(arm: &Arm, effects: &[Effect]) -> Vec<(String, f64, Vec<Inertia
     for (j, joint) in arm.joints().iter().enumerate() {
         let factor: f64 = effects
             .iter()
-            .map(|effect| match effect {
-                Effect::InertialScale { factor } => *factor,
-                Effect::LinkInertialError { joint: on, relative } if *on == joint.name => 1.0 + relative,
-                _ => 1.0,
+            .map(|effect| {
+                if effect.is(&InertialScale) {
+                    effect.number("factor")
+                } else if effect.is(&LinkInertialError) && effect.joint() == Some(&joint.name) {
+                    1.0 + effect.number("relative")
+                } else {
+                    1.0
+                }
             })
             .product();
         let welded = arm
@@ -110,32 +109,13 @@ fn changed_links(arm: &Arm, effects: &[Effect]) -> Vec<(String, f64, Vec<Inertia
 }
 
 fn payloads(effects: &[Effect]) -> Vec<Inertia> {
-    let payload = |effect: &Effect| match *effect {
-        Effect::Payload {
-            mass,
-            com,
-            inertia: [xx, xy, yy, xz, yz, zz],
-            onset: None,
-        } => Some(Inertia {
-            mass,
-            com: Vector3::from(com),
-            tensor: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
-        }),
-        _ => None,
-    };
-    effects.iter().filter_map(payload).collect()
+    let payloads = effects.iter().filter(|effect| effect.is(&Payload) && is_held(effect));
+    payloads.map(Payload::inertia).collect()
 }
 
 /// Whether a URDF says it.
 fn is_held(effect: &Effect) -> bool {
-    matches!(
-        effect,
-        Effect::ViscousFriction { .. }
-            | Effect::CoulombFriction { .. }
-            | Effect::Payload { onset: None, .. }
-            | Effect::LinkInertialError { .. }
-            | Effect::InertialScale { .. }
-    )
+    effect.spec().in_urdf != InUrdf::Nothing && effect.onset().is_none()
 }
 
 /// The comment that goes inside the robot.

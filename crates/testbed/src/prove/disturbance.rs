@@ -5,11 +5,13 @@ pub mod words;
 use std::path::Path;
 
 use anyhow::Context;
+use effects::Effect;
+use effects::arm::InertialScale;
 use faults::{Concealment, Injected, Truth};
 use recording::Recording;
 use scoring::{Answer, Named, Number};
 use serde::Serialize;
-use torque::{Corrected, Effect, RigidBody, TorqueModel, TrainingOptions};
+use torque::{Corrected, RigidBody, TorqueModel, TrainingOptions};
 
 use super::rows::Row;
 use crate::diagnose::urdf_file::changed_urdf;
@@ -131,9 +133,7 @@ pub fn conceal() -> anyhow::Result<Concealment> {
 /// The URDF as the paper's controller believes it: [`Scenario::nominal_arm`], in the words of the robot's own file.
 fn heavy_urdf(scenario: &Scenario) -> anyhow::Result<String> {
     let urdf = library::urdf_text(scenario.arm.name(), &scenario.urdf)?;
-    let heavier = Effect::InertialScale {
-        factor: scenario.inertia_scale,
-    };
+    let heavier = Effect::of(&InertialScale).with("factor", scenario.inertia_scale);
     changed_urdf(&urdf, &scenario.arm, &[heavier])
 }
 

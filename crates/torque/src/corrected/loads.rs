@@ -1,18 +1,18 @@
 //! The effects as loads on a simulated arm: dry friction apart from what is smooth, and contacts.
 
 use arm::JointKind;
+use effects::{Circumstance, Contact, State};
 
-use super::laws::{Circumstance, Smooth};
-use super::{Contact, Corrected, acts};
+use super::{Corrected, acts};
 use crate::model::Workspace;
 
 impl Corrected {
     /// Viscous friction of each joint (N m s/rad or N s/m).
     pub fn viscous(&self) -> Vec<f64> {
-        let mut coefficients = vec![0.0; self.arm.dof()];
-        for (joint, smooth, _) in &self.smooth {
-            if let Smooth::Viscous { coefficient } = smooth {
-                coefficients[*joint] += coefficient;
+        let mut coefficients = vec![0.0; self.machine.arm.dof()];
+        for smooth in &self.machine.smooth {
+            if let Some(coefficient) = smooth.viscous {
+                coefficients[smooth.joint] += coefficient;
             }
         }
         coefficients
@@ -38,7 +38,8 @@ impl Corrected {
         dry: &mut [f64],
         opposing: &mut [f64],
     ) {
-        let needs_rigid = !self.contacts.is_empty() || self.dry.iter().any(|(_, dry)| dry.depends_on_load());
+        let needs_rigid =
+            !self.machine.contacts.is_empty() || self.machine.dry.iter().any(|(_, dry)| dry.depends_on_load());
         if needs_rigid {
             // `dry` holds the rigid torque for as long as it is needed.
             self.rigid_torque(Some(time), workspace, [q, qd, qdd], dry);
@@ -46,7 +47,7 @@ impl Corrected {
         }
         dry.fill(0.0);
         opposing.fill(0.0);
-        for (joint, law) in &self.dry {
+        for (joint, law) in &self.machine.dry {
             let at = Circumstance {
                 time: Some(time),
                 load: if needs_rigid { workspace.rigid[*joint] } else { 0.0 },
@@ -54,9 +55,9 @@ impl Corrected {
             dry[*joint] += law.level(qd[*joint], at);
             opposing[*joint] += law.bias();
         }
-        for (joint, smooth, onset) in &self.smooth {
-            if !matches!(smooth, Smooth::Viscous { .. }) && acts(*onset, Some(time)) {
-                opposing[*joint] += smooth.torque(*joint, q, qd, qdd);
+        for smooth in &self.machine.smooth {
+            if smooth.viscous.is_none() && acts(smooth.onset, Some(time)) {
+                opposing[smooth.joint] += smooth.torque(State { q, qd, qdd });
             }
         }
         self.add_contacts(Some(time), workspace, opposing);
@@ -66,14 +67,14 @@ impl Corrected {
     pub(super) fn add_contacts(&self, time: Option<f64>, workspace: &mut Workspace, tau: &mut [f64]) {
         let Some(time) = time else { return };
         let lasts = |contact: &&Contact| contact.start <= time && time < contact.end;
-        for contact in self.contacts.iter().filter(lasts) {
+        for contact in self.machine.contacts.iter().filter(lasts) {
             let Workspace {
                 arm: scratch, input, ..
             } = &mut *workspace;
-            let scratch = scratch.get_or_insert_with(|| arm::Workspace::new(&self.arm));
-            self.arm.forward_kinematics(scratch, &input[..tau.len()]);
+            let scratch = scratch.get_or_insert_with(|| arm::Workspace::new(&self.machine.arm));
+            self.machine.arm.forward_kinematics(scratch, &input[..tau.len()]);
             let tool = scratch.base_from_frame(&self.tool).translation;
-            for (i, (joint, tau)) in self.arm.joints().iter().zip(tau.iter_mut()).enumerate() {
+            for (i, (joint, tau)) in self.machine.arm.joints().iter().zip(tau.iter_mut()).enumerate() {
                 let base_from_link = scratch.base_from_link(i);
                 let axis = base_from_link.rotation * joint.axis;
                 *tau -= match joint.kind {

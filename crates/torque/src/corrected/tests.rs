@@ -1,6 +1,14 @@
 //! The forms of the effects against numbers worked out by hand, and what is refused.
 
 use arm::Arm;
+use effects::arm::{ExternalContact, GravityMisalignment, InertialScale, LinkInertialError, Payload};
+use effects::drive::{RotorInertia, TorqueRipple, TorqueSaturation, TransmissionCoupling};
+use effects::friction::{
+    CoulombFriction, FrictionAsymmetry, LoadDependentFriction, QuadraticDrag, StribeckFriction, ThermalDrift,
+    ViscousFriction,
+};
+use effects::joint::Spring;
+use effects::sensor::{EncoderOffset, TorqueOffset, TorqueScale};
 
 use super::*;
 
@@ -43,12 +51,12 @@ fn added(effect: Effect, q: f64, qd: f64) -> f64 {
 
 fn offset(offset: f64, onset: Option<f64>) -> Effect {
     let joint = a();
-    Effect::TorqueOffset { joint, offset, onset }
+    Effect::of(&TorqueOffset).on(joint).with("offset", offset).since(onset)
 }
 
 fn scale(factor: f64, onset: Option<f64>) -> Effect {
     let joint = a();
-    Effect::TorqueScale { joint, factor, onset }
+    Effect::of(&TorqueScale).on(joint).with("factor", factor).since(onset)
 }
 
 #[track_caller]
@@ -58,79 +66,61 @@ fn near(found: f64, expected: f64) {
 
 #[test]
 fn friction_follows_the_sign_of_the_velocity() {
-    let coulomb = || Effect::CoulombFriction { joint: a(), level: 2.0 };
+    let coulomb = || Effect::of(&CoulombFriction).on(a()).with("level", 2.0);
     for (qd, expected) in [(0.3, 2.0), (-0.3, -2.0), (0.0, 0.0), (-0.0, 0.0)] {
         near(added(coulomb(), 0.0, qd), expected);
     }
     near(
-        added(
-            Effect::ViscousFriction {
-                joint: a(),
-                coefficient: 4.0,
-            },
-            0.0,
-            -0.5,
-        ),
+        added(Effect::of(&ViscousFriction).on(a()).with("coefficient", 4.0), 0.0, -0.5),
         -2.0,
     );
     near(
         added(
-            Effect::QuadraticDrag {
-                joint: a(),
-                coefficient: 4.0,
-                exponent: 2.0,
-                onset: None,
-            },
+            Effect::of(&QuadraticDrag)
+                .on(a())
+                .with("coefficient", 4.0)
+                .with("exponent", 2.0),
             0.0,
             -0.5,
         ),
         -1.0,
     );
-    let uneven = || Effect::FrictionAsymmetry {
-        joint: a(),
-        positive: 3.0,
-        negative: 1.0,
+    let uneven = || {
+        Effect::of(&FrictionAsymmetry)
+            .on(a())
+            .with("positive", 3.0)
+            .with("negative", 1.0)
     };
     for (qd, expected) in [(0.3, 3.0), (-0.3, -1.0), (0.0, 0.0)] {
         near(added(uneven(), 0.0, qd), expected);
     }
-    let stribeck = Effect::StribeckFriction {
-        joint: a(),
-        coulomb: 1.0,
-        breakaway: 3.0,
-        velocity: 0.2,
-        exponent: 2.0,
-    };
+    let stribeck = Effect::of(&StribeckFriction)
+        .on(a())
+        .with("coulomb", 1.0)
+        .with("breakaway", 3.0)
+        .with("velocity", 0.2)
+        .with("exponent", 2.0);
     near(added(stribeck, 0.0, -0.4), -(1.0 + 2.0 * (-4.0_f64).exp()));
 }
 
 #[test]
 fn position_makes_springs_and_ripple() {
     near(
-        added(
-            Effect::TorqueOffset {
-                joint: a(),
-                offset: -0.7,
-                onset: None,
-            },
-            1.0,
-            1.0,
-        ),
+        added(Effect::of(&TorqueOffset).on(a()).with("offset", -0.7), 1.0, 1.0),
         -0.7,
     );
-    let ripple = Effect::TorqueRipple {
-        joint: a(),
-        amplitude: 0.5,
-        periods: 6.0,
-        phase: 0.1,
-    };
+    let ripple = Effect::of(&TorqueRipple)
+        .on(a())
+        .with("amplitude", 0.5)
+        .with("periods", 6.0)
+        .with("phase", 0.1);
     near(added(ripple, 0.3, 0.0), 0.5 * 1.9_f64.sin());
-    let spring = |curve| Effect::Spring {
-        joint: a(),
-        stiffness: 10.0,
-        rest: 0.2,
-        curve,
-        onset: None,
+    let spring = |curve: Vec<[f64; 2]>| {
+        Effect::of(&Spring)
+            .on(a())
+            .with("stiffness", 10.0)
+            .with("rest", 0.2)
+            .with("curve", curve)
     };
     near(added(spring(vec![]), 0.5, 0.0), 3.0);
     let curve = vec![[-1.0, 4.0], [0.0, 2.0], [1.0, 3.0]];
@@ -141,12 +131,11 @@ fn position_makes_springs_and_ripple() {
 
 #[test]
 fn drift_is_warm_unless_the_time_is_told() {
-    let drift = Effect::ThermalDrift {
-        joint: a(),
-        coulomb: 2.0,
-        amplitude: 0.5,
-        time_constant: 10.0,
-    };
+    let drift = Effect::of(&ThermalDrift)
+        .on(a())
+        .with("coulomb", 2.0)
+        .with("amplitude", 0.5)
+        .with("time_constant", 10.0);
     let model = Corrected::new(&arm(FLAT), &[drift]).expect("it is physical");
     let at = |time| predict(&model, time, &[0.0, 0.0], &[-1.0, 0.0], &[0.0, 0.0]).effects[0];
     near(at(None), -2.0);
@@ -157,17 +146,14 @@ fn drift_is_warm_unless_the_time_is_told() {
 #[test]
 fn load_is_the_rigid_torque_of_the_corrected_arm() {
     let effects = [
-        Effect::Payload {
-            mass: 1.0,
-            com: [0.5, 0.0, 0.0],
-            inertia: [0.0; 6],
-            onset: None,
-        },
-        Effect::LoadDependentFriction {
-            joint: a(),
-            coulomb: 0.5,
-            gain: 0.1,
-        },
+        Effect::of(&Payload)
+            .with("mass", 1.0)
+            .with("com", [0.5, 0.0, 0.0])
+            .with("inertia", [0.0; 6]),
+        Effect::of(&LoadDependentFriction)
+            .on(a())
+            .with("coulomb", 0.5)
+            .with("gain", 0.1),
     ];
     let model = Corrected::new(&arm(PENDULUM), &effects).expect("it is physical");
     // About y, gravity on what sticks out along x pulls the arm down: the drive holds with a negative torque.
@@ -191,57 +177,41 @@ fn inertial_effects_are_in_the_rigid_part() {
     let weight = -9.81 * 2.0 * 0.5;
     near(rigid(&[], 0.0, 0.0), weight);
     near(
-        rigid(
-            &[Effect::RotorInertia {
-                joint: a(),
-                inertia: 0.4,
-            }],
-            0.0,
-            2.0,
-        ),
+        rigid(&[Effect::of(&RotorInertia).on(a()).with("inertia", 0.4)], 0.0, 2.0),
         weight + 2.0 * (0.1 + 0.5 + 0.4),
     );
     near(
         rigid(
-            &[Effect::LinkInertialError {
-                joint: a(),
-                relative: 0.1,
-            }],
+            &[Effect::of(&LinkInertialError).on(a()).with("relative", 0.1)],
             0.0,
             0.0,
         ),
         1.1 * weight,
     );
-    near(rigid(&[Effect::InertialScale { factor: 1.2 }], 0.0, 0.0), 1.2 * weight);
     near(
-        rigid(
-            &[Effect::EncoderOffset {
-                joint: a(),
-                offset: -0.3,
-            }],
-            0.2,
-            0.0,
-        ),
+        rigid(&[Effect::of(&InertialScale).with("factor", 1.2)], 0.0, 0.0),
+        1.2 * weight,
+    );
+    near(
+        rigid(&[Effect::of(&EncoderOffset).on(a()).with("offset", -0.3)], 0.2, 0.0),
         weight * 0.5_f64.cos(),
     );
     // A base turned about the joint's own axis is a joint turned as far.
-    let tilt = Effect::GravityMisalignment {
-        angle: 0.3,
-        axis: [0.0, 1.0, 0.0],
-    };
+    let tilt = Effect::of(&GravityMisalignment)
+        .with("angle", 0.3)
+        .with("axis", [0.0, 1.0, 0.0]);
     near(rigid(&[tilt], 0.2, 0.0), weight * 0.5_f64.cos());
 }
 
 #[test]
 fn a_coupling_follows_the_other_joint() {
-    let coupling = Effect::TransmissionCoupling {
-        sense: 1.0,
-        joint: a(),
-        other: "b".into(),
-        viscous: 2.0,
-        coulomb: 0.5,
-        inertia: 3.0,
-    };
+    let coupling = Effect::of(&TransmissionCoupling)
+        .on(a())
+        .with("sense", 1.0)
+        .with_other("b")
+        .with("viscous", 2.0)
+        .with("coulomb", 0.5)
+        .with("inertia", 3.0);
     let model = Corrected::new(&arm(FLAT), &[coupling]).expect("it is physical");
     let found = predict(&model, None, &[0.0, 0.0], &[0.0, -0.1], &[0.0, 0.2]);
     near(found.effects[0], -0.2 - 0.5 + 0.6);
@@ -263,7 +233,7 @@ fn an_onset_is_waited_for() {
 
 #[test]
 fn scale_and_limit_come_last() {
-    let limit = Effect::TorqueSaturation { joint: a(), limit: 2.5 };
+    let limit = Effect::of(&TorqueSaturation).on(a()).with("limit", 2.5);
     let effects = [offset(2.0, None), scale(1.5, None), limit];
     let of = |effects: &[Effect]| {
         let model = Corrected::new(&arm(PENDULUM), effects).expect("they are physical");
@@ -277,11 +247,10 @@ fn scale_and_limit_come_last() {
 /// At q = 0 the tool is 1.5 m from axis a and .5 m from axis b, along x.
 #[test]
 fn a_contact_pushes_while_it_lasts() {
-    let contact = Effect::ExternalContact {
-        start: 1.0,
-        duration: 0.5,
-        force: [5.0, 2.0, 7.0],
-    };
+    let contact = Effect::of(&ExternalContact)
+        .with("start", 1.0)
+        .with("duration", 0.5)
+        .with("force", [5.0, 2.0, 7.0]);
     let model = Corrected::new(&arm(FLAT), &[contact]).expect("it is physical");
     let at = |time| predict(&model, time, &[0.0; 2], &[0.0; 2], &[0.0; 2]).effects;
     assert_eq!(at(None), [0.0, 0.0]);
@@ -294,32 +263,20 @@ fn a_contact_pushes_while_it_lasts() {
 #[test]
 fn loads_and_torques_agree() {
     let effects = [
-        Effect::FrictionAsymmetry {
-            joint: a(),
-            positive: 3.0,
-            negative: 1.0,
-        },
-        Effect::LoadDependentFriction {
-            joint: "b".into(),
-            coulomb: 0.5,
-            gain: 0.1,
-        },
-        Effect::ViscousFriction {
-            joint: a(),
-            coefficient: 0.7,
-        },
-        Effect::Spring {
-            joint: "b".into(),
-            stiffness: 3.0,
-            rest: 0.1,
-            curve: vec![],
-            onset: None,
-        },
-        Effect::ExternalContact {
-            start: 0.0,
-            duration: 1.0,
-            force: [1.0, 2.0, 3.0],
-        },
+        Effect::of(&FrictionAsymmetry)
+            .on(a())
+            .with("positive", 3.0)
+            .with("negative", 1.0),
+        Effect::of(&LoadDependentFriction)
+            .on("b")
+            .with("coulomb", 0.5)
+            .with("gain", 0.1),
+        Effect::of(&ViscousFriction).on(a()).with("coefficient", 0.7),
+        Effect::of(&Spring).on("b").with("stiffness", 3.0).with("rest", 0.1),
+        Effect::of(&ExternalContact)
+            .with("start", 0.0)
+            .with("duration", 1.0)
+            .with("force", [1.0, 2.0, 3.0]),
     ];
     let model = Corrected::new(&arm(FLAT), &effects).expect("they are physical");
     let (q, qd, qdd) = ([0.3, -0.8], [-0.5, 0.9], [2.0, -1.0]);
@@ -343,56 +300,42 @@ fn refusals_name_effect_joint_and_value() {
             .to_string()
     };
     assert_eq!(
-        refused(Effect::CoulombFriction {
-            joint: "c".into(),
-            level: 1.0
-        }),
+        refused(Effect::of(&CoulombFriction).on("c").with("level", 1.0)),
         "coulomb_friction: the robot has no joint \"c\"; it has a, b"
     );
     assert_eq!(
-        refused(Effect::CoulombFriction {
-            joint: a(),
-            level: -1.0
-        }),
+        refused(Effect::of(&CoulombFriction).on(a()).with("level", -1.0)),
         "coulomb_friction of a: level is -1; it must be finite and not negative"
     );
     assert_eq!(
-        refused(Effect::TorqueScale {
-            joint: a(),
-            factor: f64::NAN,
-            onset: None,
-        }),
+        refused(Effect::of(&TorqueScale).on(a()).with("factor", f64::NAN)),
         "torque_scale of a: factor is NaN; it must be finite and positive"
     );
     assert_eq!(
-        refused(Effect::Payload {
-            mass: 1.0,
-            com: [0.0; 3],
-            inertia: [-1.0, 0.0, 1.0, 0.0, 0.0, 1.0],
-            onset: None,
-        }),
+        refused(
+            Effect::of(&Payload)
+                .with("mass", 1.0)
+                .with("com", [0.0; 3])
+                .with("inertia", [-1.0, 0.0, 1.0, 0.0, 0.0, 1.0])
+        ),
         "payload of the whole arm: inertia's smallest principal moment is -1; it must be finite and not negative"
     );
-    let coupling = Effect::TransmissionCoupling {
-        sense: 1.0,
-        joint: a(),
-        other: "x".into(),
-        viscous: 1.0,
-        coulomb: 0.0,
-        inertia: 0.0,
-    };
+    let coupling = Effect::of(&TransmissionCoupling)
+        .on(a())
+        .with("sense", 1.0)
+        .with_other("x")
+        .with("viscous", 1.0)
+        .with("coulomb", 0.0)
+        .with("inertia", 0.0);
     assert!(refused(coupling).contains("no joint \"x\""));
-    let bent = Effect::Spring {
-        joint: a(),
-        stiffness: 0.0,
-        rest: 0.0,
-        curve: vec![[1.0, 0.0], [0.5, 0.0]],
-        onset: None,
-    };
+    let bent = Effect::of(&Spring)
+        .on(a())
+        .with("stiffness", 0.0)
+        .with("rest", 0.0)
+        .with("curve", vec![[1.0, 0.0], [0.5, 0.0]]);
     assert!(refused(bent).contains("larger than the one before"));
-    let nowhere = Effect::GravityMisalignment {
-        angle: 0.1,
-        axis: [0.0; 3],
-    };
+    let nowhere = Effect::of(&GravityMisalignment)
+        .with("angle", 0.1)
+        .with("axis", [0.0; 3]);
     assert!(refused(nowhere).contains("axis' length is 0"));
 }

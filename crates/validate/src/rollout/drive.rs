@@ -1,6 +1,6 @@
 //! What lies between a joint's commanded torque and its link: delay, limit, scale, a spring, a gap.
 
-use torque::Effect;
+use effects::{Machine, Sprung};
 
 /// The spring a gap is taken to end in: its oscillation takes this many radians a plant step.
 const STOP_PHASE: f64 = 0.5;
@@ -85,31 +85,24 @@ pub(super) struct Drives {
 }
 
 impl Drives {
-    /// The drives that `effects` make. `rotors` and `links` are the inertias on either side of each joint (kg m² or kg),
+    /// The drives that are in a machine. `rotors` and `links` are the inertias on either side of each joint (kg m² or kg),
     /// `names` the joints, `step` the plant's.
-    pub(super) fn new(effects: &[Effect], names: &[String], rotors: &[f64], links: &[f64], step: f64) -> Self {
+    pub(super) fn new(machine: &Machine, names: &[String], rotors: &[f64], links: &[f64], step: f64) -> Self {
         let mut drives = Self {
-            delays: vec![0.0; names.len()],
+            delays: machine.delays.clone(),
             connections: names.iter().map(|_| None).collect(),
             remarks: Vec::new(),
         };
         for (j, name) in names.iter().enumerate() {
-            let (mut spring, mut gap) = (None, 0.0);
-            for effect in effects.iter().filter(|effect| effect.joint() == Some(name)) {
-                match *effect {
-                    Effect::ActuationDelay { delay, .. } => drives.delays[j] += delay,
-                    Effect::JointElasticity { stiffness, damping, .. } => spring = Some((stiffness, damping)),
-                    Effect::Backlash { halfgap, .. } => gap += halfgap,
-                    _ => {}
-                }
-            }
+            let (spring, gap) = (machine.springs[j], machine.gaps[j]);
             if spring.is_none() && gap == 0.0 {
                 continue;
             }
             let lighter = rotors[j].min(links[j]);
-            let (stiffness, damping) = spring.unwrap_or_else(|| {
+            let Sprung { stiffness, damping } = spring.unwrap_or_else(|| {
                 let stiffness = lighter * (STOP_PHASE / step).powi(2);
-                (stiffness, 2.0 * STOP_DAMPING * (stiffness * lighter).sqrt())
+                let damping = 2.0 * STOP_DAMPING * (stiffness * lighter).sqrt();
+                Sprung { stiffness, damping }
             });
             // Link and rotor step in turn: stable, and exact enough, while a step is a fraction of the oscillation.
             let resolved = rotors[j] > 0.0 && stiffness * step * step <= lighter && damping * step <= lighter;
@@ -150,17 +143,27 @@ impl Drives {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use arm::Arm;
+    use effects::Effect;
+    use effects::drive::{ActuationDelay, Backlash, JointElasticity};
+
+    fn machine(effects: &[Effect]) -> Machine {
+        let urdf = r#"<robot name="one"><link name="base"/>
+<joint name="a" type="continuous"><parent link="base"/><child link="l"/><axis xyz="0 0 1"/></joint>
+<link name="l"><inertial><mass value="1"/><inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".1"/></inertial></link></robot>"#;
+        let arm = Arm::from_urdf_text(urdf, "one.urdf").expect("it is an arm");
+        Machine::new(&arm, effects).expect("they are physical")
+    }
 
     /// Rotor and link on a spring, in turn: they swing at ω² = K (1/J + 1/M) and keep their energy.
     #[test]
     fn rotor_and_link_swing_as_two_bodies() {
         let (inertia, mass, stiffness, step) = (0.5, 1.0, 2000.0, 1e-3);
-        let effects = [Effect::JointElasticity {
-            joint: "a".into(),
-            stiffness,
-            damping: 0.0,
-        }];
-        let mut drives = Drives::new(&effects, &["a".into()], &[inertia], &[mass], step);
+        let effects = [Effect::of(&JointElasticity)
+            .on("a")
+            .with("stiffness", stiffness)
+            .with("damping", 0.0)];
+        let mut drives = Drives::new(&machine(&effects), &["a".into()], &[inertia], &[mass], step);
         assert!(drives.is_separate(0) && drives.remarks.is_empty());
         let connection = drives.connections[0].as_mut().expect("there is a spring");
         // Stretched by .01 at rest: what the rotor moves, the link moves back by as much times J/M.
@@ -183,21 +186,14 @@ mod tests {
     #[test]
     fn a_rotor_without_inertia_is_deflected() {
         let effects = [
-            Effect::JointElasticity {
-                joint: "a".into(),
-                stiffness: 100.0,
-                damping: 1.0,
-            },
-            Effect::Backlash {
-                joint: "a".into(),
-                halfgap: 0.01,
-            },
-            Effect::ActuationDelay {
-                joint: "a".into(),
-                delay: 0.004,
-            },
+            Effect::of(&JointElasticity)
+                .on("a")
+                .with("stiffness", 100.0)
+                .with("damping", 1.0),
+            Effect::of(&Backlash).on("a").with("halfgap", 0.01),
+            Effect::of(&ActuationDelay).on("a").with("delay", 0.004),
         ];
-        let mut drives = Drives::new(&effects, &["a".into()], &[0.0], &[1.0], 1e-3);
+        let mut drives = Drives::new(&machine(&effects), &["a".into()], &[0.0], &[1.0], 1e-3);
         assert_eq!(drives.delays, [0.004]);
         assert_eq!(drives.remarks.len(), 1);
         let connection = drives.connections[0].as_mut().expect("there is a spring");

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::*;
+use effects::drive::RotorInertia;
 use recording::Recording;
 
 fn blind() -> Option<PathBuf> {
@@ -31,10 +32,11 @@ fn concealed(truth: &Path) -> Option<Vec<Effect>> {
             item.insert("effect".into(), "link_inertial_error".into());
         }
         if let Some(rotor) = item.remove("rotor") {
-            effects.push(Effect::RotorInertia {
-                joint: item["joint"].as_str().expect("it has a joint").into(),
-                inertia: rotor.as_f64().expect("it is a number"),
-            });
+            effects.push(
+                Effect::of(&RotorInertia)
+                    .on(item["joint"].as_str().expect("it has a joint"))
+                    .with("inertia", rotor.as_f64().expect("it is a number")),
+            );
         }
         effects.push(serde_json::from_value(item.into()).ok()?);
     }

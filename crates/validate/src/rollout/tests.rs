@@ -1,6 +1,8 @@
 //! Rollouts of motions that the plant itself made.
 
 use super::*;
+use effects::friction::{CoulombFriction, ViscousFriction};
+use effects::sensor::{EncoderOffset, TorqueOffset, TorqueScale};
 use plant::{Plant, PlantOptions};
 use recording::Recording;
 use torque::Corrected;
@@ -85,20 +87,18 @@ fn assert_better(result: &Rollout, joints: std::ops::Range<usize>, factor: f64) 
 #[test]
 fn friction_and_payload_named_are_friction_and_payload_simulated() {
     let nominal = puma();
-    let mut effects = every_joint(&nominal, |joint| Effect::ViscousFriction {
-        joint,
-        coefficient: 0.8,
+    let mut effects = every_joint(&nominal, |joint| {
+        Effect::of(&ViscousFriction).on(joint).with("coefficient", 0.8)
     });
-    effects.extend(every_joint(&nominal, |joint| Effect::CoulombFriction {
-        joint,
-        level: 0.6,
+    effects.extend(every_joint(&nominal, |joint| {
+        Effect::of(&CoulombFriction).on(joint).with("level", 0.6)
     }));
-    effects.push(Effect::Payload {
-        mass: 2.0,
-        com: [0.0, 0.0, 0.1],
-        inertia: [0.01, 0.0, 0.01, 0.0, 0.0, 0.01],
-        onset: None,
-    });
+    effects.push(
+        Effect::of(&Payload)
+            .with("mass", 2.0)
+            .with("com", [0.0, 0.0, 0.1])
+            .with("inertia", [0.01, 0.0, 0.01, 0.0, 0.0, 0.01]),
+    );
     let truth = Corrected::new(&nominal, &effects)
         .expect("they are physical")
         .arm()
@@ -125,20 +125,9 @@ fn drives_and_encoders_distort_and_are_put_right() {
     let arm = puma();
     let name = |j: usize| arm.joints()[j].name.clone();
     let effects = [
-        Effect::TorqueScale {
-            joint: name(1),
-            factor: 1.15,
-            onset: None,
-        },
-        Effect::EncoderOffset {
-            joint: name(2),
-            offset: -0.1,
-        },
-        Effect::TorqueOffset {
-            joint: name(0),
-            offset: 3.0,
-            onset: None,
-        },
+        Effect::of(&TorqueScale).on(name(1)).with("factor", 1.15),
+        Effect::of(&EncoderOffset).on(name(2)).with("offset", -0.1),
+        Effect::of(&TorqueOffset).on(name(0)).with("offset", 3.0),
     ];
     let recording = record(&arm, 0.0, 0.0, 5.0, |j, tau, q| match j {
         0 => (tau + 3.0, q),

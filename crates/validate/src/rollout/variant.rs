@@ -1,8 +1,9 @@
 //! One arm in the plant, with its effects, over a window.
 
 use arm::{Arm, DMatrix};
+use effects::Effect;
 use plant::{Plant, PlantError, PlantOptions};
-use torque::{Corrected, Effect, Workspace};
+use torque::{Corrected, Workspace};
 
 use super::drive::{Connection, Drives};
 use super::start::Start;
@@ -43,7 +44,7 @@ impl Variant {
         let names: Vec<String> = arm.joints().iter().map(|joint| joint.name.clone()).collect();
         let mut rotors: Vec<f64> = model.arm().joints().iter().map(|joint| joint.rotor_inertia).collect();
         let links = link_inertias(model.arm(), &rotors);
-        let drives = Drives::new(effects, &names, &rotors, &links, course.step);
+        let drives = Drives::new(model.machine(), &names, &rotors, &links, course.step);
         for (j, rotor) in rotors.iter_mut().enumerate() {
             if drives.is_separate(j) {
                 *rotor = 0.0;

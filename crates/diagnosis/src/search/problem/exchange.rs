@@ -1,9 +1,9 @@
 //! Exchanging members of a choice for better ones.
 
+use effects::arm::ExternalContact;
 use rayon::prelude::*;
 
 use super::{Chosen, Problem};
-use crate::search::candidate::Cause;
 
 impl Problem<'_> {
     /// `chosen` with one cause that acts on the whole arm, without what that then explains: on several joints at once other
@@ -12,7 +12,7 @@ impl Problem<'_> {
         let is_free = |c: &usize| {
             let candidate = &self.candidates[*c];
             candidate.joint.is_none()
-                && candidate.cause != Cause::Contact
+                && !candidate.cause.is(&ExternalContact)
                 && !chosen.set.iter().any(|&other| other == *c || self.exclude(*c, other))
         };
         let free: Vec<usize> = allowed.iter().copied().filter(is_free).collect();

@@ -1,20 +1,13 @@
 //! Effects that set in halfway: when, by what is left.
 
+use effects::{Kind, Scope, SetsIn, Term};
 use nalgebra::{Matrix4, Vector4};
 use rayon::prelude::*;
 
 use crate::regression::table::Table;
-use crate::regression::term::{Onset, Term};
 use crate::search::candidate::Cause;
 use crate::search::study::Study;
 
-/// What may set in, with the columns that it has.
-const FORMS: [(Cause, &[Onset]); 4] = [
-    (Cause::TorqueOffset, &[Onset::One]),
-    (Cause::TorqueScale, &[Onset::Rigid]),
-    (Cause::Spring, &[Onset::One, Onset::Position]),
-    (Cause::Drag, &[Onset::Drag]),
-];
 /// From one time that is tried to the next, and about the best of them (s).
 const STEP: f64 = 0.5;
 const FINE: f64 = 0.05;
@@ -42,28 +35,33 @@ pub fn onsets(
         rows,
     };
     let dof = study.table.dof();
-    let forms: Vec<(usize, Cause, &[Onset])> = (0..dof)
-        .flat_map(|joint| FORMS.map(|(cause, what)| (joint, cause, what)))
+    let mut kinds: Vec<(Kind, SetsIn)> = Kind::all()
+        .filter_map(|kind| Some((kind, kind.get().sets_in()?)))
         .collect();
-    let mut list: Vec<(Cause, Option<usize>, Vec<Term>)> = forms
+    kinds.sort_by_key(|(_, form)| form.turn);
+    let (on_arm, on_joint): (Vec<_>, Vec<_>) = kinds.into_iter().partition(|(kind, _)| kind.spec().scope == Scope::Arm);
+    let all: Vec<usize> = (0..dof).collect();
+    let places = all
+        .iter()
+        .flat_map(|&joint| on_joint.iter().map(move |&(kind, form)| (Some(joint), kind, form)));
+    let places: Vec<(Option<usize>, Kind, SetsIn)> = places
+        .chain(on_arm.iter().map(|&(kind, form)| (None, kind, form)))
+        .collect();
+    places
         .into_par_iter()
-        .filter_map(|(joint, cause, what)| {
-            let from = past.best(&[joint], what)?;
-            let terms = what.iter().map(|&what| Term::Since { joint, what, from }).collect();
-            Some((cause, Some(joint), terms))
+        .flat_map_iter(|(joint, kind, form)| {
+            let what = (form.terms)(joint.unwrap_or(0));
+            let joints = joint.map_or_else(|| all.clone(), |joint| vec![joint]);
+            let from = past.best(&joints, &what[..form.looked_for_with]);
+            let cause = Cause { kind, other: None };
+            let candidate = move |from: f64| {
+                let since = |count: &usize| what[..*count].iter().map(|term| term.since(from)).collect();
+                let taken: Vec<Vec<Term>> = form.taken.iter().map(since).collect();
+                taken.into_iter().map(move |terms| (cause, joint, terms))
+            };
+            from.into_iter().flat_map(candidate)
         })
-        .collect();
-    let joints: Vec<usize> = (0..dof).collect();
-    let body = [0, 1, 2, 3].map(Onset::Payload);
-    if let Some(from) = past.best(&joints, &body) {
-        // With its moments of inertia and, where they do not show, without.
-        for count in [10, 4] {
-            let what = (0..count).map(Onset::Payload);
-            let terms = what.map(|what| Term::Since { joint: 0, what, from }).collect();
-            list.push((Cause::Payload, None, terms));
-        }
-    }
-    list
+        .collect()
 }
 
 /// What is left of the training recordings, the latest row first.
@@ -77,13 +75,13 @@ struct Past<'a> {
 
 impl Past<'_> {
     /// The onset from which on the columns `what` explain most of what is left of `joints` on their moving rows.
-    fn best(&self, joints: &[usize], what: &[Onset]) -> Option<f64> {
+    fn best(&self, joints: &[usize], what: &[Term]) -> Option<f64> {
         let (table, times) = (self.table, self.times);
         let columns: Vec<Vec<Option<&Vec<f64>>>> = joints
             .iter()
             .map(|&joint| {
-                let column = |what: &Onset| {
-                    let term = table.terms.iter().position(|&term| term == what.always(joint))?;
+                let column = |what: &Term| {
+                    let term = table.terms.iter().position(|term| term == what)?;
                     table.place[joint][term].map(|place| &table.joints[joint].x[place])
                 };
                 what.iter().map(column).collect()

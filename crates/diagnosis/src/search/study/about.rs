@@ -1,11 +1,10 @@
 //! The arm that a fit found: what is not linear in a tilt, an encoder's offset or a payload is small about it.
 
 use arm::{Arm, Vector3};
+use effects::{Carried, Term, arm::body};
 
 use super::Study;
-use crate::data::measure::inertia;
 use crate::regression::fit::Fit;
-use crate::regression::term::Term;
 
 /// An arm with what a fit found in it.
 pub struct About {
@@ -20,25 +19,29 @@ pub struct About {
 impl About {
     /// The arm of `study` with what `fit` found.
     pub fn new(study: &Study, fit: &Fit) -> Self {
-        let mut arm = study.arm.clone();
-        let mut offset = vec![0.0; arm.dof()];
+        let mut found = Carried {
+            arm: study.arm.clone(),
+            offset: vec![0.0; study.arm.dof()],
+            payload: [0.0; 10],
+            tilt: [0.0; 2],
+        };
         let mut carried = Vec::new();
-        let mut tilt = Vector3::zeros();
-        let mut payload = [0.0; 10];
         for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
             let term = study.table.terms[column];
-            match term {
-                Term::Payload(k) => payload[k] = value,
-                Term::Link(link) => arm = arm.with_scaled_link(link, 1.0 + value),
-                Term::Scale => arm = arm.with_scaled_inertias(1.0 + value),
-                Term::EncoderOffset(joint) => offset[joint] = value,
-                Term::Tilt(axis) => tilt[axis] = value,
-                _ => continue,
+            if let (Some(carry), None) = (term.law.carry, term.onset()) {
+                carry(&term, value, &mut found);
+                carried.push((term, value));
             }
-            carried.push((term, value));
         }
+        let Carried {
+            mut arm,
+            offset,
+            payload,
+            tilt: [x, y],
+        } = found;
+        let tilt = Vector3::new(x, y, 0.0);
         if payload[0] != 0.0 {
-            arm = arm.with_payload(&inertia(&payload));
+            arm = arm.with_payload(&body(&payload));
         }
         if tilt.norm() > 0.0 {
             arm = arm.with_turned_base(tilt, tilt.norm());

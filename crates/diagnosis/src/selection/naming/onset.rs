@@ -12,7 +12,7 @@ const OF_A_PUSH: f64 = 0.1;
 
 impl Reader<'_> {
     /// Notes when the candidate sets in, if it does not always act.
-    pub(super) fn onset(&mut self) -> Option<f64> {
+    pub(super) fn note_onset(&mut self) -> Option<f64> {
         let onset = self.study.terms(self.candidate).first()?.onset()?;
         let (value, ci95) = self.likeliest_onset(onset);
         let parameter = Parameter { value, ci95, unit: "s" };
@@ -21,7 +21,7 @@ impl Reader<'_> {
     }
 
     /// Notes when a push of a `duration` (s) begins.
-    pub(super) fn start(&mut self, start: f64, duration: f64) {
+    pub(super) fn note_start(&mut self, start: f64, duration: f64) {
         let half = OF_A_PUSH * duration;
         let parameter = Parameter {
             value: start,

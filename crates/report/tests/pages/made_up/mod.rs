@@ -9,8 +9,9 @@ use diagnosis::{
     Confusable, Finding, JointFit, JointRollout, Located, NotObservable, Parameter, Place, RecordingNames, Region,
     Report, TimeWindow, Trace, Traces, Unexplained, Verdict,
 };
+use effects::Effect;
+use effects::sensor::TorqueOffset;
 use report::statistics::rms;
-use torque::Effect;
 
 use motion::{EFFECTS, Row, acts, arm, spread, trace};
 
@@ -100,11 +101,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
                 row.0.replace('_', " ")
             ),
             corrects: true,
-            as_effect: Effect::TorqueOffset {
-                joint: String::new(),
-                offset: 0.0,
-                onset: None,
-            },
+            as_effect: Effect::of(&TorqueOffset).on(String::new()).with("offset", 0.0),
         }
     });
     let mut findings: Vec<Finding> = findings.collect();

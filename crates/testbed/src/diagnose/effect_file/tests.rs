@@ -1,6 +1,16 @@
 //! Effect files go round, and what is wrong with one is said with its line.
 
 use super::*;
+use effects::arm::{ExternalContact, GravityMisalignment, InertialScale, LinkInertialError, Payload};
+use effects::drive::{
+    ActuationDelay, Backlash, JointElasticity, RotorInertia, TorqueRipple, TorqueSaturation, TransmissionCoupling,
+};
+use effects::friction::{
+    CoulombFriction, FrictionAsymmetry, LoadDependentFriction, QuadraticDrag, StribeckFriction, ThermalDrift,
+    ViscousFriction,
+};
+use effects::joint::Spring;
+use effects::sensor::{EncoderOffset, TorqueOffset, TorqueScale};
 
 fn arm() -> Arm {
     Arm::from_urdf_text(include_str!("../../../../../assets/puma560.urdf"), "puma560.urdf").expect("it is an arm")
@@ -10,126 +20,76 @@ fn arm() -> Arm {
 fn all(joint: &str, other: &str) -> Vec<Effect> {
     let joint = || joint.to_owned();
     vec![
-        Effect::ViscousFriction {
-            joint: joint(),
-            coefficient: 0.1,
-        },
-        Effect::CoulombFriction {
-            joint: joint(),
-            level: 2.0,
-        },
-        Effect::FrictionAsymmetry {
-            joint: joint(),
-            positive: 1.0 / 3.0,
-            negative: 0.25,
-        },
-        Effect::StribeckFriction {
-            joint: joint(),
-            coulomb: 1.0,
-            breakaway: 1.5,
-            velocity: 0.02,
-            exponent: 1.0,
-        },
-        Effect::LoadDependentFriction {
-            joint: joint(),
-            coulomb: 1e-9,
-            gain: 0.1,
-        },
-        Effect::ThermalDrift {
-            joint: joint(),
-            coulomb: 1.0,
-            amplitude: 0.4,
-            time_constant: 600.0,
-        },
-        Effect::QuadraticDrag {
-            joint: joint(),
-            coefficient: 0.3,
-            exponent: 2.0,
-            onset: None,
-        },
-        Effect::RotorInertia {
-            joint: joint(),
-            inertia: 0.2,
-        },
-        Effect::TorqueScale {
-            joint: joint(),
-            factor: 1.1,
-            onset: None,
-        },
-        Effect::TorqueOffset {
-            joint: joint(),
-            offset: -0.1,
-            onset: None,
-        },
-        Effect::TorqueRipple {
-            joint: joint(),
-            amplitude: 0.2,
-            periods: 12.0,
-            phase: 0.3,
-        },
-        Effect::TorqueSaturation {
-            joint: joint(),
-            limit: 20.0,
-        },
-        Effect::ActuationDelay {
-            joint: joint(),
-            delay: 0.004,
-        },
-        Effect::JointElasticity {
-            joint: joint(),
-            stiffness: 1e4,
-            damping: 3.0,
-        },
-        Effect::Backlash {
-            joint: joint(),
-            halfgap: 0.001,
-        },
-        Effect::TransmissionCoupling {
-            sense: 1.0,
-            joint: joint(),
-            other: other.into(),
-            viscous: 0.6,
-            coulomb: 1.9,
-            inertia: 0.01,
-        },
-        Effect::Payload {
-            mass: 1.5,
-            com: [0.0, 0.01, 0.1],
-            inertia: [0.01, 0.0, 0.01, 0.0, 0.0, 0.02],
-            onset: None,
-        },
-        Effect::LinkInertialError {
-            joint: joint(),
-            relative: -0.1,
-        },
-        Effect::InertialScale { factor: 1.05 },
-        Effect::GravityMisalignment {
-            angle: 0.05,
-            axis: [0.0, 1.0, 0.0],
-        },
-        Effect::EncoderOffset {
-            joint: joint(),
-            offset: 0.01,
-        },
-        Effect::Spring {
-            joint: joint(),
-            stiffness: 10.0,
-            rest: 0.1,
-            curve: vec![],
-            onset: None,
-        },
-        Effect::Spring {
-            joint: joint(),
-            stiffness: 0.0,
-            rest: 0.0,
-            curve: vec![[-1.0, 2.0], [0.5, 1.0]],
-            onset: None,
-        },
-        Effect::ExternalContact {
-            start: 12.0,
-            duration: 0.5,
-            force: [0.0, 10.0, -5.0],
-        },
+        Effect::of(&ViscousFriction).on(joint()).with("coefficient", 0.1),
+        Effect::of(&CoulombFriction).on(joint()).with("level", 2.0),
+        Effect::of(&FrictionAsymmetry)
+            .on(joint())
+            .with("positive", 1.0 / 3.0)
+            .with("negative", 0.25),
+        Effect::of(&StribeckFriction)
+            .on(joint())
+            .with("coulomb", 1.0)
+            .with("breakaway", 1.5)
+            .with("velocity", 0.02)
+            .with("exponent", 1.0),
+        Effect::of(&LoadDependentFriction)
+            .on(joint())
+            .with("coulomb", 1e-9)
+            .with("gain", 0.1),
+        Effect::of(&ThermalDrift)
+            .on(joint())
+            .with("coulomb", 1.0)
+            .with("amplitude", 0.4)
+            .with("time_constant", 600.0),
+        Effect::of(&QuadraticDrag)
+            .on(joint())
+            .with("coefficient", 0.3)
+            .with("exponent", 2.0),
+        Effect::of(&RotorInertia).on(joint()).with("inertia", 0.2),
+        Effect::of(&TorqueScale).on(joint()).with("factor", 1.1),
+        Effect::of(&TorqueOffset).on(joint()).with("offset", -0.1),
+        Effect::of(&TorqueRipple)
+            .on(joint())
+            .with("amplitude", 0.2)
+            .with("periods", 12.0)
+            .with("phase", 0.3),
+        Effect::of(&TorqueSaturation).on(joint()).with("limit", 20.0),
+        Effect::of(&ActuationDelay).on(joint()).with("delay", 0.004),
+        Effect::of(&JointElasticity)
+            .on(joint())
+            .with("stiffness", 1e4)
+            .with("damping", 3.0),
+        Effect::of(&Backlash).on(joint()).with("halfgap", 0.001),
+        Effect::of(&TransmissionCoupling)
+            .on(joint())
+            .with("sense", 1.0)
+            .with_other(other)
+            .with("viscous", 0.6)
+            .with("coulomb", 1.9)
+            .with("inertia", 0.01),
+        Effect::of(&Payload)
+            .with("mass", 1.5)
+            .with("com", [0.0, 0.01, 0.1])
+            .with("inertia", [0.01, 0.0, 0.01, 0.0, 0.0, 0.02]),
+        Effect::of(&LinkInertialError).on(joint()).with("relative", -0.1),
+        Effect::of(&InertialScale).with("factor", 1.05),
+        Effect::of(&GravityMisalignment)
+            .with("angle", 0.05)
+            .with("axis", [0.0, 1.0, 0.0]),
+        Effect::of(&EncoderOffset).on(joint()).with("offset", 0.01),
+        Effect::of(&Spring)
+            .on(joint())
+            .with("stiffness", 10.0)
+            .with("rest", 0.1),
+        Effect::of(&Spring)
+            .on(joint())
+            .with("stiffness", 0.0)
+            .with("rest", 0.0)
+            .with("curve", vec![[-1.0, 2.0], [0.5, 1.0]]),
+        Effect::of(&ExternalContact)
+            .with("start", 12.0)
+            .with("duration", 0.5)
+            .with("force", [0.0, 10.0, -5.0]),
     ]
 }
 

@@ -1,6 +1,8 @@
 //! The URDF that is written says, read again, what the corrected model says.
 
 use super::*;
+use effects::friction::{CoulombFriction, ViscousFriction};
+use effects::sensor::TorqueOffset;
 use torque::{Prediction, TorqueModel, Workspace};
 
 /// Welded links, one of them without inertial, comments, odd spacing, a transmission with a joint of the same name.
@@ -28,30 +30,15 @@ const TWO: &str = r#"<?xml version="1.0"?>
 
 fn effects() -> Vec<Effect> {
     vec![
-        Effect::ViscousFriction {
-            joint: "a".into(),
-            coefficient: 1.25,
-        },
-        Effect::CoulombFriction {
-            joint: "b".into(),
-            level: 0.75,
-        },
-        Effect::Payload {
-            mass: 1.5,
-            com: [0.1, 0.02, 0.3],
-            inertia: [0.03, 0.001, 0.02, 0.0, 0.002, 0.01],
-            onset: None,
-        },
-        Effect::LinkInertialError {
-            joint: "b".into(),
-            relative: 0.2,
-        },
-        Effect::InertialScale { factor: 1.1 },
-        Effect::TorqueOffset {
-            joint: "b".into(),
-            offset: 0.3,
-            onset: None,
-        },
+        Effect::of(&ViscousFriction).on("a").with("coefficient", 1.25),
+        Effect::of(&CoulombFriction).on("b").with("level", 0.75),
+        Effect::of(&Payload)
+            .with("mass", 1.5)
+            .with("com", [0.1, 0.02, 0.3])
+            .with("inertia", [0.03, 0.001, 0.02, 0.0, 0.002, 0.01]),
+        Effect::of(&LinkInertialError).on("b").with("relative", 0.2),
+        Effect::of(&InertialScale).with("factor", 1.1),
+        Effect::of(&TorqueOffset).on("b").with("offset", 0.3),
     ]
 }
 
@@ -119,20 +106,12 @@ fn the_puma_goes_round() {
     let arm = read(urdf);
     let joint = |j: usize| arm.joints()[j].name.clone();
     let effects = [
-        Effect::Payload {
-            mass: 2.0,
-            com: [0.0, 0.0, 0.1],
-            inertia: [0.01, 0.0, 0.01, 0.0, 0.0, 0.01],
-            onset: None,
-        },
-        Effect::LinkInertialError {
-            joint: joint(1),
-            relative: -0.15,
-        },
-        Effect::ViscousFriction {
-            joint: joint(2),
-            coefficient: 3.5,
-        },
+        Effect::of(&Payload)
+            .with("mass", 2.0)
+            .with("com", [0.0, 0.0, 0.1])
+            .with("inertia", [0.01, 0.0, 0.01, 0.0, 0.0, 0.01]),
+        Effect::of(&LinkInertialError).on(joint(1)).with("relative", -0.15),
+        Effect::of(&ViscousFriction).on(joint(2)).with("coefficient", 3.5),
     ];
     let written = read(&corrected_urdf(urdf, &arm, &effects).expect("it is written"));
     assert_same_dynamics(&written, &Corrected::new(&arm, &effects).expect("they are physical"));
@@ -142,10 +121,7 @@ fn the_puma_goes_round() {
 #[test]
 fn what_does_not_fit_is_refused() {
     let arm = read(TWO);
-    let unknown = [Effect::CoulombFriction {
-        joint: "z".into(),
-        level: 1.0,
-    }];
+    let unknown = [Effect::of(&CoulombFriction).on("z").with("level", 1.0)];
     assert!(corrected_urdf(TWO, &arm, &unknown).is_err());
     let other = TWO.replace("name=\"upper\"", "name=\"other\"");
     let error = corrected_urdf(&other, &arm, &effects()).expect_err("it is another robot's");

@@ -6,10 +6,7 @@ use arm::JointKind;
 
 /// Effects that are on no joint.
 pub fn is_on_the_arm(effect: &str) -> bool {
-    matches!(
-        effect,
-        "payload" | "inertial_scale" | "gravity_misalignment" | "external_contact"
-    )
+    effects::spec(effect).is_some_and(|spec| spec.scope == effects::Scope::Arm)
 }
 
 /// A unit's name, and its factor to the first of its list.

@@ -1,8 +1,10 @@
 //! The feed-forward of a model along the course: torques, and what the encoders are to say.
 
 use arm::Arm;
+use effects::Effect;
+use effects::drive::{ActuationDelay, JointElasticity, TorqueSaturation};
 use faults::{CaseMachine, LinkMotion};
-use torque::{Corrected, Effect, Learned, Prediction, RigidBody, TorqueModel, Workspace};
+use torque::{Corrected, Learned, Prediction, RigidBody, TorqueModel, Workspace};
 
 use super::course::{Course, TICK};
 
@@ -61,12 +63,11 @@ impl Plan {
         });
         for (j, joint) in arm.joints().iter().enumerate() {
             for effect in effects.iter().filter(|effect| effect.joint() == Some(&joint.name)) {
-                match *effect {
-                    Effect::ActuationDelay { delay, .. } => plan.delays[j] += delay,
-                    Effect::JointElasticity { stiffness, .. } => {
-                        plan.stretch(arm, effects, &model, course, (j, stiffness))?;
-                    }
-                    _ => {}
+                if effect.is(&ActuationDelay) {
+                    plan.delays[j] += effect.number("delay");
+                } else if effect.is(&JointElasticity) {
+                    let stiffness = effect.number("stiffness");
+                    plan.stretch(arm, effects, &model, course, (j, stiffness))?;
                 }
             }
         }
@@ -82,17 +83,7 @@ impl Plan {
         course: &Course,
         (j, stiffness): (usize, f64),
     ) -> anyhow::Result<()> {
-        let is_behind = |effect: &&Effect| {
-            matches!(
-                effect,
-                Effect::Payload { .. }
-                    | Effect::LinkInertialError { .. }
-                    | Effect::InertialScale { .. }
-                    | Effect::GravityMisalignment { .. }
-                    | Effect::Spring { .. }
-                    | Effect::TransmissionCoupling { .. }
-            )
-        };
+        let is_behind = |effect: &&Effect| effect.spec().is_behind_the_drive;
         let behind: Vec<Effect> = effects.iter().filter(is_behind).cloned().collect();
         let links = Corrected::new(&arm.clone().with_rotor_inertias(&vec![0.0; arm.dof()]), &behind)?;
         let mut ahead = Vec::with_capacity(course.middle.q.len() / course.dof);
@@ -156,9 +147,7 @@ impl Plan {
 
 /// The named effects as a model of what a drive must give: what cuts its torque is no reason to ask for less.
 pub fn correction(arm: &Arm, effects: &[Effect]) -> anyhow::Result<Corrected> {
-    let asked = effects
-        .iter()
-        .filter(|effect| !matches!(effect, Effect::TorqueSaturation { .. }));
+    let asked = effects.iter().filter(|effect| !effect.is(&TorqueSaturation));
     Ok(Corrected::new(arm, &asked.cloned().collect::<Vec<_>>())?)
 }
 

@@ -1,7 +1,10 @@
 //! A machine whose effects are known: what each model is worth on it.
 
+use effects::Effect;
+use effects::drive::{ActuationDelay, JointElasticity, RotorInertia};
+use effects::friction::QuadraticDrag;
+use effects::sensor::{EncoderOffset, TorqueScale};
 use faults::{Injected, Settings, conceal_effects, write_case};
-use torque::Effect;
 
 use super::*;
 
@@ -16,9 +19,10 @@ fn tracked(effects: &[Injected], named: &[Effect]) -> CaseTracking {
     let folder = tempfile::tempdir().expect("a folder");
     let case = write_case(&concealment, folder.path(), &folder.path().join("truth")).expect("it can be written");
     let joints = robots[0].arm().joints().iter().zip(robots[0].rotor_inertias());
-    let drives = joints.map(|(joint, &inertia)| Effect::RotorInertia {
-        joint: joint.name.clone(),
-        inertia,
+    let drives = joints.map(|(joint, &inertia)| {
+        Effect::of(&RotorInertia)
+            .on(joint.name.clone())
+            .with("inertia", inertia)
     });
     let file = EffectFile {
         robot: None,
@@ -43,12 +47,10 @@ fn errors(tracking: &CaseTracking) -> [f64; 5] {
 fn a_true_name_tracks_as_the_exact_model_does() {
     let joint = || "joint2".to_owned();
     let drag = Injected::new("quadratic_drag", Some("joint2")).with("coefficient", 40.0);
-    let named = Effect::QuadraticDrag {
-        joint: joint(),
-        coefficient: 40.0,
-        exponent: 2.0,
-        onset: None,
-    };
+    let named = Effect::of(&QuadraticDrag)
+        .on(joint())
+        .with("coefficient", 40.0)
+        .with("exponent", 2.0);
     let tracking = tracked(&[drag], &[named]);
     let [nominal, diagnosed, learned, _, exact] = errors(&tracking);
     assert!(
@@ -74,24 +76,13 @@ fn drives_are_made_up_for() {
     ];
     let joint = |name: &str| format!("joint{name}");
     let named = [
-        Effect::ActuationDelay {
-            joint: joint("1"),
-            delay: 0.0085,
-        },
-        Effect::EncoderOffset {
-            joint: joint("2"),
-            offset: 0.03,
-        },
-        Effect::JointElasticity {
-            joint: joint("3"),
-            stiffness: 900.0,
-            damping: 2.0,
-        },
-        Effect::TorqueScale {
-            joint: joint("5"),
-            factor: 1.3,
-            onset: None,
-        },
+        Effect::of(&ActuationDelay).on(joint("1")).with("delay", 0.0085),
+        Effect::of(&EncoderOffset).on(joint("2")).with("offset", 0.03),
+        Effect::of(&JointElasticity)
+            .on(joint("3"))
+            .with("stiffness", 900.0)
+            .with("damping", 2.0),
+        Effect::of(&TorqueScale).on(joint("5")).with("factor", 1.3),
     ];
     let tracking = tracked(&effects, &named);
     let [nominal, diagnosed, learned, _, exact] = errors(&tracking);

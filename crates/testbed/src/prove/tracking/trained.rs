@@ -5,8 +5,10 @@ use std::path::Path;
 use anyhow::Context;
 use arm::Arm;
 use diagnosis::{Input, Options, Trace};
+use effects::Effect;
+use effects::drive::{ActuationDelay, TorqueSaturation};
 use recording::{Recording, RegularRecording};
-use torque::{Effect, Learned, Prediction, Workspace};
+use torque::{Learned, Prediction, Workspace};
 use validate::learned::{self, LearnedOptions, Motion};
 
 use super::plan::correction;
@@ -107,10 +109,10 @@ impl Recorded {
 fn applied(trace: &Trace, j: usize, effects: &[Effect], joint: &str) -> Vec<f64> {
     let (mut late, mut most) = (0.0, f64::INFINITY);
     for effect in effects.iter().filter(|effect| effect.joint() == Some(joint)) {
-        match *effect {
-            Effect::ActuationDelay { delay, .. } => late += delay,
-            Effect::TorqueSaturation { limit, .. } => most = limit.min(most),
-            _ => {}
+        if effect.is(&ActuationDelay) {
+            late += effect.number("delay");
+        } else if effect.is(&TorqueSaturation) {
+            most = effect.number("limit").min(most);
         }
     }
     let mut tau = shifted(&trace.time, &trace.tau[j], late);

@@ -1,8 +1,6 @@
 //! The link behind a joint that gives: what its motion relative to the drive adds to the torques.
 
-use crate::data::motion::Chunk;
-use crate::data::rigid::Rigid;
-use crate::regression::term::Term;
+use crate::motion::{Motion, Rigid};
 
 /// The motion δ (link less drive) of the link behind a joint that gives, tick by tick.
 #[derive(Clone, Debug)]
@@ -13,31 +11,13 @@ pub struct Behind {
 }
 
 impl Behind {
-    /// What a term says lies between drive and link, along a chunk; `None` if it says nothing of that.
-    pub fn new(term: Term, chunk: &Chunk, rigid: &Rigid) -> Option<Self> {
-        let (at, ticks) = match term {
-            Term::Elastic {
-                joint,
-                stiffness,
-                damping,
-            } => (joint, sprung(joint, 0.0, stiffness, |_| damping, chunk, rigid)),
-            Term::Gap {
-                joint,
-                halfgap,
-                stop,
-                ratio,
-            } if stop.is_finite() => {
-                let damping = |mass: f64| 2.0 * ratio * (stop * mass.max(0.0)).sqrt();
-                (joint, sprung(joint, halfgap, stop, damping, chunk, rigid))
-            }
-            Term::Gap { joint, halfgap, .. } => (joint, gap(joint, halfgap, chunk, rigid)),
-            _ => return None,
-        };
-        Some(Self { at, ticks })
+    /// The link of joint `at`, as [`sprung`] or [`gap`] says that it moves.
+    pub fn new(at: usize, ticks: Vec<[f64; 3]>) -> Self {
+        Self { at, ticks }
     }
 
     /// What it adds to the torque of `joint`: M δ̈ + ∂τ/∂q̇ δ̇ + ∂τ/∂q δ.
-    pub fn torque(&self, joint: usize, rigid: &Rigid) -> Vec<f64> {
+    pub fn torque(&self, joint: usize, rigid: Rigid<'_>) -> Vec<f64> {
         let (mass, drag, slope) = (
             &rigid.mass[joint][self.at],
             &rigid.by_velocity[joint][self.at],
@@ -55,22 +35,21 @@ impl Behind {
 /// M δ̈ + (D + ∂τ/∂q̇) δ̇ + ∂τ/∂q δ + K (δ ∓ halfgap) = −τ, driven by the drive's measured motion. `damping` gives D for M.
 ///
 /// Integrated by the trapezoidal rule (Newmark, β = 1/4), from the quasi-static deflection.
-fn sprung(
+pub fn sprung(
     at: usize,
     halfgap: f64,
     stiffness: f64,
     damping: impl Fn(f64) -> f64,
-    chunk: &Chunk,
-    rigid: &Rigid,
+    motion: &Motion<'_>,
 ) -> Vec<[f64; 3]> {
-    let h = chunk.period;
+    let (h, rigid) = (motion.period, motion.rigid);
     let (mass, drag, slope) = (
         &rigid.mass[at][at],
         &rigid.by_velocity[at][at],
         &rigid.by_position[at][at],
     );
     let tau = &rigid.tau[at];
-    let ticks = chunk.ticks();
+    let ticks = motion.ticks();
     let mut out = Vec::with_capacity(ticks);
     // Positive torque: the drive pushes the link in the positive direction, so the link lags behind.
     let mut delta = -halfgap.copysign(tau[0]) - tau[0] / (stiffness + slope[0]);
@@ -102,10 +81,10 @@ fn sprung(
 
 /// δ behind a gap of ± `halfgap` with rigid ends: the link lies against one side while its torque presses it there, and
 /// moves freely from one to the other when the torque turns; impacts are inelastic.
-fn gap(at: usize, halfgap: f64, chunk: &Chunk, rigid: &Rigid) -> Vec<[f64; 3]> {
-    let h = chunk.period;
+pub fn gap(at: usize, halfgap: f64, motion: &Motion<'_>) -> Vec<[f64; 3]> {
+    let (h, rigid) = (motion.period, motion.rigid);
     let tau = &rigid.tau[at];
-    let ticks = chunk.ticks();
+    let ticks = motion.ticks();
     let mut out = Vec::with_capacity(ticks);
     // Positive torque: the drive pushes the link in the positive direction, so the link lags behind, δ = −halfgap.
     let mut delta = if tau[0] >= 0.0 { -halfgap } else { halfgap };

@@ -1,0 +1,170 @@
+//! A force on the tool for a while.
+
+use crate::fitted::moving_mass;
+use crate::{
+    Against, Contact, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place,
+    Quantity, Range, Scope, Shape, Size, Spec, Systematic, Term,
+};
+
+/// A force on the tool for a while: τ = −Jᵀ F.
+#[derive(Debug)]
+pub struct ExternalContact;
+
+static SPEC: Spec = Spec {
+    name: "external_contact",
+    title: "external contact",
+    meaning: "a force on the arm for a while (a touch, a collision, a person)",
+    told_by: "the same motion once more, untouched",
+    formula: "a force on the tool for a while",
+    sentence: "a force of {force} on the tool for {duration} from {start}",
+    scope: Scope::Arm,
+    parameters: &[
+        Parameter::new("start", Quantity::Time),
+        Parameter::new("duration", Quantity::Time).within(Range::Positive),
+        Parameter::new("force", Quantity::Force)
+            .of(Shape::List(3, &["force_x", "force_y", "force_z"]))
+            .remarked("N, in the base's frame"),
+    ],
+    main: &["force"],
+    may_repeat: true,
+    prior: 8.0,
+    is_passing: true,
+    against: Against::Time,
+    experiment: Some(Experiment {
+        rank: 2,
+        text: "record the same motion again with nothing in the arm's way",
+    }),
+    ..Spec::EMPTY
+};
+
+/// A unit force on the tool along a base axis, between two times (sizes, s); form 1 is half a sine instead of constant.
+pub static FORCE: Law = Law {
+    name: "force",
+    column: |term, joint, motion| {
+        let ([from, to, ..], force) = (term.sizes, &motion.rigid.force[joint][term.of[0]]);
+        motion.map(|k| {
+            let time = motion.time(k);
+            if !(from..to).contains(&time) {
+                0.0
+            } else if term.form == 1 {
+                -force[k] * (std::f64::consts::PI * (time - from) / (to - from)).sin()
+            } else {
+                -force[k]
+            }
+        })
+    },
+    needs_model: true,
+    varied: Some(|term, size, factor| {
+        let [from, to, ..] = term.sizes;
+        match size {
+            Size::Duration => term.sized([from, from + factor * (to - from)]),
+            _ => *term,
+        }
+    }),
+    other_form: Some(|term, factor| (about_middle(&term.form(1 - term.form), factor), true)),
+    nudges: &[
+        |term, step| term.sized([term.sizes[0] + 0.25 * step * (term.sizes[1] - term.sizes[0]).max(0.3)]),
+        |term, step| {
+            let [from, to, ..] = term.sizes;
+            term.sized([from, to + 0.25 * step * (to - from).max(0.3)])
+        },
+        |term, step| {
+            let [from, to, ..] = term.sizes;
+            let (middle, half) = (0.5 * (from + to), 0.5 * (to - from) * (0.4 * step).exp());
+            term.sized([middle - half, middle + half])
+        },
+    ],
+    is_sound: |term| term.sizes[1] - term.sizes[0] > 0.05,
+    ..Law::PLAIN
+};
+
+/// The window times a factor about its middle.
+fn about_middle(term: &Term, factor: f64) -> Term {
+    let [from, to, ..] = term.sizes;
+    let (middle, half) = (0.5 * (from + to), 0.5 * factor * (to - from));
+    term.sized([middle - half, middle + half])
+}
+
+/// The columns of a force on the tool between two times (s), constant or `round`.
+pub fn columns(from: f64, to: f64, round: bool) -> Vec<Term> {
+    (0..3)
+        .map(|axis| Term::about(&FORCE, axis).form(usize::from(round)).sized([from, to]))
+        .collect()
+}
+
+/// From when to when a contact's column lasts (s); `None` of another column.
+pub fn window(term: &Term) -> Option<[f64; 2]> {
+    term.is(&FORCE).then_some([term.sizes[0], term.sizes[1]])
+}
+
+/// A push is no more than so many times the arm's weight on Earth: the drives could not hold against it.
+const MOST_CONTACT: f64 = 4.0;
+/// Gravity on Earth (m/s²).
+const GRAVITY: f64 = 9.81;
+
+impl EffectKind for ExternalContact {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    /// The residuals suggest when.
+    fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
+        Vec::new()
+    }
+
+    /// Two that are within a second of each other: one contact, then.
+    fn is_same(&self, a: &Term, b: &Term) -> bool {
+        let ([a, b, ..], [c, d, ..]) = (a.sizes, b.sizes);
+        a < d + 1.0 && c < b + 1.0
+    }
+
+    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        let force = (0..3).map(|k| fitted.value(k).powi(2)).sum::<f64>().sqrt();
+        force < MOST_CONTACT * (GRAVITY * moving_mass(fitted.arm()))
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let [from, to] = window(estimate.terms().first()?)?;
+        let (x, y, z) = (estimate.place(0)?, estimate.place(1)?, estimate.place(2)?);
+        estimate.note("force", |draw| {
+            (draw[x].powi(2) + draw[y].powi(2) + draw[z].powi(2)).sqrt()
+        });
+        estimate.start(from, to - from);
+        let duration = estimate.size(Systematic::OfForm, "duration", Size::Duration, to - from);
+        let force =
+            [("force_x", x), ("force_y", y), ("force_z", z)].map(|(key, at)| estimate.coefficient(key, Some(at), 1.0));
+        let effect = Effect::of(&Self).with("start", from);
+        Some(effect.with("duration", duration).with("force", force))
+    }
+
+    /// Of contacts, each is another.
+    fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
+        a == b
+    }
+
+    fn apply(&self, effect: &Effect, _: Place, machine: &mut Machine) {
+        let start = effect.number("start");
+        machine.contacts.push(Contact {
+            start,
+            end: start + effect.number("duration"),
+            force: effect.vector("force"),
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::{column, machine};
+
+    #[test]
+    fn it_lasts_as_long_as_its_columns() {
+        let effect = Effect::of(&ExternalContact).with("start", 0.2);
+        let effect = effect.with("duration", 0.3).with("force", [5.0, 2.0, 7.0]);
+        let contact = &machine(&effect).contacts[0];
+        assert_eq!((contact.start, contact.end), (0.2, 0.5));
+        let (torque, _) = column(&columns(0.2, 0.5, false)[0], 0);
+        let acting = torque.iter().filter(|torque| **torque != 0.0).count();
+        assert_eq!(acting, 30);
+    }
+}

@@ -1,0 +1,78 @@
+//! Masses and inertias that are all a constant multiple of the model's.
+
+use crate::{
+    Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter, Place, Quantity, Range,
+    Scope, Spec, Term,
+};
+
+/// All masses and inertias are factor × the model's.
+#[derive(Debug)]
+pub struct InertialScale;
+
+static SPEC: Spec = Spec {
+    name: "inertial_scale",
+    title: "inertial scale",
+    meaning: "all masses and inertias are a constant multiple of the model's",
+    told_by: "a known payload: a torque scale would change it too",
+    formula: "all masses and inertias × k",
+    sentence: "all masses and inertias {factor} times the model's",
+    scope: Scope::Arm,
+    parameters: &[Parameter::new("factor", Quantity::Ratio)
+        .within(Range::Positive)
+        .neutral_at(1.0)
+        .remarked("true over model")],
+    main: &["factor"],
+    is_certain_in_form: true,
+    is_wrong_mass: true,
+    is_behind_the_drive: true,
+    in_urdf: InUrdf::Inertials,
+    ..Spec::EMPTY
+};
+
+/// The rigid torque of all links, drives apart.
+pub static SCALE: Law = Law {
+    name: "scale",
+    column: |_, joint, motion| {
+        let links = &motion.rigid.links[joint];
+        motion.map(|k| links.iter().map(|link| link[k]).sum())
+    },
+    needs_model: true,
+    carry: Some(|_, value, carried| carried.arm = carried.arm.clone().with_scaled_inertias(1.0 + value)),
+    ..Law::PLAIN
+};
+
+impl EffectKind for InertialScale {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
+        vec![Form::of_arm(vec![Term::about(&SCALE, 0)])]
+    }
+
+    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        (-0.6..1.5).contains(&fitted.value(0))
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let at = estimate.place(0)?;
+        let factor = estimate.note("factor", |draw| 1.0 + draw[at]);
+        Some(Effect::of(&Self).with("factor", factor))
+    }
+
+    fn apply(&self, effect: &Effect, _: Place, machine: &mut Machine) {
+        machine.change_arm(|arm| arm.with_scaled_inertias(effect.number("factor")));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::agree;
+
+    #[test]
+    fn its_column_is_its_torque() {
+        let effect = Effect::of(&InertialScale).with("factor", 1.2);
+        agree(&effect, &[(Term::about(&SCALE, 0), 0.2)]);
+    }
+}

@@ -1,0 +1,77 @@
+//! A link whose mass and inertia are not the model's.
+
+use crate::{
+    Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter, Place, Quantity, Range, Spec,
+    Term, Turn,
+};
+
+/// The mass and inertia of the link that the joint carries are (1 + relative) × the model's.
+#[derive(Debug)]
+pub struct LinkInertialError;
+
+static SPEC: Spec = Spec {
+    name: "link_inertial_error",
+    title: "link inertia error",
+    meaning: "a link's mass or inertia differs from the model's",
+    told_by: "more postures and faster moves of the neighbouring joints",
+    formula: "mass and inertia of the link behind the joint × (1 + relative)",
+    sentence: "a link whose mass and inertia are off by {relative%} %",
+    parameters: &[Parameter::new("relative", Quantity::Ratio)
+        .within(Range::AboveMinusOne)
+        .remarked("true over model, less one")],
+    main: &["relative"],
+    is_certain_in_form: true,
+    is_wrong_mass: true,
+    is_behind_the_drive: true,
+    in_urdf: InUrdf::Inertials,
+    ..Spec::EMPTY
+};
+
+/// A link's share of the rigid torque, on the joints before it.
+pub static LINK: Law = Law {
+    name: "link",
+    column: |term, joint, motion| {
+        let link = term.of[0];
+        (joint <= link).then(|| motion.rigid.links[joint][link].clone())
+    },
+    needs_model: true,
+    carry: Some(|term, value, carried| carried.arm = carried.arm.clone().with_scaled_link(term.of[0], 1.0 + value)),
+    ..Law::PLAIN
+};
+
+impl EffectKind for LinkInertialError {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    /// Of all links, whether their joints move or not.
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let form = |link| Form::on(Turn::Link, link, vec![Term::about(&LINK, link)]);
+        (0..grounds.dof()).map(form).collect()
+    }
+
+    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        (-0.8..2.0).contains(&fitted.value(0))
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let relative = estimate.coefficient("relative", estimate.place(0), 1.0);
+        Some(Effect::of(&Self).on(estimate.joint_name()).with("relative", relative))
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        machine.change_arm(|arm| arm.with_scaled_link(at.joint, 1.0 + effect.number("relative")));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::agree;
+
+    #[test]
+    fn its_column_is_its_torque() {
+        let effect = Effect::of(&LinkInertialError).on("b").with("relative", -0.1);
+        agree(&effect, &[(Term::about(&LINK, 1), -0.1)]);
+    }
+}

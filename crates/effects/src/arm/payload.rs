@@ -1,0 +1,198 @@
+//! A body on the tool.
+
+use ::arm::{Arm, Inertia, Matrix3, Vector3};
+
+use crate::fitted::moving_mass;
+use crate::{
+    Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter, Place, Quantity,
+    Range, Scope, SetsIn, Shape, Spec, Term,
+};
+
+/// A body fixed to the tool.
+#[derive(Debug)]
+pub struct Payload;
+
+static SPEC: Spec = Spec {
+    name: "payload",
+    title: "payload",
+    meaning: "a body at the tool that the model does not have",
+    told_by: "the same motion with and without the tool's load",
+    formula: "a body on the tool",
+    sentence: "a payload of {mass} at the tool",
+    scope: Scope::Arm,
+    parameters: &[
+        Parameter::new("mass", Quantity::Mass).within(Range::NotNegative),
+        // Its centre of mass.
+        Parameter::new("com", Quantity::Length)
+            .of(Shape::List(3, &["com_x", "com_y", "com_z"]))
+            .remarked("m, in the tool's frame"),
+        Parameter::new("inertia", Quantity::Inertia)
+            .of(Shape::List(6, &[]))
+            .or(0.0)
+            .remarked("kg m²: Ixx Ixy Iyy Ixz Iyz Izz about the centre of mass, along the tool's axes"),
+    ],
+    main: &["mass"],
+    may_set_in: true,
+    prior: 4.0,
+    is_certain_in_form: true,
+    is_wrong_mass: true,
+    is_behind_the_drive: true,
+    in_urdf: InUrdf::Inertials,
+    experiment: Some(Experiment {
+        rank: 9,
+        text: "take off what the tool carries and record the same motion: what is left is not a payload",
+    }),
+    ..Spec::EMPTY
+};
+
+/// One of the ten inertial parameters at the tool.
+pub static PARAMETER: Law = Law {
+    name: "payload",
+    column: |term, joint, motion| Some(motion.rigid.payload[joint][term.of[0]].clone()),
+    needs_model: true,
+    carry: Some(|term, value, carried| carried.payload[term.of[0]] = value),
+    ..Law::PLAIN
+};
+
+/// A payload is no more than so many times as heavy as the moving links.
+const MOST_PAYLOAD: f64 = 1.5;
+/// Loads on a tool, and their centres of mass (m) as a share of the arm's reach.
+const PAYLOAD_REACH: f64 = 0.5;
+/// A moment of inertia may be negative by this share of the largest, for rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// The body of ten inertial parameters about a frame's origin; possible or not.
+pub fn body(parameters: &[f64; 10]) -> Inertia {
+    let [mass, hx, hy, hz, xx, xy, yy, xz, yz, zz] = *parameters;
+    let com = Vector3::new(hx, hy, hz) / mass;
+    let about_origin = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+    Inertia {
+        mass,
+        com,
+        tensor: about_origin - mass * (Matrix3::identity() * com.norm_squared() - com * com.transpose()),
+    }
+}
+
+/// The tensor about the centre of mass that a payload's six numbers (Ixx Ixy Iyy Ixz Iyz Izz) say.
+fn tensor([xx, xy, yy, xz, yz, zz]: [f64; 6]) -> Matrix3<f64> {
+    Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+}
+
+impl Payload {
+    /// The body that a payload is.
+    pub fn inertia(effect: &Effect) -> Inertia {
+        Inertia {
+            mass: effect.number("mass"),
+            com: effect.vector("com"),
+            tensor: tensor(effect.list("inertia")),
+        }
+    }
+}
+
+fn columns(count: usize) -> Vec<Term> {
+    (0..count).map(|parameter| Term::about(&PARAMETER, parameter)).collect()
+}
+
+impl EffectKind for Payload {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    /// With its moments of inertia and, where they do not show, without.
+    fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
+        [10, 4].map(|count| Form::of_arm(columns(count))).to_vec()
+    }
+
+    fn sets_in(&self) -> Option<SetsIn> {
+        Some(SetsIn {
+            turn: 4,
+            terms: |_| columns(10),
+            looked_for_with: 4,
+            taken: &[10, 4],
+        })
+    }
+
+    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        let mass = fitted.value(0);
+        let reach = PAYLOAD_REACH * reach(fitted.arm());
+        let first: f64 = (1..4).map(|k| fitted.value(k).powi(2)).sum::<f64>().sqrt();
+        mass > 0.0 && first < mass * reach && mass < MOST_PAYLOAD * moving_mass(fitted.arm())
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let terms = estimate.terms();
+        let places: [Option<usize>; 10] = std::array::from_fn(|parameter| {
+            let of = |term: &Term| term.always() == Term::about(&PARAMETER, parameter);
+            estimate.place(terms.iter().position(of)?)
+        });
+        let read = |draw: &[f64]| places.map(|place| place.map_or(0.0, |place| draw[place]));
+        let mass = estimate.note("mass", |draw| read(draw)[0]);
+        let mut com = [0.0; 3];
+        for (k, key) in ["com_x", "com_y", "com_z"].into_iter().enumerate() {
+            com[k] = estimate.note(key, |draw| {
+                let parameters = read(draw);
+                parameters[1 + k] / parameters[0]
+            });
+        }
+        // A tensor that no body has says that the recordings do not show it.
+        let tensor = body(&read(estimate.best())).tensor;
+        let possible = places[4].is_some() && tensor.symmetric_eigenvalues().iter().all(|&value| value >= 0.0);
+        let inertia = if possible {
+            [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)].map(|at| tensor[at])
+        } else {
+            [0.0; 6]
+        };
+        let effect = Effect::of(&Self).with("mass", mass).with("com", com);
+        Some(effect.with("inertia", inertia).since(estimate.onset()))
+    }
+
+    fn refuse(&self, effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
+        let moments = tensor(effect.list("inertia")).symmetric_eigenvalues();
+        let wrong = moments.min() < -ROUNDING * moments.amax();
+        wrong.then_some((
+            "inertia's smallest principal moment",
+            moments.min(),
+            Range::NotNegative.requirement(),
+        ))
+    }
+
+    fn apply(&self, effect: &Effect, _: Place, machine: &mut Machine) {
+        machine.payloads.push((effect.onset(), Self::inertia(effect)));
+    }
+}
+
+/// The sum of the distances from joint to joint (m).
+fn reach(arm: &Arm) -> f64 {
+    let links: f64 = arm
+        .joints()
+        .iter()
+        .map(|joint| joint.parent_from_joint.translation.norm())
+        .sum();
+    (links + arm.tool_frame().link_from_frame.translation.norm()).max(0.2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::agree;
+
+    #[test]
+    fn its_columns_are_its_torque() {
+        let effect = Effect::of(&Payload).with("mass", 1.5).with("com", [0.1, 0.2, 0.0]);
+        let first = [1.5, 0.15, 0.3];
+        let com = [0.1, 0.2];
+        // About the tool's origin, by the parallel axes.
+        let second = [
+            (4, 1.5 * com[1] * com[1]),
+            (5, -1.5 * com[0] * com[1]),
+            (6, 1.5 * com[0] * com[0]),
+            (9, 1.5 * (com[0] * com[0] + com[1] * com[1])),
+        ];
+        let first = first.into_iter().enumerate();
+        let columns: Vec<_> = first
+            .chain(second)
+            .map(|(parameter, value)| (Term::about(&PARAMETER, parameter), value))
+            .collect();
+        agree(&effect, &columns);
+    }
+}

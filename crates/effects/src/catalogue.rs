@@ -1,0 +1,135 @@
+//! The list of all effects, in the order of the documentation; forms without a name follow.
+
+use std::cmp::Ordering;
+use std::hash::{Hash, Hasher};
+use std::sync::LazyLock;
+
+use crate::kind::EffectKind;
+use crate::spec::Spec;
+use crate::{arm, drive, friction, joint, sensor, unmodelled};
+
+/// The effects that have a name. An effect is a file and a line here.
+pub static CATALOGUE: &[&dyn EffectKind] = &[
+    &friction::ViscousFriction,
+    &friction::CoulombFriction,
+    &friction::FrictionAsymmetry,
+    &friction::StribeckFriction,
+    &friction::LoadDependentFriction,
+    &friction::ThermalDrift,
+    &friction::QuadraticDrag,
+    &drive::RotorInertia,
+    &sensor::TorqueScale,
+    &sensor::TorqueOffset,
+    &drive::TorqueRipple,
+    &drive::TorqueSaturation,
+    &drive::ActuationDelay,
+    &drive::JointElasticity,
+    &drive::Backlash,
+    &drive::TransmissionCoupling,
+    &arm::Payload,
+    &arm::LinkInertialError,
+    &arm::InertialScale,
+    &arm::GravityMisalignment,
+    &sensor::EncoderOffset,
+    &joint::Spring,
+    &arm::ExternalContact,
+];
+
+/// Forms without a name: what is none of the catalogue's effects is not to be given to the nearest.
+pub static UNMODELLED: &[&dyn EffectKind] = &[
+    &unmodelled::OwnPosition,
+    &unmodelled::OtherPosition,
+    &unmodelled::OtherSpeed,
+    &unmodelled::History,
+    &unmodelled::Product,
+    &unmodelled::Periodic,
+    &unmodelled::Time,
+];
+
+/// The names of the catalogue, in its order.
+pub static NAMES: LazyLock<Vec<&'static str>> =
+    LazyLock::new(|| CATALOGUE.iter().map(|kind| kind.spec().name).collect());
+
+/// What is known of the effect `name`; `None` if the catalogue has none of that name.
+pub fn spec(name: &str) -> Option<&'static Spec> {
+    Kind::named(name).map(Kind::spec)
+}
+
+/// A kind of effect, with name or without; kinds are in the catalogue's order.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    index: usize,
+    kind: &'static dyn EffectKind,
+}
+
+impl Kind {
+    /// An implementation as a kind; one that is in no list comes after all that are.
+    pub fn of(kind: &'static dyn EffectKind) -> Self {
+        let same = |other: &Self| std::ptr::eq(other.spec(), kind.spec());
+        let index = Self::all().position(|other| same(&other)).unwrap_or(usize::MAX);
+        Self { index, kind }
+    }
+
+    fn at(index: usize) -> Self {
+        let kind = CATALOGUE
+            .get(index)
+            .unwrap_or_else(|| &UNMODELLED[index - CATALOGUE.len()]);
+        Self { index, kind: *kind }
+    }
+
+    /// The kind with this name.
+    pub fn named(name: &str) -> Option<Self> {
+        CATALOGUE.iter().position(|kind| kind.spec().name == name).map(Self::at)
+    }
+
+    /// All kinds, those with a name first.
+    pub fn all() -> impl Iterator<Item = Self> {
+        (0..CATALOGUE.len() + UNMODELLED.len()).map(Self::at)
+    }
+
+    /// Everything the program knows of it.
+    pub fn get(self) -> &'static dyn EffectKind {
+        self.kind
+    }
+
+    /// What is known of it before any recording.
+    pub fn spec(self) -> &'static Spec {
+        self.kind.spec()
+    }
+
+    /// The catalogue's name; `None` for a form without a name.
+    pub fn name(self) -> Option<&'static str> {
+        (self.index < CATALOGUE.len()).then(|| self.spec().name)
+    }
+
+    /// Whether it is this kind.
+    pub fn is(self, kind: &'static dyn EffectKind) -> bool {
+        std::ptr::eq(self.spec(), kind.spec())
+    }
+}
+
+impl PartialEq for Kind {
+    fn eq(&self, other: &Self) -> bool {
+        self.index == other.index
+    }
+}
+
+impl Eq for Kind {}
+
+impl PartialOrd for Kind {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Kind {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.index.cmp(&other.index)
+    }
+}
+
+impl Hash for Kind {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.index.hash(state);
+    }
+}

@@ -1,0 +1,160 @@
+//! A gap in the gear.
+
+use super::delay::SECOND_ENCODER;
+use crate::compliance::{Behind, gap, sprung};
+use crate::fitted::is_near_one;
+use crate::laws::ACCELERATION;
+use crate::{
+    Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Motion, Parameter, Place, Quantity, Range, Size,
+    Spec, Systematic, Term, Turn, Unseen,
+};
+
+/// The rotor drives the link through a gap of ± halfgap; q is the rotor's.
+#[derive(Debug)]
+pub struct Backlash;
+
+static SPEC: Spec = Spec {
+    name: "backlash",
+    title: "backlash",
+    meaning: "a gap in the gear, crossed at each reversal",
+    told_by: "the same reversals with gravity loading the gear: the gap is then closed",
+    formula: "a gap between drive and link, with ends that give",
+    sentence: "a gap of ± {halfgap}",
+    parameters: &[Parameter::new("halfgap", Quantity::Position).within(Range::NotNegative)],
+    main: &["halfgap"],
+    plain: Some("rotor_inertia"),
+    brings: Some("rotor_inertia"),
+    prior: 8.0,
+    is_simulated: true,
+    experiment: Some(SECOND_ENCODER),
+    unseen: Unseen::Sized {
+        because: "a smaller gap is crossed too quickly to be seen",
+        if_none: "the joint's load does not turn, so that a gap is never crossed",
+        is_seen_below: false,
+    },
+    unseen_turn: 3,
+    ..Spec::EMPTY
+};
+
+/// The link's motion behind a gap, for a coefficient of one. Sizes are half the gap (rad), the stiffness of its ends (N m/rad;
+/// infinite: they stop the link at once) and their damping ratio against the link: from 1 on it does not bounce.
+pub static GAP: Law = Law {
+    name: "gap",
+    column: |term, joint, motion| Some(behind(term, motion).torque(joint, motion.rigid)),
+    needs_model: true,
+    needs_derivatives: true,
+    sizes: &[(Size::Main, 0), (Size::Stop, 1)],
+    other_form: Some(|term, factor| {
+        let mut other = *term;
+        if !term.sizes[1].is_finite() {
+            return (other, false);
+        }
+        other.sizes[2] *= factor.powi(2);
+        (other, factor != 1.0)
+    }),
+    softened,
+    behind: Some(behind),
+    ..Law::PLAIN
+};
+
+fn behind(term: &Term, motion: &Motion<'_>) -> Behind {
+    let (joint, [halfgap, stop, ratio, _]) = (term.of[0], term.sizes);
+    let ticks = if stop.is_finite() {
+        let damping = |mass: f64| 2.0 * ratio * (stop * mass.max(0.0)).sqrt();
+        sprung(joint, halfgap, stop, damping, motion)
+    } else {
+        gap(joint, halfgap, motion)
+    };
+    Behind::new(joint, ticks)
+}
+
+/// Damping ratios of a gap's ends to begin with: the link stays, or bounces.
+const STOP_RATIOS: [f64; 2] = [1.0, 0.2];
+
+/// Gaps to begin with, as shares of the range of the motion.
+const GAPS: [f64; 7] = [0.0025, 0.004, 0.008, 0.014, 0.022, 0.035, 0.06];
+
+/// Where the ends of a gap may swing against the link, before they are refined (Hz).
+const STOP_FREQUENCY: f64 = 20.0;
+
+/// Where the ends of a gap that were rigid may swing against the link, first (Hz).
+const FIRST_STOPS: [f64; 3] = [12.0, 20.0, 32.0];
+
+/// The stiffness of ends (N m/rad) against which a link of an inertia swings at a frequency (Hz).
+fn stop(mass: f64, hertz: f64) -> f64 {
+    mass * (2.0 * std::f64::consts::PI * hertz).powi(2)
+}
+
+/// A gap with rigid ends with each of the first stiffnesses that they may have.
+fn softened(term: &Term, mass: f64) -> Vec<Term> {
+    let [halfgap, rigid, ..] = term.sizes;
+    if rigid.is_finite() {
+        return Vec::new();
+    }
+    let first = FIRST_STOPS
+        .iter()
+        .flat_map(|&hertz| STOP_RATIOS.map(|ratio| (hertz, ratio)));
+    first
+        .map(|(hertz, ratio)| term.sized([halfgap, stop(mass, hertz), ratio]))
+        .collect()
+}
+
+impl EffectKind for Backlash {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    /// With rigid ends, and with ends that give.
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let mut forms = Vec::new();
+        for joint in grounds.moving() {
+            let mut add = |turn, sizes: [f64; 3]| {
+                let terms = vec![Term::about(&GAP, joint).sized(sizes), Term::on(&ACCELERATION, joint)];
+                forms.push(Form::on(turn, joint, terms));
+            };
+            let mass = grounds.mass[joint];
+            let halfgaps = GAPS.map(|share| share * grounds.scales.range[joint].min(1.5));
+            for halfgap in halfgaps {
+                add(Turn::Late, [halfgap, f64::INFINITY, 1.0]);
+            }
+            for halfgap in halfgaps.into_iter().filter(|_| mass > 0.0) {
+                for ratio in STOP_RATIOS {
+                    add(Turn::Behind, [halfgap, stop(mass, STOP_FREQUENCY), ratio]);
+                }
+            }
+        }
+        forms
+    }
+
+    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        is_near_one(fitted)
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let halfgap = estimate.terms().first()?.sizes[0];
+        let halfgap = estimate.simulated(Systematic::OfForm, "halfgap", |drawn, size| halfgap * (drawn + size));
+        Some(Effect::of(&Self).on(estimate.joint_name()).with("halfgap", halfgap))
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        machine.gaps[at.joint] += effect.number("halfgap");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::{column, machine};
+
+    #[test]
+    fn gaps_add_up() {
+        let effect = Effect::of(&Backlash).on("a").with("halfgap", 0.001);
+        assert_eq!(machine(&effect).gaps, [0.001, 0.0]);
+    }
+
+    #[test]
+    fn a_gap_that_is_none_adds_nothing() {
+        let (none, _) = column(&Term::about(&GAP, 0).sized([0.0, f64::INFINITY, 1.0]), 0);
+        assert!(none.iter().all(|torque| *torque == 0.0), "{none:?}");
+    }
+}

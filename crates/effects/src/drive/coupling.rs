@@ -1,0 +1,150 @@
+//! A drive that two joints turn.
+
+use crate::{
+    Against, Effect, EffectKind, Estimate, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Spec, State, Term,
+    Turn, sign,
+};
+
+/// A drive that two joints turn, and its reaction: on each of the two, with o the other of them,
+/// τ = viscous q̇ₒ + coulomb sgn(q̇ + sense q̇ₒ) + inertia q̈ₒ.
+#[derive(Debug)]
+pub struct TransmissionCoupling;
+
+/// Two joints that turn one drive are no further apart in the chain: the drives of a wrist's axes pass through each other.
+pub const FARTHEST_COUPLED: usize = 2;
+
+static SPEC: Spec = Spec {
+    name: "transmission_coupling",
+    title: "transmission coupling",
+    meaning: "another joint's motion turns this joint's drive (a geared wrist)",
+    told_by: "moves of each of the two joints alone",
+    formula: "another joint's motion turns this one's drive, and this one's that one's: it acts on both. Looked for between joints \
+              next to each other or one apart",
+    sentence: "a drive turned by {other} too, with {viscous} of friction and {inertia} of inertia",
+    parameters: &[
+        Parameter::new("viscous", Quantity::Damping),
+        Parameter::new("coulomb", Quantity::Torque).or(0.0),
+        Parameter::new("inertia", Quantity::Inertia).or(0.0),
+        // 1 if the drive turns with the sum of the joints, −1 if with their difference.
+        Parameter::new("sense", Quantity::Ratio).or(1.0).remarked(""),
+    ],
+    main: &["viscous", "inertia", "coulomb"],
+    is_behind_the_drive: true,
+    against: Against::OtherSpeed,
+    ..Spec::EMPTY
+};
+
+/// Each of two joints feels the other's q̇: a drive that both turn, and its reaction.
+pub static PAIR_VELOCITY: Law = Law {
+    name: "pair_velocity",
+    column: |term, joint, motion| partner(term, joint).map(|other| motion.qd[other].clone()),
+    ..Law::PLAIN
+};
+
+/// Each of two joints feels the other's q̈.
+pub static PAIR_ACCELERATION: Law = Law {
+    name: "pair_acceleration",
+    column: |term, joint, motion| partner(term, joint).map(|other| motion.qdd[other].clone()),
+    ..Law::PLAIN
+};
+
+/// Two joints share a drive's dry friction: sgn of the sum of their q̇ (size 1), or of the difference (size −1).
+pub static PAIR_SIGN: Law = Law {
+    name: "pair_sign",
+    column: |term, joint, motion| {
+        let ([a, b], sense) = (term.of, term.sizes[0]);
+        let turn = if joint == a { 1.0 } else { sense };
+        partner(term, joint)
+            .and_then(|_| motion.map(|k| turn * motion.scales.sign(a, motion.qd[a][k] + sense * motion.qd[b][k])))
+    },
+    ..Law::PLAIN
+};
+
+/// The other of two joints; `None` to a third.
+fn partner(term: &Term, joint: usize) -> Option<usize> {
+    let [a, b] = term.of;
+    match joint {
+        _ if joint == a => Some(b),
+        _ if joint == b => Some(a),
+        _ => None,
+    }
+}
+
+impl EffectKind for TransmissionCoupling {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn has_other(&self) -> bool {
+        true
+    }
+
+    /// A drive that two joints turn sits near both.
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let mut forms = Vec::new();
+        for joint in grounds.moving() {
+            let near = joint.saturating_sub(FARTHEST_COUPLED)..joint;
+            for other in near.filter(|&other| grounds.scales.moves(other)) {
+                let pair = [&PAIR_VELOCITY, &PAIR_ACCELERATION].map(|law| Term::about(law, joint).of(other));
+                let mut add = |terms| forms.push(Form::on(Turn::Pair, joint, terms).with(other));
+                add(pair.to_vec());
+                for sense in [1.0, -1.0] {
+                    let dry = Term::about(&PAIR_SIGN, joint).of(other).sized([sense]);
+                    add(vec![pair[0], pair[1], dry]);
+                }
+            }
+        }
+        forms
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let other = estimate.arm().joints()[estimate.other()?].name.clone();
+        let dry = estimate.terms().into_iter().find(|term| term.is(&PAIR_SIGN));
+        let mut effect = Effect::of(&Self).on(estimate.joint_name()).with_other(other);
+        let parts = [
+            ("viscous", &PAIR_VELOCITY),
+            ("coulomb", &PAIR_SIGN),
+            ("inertia", &PAIR_ACCELERATION),
+        ];
+        for (key, law) in parts {
+            let value = estimate.coefficient(key, estimate.at(law), 1.0);
+            effect = effect.with(key, value);
+        }
+        Some(effect.with("sense", dry.map_or(1.0, |dry| dry.sizes[0])))
+    }
+
+    fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
+        a.other() == b.other()
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        let [viscous, coulomb, inertia, sense] =
+            ["viscous", "coulomb", "inertia", "sense"].map(|key| effect.number(key));
+        let torque = move |other: usize| {
+            move |joint: usize, State { qd, qdd, .. }: State<'_>| {
+                viscous * qd[other] + coulomb * sign(qd[joint] + sense * qd[other]) + inertia * qdd[other]
+            }
+        };
+        // The reaction on the other joint is the same with the two exchanged.
+        machine.add_torque(at.other, None, torque(at.joint));
+        machine.add_torque(at.joint, effect.onset(), torque(at.other));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::agree;
+
+    #[test]
+    fn its_columns_are_its_torques() {
+        let effect = Effect::of(&TransmissionCoupling).on("b").with_other("a");
+        let effect = effect.with("viscous", 2.0).with("coulomb", 0.5).with("inertia", 3.0);
+        let term = |law| Term::about(law, 1).of(0);
+        let dry = term(&PAIR_SIGN).sized([1.0]);
+        agree(
+            &effect,
+            &[(term(&PAIR_VELOCITY), 2.0), (dry, 0.5), (term(&PAIR_ACCELERATION), 3.0)],
+        );
+    }
+}

@@ -1,0 +1,127 @@
+//! Torque that comes later than it was commanded.
+
+use crate::{
+    Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range,
+    Size, Spec, Systematic, Term, Turn, UNIT, Unseen,
+};
+
+/// The torque applied at t is the one commanded at t − delay.
+#[derive(Debug)]
+pub struct ActuationDelay;
+
+/// The experiment that tells what lies between drive and link from what is late.
+pub(super) const SECOND_ENCODER: Experiment = Experiment {
+    rank: 4,
+    text: "record a second encoder behind the gear: it sees a gap or a spring, and no delay",
+};
+
+static SPEC: Spec = Spec {
+    name: "actuation_delay",
+    title: "actuation delay",
+    meaning: "the torque comes later than it was commanded",
+    told_by: "sines at several frequencies",
+    formula: "applied(t) = commanded(t − T)",
+    sentence: "torque applied {delay} late",
+    parameters: &[Parameter::new("delay", Quantity::Time).within(Range::NotNegative)],
+    main: &["delay"],
+    is_simulated: true,
+    experiment: Some(SECOND_ENCODER),
+    unseen: Unseen::Sized {
+        because: "a shorter delay shifts the torque by less than its noise",
+        if_none: "a shorter delay shifts the torque by less than its noise",
+        is_seen_below: false,
+    },
+    unseen_turn: 5,
+    ..Spec::EMPTY
+};
+
+/// τ(t) − τ(t − delay), measured; the size is the delay (s).
+pub static LATE: Law = Law {
+    name: "late",
+    column: |term, joint, motion| Some(late(&motion.tau[joint], term.sizes[0] / motion.period)),
+    sizes: &[(Size::Main, 0)],
+    is_of_torque: true,
+    ..Law::PLAIN
+};
+
+/// The longest delay of a drive (s): no position loop bears more.
+const LONGEST_DELAY: f64 = 0.03;
+
+impl EffectKind for ActuationDelay {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let forms = |joint| {
+            [0.002, 0.004, 0.006, 0.009, 0.013, 0.02, LONGEST_DELAY].map(|delay| {
+                let terms = vec![Term::on(&LATE, joint).sized([delay])];
+                Form::on(Turn::Late, joint, terms)
+            })
+        };
+        grounds.moving().flat_map(forms).collect()
+    }
+
+    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        let is_short = |term: Term| !term.is(&LATE) || term.sizes[0] < 1.001 * LONGEST_DELAY;
+        UNIT.contains(&fitted.value(0)) && (0..fitted.len()).all(|k| is_short(fitted.term(k)))
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let delay = estimate.terms().first()?.sizes[0];
+        let delay = estimate.simulated(Systematic::OfForm, "delay", |drawn, size| delay * (drawn + size));
+        Some(Effect::of(&Self).on(estimate.joint_name()).with("delay", delay))
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        machine.delays[at.joint] += effect.number("delay");
+    }
+}
+
+/// The signal less itself `ticks` earlier, by cubic interpolation; nothing before it began.
+fn late(signal: &[f64], ticks: f64) -> Vec<f64> {
+    let whole = ticks.floor();
+    let part = ticks - whole;
+    let back = whole as usize;
+    // Catmull-Rom weights at `part` beyond the tick, towards the past.
+    let weights = [
+        -0.5 * part + part * part - 0.5 * part.powi(3),
+        1.0 - 2.5 * part * part + 1.5 * part.powi(3),
+        0.5 * part + 2.0 * part * part - 1.5 * part.powi(3),
+        -0.5 * part * part + 0.5 * part.powi(3),
+    ];
+    let at = |place: i64| signal[place.clamp(0, signal.len() as i64 - 1) as usize];
+    (0..signal.len())
+        .map(|k| {
+            let base = k as i64 - back as i64;
+            let before: f64 = (0..4).map(|w| weights[w] * at(base + 1 - w as i64)).sum();
+            signal[k] - before
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::machine;
+
+    #[test]
+    fn delays_add_up() {
+        let effect = Effect::of(&ActuationDelay).on("b").with("delay", 0.004);
+        assert_eq!(machine(&effect).delays, [0.0, 0.004]);
+    }
+
+    /// A parabola is delayed exactly by fractions of a tick.
+    #[test]
+    fn delays_are_exact_on_parabolas() {
+        let signal: Vec<f64> = (0..40).map(|k| 0.3 * f64::from(k) - 0.02 * f64::from(k * k)).collect();
+        for ticks in [0.3, 1.0, 2.7] {
+            let late = late(&signal, ticks);
+            for k in 6..34 {
+                let before = k as f64 - ticks;
+                let expected = signal[k] - (0.3 * before - 0.02 * before * before);
+                assert!((late[k] - expected).abs() < 1e-12, "{ticks} {k}");
+            }
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! A drive that turns its link through a spring.
+
+use super::delay::SECOND_ENCODER;
+use crate::compliance::{Behind, sprung};
+use crate::fitted::is_near_one;
+use crate::laws::ACCELERATION;
+use crate::{
+    Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range, Size, Spec,
+    Sprung, Systematic, Term, Turn, Unseen,
+};
+
+/// The rotor drives the link through a spring and a damper; q is the rotor's.
+#[derive(Debug)]
+pub struct JointElasticity;
+
+static SPEC: Spec = Spec {
+    name: "joint_elasticity",
+    title: "joint elasticity",
+    meaning: "the drive turns the link through a spring (belt, harmonic drive)",
+    told_by: "a second encoder, or a resonance that moves with the load",
+    formula: "the drive on a spring to the link",
+    sentence: "a spring of {stiffness} between drive and link",
+    parameters: &[
+        Parameter::new("stiffness", Quantity::Stiffness).within(Range::Positive),
+        Parameter::new("damping", Quantity::Damping).within(Range::NotNegative),
+    ],
+    main: &["stiffness"],
+    plain: Some("rotor_inertia"),
+    brings: Some("rotor_inertia"),
+    prior: 8.0,
+    is_simulated: true,
+    experiment: Some(SECOND_ENCODER),
+    unseen: Unseen::Sized {
+        because: "a stiffer joint deflects less than these recordings show",
+        if_none: "a stiffer joint deflects less than these recordings show",
+        is_seen_below: true,
+    },
+    unseen_turn: 4,
+    ..Spec::EMPTY
+};
+
+/// The link's motion behind an elastic joint, for a coefficient of one; sizes are stiffness (N m/rad) and damping (N m s/rad).
+pub static ELASTIC: Law = Law {
+    name: "elastic",
+    column: |term, joint, motion| Some(behind(term, motion).torque(joint, motion.rigid)),
+    needs_model: true,
+    needs_derivatives: true,
+    sizes: &[(Size::Main, 0), (Size::Damping, 1)],
+    behind: Some(behind),
+    ..Law::PLAIN
+};
+
+fn behind(term: &Term, motion: &crate::Motion<'_>) -> Behind {
+    let (joint, [stiffness, damping, ..]) = (term.of[0], term.sizes);
+    Behind::new(joint, sprung(joint, 0.0, stiffness, |_| damping, motion))
+}
+
+/// The damping ratio that is tried first.
+const DAMPING_RATIO: f64 = 0.06;
+
+impl EffectKind for JointElasticity {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    /// By the resonance of the link on the spring.
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let mut forms = Vec::new();
+        for joint in grounds.moving() {
+            let mass = grounds.mass[joint];
+            if mass <= 0.0 {
+                continue;
+            }
+            for hertz in [2.5, 3.5, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0] {
+                let omega = 2.0 * std::f64::consts::PI * hertz;
+                let sizes = [mass * omega * omega, 2.0 * DAMPING_RATIO * mass * omega];
+                let terms = vec![
+                    Term::about(&ELASTIC, joint).sized(sizes),
+                    Term::on(&ACCELERATION, joint),
+                ];
+                forms.push(Form::on(Turn::Behind, joint, terms));
+            }
+        }
+        forms
+    }
+
+    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        is_near_one(fitted)
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let [stiffness, damping, ..] = estimate.terms().first()?.sizes;
+        let stiffness = estimate.simulated(Systematic::Usual, "stiffness", |drawn, size| {
+            stiffness / (drawn - size).clamp(0.4, 2.5)
+        });
+        let damping = estimate.size(Systematic::OfForm, "damping", Size::Damping, damping);
+        let effect = Effect::of(&Self).on(estimate.joint_name());
+        Some(effect.with("stiffness", stiffness).with("damping", damping))
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        machine.springs[at.joint] = Some(Sprung {
+            stiffness: effect.number("stiffness"),
+            damping: effect.number("damping"),
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::{column, machine};
+
+    #[test]
+    fn it_is_the_drives_spring() {
+        let effect = Effect::of(&JointElasticity).on("a");
+        let effect = effect.with("stiffness", 1e4).with("damping", 3.0);
+        let spring = machine(&effect).springs[0].expect("there is a spring");
+        assert_eq!((spring.stiffness, spring.damping), (1e4, 3.0));
+    }
+
+    /// A spring that hardly gives leaves the rigid arm.
+    #[test]
+    fn a_stiff_joint_is_rigid() {
+        let (soft, _) = column(&Term::about(&ELASTIC, 0).sized([1e3, 3.0]), 0);
+        let (stiff, _) = column(&Term::about(&ELASTIC, 0).sized([1e9, 3e3]), 0);
+        let most = |values: &[f64]| values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        assert!(most(&stiff) < 1e-3 * most(&soft), "{} {}", most(&stiff), most(&soft));
+    }
+}

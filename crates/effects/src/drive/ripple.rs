@@ -1,0 +1,107 @@
+//! A torque that repeats with the joint's angle.
+
+use crate::laws::wave;
+use crate::{
+    Against, Effect, EffectKind, Estimate, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Size, Spec, State,
+    Systematic, Term,
+};
+
+/// τ = amplitude sin(periods q + phase).
+#[derive(Debug)]
+pub struct TorqueRipple;
+
+static SPEC: Spec = Spec {
+    name: "torque_ripple",
+    title: "torque ripple",
+    meaning: "a torque that repeats with the joint's angle (cogging, gear teeth)",
+    told_by: "the same sweep at two speeds: a ripple keeps its angle, a resonance its frequency",
+    formula: "A sin(N q + φ)",
+    sentence: "a ripple of {amplitude} with {periods} periods a turn",
+    parameters: &[
+        Parameter::new("amplitude", Quantity::Torque),
+        Parameter::new("periods", Quantity::Ratio).remarked("a turn"),
+        Parameter::new("phase", Quantity::Angle),
+    ],
+    main: &["amplitude"],
+    may_repeat: true,
+    against: Against::Position,
+    ..Spec::EMPTY
+};
+
+/// sin (form 0) or cos (form 1) of periods × q; the size is the periods (rad a rad).
+pub static RIPPLE: Law = Law {
+    name: "ripple",
+    column: |term, joint, motion| motion.map(|k| wave(term.sizes[0] * motion.q[joint][k], term.form == 1)),
+    sizes: &[(Size::Periods, 0)],
+    nudges: &[|term, step| term.sized([term.sizes[0] * (1.0 + 0.02 * step)])],
+    ..Law::PLAIN
+};
+
+/// The columns of a ripple on a joint.
+pub fn columns(joint: usize, periods: f64) -> Vec<Term> {
+    [0, 1]
+        .map(|form| Term::on(&RIPPLE, joint).form(form).sized([periods]))
+        .to_vec()
+}
+
+impl EffectKind for TorqueRipple {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    /// The residuals suggest the periods.
+    fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
+        Vec::new()
+    }
+
+    /// Two that are too close to be told apart.
+    fn is_same(&self, a: &Term, b: &Term) -> bool {
+        let (a, b) = (a.sizes[0], b.sizes[0]);
+        (a - b).abs() < 0.2 * a.min(b)
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let (a, b) = (estimate.place(0)?, estimate.place(1)?);
+        let periods = estimate.terms().first()?.sizes[0];
+        let about = estimate.best()[b].atan2(estimate.best()[a]);
+        let amplitude = estimate.note("amplitude", |draw| draw[a].hypot(draw[b]));
+        let periods = estimate.size(Systematic::Usual, "periods", Size::Periods, periods);
+        let phase = estimate.note("phase", |draw| about + around(draw[b].atan2(draw[a]) - about));
+        let effect = Effect::of(&Self).on(estimate.joint_name());
+        let effect = effect.with("amplitude", amplitude).with("periods", periods);
+        Some(effect.with("phase", phase))
+    }
+
+    /// A joint has as many ripples as it has parts that turn at other ratios.
+    fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
+        a.number("periods") == b.number("periods")
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        let [amplitude, periods, phase] = ["amplitude", "periods", "phase"].map(|key| effect.number(key));
+        let torque = move |joint: usize, state: State<'_>| amplitude * wave(periods * state.q[joint] + phase, false);
+        machine.add_torque(at.joint, effect.onset(), torque);
+    }
+}
+
+/// An angle within half a turn of zero.
+fn around(angle: f64) -> f64 {
+    angle.sin().atan2(angle.cos())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::agree;
+
+    #[test]
+    fn its_columns_are_its_torque() {
+        let effect = Effect::of(&TorqueRipple).on("a").with("amplitude", 0.5);
+        let effect = effect.with("periods", 6.0).with("phase", 0.1);
+        let columns = columns(0, 6.0);
+        agree(
+            &effect,
+            &[(columns[0], 0.5 * 0.1_f64.cos()), (columns[1], 0.5 * 0.1_f64.sin())],
+        );
+    }
+}

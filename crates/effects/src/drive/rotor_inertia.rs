@@ -1,0 +1,72 @@
+//! The drive's rotor, which the gear makes heavy at the joint.
+
+use crate::laws::ACCELERATION;
+use crate::{
+    Against, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity,
+    Range, Spec, Term, Turn, Unseen,
+};
+
+/// τ = inertia q̈: the drive's rotor, seen at the joint.
+#[derive(Debug)]
+pub struct RotorInertia;
+
+static SPEC: Spec = Spec {
+    name: "rotor_inertia",
+    title: "rotor inertia",
+    meaning: "the drive's own rotor, which the gear makes heavy at the joint",
+    told_by: "the same accelerations in other postures, with and without a payload",
+    formula: "Ia q̈",
+    sentence: "a drive's inertia of {inertia}",
+    parameters: &[Parameter::new("inertia", Quantity::Inertia).within(Range::NotNegative)],
+    main: &["inertia"],
+    prior: 4.0,
+    is_ordinary: true,
+    is_simple: true,
+    against: Against::Acceleration,
+    experiment: Some(Experiment {
+        rank: 8,
+        text: "put a body of known inertia on the tool: a drive's inertia does not change with the pose and the load, a link's does; \
+               or take the drive's from its data sheet (--known)",
+    }),
+    unseen: Unseen::LINEAR,
+    unseen_turn: 7,
+    ..Spec::EMPTY
+};
+
+impl EffectKind for RotorInertia {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let form = |joint| Form::on(Turn::Drive, joint, vec![Term::on(&ACCELERATION, joint)]);
+        grounds.moving().map(form).collect()
+    }
+
+    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        fitted.value(0) > 0.0
+    }
+
+    // A drive behind a spring or a gap has its rotor's column beside another.
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let at = estimate.at(&ACCELERATION)?;
+        let inertia = estimate.coefficient("inertia", Some(at), 1.0);
+        Some(Effect::of(&Self).on(estimate.joint_name()).with("inertia", inertia))
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        machine.rotors[at.joint] += effect.number("inertia");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::agree;
+
+    #[test]
+    fn its_column_is_its_torque() {
+        let effect = Effect::of(&RotorInertia).on("a").with("inertia", 0.4);
+        agree(&effect, &[(Term::on(&ACCELERATION, 0), 0.4)]);
+    }
+}

@@ -1,0 +1,122 @@
+//! A drive that gives no more than a limit.
+
+use ::arm::JointKind;
+
+use crate::{
+    Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range, Size, Spec,
+    Systematic, Term, Turn, Unseen,
+};
+
+/// The torque applied is the commanded one, clipped at ± limit.
+#[derive(Debug)]
+pub struct TorqueSaturation;
+
+static SPEC: Spec = Spec {
+    name: "torque_saturation",
+    title: "torque saturation",
+    meaning: "the drive gives no more than a limit, whatever is commanded",
+    told_by: "a motion that asks for more than the limit, and one that does not",
+    formula: "applied = commanded, clipped",
+    sentence: "torque limited at {limit}",
+    parameters: &[Parameter::new("limit", Quantity::Torque).within(Range::Positive)],
+    main: &["limit"],
+    is_simulated: true,
+    unseen: Unseen::Limit {
+        because: "no torque limit was reached",
+    },
+    unseen_turn: 2,
+    ..Spec::EMPTY
+};
+
+/// What a torque limit cuts off the commanded torque, τ − clip τ; the size is the limit (N m or N).
+pub static EXCESS: Law = Law {
+    name: "excess",
+    column: |term, joint, motion| {
+        let limit = term.sizes[0];
+        motion.map(|k| {
+            let tau = motion.tau[joint][k];
+            tau - tau.clamp(-limit, limit)
+        })
+    },
+    sizes: &[(Size::Main, 0)],
+    cuts: true,
+    ..Law::PLAIN
+};
+
+/// A limit cuts off all that is beyond it. Its column is made of the measured torque, which may stand for a scale.
+const CUT_OFF: std::ops::RangeInclusive<f64> = 0.8..=1.25;
+/// The largest part of the moving rows that a torque limit may clip.
+const MOST_CLIPPED: f64 = 0.45;
+/// A torque limit is at least this part of what the motion needs, by a model that may be wrong.
+const BELOW_NEED: f64 = 0.7;
+
+impl EffectKind for TorqueSaturation {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        // A position loop may ask for many times what the drive can give.
+        let wound_up = [0.027, 0.036, 0.048, 0.064, 0.085, 0.11, 0.15];
+        let usual = [0.2, 0.27, 0.36, 0.45, 0.55, 0.65, 0.73, 0.8, 0.86, 0.91, 0.95];
+        let mut forms = Vec::new();
+        for joint in grounds.moving() {
+            for share in wound_up.into_iter().chain(usual) {
+                let limit = share * grounds.largest[joint];
+                // A drive that moved or held the arm against this torque is not limited far below it.
+                if limit < BELOW_NEED * grounds.needed[joint] {
+                    continue;
+                }
+                let terms = vec![Term::on(&EXCESS, joint).sized([limit])];
+                forms.push(Form::on(Turn::Limit, joint, terms));
+            }
+        }
+        forms
+    }
+
+    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        // A drive spends no more than part of its time at its limit.
+        CUT_OFF.contains(&fitted.value(0)) && acting(fitted) < MOST_CLIPPED
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let limit = estimate.terms().first()?.sizes[0];
+        let limit = estimate.size(Systematic::Usual, "limit", Size::Main, limit);
+        Some(Effect::of(&Self).on(estimate.joint_name()).with("limit", limit))
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        machine.limits[at.joint] = machine.limits[at.joint].min(effect.number("limit"));
+    }
+
+    fn region(&self, terms: &[Term], joint: JointKind) -> Option<String> {
+        let limit = terms.first()?.sizes[0];
+        let unit = Quantity::Torque.unit(joint);
+        Some(format!("where more than {limit:.3} {unit} are commanded"))
+    }
+}
+
+/// The part of the moving rows on which the first column is not zero.
+fn acting(fitted: &dyn Fitted) -> f64 {
+    let Some(x) = fitted.column(0) else { return 0.0 };
+    let largest = x.iter().fold(0.0_f64, |largest, v| largest.max(v.abs()));
+    let moving = || x.iter().zip(fitted.moving()).filter(|(_, moving)| **moving);
+    let acting = moving().filter(|(x, _)| x.abs() > 0.02 * largest).count();
+    acting as f64 / moving().count().max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::{column, machine};
+
+    #[test]
+    fn it_cuts_what_its_column_takes_off() {
+        let effect = Effect::of(&TorqueSaturation).on("a").with("limit", 2.5);
+        assert_eq!(machine(&effect).limits, [2.5, f64::INFINITY]);
+        let (cut, tau) = column(&Term::on(&EXCESS, 0).sized([2.5]), 0);
+        for (cut, tau) in cut.iter().zip(tau) {
+            assert_eq!(tau - cut, tau.clamp(-2.5, 2.5));
+        }
+    }
+}

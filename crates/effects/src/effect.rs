@@ -1,0 +1,192 @@
+//! One effect with its parameters: data, as files hold it.
+
+mod files;
+
+use nalgebra::Vector3;
+
+use crate::catalogue::Kind;
+use crate::kind::EffectKind;
+use crate::spec::{Parameter, Shape, Spec};
+
+/// What a parameter of an effect is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A number.
+    Number(f64),
+    /// Several.
+    List(Vec<f64>),
+    /// Points (x, y).
+    Points(Vec<[f64; 2]>),
+}
+
+impl From<f64> for Value {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl<const N: usize> From<[f64; N]> for Value {
+    fn from(list: [f64; N]) -> Self {
+        Self::List(list.to_vec())
+    }
+}
+
+impl From<Vec<[f64; 2]>> for Value {
+    fn from(points: Vec<[f64; 2]>) -> Self {
+        Self::Points(points)
+    }
+}
+
+impl Value {
+    /// All its numbers.
+    pub fn numbers(&self) -> Vec<f64> {
+        match self {
+            Self::Number(number) => vec![*number],
+            Self::List(list) => list.clone(),
+            Self::Points(points) => points.iter().flatten().copied().collect(),
+        }
+    }
+}
+
+/// One effect with its parameters in SI units at the joint; a joint is named as in the URDF.
+///
+/// For a prismatic joint read N for N m and m for rad. Its torque is what the effect adds to the torque that the motion
+/// needs (measured less rigid).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Effect {
+    kind: Kind,
+    joint: Option<String>,
+    other: Option<String>,
+    /// One for each of the spec's parameters.
+    values: Vec<Value>,
+    onset: Option<f64>,
+}
+
+impl Effect {
+    /// An effect of a kind on no joint yet; what has no default and is not set is NaN, which every arm refuses.
+    pub fn of(kind: &'static dyn EffectKind) -> Self {
+        Self::of_kind(Kind::of(kind))
+    }
+
+    /// The same.
+    pub fn of_kind(kind: Kind) -> Self {
+        let blank = |parameter: &Parameter| {
+            let number = parameter.default.unwrap_or(f64::NAN);
+            match parameter.shape {
+                Shape::Number => Value::Number(number),
+                Shape::List(count, _) => Value::List(vec![number; count]),
+                Shape::Points => Value::Points(Vec::new()),
+            }
+        };
+        Self {
+            kind,
+            joint: None,
+            other: None,
+            values: kind.spec().parameters.iter().map(blank).collect(),
+            onset: None,
+        }
+    }
+
+    /// The same on the joint `name`.
+    #[must_use]
+    pub fn on(mut self, name: impl Into<String>) -> Self {
+        self.joint = Some(name.into());
+        self
+    }
+
+    /// The same with another joint's motion in it.
+    #[must_use]
+    pub fn with_other(mut self, name: impl Into<String>) -> Self {
+        self.other = Some(name.into());
+        self
+    }
+
+    /// The same with a parameter set; a key that the effect has not changes nothing.
+    #[must_use]
+    pub fn with(mut self, key: &str, value: impl Into<Value>) -> Self {
+        if let Some(at) = self.place(key) {
+            self.values[at] = value.into();
+        }
+        self
+    }
+
+    /// The same from `onset` on (s, on the recordings' own clock); `None`: always.
+    #[must_use]
+    pub fn since(mut self, onset: Option<f64>) -> Self {
+        self.onset = onset;
+        self
+    }
+
+    fn place(&self, key: &str) -> Option<usize> {
+        self.spec().parameters.iter().position(|parameter| parameter.key == key)
+    }
+
+    /// Its kind.
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// Whether it is of this kind.
+    pub fn is(&self, kind: &'static dyn EffectKind) -> bool {
+        self.kind.is(kind)
+    }
+
+    /// What is known of its kind.
+    pub fn spec(&self) -> &'static Spec {
+        self.kind.spec()
+    }
+
+    /// The catalogue's name of the effect.
+    pub fn name(&self) -> &'static str {
+        self.spec().name
+    }
+
+    /// The joint it is on; `None` for the whole arm.
+    pub fn joint(&self) -> Option<&str> {
+        self.joint.as_deref()
+    }
+
+    /// The other joint whose motion it depends on.
+    pub fn other(&self) -> Option<&str> {
+        self.other.as_deref()
+    }
+
+    /// When it sets in (s, on the recordings' own clock); `None` if it always acts.
+    pub fn onset(&self) -> Option<f64> {
+        self.onset
+    }
+
+    /// Its parameters with their values.
+    pub fn values(&self) -> impl Iterator<Item = (&'static Parameter, &Value)> {
+        self.spec().parameters.iter().zip(&self.values)
+    }
+
+    /// The number that is its parameter `key`; NaN if it has no such number.
+    pub fn number(&self, key: &str) -> f64 {
+        match self.place(key).map(|at| &self.values[at]) {
+            Some(Value::Number(number)) => *number,
+            _ => f64::NAN,
+        }
+    }
+
+    /// The numbers that are its parameter `key`; all NaN if it has no such list.
+    pub fn list<const N: usize>(&self, key: &str) -> [f64; N] {
+        match self.place(key).map(|at| &self.values[at]) {
+            Some(Value::List(list)) if list.len() == N => std::array::from_fn(|k| list[k]),
+            _ => [f64::NAN; N],
+        }
+    }
+
+    /// The vector that is its parameter `key`.
+    pub fn vector(&self, key: &str) -> Vector3<f64> {
+        Vector3::from(self.list::<3>(key))
+    }
+
+    /// The points that are its parameter `key`; none if it has none.
+    pub fn points(&self, key: &str) -> &[[f64; 2]] {
+        match self.place(key).map(|at| &self.values[at]) {
+            Some(Value::Points(points)) => points,
+            _ => &[],
+        }
+    }
+}

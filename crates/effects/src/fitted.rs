@@ -1,0 +1,53 @@
+//! A candidate in a fit, as the physics of its effect sees it.
+
+use arm::Arm;
+
+use crate::term::Term;
+
+/// A candidate with the coefficients of a fit.
+pub trait Fitted {
+    /// The number of its columns.
+    fn len(&self) -> usize;
+
+    /// Whether it has no columns.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The term of its k-th column.
+    fn term(&self, k: usize) -> Term;
+
+    /// The coefficient of its k-th column.
+    fn value(&self, k: usize) -> f64;
+
+    /// Its k-th column on the rows of its joint; `None` if it has none there, or is of the whole arm.
+    fn column(&self, k: usize) -> Option<&[f64]>;
+
+    /// Which rows of its joint are in motion.
+    fn moving(&self) -> &[bool];
+
+    /// Whether it is a size tried in refining another.
+    fn is_trial(&self) -> bool;
+
+    /// The arm.
+    fn arm(&self) -> &Arm;
+}
+
+/// Unit coefficients may be off by what linear columns leave.
+pub const UNIT: std::ops::RangeInclusive<f64> = 0.7..=1.4;
+const COARSE_UNIT: std::ops::RangeInclusive<f64> = 0.4..=2.5;
+
+/// Whether the coefficient of what is simulated behind a drive is near one. Beside a resonance it is soon small: until the size
+/// is refined, it says little.
+pub fn is_near_one(fitted: &dyn Fitted) -> bool {
+    if fitted.is_trial() {
+        UNIT.contains(&fitted.value(0))
+    } else {
+        COARSE_UNIT.contains(&fitted.value(0))
+    }
+}
+
+/// The mass of the moving links (kg).
+pub fn moving_mass(arm: &Arm) -> f64 {
+    arm.joints().iter().map(|joint| joint.inertia.mass).sum()
+}

@@ -1,0 +1,93 @@
+//! Dry friction that differs between the two directions.
+
+use crate::laws::SIGN;
+use crate::{
+    Against, Cone, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
+    Spec, Term, Turn,
+};
+
+/// τ = positive while q̇ > 0, −negative while q̇ < 0.
+#[derive(Debug)]
+pub struct FrictionAsymmetry;
+
+/// What tells an offset of the reading from friction where no motion does.
+const BRAKE: &str =
+    "read the drive's torque with its brake closed and no current: an offset of the reading stays, friction does not";
+
+static SPEC: Spec = Spec {
+    name: "friction_asymmetry",
+    title: "asymmetric friction",
+    meaning: "dry friction that differs between the two directions",
+    told_by: "rests between moves of both directions: an offset stays at rest, asymmetric friction does not",
+    formula: "F₊ forwards, −F₋ backwards",
+    sentence: "dry friction that depends on the direction, {positive} forwards and {negative} backwards",
+    parameters: &[
+        Parameter::new("positive", Quantity::Torque),
+        Parameter::new("negative", Quantity::Torque),
+    ],
+    main: &["positive"],
+    plain: Some("coulomb_friction"),
+    excludes: &["torque_offset", "spring"],
+    is_simple: true,
+    against: Against::Speed,
+    experiments_against: &[("torque_offset", BRAKE), ("spring", BRAKE)],
+    ..Spec::EMPTY
+};
+
+/// |sgn q̇|: one in motion, none at a reversal.
+pub static ABS_SIGN: Law = Law {
+    name: "abs_sign",
+    column: |_, joint, motion| motion.map(|k| motion.sign(joint, k).abs()),
+    cone: Cone::Middle,
+    ..Law::PLAIN
+};
+
+impl EffectKind for FrictionAsymmetry {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let form = |joint| {
+            let terms = vec![Term::on(&SIGN, joint), Term::on(&ABS_SIGN, joint)];
+            Form::on(Turn::Friction, joint, terms)
+        };
+        grounds.moving().map(form).collect()
+    }
+
+    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        fitted.value(0) > 0.0 && fitted.value(1).abs() < fitted.value(0)
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let (a, b) = (estimate.place(0)?, estimate.place(1)?);
+        let effect = Effect::of(&Self).on(estimate.joint_name());
+        let positive = estimate.note("positive", |draw| draw[a] + draw[b]);
+        let negative = estimate.note("negative", |draw| draw[a] - draw[b]);
+        Some(effect.with("positive", positive).with("negative", negative))
+    }
+
+    fn refuse(&self, effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
+        let sum = effect.number("positive") + effect.number("negative");
+        (sum < 0.0).then_some(("positive + negative", sum, "finite and not negative"))
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        let (positive, negative) = (effect.number("positive"), effect.number("negative"));
+        let dry = Dry::new(move |_, _| 0.5 * (positive + negative)).biased(0.5 * (positive - negative));
+        machine.dry.push((at.joint, dry));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::agree;
+
+    #[test]
+    fn its_columns_are_its_torque() {
+        let effect = Effect::of(&FrictionAsymmetry).on("a");
+        let effect = effect.with("positive", 3.0).with("negative", 1.0);
+        agree(&effect, &[(Term::on(&SIGN, 0), 2.0), (Term::on(&ABS_SIGN, 0), 1.0)]);
+    }
+}

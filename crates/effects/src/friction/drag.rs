@@ -1,0 +1,100 @@
+//! Drag: a loss that grows faster than the speed.
+
+use crate::{
+    Against, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range,
+    SetsIn, Size, Spec, State, Term, Turn, Unseen,
+};
+
+/// τ = coefficient |q̇|^exponent sgn q̇.
+#[derive(Debug)]
+pub struct QuadraticDrag;
+
+static SPEC: Spec = Spec {
+    name: "quadratic_drag",
+    title: "quadratic drag",
+    meaning: "a torque against the motion that grows with the square of its speed",
+    told_by: "a wider range of speeds",
+    formula: "c |q̇|ᵖ sgn q̇, p about 2: it is fitted, between 1.4 and 3.2",
+    sentence: "a drag of {coefficient}",
+    parameters: &[
+        Parameter::new("coefficient", Quantity::Drag).within(Range::NotNegative),
+        Parameter::new("exponent", Quantity::Ratio).or(2.0).remarked(""),
+    ],
+    main: &["coefficient"],
+    may_set_in: true,
+    against: Against::Speed,
+    unseen: Unseen::LINEAR,
+    unseen_turn: 6,
+    ..Spec::EMPTY
+};
+
+/// |q̇|^exponent sgn q̇; the size is the exponent.
+pub static DRAG: Law = Law {
+    name: "drag",
+    column: |term, joint, motion| motion.map(|k| drag(motion.qd[joint][k], term.sizes[0])),
+    sizes: &[(Size::Exponent, 0)],
+    ..Law::PLAIN
+};
+
+fn drag(qd: f64, exponent: f64) -> f64 {
+    qd.abs().powf(exponent).copysign(qd)
+}
+
+/// Exponents of what grows faster than the speed.
+const EXPONENTS: std::ops::RangeInclusive<f64> = 1.4..=3.2;
+
+impl EffectKind for QuadraticDrag {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let forms = |joint| {
+            [2.0, 1.6, 2.5].map(|exponent| {
+                let terms = vec![Term::on(&DRAG, joint).sized([exponent])];
+                Form::on(Turn::Friction, joint, terms)
+            })
+        };
+        grounds.moving().flat_map(forms).collect()
+    }
+
+    fn sets_in(&self) -> Option<SetsIn> {
+        Some(SetsIn {
+            turn: 3,
+            terms: |joint| vec![Term::on(&DRAG, joint).sized([2.0])],
+            looked_for_with: 1,
+            taken: &[1],
+        })
+    }
+
+    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        let is_drag = |term: Term| !term.is(&DRAG) || EXPONENTS.contains(&term.sizes[0]);
+        fitted.value(0) > 0.0 && (0..fitted.len()).all(|k| is_drag(fitted.term(k)))
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let exponent = estimate.terms().first()?.sizes[0];
+        let coefficient = estimate.coefficient("coefficient", estimate.place(0), 1.0);
+        let onset = estimate.onset();
+        let effect = Effect::of(&Self).on(estimate.joint_name()).since(onset);
+        Some(effect.with("coefficient", coefficient).with("exponent", exponent))
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        let (coefficient, exponent) = (effect.number("coefficient"), effect.number("exponent"));
+        let torque = move |joint: usize, state: State<'_>| coefficient * drag(state.qd[joint], exponent);
+        machine.add_torque(at.joint, effect.onset(), torque);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::agree;
+
+    #[test]
+    fn its_column_is_its_torque() {
+        let effect = Effect::of(&QuadraticDrag).on("a").with("coefficient", 4.0);
+        agree(&effect, &[(Term::on(&DRAG, 0).sized([2.0]), 4.0)]);
+    }
+}

@@ -1,0 +1,93 @@
+//! Gear friction that grows with the load.
+
+use crate::laws::SIGN;
+use crate::{
+    Against, Cone, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
+    Range, Spec, Term, Turn, Unseen,
+};
+
+/// τ = (coulomb + gain |τ rigid|) sgn q̇.
+#[derive(Debug)]
+pub struct LoadDependentFriction;
+
+static SPEC: Spec = Spec {
+    name: "load_dependent_friction",
+    title: "load-dependent friction",
+    meaning: "gear friction that grows with the torque the gear carries",
+    told_by: "the same speed under several loads or postures",
+    formula: "(F₀ + μ |τ rigid|) sgn q̇",
+    sentence: "dry friction of {coulomb} and {gain} of the load",
+    parameters: &[
+        Parameter::new("coulomb", Quantity::Torque).within(Range::NotNegative),
+        Parameter::new("gain", Quantity::Ratio)
+            .within(Range::NotNegative)
+            .remarked("N m per N m of load"),
+    ],
+    main: &["gain"],
+    plain: Some("coulomb_friction"),
+    against: Against::LoadAlong,
+    unseen: Unseen::LINEAR,
+    unseen_turn: 9,
+    ..Spec::EMPTY
+};
+
+/// |τ rigid| sgn q̇.
+pub static LOAD_SIGN: Law = Law {
+    name: "load_sign",
+    column: |_, joint, motion| motion.map(|k| motion.rigid.tau[joint][k].abs() * motion.sign(joint, k)),
+    needs_model: true,
+    cone: Cone::Level(|_, load, _| load.abs()),
+    ..Law::PLAIN
+};
+
+impl EffectKind for LoadDependentFriction {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let form = |joint| {
+            let terms = vec![Term::on(&SIGN, joint), Term::on(&LOAD_SIGN, joint)];
+            Form::on(Turn::Friction, joint, terms)
+        };
+        grounds.moving().map(form).collect()
+    }
+
+    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        // Without load there may be no friction at all, but not less.
+        fitted.value(1) > 0.0 && fitted.value(1) < 1.0 && fitted.value(0) > -0.1 * fitted.value(1) * load(fitted)
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let coulomb = estimate.coefficient("coulomb", estimate.place(0), 1.0);
+        let gain = estimate.coefficient("gain", estimate.place(1), 1.0);
+        let effect = Effect::of(&Self).on(estimate.joint_name());
+        Some(effect.with("coulomb", coulomb).with("gain", gain))
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        let (coulomb, gain) = (effect.number("coulomb"), effect.number("gain"));
+        let dry = Dry::new(move |_, at| coulomb + gain * at.load.abs()).loaded();
+        machine.dry.push((at.joint, dry));
+    }
+}
+
+/// The mean of the load's column.
+fn load(fitted: &dyn Fitted) -> f64 {
+    fitted
+        .column(1)
+        .map_or(0.0, |x| x.iter().map(|v| v.abs()).sum::<f64>() / x.len().max(1) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::agree;
+
+    #[test]
+    fn its_columns_are_its_torque() {
+        let effect = Effect::of(&LoadDependentFriction).on("a");
+        let effect = effect.with("coulomb", 0.5).with("gain", 0.1);
+        agree(&effect, &[(Term::on(&SIGN, 0), 0.5), (Term::on(&LOAD_SIGN, 0), 0.1)]);
+    }
+}

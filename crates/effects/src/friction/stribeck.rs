@@ -1,0 +1,139 @@
+//! Stribeck friction: dry friction that is larger at very low speed.
+
+use ::arm::JointKind;
+
+use crate::laws::SIGN;
+use crate::{
+    Against, Cone, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
+    Range, Size, Spec, Systematic, Term, Turn,
+};
+
+/// τ = (coulomb + (breakaway − coulomb) e^(−|q̇/velocity|^exponent)) sgn q̇.
+#[derive(Debug)]
+pub struct StribeckFriction;
+
+static SPEC: Spec = Spec {
+    name: "stribeck_friction",
+    title: "Stribeck friction",
+    meaning: "dry friction that is larger at very low speed (breakaway) than in motion",
+    told_by: "constant speeds from creeping upwards",
+    formula: "(Fc + (Fs − Fc) e^(−|q̇/v|^δ)) sgn q̇",
+    sentence: "dry friction that falls from {breakaway} to {coulomb} within about {velocity}",
+    parameters: &[
+        Parameter::new("coulomb", Quantity::Torque).within(Range::NotNegative),
+        Parameter::new("breakaway", Quantity::Torque).within(Range::NotNegative),
+        Parameter::new("velocity", Quantity::Speed).within(Range::Positive),
+        Parameter::new("exponent", Quantity::Ratio)
+            .within(Range::Positive)
+            .or(2.0)
+            .remarked(""),
+    ],
+    main: &["breakaway"],
+    plain: Some("coulomb_friction"),
+    against: Against::Speed,
+    ..Spec::EMPTY
+};
+
+/// e^(−|q̇/velocity|^exponent) sgn q̇; sizes are the velocity (rad/s or m/s) and the exponent (1 or 2).
+pub static FADING: Law = Law {
+    name: "fading",
+    column: |term, joint, motion| {
+        let [velocity, exponent, ..] = term.sizes;
+        motion.map(|k| fading(motion.qd[joint][k], velocity, exponent) * motion.sign(joint, k))
+    },
+    sizes: &[(Size::Main, 0)],
+    other_form: Some(|term, factor| {
+        let mut other = *term;
+        other.sizes[1] = 3.0 - other.sizes[1];
+        other.sizes[0] *= factor;
+        (other, true)
+    }),
+    cone: Cone::Level(|_, _, _| 1.0),
+    ..Law::PLAIN
+};
+
+/// What is left at a speed of what breaking away takes more.
+fn fading(qd: f64, velocity: f64, exponent: f64) -> f64 {
+    (-(qd / velocity).abs().powf(exponent)).exp()
+}
+
+/// The velocity of the first Stribeck column among some (rad/s or m/s).
+pub fn velocity(terms: &[Term]) -> Option<f64> {
+    let term = terms.iter().find(|term| term.is(&FADING))?;
+    Some(term.sizes[0])
+}
+
+/// Beside what breaking away takes more, dry friction of a joint in motion is at least this part of it.
+const LEAST_COULOMB: f64 = 0.1;
+
+impl EffectKind for StribeckFriction {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let mut forms = Vec::new();
+        for joint in grounds.moving() {
+            for share in [0.05, 0.08, 0.12, 0.18, 0.27, 0.4] {
+                for exponent in [1.0, 2.0] {
+                    let fading = Term::on(&FADING, joint).sized([share * grounds.scales.speed[joint], exponent]);
+                    forms.push(Form::on(Turn::Friction, joint, vec![Term::on(&SIGN, joint), fading]));
+                }
+            }
+        }
+        forms
+    }
+
+    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        fitted.value(1) > 0.0 && fitted.value(0) > LEAST_COULOMB * fitted.value(1) && fades(fitted)
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let (a, b) = (estimate.place(0)?, estimate.place(1)?);
+        let second = *estimate.terms().get(1)?;
+        let [velocity, exponent, ..] = second.sizes;
+        let effect = Effect::of(&Self).on(estimate.joint_name());
+        let coulomb = estimate.note("coulomb", |draw| draw[a]);
+        let breakaway = estimate.note_within(Systematic::OfForm, "breakaway", &|draw| draw[a] + draw[b]);
+        let velocity = estimate.size(Systematic::OfForm, "velocity", Size::Main, velocity);
+        let effect = effect.with("coulomb", coulomb).with("breakaway", breakaway);
+        Some(effect.with("velocity", velocity).with("exponent", exponent))
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        let [coulomb, breakaway, velocity, exponent] =
+            ["coulomb", "breakaway", "velocity", "exponent"].map(|key| effect.number(key));
+        let level = move |qd: f64, _| coulomb + (breakaway - coulomb) * fading(qd, velocity, exponent);
+        machine.dry.push((at.joint, Dry::new(level)));
+    }
+
+    fn region(&self, terms: &[Term], joint: JointKind) -> Option<String> {
+        let speed = 2.0 * velocity(terms)?;
+        Some(format!("below about {speed:.3} {}", Quantity::Speed.unit(joint)))
+    }
+}
+
+/// Whether Stribeck's part has faded to less than half on most of the moving rows: it is friction of low speeds.
+fn fades(fitted: &dyn Fitted) -> bool {
+    let Some(x) = fitted.column(1) else { return false };
+    let (mut moving, mut slow) = (0, 0);
+    for (x, _) in x.iter().zip(fitted.moving()).filter(|(_, moving)| **moving) {
+        moving += 1;
+        slow += usize::from(x.abs() > 0.5);
+    }
+    2 * slow < moving
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::agree;
+
+    #[test]
+    fn its_columns_are_its_torque() {
+        let effect = Effect::of(&StribeckFriction).on("a").with("coulomb", 1.0);
+        let effect = effect.with("breakaway", 3.0).with("velocity", 0.7);
+        let fading = Term::on(&FADING, 0).sized([0.7, 2.0]);
+        agree(&effect, &[(Term::on(&SIGN, 0), 1.0), (fading, 2.0)]);
+    }
+}

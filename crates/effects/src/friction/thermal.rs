@@ -1,0 +1,124 @@
+//! Dry friction that falls as the drive warms up.
+
+use crate::laws::SIGN;
+use crate::{
+    Against, Circumstance, Cone, Dry, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine,
+    Parameter, Place, Quantity, Range, Size, Spec, Systematic, Term, Turn, Unseen,
+};
+
+/// Dry friction coulomb (1 + amplitude e^(−t/time_constant)) sgn q̇, t on the recordings' own clock.
+#[derive(Debug)]
+pub struct ThermalDrift;
+
+/// The shortest time constant of a drive that warms (s).
+pub const FASTEST_WARMING: f64 = 8.0;
+
+static SPEC: Spec = Spec {
+    name: "thermal_drift",
+    title: "warming friction",
+    meaning: "dry friction that falls as the drive warms up",
+    told_by: "a longer recording from cold, one motion repeated",
+    formula: "dry friction × (1 + a e^(−t/T))",
+    sentence: "dry friction of {coulomb}, larger by a factor {amplitude} at first, fading within {time_constant}",
+    parameters: &[
+        Parameter::new("coulomb", Quantity::Torque)
+            .within(Range::NotNegative)
+            .remarked("N m, when warm"),
+        Parameter::new("amplitude", Quantity::Ratio)
+            .within(Range::AtLeastMinusOne)
+            .remarked("of the warm level, at time 0"),
+        Parameter::new("time_constant", Quantity::Time).within(Range::Positive),
+    ],
+    main: &["amplitude"],
+    plain: Some("coulomb_friction"),
+    prior: 8.0,
+    is_passing: true,
+    against: Against::TimeAlong,
+    experiment: Some(Experiment {
+        rank: 3,
+        text: "record the same motion on the cold and on the warm drive, on one clock",
+    }),
+    unseen: Unseen::Linear {
+        if_no_form: Some("the recordings are shorter than a drive takes to warm"),
+        is_of_first: true,
+        is_of_all_torque: false,
+    },
+    unseen_turn: 8,
+    ..Spec::EMPTY
+};
+
+/// e^(−t/time constant) sgn q̇; the size is the time constant (s).
+pub static WARMING: Law = Law {
+    name: "warming",
+    column: |term, joint, motion| motion.map(|k| cold(motion.time(k), term.sizes[0]) * motion.sign(joint, k)),
+    sizes: &[(Size::Main, 0)],
+    cone: Cone::Level(|term, _, time| cold(time, term.sizes[0])),
+    ..Law::PLAIN
+};
+
+/// How cold it still is: one at time 0.
+fn cold(time: f64, time_constant: f64) -> f64 {
+    (-time / time_constant).exp()
+}
+
+impl EffectKind for ThermalDrift {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let constants = [0.15, 0.25, 0.4, 0.6, 1.0].map(|share| share * grounds.span.unwrap_or(0.0));
+        // What fades faster is no warming of a drive.
+        let constants: Vec<f64> = constants.into_iter().filter(|time| *time >= FASTEST_WARMING).collect();
+        let mut forms = Vec::new();
+        for joint in grounds.moving() {
+            for &time_constant in &constants {
+                let warming = Term::on(&WARMING, joint).sized([time_constant]);
+                forms.push(Form::on(Turn::Friction, joint, vec![Term::on(&SIGN, joint), warming]));
+            }
+        }
+        forms
+    }
+
+    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        let (warm, cold) = (fitted.value(0), fitted.value(1));
+        // Refinement may do something to the time constant.
+        let is_slow = |term: Term| !term.is(&WARMING) || term.sizes[0] > 0.7 * FASTEST_WARMING;
+        cold > 0.0 && warm > 0.0 && cold < 4.0 * warm && (0..fitted.len()).all(|k| is_slow(fitted.term(k)))
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let (a, b) = (estimate.place(0)?, estimate.place(1)?);
+        let second = *estimate.terms().get(1)?;
+        let effect = Effect::of(&Self).on(estimate.joint_name());
+        let coulomb = estimate.note("coulomb", |draw| draw[a]);
+        let amplitude = estimate.note("amplitude", |draw| draw[b] / draw[a]);
+        let time_constant = estimate.size(Systematic::Usual, "time_constant", Size::Main, second.sizes[0]);
+        let effect = effect.with("coulomb", coulomb).with("amplitude", amplitude);
+        Some(effect.with("time_constant", time_constant))
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        let [coulomb, amplitude, time_constant] =
+            ["coulomb", "amplitude", "time_constant"].map(|key| effect.number(key));
+        let level = move |_, at: Circumstance| {
+            let cold = at.time.map_or(0.0, |time| cold(time, time_constant));
+            coulomb * (1.0 + amplitude * cold)
+        };
+        machine.dry.push((at.joint, Dry::new(level)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::agree;
+
+    #[test]
+    fn its_columns_are_its_torque() {
+        let effect = Effect::of(&ThermalDrift).on("a").with("coulomb", 2.0);
+        let effect = effect.with("amplitude", 0.5).with("time_constant", 10.0);
+        let warming = Term::on(&WARMING, 0).sized([10.0]);
+        agree(&effect, &[(Term::on(&SIGN, 0), 2.0), (warming, 1.0)]);
+    }
+}

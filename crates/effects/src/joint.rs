@@ -1,0 +1,5 @@
+//! What acts on a joint by where it stands.
+
+mod spring;
+
+pub use spring::Spring;

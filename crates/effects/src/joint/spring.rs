@@ -1,0 +1,223 @@
+//! A torque that depends on the joint's position.
+
+use crate::laws::{ONE, POSITION, TENT, power, tent};
+use crate::{
+    Against, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity, SetsIn, Shape,
+    Spec, State, Term, Times, Turn, Unseen,
+};
+
+/// τ = stiffness (q − rest); or a curve through (q, τ) points where it bends: linear between, constant beyond.
+#[derive(Debug)]
+pub struct Spring;
+
+static SPEC: Spec = Spec {
+    name: "spring",
+    title: "spring",
+    meaning: "a torque that depends on the joint's position (counterbalance, gas spring, cable)",
+    told_by: "slow sweeps over the whole range, with and without a payload",
+    formula: "K (q − q₀), or a curve where it bends",
+    sentence: "a spring-like torque of {stiffness} about {rest}",
+    parameters: &[
+        Parameter::new("stiffness", Quantity::Stiffness),
+        Parameter::new("rest", Quantity::Position),
+        Parameter::new("curve", Quantity::Torque)
+            .of(Shape::Points)
+            .remarked("rad, N m"),
+    ],
+    main: &["stiffness"],
+    may_set_in: true,
+    plain: Some("torque_offset"),
+    excludes: &["own_position", "torque_offset", "friction_asymmetry"],
+    is_behind_the_drive: true,
+    against: Against::Position,
+    unseen: Unseen::LINEAR,
+    unseen_turn: 11,
+    ..Spec::EMPTY
+};
+
+/// A point of a curve counts where the joint, in motion, comes so near that its tent is this high.
+const VISITED: f64 = 0.5;
+/// Between its points a spring's curve may fall, for noise, by this part of all its rise …
+const LARGEST_FALL: f64 = 0.05;
+/// … and on the whole by this part.
+const ALL_FALLS: f64 = 0.1;
+/// The points of a curve.
+const POINTS: usize = 12;
+
+fn columns(joint: usize, powers: &[usize]) -> Vec<Term> {
+    let powers = powers.iter().map(|&power| Term::on(&POSITION, joint).form(power));
+    std::iter::once(Term::on(&ONE, joint)).chain(powers).collect()
+}
+
+impl EffectKind for Spring {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let forms = |joint| {
+            [
+                Form::on(Turn::Position, joint, columns(joint, &[1])),
+                Form::on(Turn::Position, joint, columns(joint, &[1, 2, 3])),
+                // A curve that rises throughout is a spring's; any other has no name.
+                Form::on(Turn::Curve, joint, grounds.tents(joint, joint, POINTS, Times::One)),
+            ]
+        };
+        grounds.moving().flat_map(forms).collect()
+    }
+
+    fn sets_in(&self) -> Option<SetsIn> {
+        Some(SetsIn {
+            turn: 2,
+            terms: |joint| columns(joint, &[1]),
+            looked_for_with: 2,
+            taken: &[2],
+        })
+    }
+
+    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        stiffens(fitted)
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let [low, high] = estimate.positions();
+        let terms = estimate.terms();
+        let shape: Vec<(Term, Option<usize>)> = terms
+            .into_iter()
+            .enumerate()
+            .map(|(k, term)| (term.always(), estimate.place(k)))
+            .collect();
+        let torque = |draw: &[f64], q: f64| -> f64 {
+            shape
+                .iter()
+                .map(|&(term, place)| {
+                    let value = place.map_or(0.0, |place| draw[place]);
+                    if term.is(&ONE) {
+                        value
+                    } else if term.is(&POSITION) {
+                        value * q.powi(power(&term))
+                    } else if term.is(&TENT) {
+                        value * tent(q, term.sizes[0], term.sizes[1])
+                    } else {
+                        0.0
+                    }
+                })
+                .sum()
+        };
+        let slope = |draw: &[f64]| (torque(draw, high) - torque(draw, low)) / (high - low);
+        let stiffness = estimate.note("stiffness", slope);
+        let middle = 0.5 * (low + high);
+        let rest = estimate.note("rest", |draw| middle - torque(draw, middle) / slope(draw));
+        let points = if shape.len() == 2 { 0 } else { POINTS };
+        let curve: Vec<[f64; 2]> = (0..points)
+            .map(|k| {
+                let q = low + (high - low) * k as f64 / (points - 1) as f64;
+                [q, torque(estimate.best(), q)]
+            })
+            .collect();
+        let effect = Effect::of(&Self).on(estimate.joint_name()).with("stiffness", stiffness);
+        Some(effect.with("rest", rest).with("curve", curve).since(estimate.onset()))
+    }
+
+    fn refuse(&self, effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
+        let pair = effect
+            .points("curve")
+            .windows(2)
+            .find(|pair| pair[1][0] <= pair[0][0])?;
+        Some(("curve's next angle", pair[1][0], "larger than the one before"))
+    }
+
+    /// A straight spring may stand beside a curve.
+    fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
+        a.points("curve").is_empty() == b.points("curve").is_empty()
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        let points = effect.points("curve").to_vec();
+        if points.is_empty() {
+            let (stiffness, rest) = (effect.number("stiffness"), effect.number("rest"));
+            let torque = move |joint: usize, state: State<'_>| stiffness * (state.q[joint] - rest);
+            machine.add_torque(at.joint, effect.onset(), torque);
+        } else {
+            let torque = move |joint: usize, state: State<'_>| interpolate(&points, state.q[joint]);
+            machine.add_torque(at.joint, effect.onset(), torque);
+        }
+    }
+}
+
+/// Linear between points in order of their first number, constant beyond; 0 without points.
+fn interpolate(points: &[[f64; 2]], x: f64) -> f64 {
+    let after = points.partition_point(|point| point[0] <= x);
+    match (after.checked_sub(1).map(|before| points[before]), points.get(after)) {
+        (Some([x0, y0]), Some([x1, y1])) => y0 + (y1 - y0) * (x - x0) / (x1 - x0),
+        (Some([_, y]), None) | (None, Some(&[_, y])) => y,
+        (None, None) => 0.0,
+    }
+}
+
+/// Whether a spring pulls back: its torque grows with the angle over nearly all of the range.
+fn stiffens(fitted: &dyn Fitted) -> bool {
+    let all = || 0..fitted.len();
+    let is_visited = |k: usize| {
+        let column = fitted.column(k);
+        column.is_some_and(|x| x.iter().zip(fitted.moving()).any(|(x, moving)| *moving && *x > VISITED))
+    };
+    let tents: Vec<f64> = all()
+        .filter(|&k| fitted.term(k).is(&TENT) && is_visited(k) && fitted.value(k) != 0.0)
+        .map(|k| fitted.value(k))
+        .collect();
+    if let (Some(first), Some(last)) = (tents.first(), tents.last()) {
+        let rise = last - first;
+        let falls = || tents.windows(2).map(|pair| (pair[0] - pair[1]).max(0.0));
+        return rise > 0.0 && falls().all(|fall| fall < LARGEST_FALL * rise) && falls().sum::<f64>() < ALL_FALLS * rise;
+    }
+    let is_position = |k: &usize| {
+        let term = fitted.term(*k).always();
+        term.is(&POSITION) && power(&term) == 1
+    };
+    let Some(x) = all().find(is_position).and_then(|k| fitted.column(k)) else {
+        return false;
+    };
+    let (low, high) = x
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+    let slope = |q: f64| -> f64 {
+        all()
+            .map(|k| {
+                let term = fitted.term(k).always();
+                if term.is(&POSITION) {
+                    let power = power(&term);
+                    f64::from(power) * q.powi(power - 1) * fitted.value(k)
+                } else {
+                    0.0
+                }
+            })
+            .sum()
+    };
+    let steps = 20;
+    let rising = (0..=steps)
+        .filter(|&k| slope(low + (high - low) * f64::from(k) / f64::from(steps)) > 0.0)
+        .count();
+    rising >= 17
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::agree;
+
+    #[test]
+    fn its_columns_are_its_torque() {
+        let effect = Effect::of(&Spring).on("a").with("stiffness", 10.0).with("rest", 0.2);
+        let columns = columns(0, &[1]);
+        agree(&effect, &[(columns[0], -2.0), (columns[1], 10.0)]);
+    }
+
+    #[test]
+    fn a_curve_is_linear_between_its_points() {
+        let points = [[-1.0, 4.0], [0.0, 2.0], [1.0, 3.0]];
+        for (q, expected) in [(-2.0, 4.0), (-0.5, 3.0), (0.0, 2.0), (0.25, 2.25), (9.0, 3.0)] {
+            assert_eq!(interpolate(&points, q), expected);
+        }
+    }
+}

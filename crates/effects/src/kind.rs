@@ -1,0 +1,98 @@
+//! What an effect is: one implementation in one file for each.
+
+use std::fmt::Debug;
+
+use ::arm::JointKind;
+
+use crate::effect::Effect;
+use crate::error::EffectError;
+use crate::estimate::Estimate;
+use crate::fitted::Fitted;
+use crate::form::{Form, Grounds, SetsIn};
+use crate::machine::{Machine, Place};
+use crate::spec::Spec;
+use crate::term::Term;
+
+/// A kind of effect: everything that the program knows of it.
+pub trait EffectKind: Debug + Sync {
+    /// Its name, parameters, relations and words.
+    fn spec(&self) -> &'static Spec;
+
+    /// Whether it depends on another joint's motion.
+    fn has_other(&self) -> bool {
+        false
+    }
+
+    /// The forms to try from the outset; what the residuals suggest comes later.
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form>;
+
+    /// How it sets in halfway, if it may.
+    fn sets_in(&self) -> Option<SetsIn> {
+        None
+    }
+
+    /// Whether two candidates on one joint (and with one other joint) are sizes of one and the same effect, by their
+    /// first columns.
+    fn is_same(&self, _a: &Term, _b: &Term) -> bool {
+        true
+    }
+
+    /// Whether its coefficients are ones that physics has.
+    fn is_possible(&self, _fitted: &dyn Fitted) -> bool {
+        true
+    }
+
+    /// The effect with its parameters, each noted with its interval; `None` if it cannot be read, or has no name.
+    fn read(&self, _estimate: &mut dyn Estimate) -> Option<Effect> {
+        None
+    }
+
+    /// What is wrong with its parameters beside their ranges: the parameter, its value and what it must be.
+    fn refuse(&self, _effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
+        None
+    }
+
+    /// Whether two of them, on one joint, are the same effect said twice.
+    fn is_twin(&self, _a: &Effect, _b: &Effect) -> bool {
+        true
+    }
+
+    /// Puts the effect into a machine.
+    fn apply(&self, _effect: &Effect, _at: Place, _machine: &mut Machine) {}
+
+    /// The region of state where it acts, in words, by its columns on a kind of joint.
+    fn region(&self, _terms: &[Term], _joint: JointKind) -> Option<String> {
+        None
+    }
+}
+
+/// Refuses parameters that no physics has.
+///
+/// # Errors
+/// [`EffectError::Parameter`], naming effect, joint and value.
+pub fn check(effect: &Effect) -> Result<(), EffectError> {
+    let refuse = |parameter, value, requirement| {
+        Err(EffectError::Parameter {
+            effect: effect.name(),
+            joint: effect.joint().unwrap_or("the whole arm").to_owned(),
+            parameter,
+            value,
+            requirement,
+        })
+    };
+    if let Some(onset) = effect.onset()
+        && !onset.is_finite()
+    {
+        return refuse("onset", onset, "finite");
+    }
+    for (parameter, value) in effect.values() {
+        let numbers = value.numbers();
+        if let Some(value) = numbers.into_iter().find(|&value| !parameter.range.contains(value)) {
+            return refuse(parameter.key, value, parameter.range.requirement());
+        }
+    }
+    match effect.kind().get().refuse(effect) {
+        Some((parameter, value, requirement)) => refuse(parameter, value, requirement),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,89 @@
+//! Laws that several effects share: the motion itself, its sign, constants and curves over a position.
+
+use crate::form::Times;
+use crate::motion::Motion;
+use crate::term::{Cone, Law, Term};
+
+/// q̇.
+pub static VELOCITY: Law = Law {
+    name: "velocity",
+    column: |_, joint, motion| Some(motion.qd[joint].clone()),
+    ..Law::PLAIN
+};
+
+/// sgn q̇.
+pub static SIGN: Law = Law {
+    name: "sign",
+    column: |_, joint, motion| motion.map(|k| motion.sign(joint, k)),
+    cone: Cone::Level(|_, _, _| 1.0),
+    ..Law::PLAIN
+};
+
+/// 1.
+pub static ONE: Law = Law {
+    name: "one",
+    column: |_, _, motion| Some(vec![1.0; motion.ticks()]),
+    ..Law::PLAIN
+};
+
+/// q̈.
+pub static ACCELERATION: Law = Law {
+    name: "acceleration",
+    column: |_, joint, motion| Some(motion.qdd[joint].clone()),
+    ..Law::PLAIN
+};
+
+/// The rigid torque of the joint.
+pub static RIGID: Law = Law {
+    name: "rigid",
+    column: |_, joint, motion| Some(motion.rigid.tau[joint].clone()),
+    needs_model: true,
+    ..Law::PLAIN
+};
+
+/// q to the power that is the term's form.
+pub static POSITION: Law = Law {
+    name: "position",
+    column: |term, joint, motion| {
+        let (q, power) = (&motion.q[joint], power(term));
+        motion.map(|k| q[k].powi(power))
+    },
+    ..Law::PLAIN
+};
+
+/// The power of a [`POSITION`].
+pub fn power(term: &Term) -> i32 {
+    term.form as i32
+}
+
+/// A tent on the position of joint `of[1]`: sizes are its top and half its foot (rad or m), the form what it is multiplied with.
+pub static TENT: Law = Law {
+    name: "tent",
+    column: |term, joint, motion| {
+        let (of, [centre, width, ..], qd) = (term.of[1], term.sizes, &motion.qd[joint]);
+        motion.map(|k| {
+            let height = tent(motion.q[of][k], centre, width);
+            match term.form {
+                form if form == Times::Velocity as usize => height * qd[k],
+                form if form == Times::Speed as usize => height * qd[k].abs(),
+                _ => height,
+            }
+        })
+    },
+    ..Law::PLAIN
+};
+
+/// A tent: one at `centre`, zero from `width` away from it on.
+pub fn tent(x: f64, centre: f64, width: f64) -> f64 {
+    (1.0 - ((x - centre) / width).abs()).max(0.0)
+}
+
+/// sin or cos of a phase (rad).
+pub fn wave(phase: f64, cosine: bool) -> f64 {
+    if cosine { phase.cos() } else { phase.sin() }
+}
+
+/// The position of joint `of` from −1 to 1 over its range.
+pub fn centred(motion: &Motion<'_>, of: usize, tick: usize) -> f64 {
+    (motion.q[of][tick] - motion.scales.middle[of]) / (0.5 * motion.scales.range[of]).max(1e-9)
+}

@@ -1,0 +1,277 @@
+//! What effects are put into: an arm, and beside it torques on joints and what a drive does to them.
+
+use std::fmt;
+use std::sync::Arc;
+
+use arm::{Arm, Inertia};
+use nalgebra::Vector3;
+
+use crate::effect::Effect;
+use crate::error::EffectError;
+use crate::kind::check;
+use crate::spec::Scope;
+
+/// −1, 0 or 1: the sign of a velocity, nothing at rest.
+pub fn sign(velocity: f64) -> f64 {
+    if velocity == 0.0 { 0.0 } else { velocity.signum() }
+}
+
+/// Where an effect is: the numbers of its joints, 0 where it has none.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// The joint it is on.
+    pub joint: usize,
+    /// The other joint whose motion it depends on.
+    pub other: usize,
+}
+
+/// When and under which load friction acts.
+#[derive(Clone, Copy, Debug)]
+pub struct Circumstance {
+    /// s on the recordings' own clock; `None` is long after (warm).
+    pub time: Option<f64>,
+    /// The rigid torque of the joint (N m or N).
+    pub load: f64,
+}
+
+type Level = dyn Fn(f64, Circumstance) -> f64 + Send + Sync;
+
+/// Friction whose direction is that of the joint's velocity and whose level varies slowly.
+#[derive(Clone)]
+pub struct Dry {
+    level: Arc<Level>,
+    bias: f64,
+    depends_on_load: bool,
+}
+
+impl Dry {
+    /// `level` is the most that it resists (N m or N) at a velocity.
+    pub fn new(level: impl Fn(f64, Circumstance) -> f64 + Send + Sync + 'static) -> Self {
+        Self {
+            level: Arc::new(level),
+            bias: 0.0,
+            depends_on_load: false,
+        }
+    }
+
+    /// The same with a torque in both directions alike (N m or N).
+    #[must_use]
+    pub fn biased(mut self, bias: f64) -> Self {
+        self.bias = bias;
+        self
+    }
+
+    /// The same, where the load matters.
+    #[must_use]
+    pub fn loaded(mut self) -> Self {
+        self.depends_on_load = true;
+        self
+    }
+
+    /// The most that it resists at a velocity (N m or N), on the average of both directions.
+    pub fn level(&self, qd: f64, at: Circumstance) -> f64 {
+        (self.level)(qd, at)
+    }
+
+    /// What it adds in both directions alike (N m or N): friction that differs by direction is a level and an offset.
+    pub fn bias(&self) -> f64 {
+        self.bias
+    }
+
+    /// Whether the load matters.
+    pub fn depends_on_load(&self) -> bool {
+        self.depends_on_load
+    }
+}
+
+impl fmt::Debug for Dry {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter
+            .debug_struct("Dry")
+            .field("bias", &self.bias)
+            .finish_non_exhaustive()
+    }
+}
+
+/// The motion of all joints at one time (SI).
+#[derive(Clone, Copy, Debug)]
+pub struct State<'a> {
+    /// Positions, as the encoders say.
+    pub q: &'a [f64],
+    /// Velocities.
+    pub qd: &'a [f64],
+    /// Accelerations.
+    pub qdd: &'a [f64],
+}
+
+type Torque = dyn Fn(usize, State<'_>) -> f64 + Send + Sync;
+
+/// A torque on one joint, smooth in its own velocity.
+#[derive(Clone)]
+pub struct Smooth {
+    /// The joint.
+    pub joint: usize,
+    /// From when on it acts (s); `None`: always.
+    pub onset: Option<f64>,
+    /// Its part in proportion to the joint's velocity, if that is all of it (N m s/rad or N s/m).
+    pub viscous: Option<f64>,
+    torque: Arc<Torque>,
+}
+
+impl Smooth {
+    /// The torque (N m or N) in a motion.
+    pub fn torque(&self, state: State<'_>) -> f64 {
+        (self.torque)(self.joint, state)
+    }
+}
+
+impl fmt::Debug for Smooth {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut shown = formatter.debug_struct("Smooth");
+        shown
+            .field("joint", &self.joint)
+            .field("onset", &self.onset)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A force on the tool for a while.
+#[derive(Clone, Debug)]
+pub struct Contact {
+    /// s, on the recordings' own clock.
+    pub start: f64,
+    /// s.
+    pub end: f64,
+    /// N, in the base's frame.
+    pub force: Vector3<f64>,
+}
+
+/// A torque scale of a drive, from an onset on.
+#[derive(Clone, Copy, Debug)]
+pub struct Scaled {
+    /// The joint.
+    pub joint: usize,
+    /// The torque reported over the true one.
+    pub factor: f64,
+    /// From when on (s); `None`: always.
+    pub onset: Option<f64>,
+}
+
+/// A rotor that drives its link through a spring and a damper.
+#[derive(Clone, Copy, Debug)]
+pub struct Sprung {
+    /// N m/rad or N/m.
+    pub stiffness: f64,
+    /// N m s/rad or N s/m.
+    pub damping: f64,
+}
+
+/// An arm and what effects put into it and beside it; one entry a joint unless it says otherwise.
+#[derive(Clone, Debug)]
+pub struct Machine {
+    /// The rigid arm, but for rotors and payloads.
+    pub arm: Arm,
+    /// Rotor inertias (kg m² or kg).
+    pub rotors: Vec<f64>,
+    /// Bodies on the tool, and from when on (s); `None`: always.
+    pub payloads: Vec<(Option<f64>, Inertia)>,
+    /// How far each joint stands beyond what its encoder says (rad or m).
+    pub encoder_offsets: Vec<f64>,
+    /// Dry friction, with its joint.
+    pub dry: Vec<(usize, Dry)>,
+    /// All other torques on joints.
+    pub smooth: Vec<Smooth>,
+    /// Torque scales.
+    pub factors: Vec<Scaled>,
+    /// The largest torque (N m or N) as the drive reports it; infinite where there is no limit.
+    pub limits: Vec<f64>,
+    /// Forces on the tool.
+    pub contacts: Vec<Contact>,
+    /// By how much a drive's torque is late (s).
+    pub delays: Vec<f64>,
+    /// What gives between rotor and link.
+    pub springs: Vec<Option<Sprung>>,
+    /// Half the gap between rotor and link (rad or m).
+    pub gaps: Vec<f64>,
+}
+
+impl Machine {
+    /// `arm` with `effects`.
+    ///
+    /// # Errors
+    /// [`EffectError`], naming effect, joint and value.
+    pub fn new(arm: &Arm, effects: &[Effect]) -> Result<Self, EffectError> {
+        let dof = arm.dof();
+        let mut machine = Self {
+            arm: arm.clone(),
+            rotors: arm.joints().iter().map(|joint| joint.rotor_inertia).collect(),
+            payloads: Vec::new(),
+            encoder_offsets: vec![0.0; dof],
+            dry: Vec::new(),
+            smooth: Vec::new(),
+            factors: Vec::new(),
+            limits: vec![f64::INFINITY; dof],
+            contacts: Vec::new(),
+            delays: vec![0.0; dof],
+            springs: vec![None; dof],
+            gaps: vec![0.0; dof],
+        };
+        for effect in effects {
+            check(effect)?;
+            let kind = effect.kind().get();
+            let place = Place {
+                joint: match effect.spec().scope {
+                    Scope::Joint => joint_of(arm, effect, effect.joint())?,
+                    Scope::Arm => 0,
+                },
+                other: if kind.has_other() {
+                    joint_of(arm, effect, effect.other())?
+                } else {
+                    0
+                },
+            };
+            kind.apply(effect, place, &mut machine);
+        }
+        Ok(machine)
+    }
+
+    /// Adds a torque on a joint, smooth in its own velocity: `torque` is of the joint's number and the motion (N m or N).
+    pub fn add_torque(
+        &mut self,
+        joint: usize,
+        onset: Option<f64>,
+        torque: impl Fn(usize, State<'_>) -> f64 + Send + Sync + 'static,
+    ) {
+        self.smooth.push(Smooth {
+            joint,
+            onset,
+            viscous: None,
+            torque: Arc::new(torque),
+        });
+    }
+
+    /// Adds friction in proportion to the velocity (N m s/rad or N s/m).
+    pub fn add_viscous(&mut self, joint: usize, coefficient: f64) {
+        self.smooth.push(Smooth {
+            joint,
+            onset: None,
+            viscous: Some(coefficient),
+            torque: Arc::new(move |joint, state| coefficient * state.qd[joint]),
+        });
+    }
+
+    /// Changes the arm by one of its builders.
+    pub fn change_arm(&mut self, change: impl FnOnce(Arm) -> Arm) {
+        self.arm = change(self.arm.clone());
+    }
+}
+
+/// The number of the joint `name`; of no name, what is said is the empty one.
+fn joint_of(arm: &Arm, effect: &Effect, name: Option<&str>) -> Result<usize, EffectError> {
+    let found = arm.joints().iter().position(|joint| Some(joint.name.as_str()) == name);
+    found.ok_or_else(|| EffectError::UnknownJoint {
+        effect: effect.name(),
+        joint: name.unwrap_or_default().to_owned(),
+        known: arm.joints().iter().map(|joint| joint.name.clone()).collect(),
+    })
+}

@@ -1,0 +1,93 @@
+//! A stretch of motion as regressors see it.
+
+/// What is slow and what is large, joint by joint.
+#[derive(Clone, Debug)]
+pub struct Scales {
+    /// The largest speed but for the fastest per cent (rad/s or m/s).
+    pub speed: Vec<f64>,
+    /// Below it a joint rests, and the sign of its velocity means nothing (rad/s or m/s).
+    pub rest: Vec<f64>,
+    /// The middle of the positions (rad or m).
+    pub middle: Vec<f64>,
+    /// From the lowest position to the highest (rad or m).
+    pub range: Vec<f64>,
+    /// The standard deviation of the measured torque (N m or N).
+    pub torque: Vec<f64>,
+}
+
+impl Scales {
+    /// A sign that passes zero as fast as the noise of the velocity allows.
+    pub fn sign(&self, joint: usize, qd: f64) -> f64 {
+        let x = qd / (0.3 * self.rest[joint]);
+        x / (1.0 + x * x).sqrt()
+    }
+
+    /// Whether a joint moves.
+    pub fn moves(&self, joint: usize) -> bool {
+        self.speed[joint] > self.rest[joint]
+    }
+}
+
+/// The rigid model along the motion, on its ticks; joint first where there are two. A list that nothing reads may be empty.
+#[derive(Clone, Copy, Debug)]
+pub struct Rigid<'a> {
+    /// τ (N m or N).
+    pub tau: &'a [Vec<f64>],
+    /// Each link's share of τ: `[joint][link]`.
+    pub links: &'a [Vec<Vec<f64>>],
+    /// The ten columns of the torque regressor of a body on the tool, in the tool's frame: `[joint][parameter]`.
+    pub payload: &'a [Vec<Vec<f64>>],
+    /// ∂τ/∂q: `[joint][by]`.
+    pub by_position: &'a [Vec<Vec<f64>>],
+    /// ∂τ/∂q̇, likewise.
+    pub by_velocity: &'a [Vec<Vec<f64>>],
+    /// The mass matrix.
+    pub mass: &'a [Vec<Vec<f64>>],
+    /// ∂τ/∂(turn of the base about its x, y axis).
+    pub tilt: &'a [[Vec<f64>; 2]],
+    /// The torque of a unit force on the tool along x, y, z of the base.
+    pub force: &'a [[Vec<f64>; 3]],
+}
+
+/// A stretch of motion on even ticks, joint by joint, with the rigid model along it.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion<'a> {
+    /// The time of the first tick (s).
+    pub start: f64,
+    /// From tick to tick (s).
+    pub period: f64,
+    /// Positions (rad or m).
+    pub q: &'a [Vec<f64>],
+    /// Velocities (rad/s or m/s).
+    pub qd: &'a [Vec<f64>],
+    /// Accelerations (rad/s² or m/s²).
+    pub qdd: &'a [Vec<f64>],
+    /// Measured torques (N m or N).
+    pub tau: &'a [Vec<f64>],
+    /// The rigid model.
+    pub rigid: Rigid<'a>,
+    /// What is slow and what is large.
+    pub scales: &'a Scales,
+}
+
+impl Motion<'_> {
+    /// The number of ticks.
+    pub fn ticks(&self) -> usize {
+        self.q[0].len()
+    }
+
+    /// The time of a tick (s).
+    pub fn time(&self, tick: usize) -> f64 {
+        self.start + tick as f64 * self.period
+    }
+
+    /// A signal on the ticks.
+    pub fn map(&self, f: impl Fn(usize) -> f64) -> Option<Vec<f64>> {
+        Some((0..self.ticks()).map(f).collect())
+    }
+
+    /// The smooth sign of a joint's velocity.
+    pub fn sign(&self, joint: usize, tick: usize) -> f64 {
+        self.scales.sign(joint, self.qd[joint][tick])
+    }
+}

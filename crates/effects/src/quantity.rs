@@ -1,0 +1,59 @@
+//! What a number measures, and its SI unit at a joint.
+
+use arm::JointKind;
+
+/// What a parameter measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// A torque, of a prismatic joint a force.
+    Torque,
+    /// A joint's position.
+    Position,
+    /// A joint's speed.
+    Speed,
+    /// Torque per speed.
+    Damping,
+    /// Torque per squared speed.
+    Drag,
+    /// Torque per acceleration.
+    Inertia,
+    /// Torque per position.
+    Stiffness,
+    /// A number without unit.
+    Ratio,
+    /// An angle that belongs to no joint.
+    Angle,
+    /// A time.
+    Time,
+    /// A mass.
+    Mass,
+    /// A length.
+    Length,
+    /// A force on the tool.
+    Force,
+}
+
+impl Quantity {
+    /// The SI unit at a joint of `kind`; `"1"` for a number without unit.
+    pub fn unit(self, kind: JointKind) -> &'static str {
+        let either = |turning, sliding| match kind {
+            JointKind::Revolute => turning,
+            JointKind::Prismatic => sliding,
+        };
+        match self {
+            Self::Torque => either("N m", "N"),
+            Self::Position => either("rad", "m"),
+            Self::Speed => either("rad/s", "m/s"),
+            Self::Damping => either("N m s/rad", "N s/m"),
+            Self::Drag => either("N m s²/rad²", "N s²/m²"),
+            Self::Inertia => either("kg m²", "kg"),
+            Self::Stiffness => either("N m/rad", "N/m"),
+            Self::Ratio => "1",
+            Self::Angle => "rad",
+            Self::Time => "s",
+            Self::Mass => "kg",
+            Self::Length => "m",
+            Self::Force => "N",
+        }
+    }
+}

@@ -1,0 +1,17 @@
+//! What is wrong with a reading.
+
+mod encoder_offset;
+mod torque_offset;
+mod torque_scale;
+
+pub use encoder_offset::EncoderOffset;
+pub use torque_offset::TorqueOffset;
+pub use torque_scale::TorqueScale;
+
+use crate::Experiment;
+
+/// What tells offset and scale of a torque where no motion does.
+const KNOWN_LOAD: Experiment = Experiment {
+    rank: 5,
+    text: "read the torque under a known load at rest, once on either side of upright: offset and scale show there",
+};

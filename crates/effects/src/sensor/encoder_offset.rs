@@ -1,0 +1,77 @@
+//! An encoder whose zero is not where the model has it.
+
+use crate::{
+    Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Spec,
+    Term, Turn, Unseen,
+};
+
+/// The encoder says offset more than where the joint stands.
+#[derive(Debug)]
+pub struct EncoderOffset;
+
+static SPEC: Spec = Spec {
+    name: "encoder_offset",
+    title: "encoder offset",
+    meaning: "the joint's zero is not where the model has it",
+    told_by: "a mechanical reference for the zero, or rests in many postures",
+    formula: "the encoder says so much more than where the joint stands",
+    sentence: "an encoder off by {offset}",
+    parameters: &[Parameter::new("offset", Quantity::Position)],
+    main: &["offset"],
+    is_certain_in_form: true,
+    experiment: Some(Experiment {
+        rank: 6,
+        text: "drive the joint to a mechanical reference, or measure its angle: an encoder's offset shows there",
+    }),
+    unseen: Unseen::LINEAR,
+    unseen_turn: 12,
+    ..Spec::EMPTY
+};
+
+/// ∂τ/∂q of one joint: what one that stands further (rad or m) adds.
+pub static SLOPE: Law = Law {
+    name: "slope",
+    column: |term, joint, motion| Some(motion.rigid.by_position[joint][term.of[0]].clone()),
+    needs_model: true,
+    needs_derivatives: true,
+    carry: Some(|term, value, carried| carried.offset[term.of[0]] = value),
+    ..Law::PLAIN
+};
+
+impl EffectKind for EncoderOffset {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let form = |joint| Form::on(Turn::Zero, joint, vec![Term::about(&SLOPE, joint)]);
+        grounds.moving().map(form).collect()
+    }
+
+    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        fitted.value(0).abs() < 0.2
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        // The column is the derivative by where the joint stands; the encoder is off the other way.
+        let offset = estimate.coefficient("offset", estimate.place(0), -1.0);
+        Some(Effect::of(&Self).on(estimate.joint_name()).with("offset", offset))
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        machine.encoder_offsets[at.joint] -= effect.number("offset");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::agree;
+
+    /// To first order, and the other way round.
+    #[test]
+    fn its_column_is_its_torque() {
+        let effect = Effect::of(&EncoderOffset).on("a").with("offset", -1e-6);
+        agree(&effect, &[(Term::about(&SLOPE, 0), 1e-6)]);
+    }
+}

@@ -1,0 +1,73 @@
+//! A constant added to the measured torque.
+
+use super::KNOWN_LOAD;
+use crate::laws::ONE;
+use crate::{
+    Against, Effect, EffectKind, Estimate, Form, Grounds, Machine, Parameter, Place, Quantity, SetsIn, Spec, Term, Turn,
+};
+
+/// τ = offset.
+#[derive(Debug)]
+pub struct TorqueOffset;
+
+static SPEC: Spec = Spec {
+    name: "torque_offset",
+    title: "torque offset",
+    meaning: "a constant added to the measured torque",
+    told_by: "rests in several postures",
+    formula: "constant",
+    sentence: "a constant torque of {offset}",
+    parameters: &[Parameter::new("offset", Quantity::Torque)],
+    main: &["offset"],
+    may_set_in: true,
+    excludes: &["friction_asymmetry", "spring"],
+    prior: 10.0,
+    is_simple: true,
+    is_certain_in_form: true,
+    against: Against::Position,
+    experiment: Some(KNOWN_LOAD),
+    ..Spec::EMPTY
+};
+
+impl EffectKind for TorqueOffset {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let form = |joint| Form::on(Turn::Drive, joint, vec![Term::on(&ONE, joint)]);
+        grounds.moving().map(form).collect()
+    }
+
+    fn sets_in(&self) -> Option<SetsIn> {
+        Some(SetsIn {
+            turn: 0,
+            terms: |joint| vec![Term::on(&ONE, joint)],
+            looked_for_with: 1,
+            taken: &[1],
+        })
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let offset = estimate.coefficient("offset", estimate.place(0), 1.0);
+        let effect = Effect::of(&Self).since(estimate.onset());
+        Some(effect.on(estimate.joint_name()).with("offset", offset))
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        let offset = effect.number("offset");
+        machine.add_torque(at.joint, effect.onset(), move |_, _| offset);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::agree;
+
+    #[test]
+    fn its_column_is_its_torque() {
+        let effect = Effect::of(&TorqueOffset).on("a").with("offset", -0.7);
+        agree(&effect, &[(Term::on(&ONE, 0), -0.7)]);
+    }
+}

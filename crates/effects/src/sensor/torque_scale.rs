@@ -1,0 +1,96 @@
+//! A torque that is measured a constant factor too large.
+
+use super::KNOWN_LOAD;
+use crate::laws::RIGID;
+use crate::{
+    Against, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity, Range, Scaled,
+    SetsIn, Spec, Term, Turn, Unseen,
+};
+
+/// The torque measured is factor × the true one.
+#[derive(Debug)]
+pub struct TorqueScale;
+
+static SPEC: Spec = Spec {
+    name: "torque_scale",
+    title: "torque scale",
+    meaning: "the measured torque is a constant multiple of the true one (a gain or a torque constant is wrong)",
+    told_by: "a known payload",
+    formula: "measured = k × true",
+    sentence: "torque measured {factor} times too large",
+    parameters: &[Parameter::new("factor", Quantity::Ratio)
+        .within(Range::Positive)
+        .neutral_at(1.0)
+        .remarked("measured over true")],
+    main: &["factor"],
+    may_set_in: true,
+    is_certain_in_form: true,
+    against: Against::Load,
+    experiment: Some(KNOWN_LOAD),
+    experiments_against: &[("inertial_scale", KNOWN_BODY), ("link_inertial_error", KNOWN_BODY)],
+    // It is told by the rigid torque alone, but it is a part of all of the joint's torque.
+    unseen: Unseen::Linear {
+        if_no_form: None,
+        is_of_first: false,
+        is_of_all_torque: true,
+    },
+    unseen_turn: 10,
+    ..Spec::EMPTY
+};
+
+const KNOWN_BODY: &str = "put a body of known mass on the tool and record the same motion: a wrong scale of the torque changes its weight, \
+     wrong masses of the links do not";
+
+impl EffectKind for TorqueScale {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let form = |joint| Form::on(Turn::Drive, joint, vec![Term::on(&RIGID, joint)]);
+        grounds.moving().map(form).collect()
+    }
+
+    fn sets_in(&self) -> Option<SetsIn> {
+        Some(SetsIn {
+            turn: 1,
+            terms: |joint| vec![Term::on(&RIGID, joint)],
+            looked_for_with: 1,
+            taken: &[1],
+        })
+    }
+
+    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        (-0.7..2.0).contains(&fitted.value(0))
+    }
+
+    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        let at = estimate.place(0)?;
+        let factor = estimate.note("factor", |draw| 1.0 + draw[at]);
+        let effect = Effect::of(&Self).since(estimate.onset());
+        Some(effect.on(estimate.joint_name()).with("factor", factor))
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        machine.factors.push(Scaled {
+            joint: at.joint,
+            factor: effect.number("factor"),
+            onset: effect.onset(),
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::{column, machine};
+
+    /// Its column is the rigid torque: what it adds for a factor of 1.5 is half of that.
+    #[test]
+    fn it_scales_what_its_column_is() {
+        let effect = Effect::of(&TorqueScale).on("a").with("factor", 1.5);
+        assert_eq!(machine(&effect).factors[0].factor, 1.5);
+        let (rigid, _) = column(&Term::on(&RIGID, 0), 0);
+        assert!(rigid.iter().any(|torque| *torque != 0.0));
+    }
+}

@@ -1,0 +1,343 @@
+//! What is known of an effect before any recording: its name, its parameters, its relations and its words.
+
+use arm::JointKind;
+
+use crate::quantity::Quantity;
+
+/// Where an effect is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scope {
+    /// On one joint.
+    Joint,
+    /// On the whole arm.
+    Arm,
+}
+
+/// What a URDF can hold of an effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InUrdf {
+    /// Nothing.
+    Nothing,
+    /// The joint's damping.
+    Damping,
+    /// The joint's friction.
+    Friction,
+    /// The masses and inertias of links.
+    Inertials,
+}
+
+/// The quantity of the state that a figure of an effect has as its horizontal axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Against {
+    /// The joint's position.
+    Position,
+    /// The joint's velocity.
+    Speed,
+    /// The joint's acceleration.
+    Acceleration,
+    /// Time.
+    Time,
+    /// Time; torques count along the motion.
+    TimeAlong,
+    /// The rigid model's torque.
+    Load,
+    /// Its absolute value; torques count along the motion.
+    LoadAlong,
+    /// The velocity of another joint.
+    OtherSpeed,
+    /// The torque that the effect predicts, where no one quantity tells it.
+    Predicted,
+}
+
+/// What a parameter holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// A number.
+    Number,
+    /// So many numbers. A finding gives them one by one, under these keys (none: it does not).
+    List(usize, &'static [&'static str]),
+    /// Points (x, y) in order of x.
+    Points,
+}
+
+/// Which values a parameter may have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Range {
+    /// Any finite one.
+    Finite,
+    /// Zero and above.
+    NotNegative,
+    /// Above zero.
+    Positive,
+    /// −1 and above.
+    AtLeastMinusOne,
+    /// Above −1.
+    AboveMinusOne,
+}
+
+impl Range {
+    /// Whether `value` is in it.
+    pub fn contains(self, value: f64) -> bool {
+        value.is_finite()
+            && match self {
+                Self::Finite => true,
+                Self::NotNegative => value >= 0.0,
+                Self::Positive => value > 0.0,
+                Self::AtLeastMinusOne => value >= -1.0,
+                Self::AboveMinusOne => value > -1.0,
+            }
+    }
+
+    /// What a value must be, in words.
+    pub fn requirement(self) -> &'static str {
+        match self {
+            Self::Finite => "finite",
+            Self::NotNegative => "finite and not negative",
+            Self::Positive => "finite and positive",
+            Self::AtLeastMinusOne => "finite and at least -1",
+            Self::AboveMinusOne => "finite and above -1",
+        }
+    }
+}
+
+/// A parameter of an effect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameter {
+    /// Its key in files and findings.
+    pub key: &'static str,
+    /// What it measures.
+    pub quantity: Quantity,
+    /// What it holds.
+    pub shape: Shape,
+    /// The values that each number of it may have.
+    pub range: Range,
+    /// What it is where a file does not say; `None` where it must.
+    pub default: Option<f64>,
+    /// The value at which there is no effect.
+    pub neutral: f64,
+    /// What a file says beside it instead of the unit; empty for nothing.
+    pub remark: Option<&'static str>,
+}
+
+impl Parameter {
+    /// A finite number that must be given and is neutral at zero.
+    pub const fn new(key: &'static str, quantity: Quantity) -> Self {
+        Self {
+            key,
+            quantity,
+            shape: Shape::Number,
+            range: Range::Finite,
+            default: None,
+            neutral: 0.0,
+            remark: None,
+        }
+    }
+
+    /// The same within `range`.
+    pub const fn within(mut self, range: Range) -> Self {
+        self.range = range;
+        self
+    }
+
+    /// The same with a default.
+    pub const fn or(mut self, default: f64) -> Self {
+        self.default = Some(default);
+        self
+    }
+
+    /// The same, without effect at `neutral`.
+    pub const fn neutral_at(mut self, neutral: f64) -> Self {
+        self.neutral = neutral;
+        self
+    }
+
+    /// The same of another shape.
+    pub const fn of(mut self, shape: Shape) -> Self {
+        self.shape = shape;
+        self
+    }
+
+    /// The same with another remark than its unit.
+    pub const fn remarked(mut self, remark: &'static str) -> Self {
+        self.remark = Some(remark);
+        self
+    }
+}
+
+/// How it is told from which size on recordings would have shown an effect. Sizes are of its first main parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unseen {
+    /// It is not.
+    Never,
+    /// Below the largest torque.
+    Limit {
+        /// Why it was not seen.
+        because: &'static str,
+    },
+    /// By the sizes at which it was tried.
+    Sized {
+        /// Why it was not seen.
+        because: &'static str,
+        /// The same where none of the sizes would have been.
+        if_none: &'static str,
+        /// Whether small sizes are seen, not large ones.
+        is_seen_below: bool,
+    },
+    /// By the one coefficient that its torque is in proportion to.
+    Linear {
+        /// Why it was not seen where it has no form in these recordings.
+        if_no_form: Option<&'static str>,
+        /// Whether its size is a part of the first coefficient: without that it has none.
+        is_of_first: bool,
+        /// Whether it is a part of all of the joint's torque.
+        is_of_all_torque: bool,
+    },
+}
+
+impl Unseen {
+    /// In proportion to a coefficient, and nothing else.
+    pub const LINEAR: Self = Self::Linear {
+        if_no_form: None,
+        is_of_first: false,
+        is_of_all_torque: false,
+    };
+}
+
+/// What to do where no motion tells an effect from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Experiment {
+    /// Of two effects that no motion tells apart, the one with the higher rank says what to do.
+    pub rank: u8,
+    /// The experiment that tells it from others.
+    pub text: &'static str,
+}
+
+/// Everything that is known of an effect before any recording.
+#[derive(Clone, Copy, Debug)]
+pub struct Spec {
+    /// The catalogue's name; empty for a form without a name.
+    pub name: &'static str,
+    /// Its name in two or three words.
+    pub title: &'static str,
+    /// What it is, for somebody who has not met it.
+    pub meaning: &'static str,
+    /// Which recording tells it from what looks like it.
+    pub told_by: &'static str,
+    /// The torque that it adds, or what it does (for the documentation).
+    pub formula: &'static str,
+    /// A finding in a few words: `{key}` is a parameter with its unit, `{key%}` a hundred times it, `{other}` the other joint.
+    pub sentence: &'static str,
+    /// Where it is.
+    pub scope: Scope,
+    /// Its parameters, in the order of files.
+    pub parameters: &'static [Parameter],
+    /// Numbers that findings give beside the parameters.
+    pub derived: &'static [Parameter],
+    /// The parameters that say how large it is, the best first.
+    pub main: &'static [&'static str],
+    /// Whether it may set in halfway.
+    pub may_set_in: bool,
+    /// Whether there may be two on one joint, or on the arm.
+    pub may_repeat: bool,
+    /// The simpler effect that it is a form of.
+    pub plain: Option<&'static str>,
+    /// The effect that is fitted with it and named beside it.
+    pub brings: Option<&'static str>,
+    /// Effects that cannot stand beside it on one joint: the other side need not say so too.
+    pub excludes: &'static [&'static str],
+    /// The evidence that it must bring beyond that of its coefficients (nats).
+    pub prior: f64,
+    /// Whether a URDF usually leaves it out: friction and the drives' inertia need less evidence.
+    pub is_ordinary: bool,
+    /// Whether it is the friction that every drive has.
+    pub is_friction: bool,
+    /// Whether it is ordinary, or a constant beside that.
+    pub is_simple: bool,
+    /// Whether there is but one form that it can have: it follows from rigid-body dynamics.
+    pub is_certain_in_form: bool,
+    /// Whether it may be there in one recording alone.
+    pub is_passing: bool,
+    /// Whether it is simulated at its size, so that its coefficient must be one; it is no function of the motion at one time.
+    pub is_simulated: bool,
+    /// Whether it says that masses are not the model's.
+    pub is_wrong_mass: bool,
+    /// Whether it acts on the link's side of a drive that gives.
+    pub is_behind_the_drive: bool,
+    /// What a URDF can hold of it.
+    pub in_urdf: InUrdf,
+    /// What a figure shows it against.
+    pub against: Against,
+    /// What structure that has no name depends on, for a form without a name.
+    pub depends_on: &'static str,
+    /// How it is told that recordings did not show it.
+    pub unseen: Unseen,
+    /// Its place among what recordings did not show.
+    pub unseen_turn: u8,
+    /// What to do where no motion tells it from another.
+    pub experiment: Option<Experiment>,
+    /// The same against particular others, before [`Self::experiment`].
+    pub experiments_against: &'static [(&'static str, &'static str)],
+}
+
+impl Spec {
+    /// An effect of one joint without words, parameters and relations, for the rest of a struct.
+    pub const EMPTY: Self = Self {
+        name: "",
+        title: "",
+        meaning: "",
+        told_by: "",
+        formula: "",
+        sentence: "",
+        scope: Scope::Joint,
+        parameters: &[],
+        derived: &[],
+        main: &[],
+        may_set_in: false,
+        may_repeat: false,
+        plain: None,
+        brings: None,
+        excludes: &[],
+        prior: 6.0,
+        is_ordinary: false,
+        is_friction: false,
+        is_simple: false,
+        is_certain_in_form: false,
+        is_passing: false,
+        is_simulated: false,
+        is_wrong_mass: false,
+        is_behind_the_drive: false,
+        in_urdf: InUrdf::Nothing,
+        against: Against::Predicted,
+        depends_on: "",
+        unseen: Unseen::Never,
+        unseen_turn: u8::MAX,
+        experiment: None,
+        experiments_against: &[],
+    };
+
+    /// The same for a form that has no name.
+    pub const UNNAMED: Self = Self {
+        prior: 9.0,
+        ..Self::EMPTY
+    };
+
+    /// The parameter `key`, which may be a part of a list or a number that findings give beside the parameters.
+    pub fn parameter(&self, key: &str) -> Option<&'static Parameter> {
+        let is_part = |parameter: &&Parameter| match parameter.shape {
+            Shape::List(_, parts) => parts.contains(&key),
+            _ => false,
+        };
+        let mut all = self.parameters.iter().chain(self.derived);
+        all.find(|parameter| parameter.key == key)
+            .or_else(|| self.parameters.iter().find(is_part))
+            .or_else(|| (key == "onset" && self.may_set_in).then_some(&ONSET))
+    }
+
+    /// The SI unit of the parameter `key` at a joint of `kind`.
+    pub fn unit(&self, key: &str, kind: JointKind) -> Option<&'static str> {
+        Some(self.parameter(key)?.quantity.unit(kind))
+    }
+}
+
+/// When an effect sets in, on the recordings' own clock.
+pub static ONSET: Parameter = Parameter::new("onset", Quantity::Time);

@@ -1,0 +1,103 @@
+//! The motion's past.
+
+use crate::{EffectKind, Form, Grounds, Law, Size, Spec, Term, Turn};
+
+/// The motion's past: friction that creeps, hysteresis.
+#[derive(Debug)]
+pub struct History;
+
+static SPEC: Spec = Spec {
+    name: "history",
+    depends_on: "history",
+    ..Spec::UNNAMED
+};
+
+/// The shortest memory that is none of friction (s).
+const SHORTEST_MEMORY: f64 = 0.1;
+
+/// A memory of q̇ (form 0) or sgn q̇ (form 1) that fades with a time constant (the size, s).
+static MEMORY: Law = Law {
+    name: "memory",
+    column: |term, joint, motion| {
+        let source: Vec<f64> = if term.form == 0 {
+            motion.qd[joint].clone()
+        } else {
+            (0..motion.ticks()).map(|k| motion.sign(joint, k)).collect()
+        };
+        Some(faded(&source, motion.period / term.sizes[0]))
+    },
+    // What is forgotten sooner is the velocity itself.
+    varied: Some(|term, size, factor| match size {
+        Size::Main => term.sized([(term.sizes[0] * factor).max(SHORTEST_MEMORY)]),
+        _ => *term,
+    }),
+    ..Law::PLAIN
+};
+
+/// How far a drag link of some play (the size, rad or m) is from the middle of it, −1 to 1.
+static PLAY: Law = Law {
+    name: "play",
+    column: |term, joint, motion| Some(play(&motion.q[joint], term.sizes[0])),
+    ..Law::PLAIN
+};
+
+impl EffectKind for History {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let mut forms = Vec::new();
+        for joint in grounds.moving() {
+            for time in [0.1, 0.3, 1.0, 3.0] {
+                let term = |form| Term::on(&MEMORY, joint).form(form).sized([time]);
+                forms.push(Form::on(Turn::Past, joint, vec![term(0), term(1)]));
+            }
+            for share in [0.02, 0.06, 0.15, 0.35] {
+                let terms = vec![Term::on(&PLAY, joint).sized([share * grounds.scales.range[joint]])];
+                forms.push(Form::on(Turn::Past, joint, terms));
+            }
+        }
+        forms
+    }
+}
+
+/// A first-order low-pass with the given share of its time constant a tick, from rest at the first value.
+fn faded(signal: &[f64], share: f64) -> Vec<f64> {
+    let keep = (-share).exp();
+    let mut state = signal.first().copied().unwrap_or(0.0);
+    signal
+        .iter()
+        .map(|value| {
+            state = keep * state + (1.0 - keep) * value;
+            state
+        })
+        .collect()
+}
+
+/// Where q stands in the play of a drag link (−1 to 1): a position hysteresis (Prandtl's play operator).
+fn play(q: &[f64], width: f64) -> Vec<f64> {
+    let mut link = q.first().copied().unwrap_or(0.0);
+    q.iter()
+        .map(|&q| {
+            link = link.clamp(q - width, q + width);
+            (q - link) / width
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The drag link moves only once its play is used up.
+    #[test]
+    fn the_play_remembers_the_direction() {
+        let q = [0.0, 0.05, 0.1, 0.2, 0.15, 0.1, 0.0, -0.1];
+        let place = play(&q, 0.1);
+        let expected = [0.0, 0.5, 1.0, 1.0, 0.5, 0.0, -1.0, -1.0];
+        for (a, b) in place.iter().zip(expected) {
+            assert!((a - b).abs() < 1e-12, "{place:?}");
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! Any smooth function of another joint's position.
+
+use crate::{EffectKind, Form, Grounds, Spec, Times, Turn};
+
+/// Any smooth function of another joint's position.
+#[derive(Debug)]
+pub struct OtherPosition;
+
+static SPEC: Spec = Spec {
+    name: "other_position",
+    depends_on: "other_joint",
+    ..Spec::UNNAMED
+};
+
+impl EffectKind for OtherPosition {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn has_other(&self) -> bool {
+        true
+    }
+
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let mut forms = Vec::new();
+        for joint in grounds.moving() {
+            for other in grounds.moving().filter(|&other| other != joint) {
+                let terms = grounds.tents(joint, other, 8, Times::One);
+                forms.push(Form::on(Turn::Others, joint, terms).with(other));
+            }
+        }
+        forms
+    }
+}

@@ -1,0 +1,47 @@
+//! A sinusoid in time.
+
+use crate::laws::wave;
+use crate::{EffectKind, Form, Grounds, Law, Spec, Term};
+
+/// A sinusoid in time.
+#[derive(Debug)]
+pub struct Periodic;
+
+static SPEC: Spec = Spec {
+    name: "periodic",
+    is_passing: true,
+    depends_on: "time",
+    ..Spec::UNNAMED
+};
+
+/// sin (form 0) or cos (form 1) of ω t; the size is ω (rad/s).
+static WAVE: Law = Law {
+    name: "wave",
+    column: |term, _, motion| motion.map(|k| wave(term.sizes[0] * motion.time(k), term.form == 1)),
+    nudges: &[|term, step| term.sized([term.sizes[0] * (1.0 + 0.01 * step)])],
+    ..Law::PLAIN
+};
+
+/// The columns of a sinusoid of ω (rad/s) on a joint.
+pub fn columns(joint: usize, omega: f64) -> Vec<Term> {
+    [0, 1]
+        .map(|form| Term::on(&WAVE, joint).form(form).sized([omega]))
+        .to_vec()
+}
+
+impl EffectKind for Periodic {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    /// The residuals suggest the frequency.
+    fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
+        Vec::new()
+    }
+
+    /// Two that are too close to be told apart.
+    fn is_same(&self, a: &Term, b: &Term) -> bool {
+        let (a, b) = (a.sizes[0], b.sizes[0]);
+        (a - b).abs() < 0.1 * a.min(b)
+    }
+}

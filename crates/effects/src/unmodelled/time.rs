@@ -1,0 +1,44 @@
+//! Any slow function of time.
+
+use crate::laws::tent;
+use crate::{EffectKind, Form, Grounds, Law, Spec, Term, Turn};
+
+/// Any slow function of time.
+#[derive(Debug)]
+pub struct Time;
+
+static SPEC: Spec = Spec {
+    name: "time",
+    is_passing: true,
+    depends_on: "time",
+    ..Spec::UNNAMED
+};
+
+/// A tent on time; sizes are its top and half its foot (s).
+static MOMENT: Law = Law {
+    name: "moment",
+    column: |term, _, motion| {
+        let [centre, width, ..] = term.sizes;
+        motion.map(|k| tent(motion.time(k), centre, width))
+    },
+    ..Law::PLAIN
+};
+
+impl EffectKind for Time {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let form = |joint| {
+            let mut moments = Vec::new();
+            for &(from, to) in grounds.times {
+                let count = ((to - from) / 4.0).ceil().clamp(2.0, 12.0) as usize;
+                let width = (to - from) / (count - 1) as f64;
+                moments.extend((0..count).map(|k| Term::on(&MOMENT, joint).sized([from + width * k as f64, width])));
+            }
+            Form::on(Turn::Past, joint, moments)
+        };
+        grounds.moving().map(form).collect()
+    }
+}
