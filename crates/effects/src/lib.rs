@@ -40,4 +40,4 @@ pub use machine::{Circumstance, Contact, Dry, Machine, Place, Scaled, Smooth, Sp
 pub use motion::{Motion, Rigid, Scales};
 pub use quantity::Quantity;
 pub use spec::{Against, Experiment, InUrdf, ONSET, Parameter, Range, Scope, Shape, Spec, Unseen};
-pub use term::{Carried, Cone, Law, Size, Term};
+pub use term::{Carried, Column, Cone, Law, OtherForm, Size, Term};

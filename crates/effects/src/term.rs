@@ -47,12 +47,18 @@ pub struct Carried {
     pub tilt: [f64; 2],
 }
 
+/// What makes a term's column on a joint of a motion.
+pub type Column = fn(&Term, usize, &Motion<'_>) -> Option<Vec<f64>>;
+
+/// What makes another form of a term at a factor on its size, and whether it is another at all.
+pub type OtherForm = fn(&Term, f64) -> (Term, bool);
+
 /// One law: what a column is.
 pub struct Law {
     /// Its name, for debugging.
     pub name: &'static str,
     /// The torque of a term on a joint (N m or N) for a coefficient of one; `None` if it has none there.
-    pub column: fn(&Term, usize, &Motion<'_>) -> Option<Vec<f64>>,
+    pub column: Column,
     /// Whether it depends on the model along the motion, not on the motion and the torque alone.
     pub needs_model: bool,
     /// Whether the model's derivatives by position and velocity are needed.
@@ -62,7 +68,7 @@ pub struct Law {
     /// A term with a size times a factor, where that is more than a product.
     pub varied: Option<fn(&Term, Size, f64) -> Term>,
     /// The other form that it may have, at a factor on its size; whether that is another one at all.
-    pub other_form: Option<fn(&Term, f64) -> (Term, bool)>,
+    pub other_form: Option<OtherForm>,
     /// Finer steps about what its sizes are, in turn.
     pub nudges: &'static [fn(&Term, f64) -> Term],
     /// The same with ends that give, of a link of an inertia (kg m² or kg).

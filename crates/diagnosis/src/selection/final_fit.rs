@@ -5,6 +5,7 @@ use effects::sensor::TorqueOffset;
 use torque::Corrected;
 
 use crate::findings::found::useless;
+use crate::findings::report::Parameter;
 use crate::findings::verdict::structured;
 use crate::regression::bootstrap::{Resampled, resample};
 use crate::search::problem::{Chosen, Problem};
@@ -117,11 +118,13 @@ fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<usiz
         }
         named.first().is_some_and(|named| {
             let spec = named.effect.spec();
-            // Which of several parameters says how large it is hangs on the machine.
-            let [main] = spec.main else { return false };
-            let nothing = spec.parameter(main).map_or(0.0, |parameter| parameter.neutral);
-            let size = named.parameters.get(main);
-            size.is_some_and(|size| size.ci95[0] <= nothing && nothing <= size.ci95[1])
+            let sizes = spec.main.iter().filter_map(|main| named.parameters.get_key_value(main));
+            let may_be_nothing = |(key, size): (&&'static str, &Parameter)| {
+                let nothing = spec.parameter(key).map_or(0.0, |parameter| parameter.neutral);
+                size.ci95[0] <= nothing && nothing <= size.ci95[1]
+            };
+            // Where several parameters say how large it is, one that is clear is enough.
+            sizes.clone().next().is_some() && sizes.into_iter().all(may_be_nothing)
         })
     };
     let unclear = judged.members.iter().filter(is_unclear);
