@@ -14,6 +14,7 @@ pub use data::motion::Input;
 pub use diagnose::{Diagnosis, Options, diagnose};
 pub use error::DiagnosisError;
 pub use findings::report::*;
+pub use findings::sentences::described;
 pub use next::{JointLimits, Left, NextExperiment, Separation, Shows, Untold};
 pub use search::hypothesis::Wanted;
 pub use selection::predict::LEAST_ROWS;

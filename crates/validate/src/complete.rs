@@ -36,9 +36,9 @@ pub fn complete(
     progress: &dyn Fn(&'static str),
 ) -> Result<Complete, ValidateError> {
     let mut report = diagnosis.report.clone();
-    progress("learning a correction to compare with");
+    progress("learned correction, for comparison");
     learn(arm, &diagnosis.traces.recordings, &mut report)?;
-    progress("driving the simulated arm");
+    progress("simulation");
     let simulated = recordings
         .iter()
         .rfind(|input| input.held_out)
@@ -100,7 +100,7 @@ fn learn(arm: &Arm, traces: &[Trace], report: &mut Report) -> Result<(), Validat
     Ok(())
 }
 
-/// Drives the simulated arm with the recorded torques, with and without what was found; remarks to pass on.
+/// Drives the simulated arm with the recorded torques, with and without the effects found; returns remarks for the user.
 fn simulate(
     arm: &Arm,
     known: &[Effect],
@@ -126,7 +126,7 @@ fn simulate(
     ] {
         if count > 0 {
             remarks.push(format!(
-                "the {name} arm left the recorded motion by more than a turn or a metre in {count} of {windows} windows; its distance is a lower bound"
+                "the {name} arm departs from the recorded motion by more than one revolution or one metre in {count} of {windows} windows; its position error is a lower bound"
             ));
         }
     }

@@ -149,7 +149,7 @@ pub fn rollout(
     };
     let (nominal, augmented) = rayon::join(
         || run("the nominal arm", nominal),
-        || run("the arm with the named effects", augmented),
+        || run("the arm with the effects found", augmented),
     );
     let (nominal, augmented) = (nominal?, augmented?);
 

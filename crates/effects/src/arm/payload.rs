@@ -15,8 +15,8 @@ pub struct Payload;
 static SPEC: Spec = Spec {
     name: "payload",
     title: "payload",
-    meaning: "a body at the tool that the model does not have",
-    told_by: "the same motion with and without the tool's load",
+    meaning: "a body at the tool that the model does not contain",
+    told_by: "the same motion with and without the load on the tool",
     formula: "a body on the tool",
     sentence: "a payload of {mass} at the tool",
     scope: Scope::Arm,
@@ -40,7 +40,7 @@ static SPEC: Spec = Spec {
     in_urdf: InUrdf::Inertials,
     experiment: Some(Experiment {
         rank: 9,
-        text: "take off what the tool carries and record the same motion: what is left is not a payload",
+        text: "remove the load from the tool and record the same motion: an effect that remains is not a payload",
     }),
     ..Spec::EMPTY
 };

@@ -15,8 +15,8 @@ static SPEC: Spec = Spec {
     title: "spring",
     meaning: "a torque that depends on the joint's position (counterbalance, gas spring, cable)",
     told_by: "slow sweeps over the whole range, with and without a payload",
-    formula: "K (q − q₀), or a curve where it bends",
-    sentence: "a spring-like torque of {stiffness} about {rest}",
+    formula: "K (q − q₀), or a curve over the position where the spring is nonlinear",
+    sentence: "a spring torque with a stiffness of {stiffness} and its zero at {rest}",
     parameters: &[
         Parameter::new("stiffness", Quantity::Stiffness),
         Parameter::new("rest", Quantity::Position),

@@ -60,7 +60,7 @@ pub fn log_styles(recording: &RecordingStream, arm: &Arm, report: &Report) -> Re
         }
         let findings = (0..report.findings.len()).filter(|&number| acts(report, number, &joint.name));
         for (nth, number) in findings.enumerate() {
-            let name = words::cause(&report.findings[number]);
+            let name = words::effect(&report.findings[number]);
             let style = style(&name, EFFECTS[nth % EFFECTS.len()], 1.5);
             recording.log_static(entity(&effect_entity(number)), &style)?;
         }
