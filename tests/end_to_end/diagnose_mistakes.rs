@@ -47,7 +47,7 @@ fn files_in_each_others_places_are_told() {
     command[2] = "a.csv";
     says(
         &refused_command(&case, &command),
-        &["a.csv:1", "is no URDF", "begins with \"t,q_turn", "--train"],
+        &["a.csv:1", "is not a URDF", "begins with \"t,q_turn", "--train"],
     );
     case.sandbox.write("a.csv", &case.text("robot.urdf"));
     says(&refused(&case, &[]), &["a.csv:1: this is XML", "--robot"]);

@@ -45,7 +45,7 @@ fn a_good_recording_has_nothing_to_remark() {
         &text,
         &[
             "good.csv: 2 joints, 3000 rows, 12.00 s at 250 Hz, regular clock",
-            "nothing to remark",
+            "no remarks",
         ],
     );
     let json = sandbox.json("out.json");

@@ -140,7 +140,7 @@ fn shown(report: &FileReport<'_>) -> String {
         "regular clock".to_owned()
     } else {
         format!(
-            "stamps off by {:.1} % of a period",
+            "time stamps deviate by {:.1} % of a period",
             100.0 * quality.jitter_rms * quality.rate
         )
     };
@@ -196,7 +196,7 @@ fn shown(report: &FileReport<'_>) -> String {
         let _ = writeln!(text, "- {}{}", about(misfit.joint.as_deref()), misfit.text);
     }
     if report.warnings.is_empty() && quality.findings.is_empty() && report.against_robot.is_empty() {
-        let _ = writeln!(text, "- nothing to remark");
+        let _ = writeln!(text, "- no remarks");
     }
     let _ = writeln!(text);
     text

@@ -101,8 +101,7 @@ fn protocol(
         // A truth that cannot be read is better known before hours of diagnosis than after.
         for Place { name, truth, .. } in places {
             let text = std::fs::read_to_string(truth).with_context(|| truth.display().to_string())?;
-            rows::truth::<Truth>(name, &text)
-                .with_context(|| format!("{}: mend it, or take it away", truth.display()))?;
+            rows::truth::<Truth>(name, &text).with_context(|| format!("{}: correct or remove it", truth.display()))?;
         }
     }
     times.of("conceal", || {
@@ -123,7 +122,7 @@ fn protocol(
     // Only now.
     let truths: Mutex<BTreeMap<String, String>> = Mutex::default();
     times.of("controls", || {
-        work::all("trying the controls", &pairs, jobs, |(place, sealed)| {
+        work::all("fitting the controls", &pairs, jobs, |(place, sealed)| {
             let bytes = std::fs::read(&place.truth).with_context(|| place.truth.display().to_string())?;
             sealed.check_truth(&bytes)?;
             let text = String::from_utf8(bytes).with_context(|| place.truth.display().to_string())?;
@@ -150,9 +149,12 @@ fn protocol(
     let mut truths = truths.into_inner().unwrap_or_default();
     times.of("experiments", || {
         let chosen = experiments::chosen(source, vault, &pairs)?;
-        work::all("making the proposed experiments", &chosen, jobs, |(place, sealed)| {
-            experiments::make(source, vault, place, sealed, &truths[&place.name])
-        })
+        work::all(
+            "recording the proposed experiments",
+            &chosen,
+            jobs,
+            |(place, sealed)| experiments::make(source, vault, place, sealed, &truths[&place.name]),
+        )
     })?;
     let chosen = source.tracked()?;
     let tracked: Vec<_> = pairs

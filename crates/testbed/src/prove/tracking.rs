@@ -53,7 +53,7 @@ impl Model {
     pub fn title(self) -> &'static str {
         match self {
             Self::Nominal => "nominal",
-            Self::Diagnosed => "with the diagnosed cause",
+            Self::Diagnosed => "with the diagnosed effects",
             Self::Learned => "with IJL",
             Self::Both => "with both",
             Self::Exact => "exact",

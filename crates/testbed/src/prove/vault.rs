@@ -101,7 +101,7 @@ impl Vault {
         let (there_is, this_is) = (what(&there), what(&begun));
         ensure!(
             there == begun,
-            "{}: was begun for {there_is}; this is {}; give another --out",
+            "{}: was begun for {there_is}, and this is {}; give another --out",
             self.out.display(),
             if there_is == this_is {
                 "the same with another URDF".to_owned()
@@ -144,7 +144,7 @@ impl Vault {
             );
             ensure!(
                 there == seal,
-                "{folder}: other cases are sealed there, or a file under seal was changed; give another --out"
+                "{folder}: other cases are sealed there, or a sealed file was changed; give another --out"
             );
         } else {
             output::write_json(&path, &seal)?;

@@ -47,12 +47,12 @@ pub fn blocks(robots: &[Tried]) -> Vec<Block> {
     let mut list = Vec::new();
     if !missed.is_empty() {
         list.push(text(format!(
-            "**Missed.** {missed}. Why, as far as it is known, is in the notes under each robot."
+            "**Missed.** {missed}. The notes under each robot give the reasons, as far as they are known."
         )));
     }
     if !far.is_empty() {
         list.push(text(format!(
-            "**More than {} away from the publishers\u{2019} own number.** {far}.",
+            "**Difference of more than {} from the published value.** {far}.",
             percent(FAR)
         )));
     }
