@@ -68,7 +68,7 @@ fn positions_in_each_others_columns_are_told() {
         .succeed(&["inspect", "a.csv", "b.csv", "--robot", "robot.urdf"]);
     says(
         &text,
-        &["the positions of shoulder and elbow seem swapped; mend the header"],
+        &["the positions of shoulder and elbow seem swapped; correct the header"],
     );
     assert_eq!(text.matches("seem swapped").count(), 1, "{text}");
     // With velocities, these say which joint's they are.

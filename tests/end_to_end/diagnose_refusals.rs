@@ -131,7 +131,7 @@ fn another_robots_urdf_is_refused_with_what_does_not_fit() {
     let stderr = String::from_utf8_lossy(&output.stderr);
     says(
         &stderr,
-        &["warning: a.csv: elbow: positions", "leave the URDF's limits"],
+        &["warning: a.csv: elbow: positions", "exceed the URDF's limits"],
     );
     command[2] = "gone.urdf";
     says(&refused_command(&case, &command), &["gone.urdf", "cannot be read"]);

@@ -15,6 +15,6 @@ pub use diagnose::{Diagnosis, Options, diagnose};
 pub use error::DiagnosisError;
 pub use findings::report::*;
 pub use findings::sentences::described;
-pub use next::{JointLimits, Left, NextExperiment, Separation, Shows, Untold};
+pub use next::{JointLimits, NextExperiment, NotSeparated, Obstacle, Separation, Shows};
 pub use search::hypothesis::Wanted;
 pub use selection::predict::LEAST_ROWS;

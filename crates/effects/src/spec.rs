@@ -54,7 +54,7 @@ pub enum Against {
 pub enum Shape {
     /// A number.
     Number,
-    /// So many numbers. A finding gives them one by one, under these keys (none: it does not).
+    /// A list of this many numbers. A finding gives them separately, under these keys (not at all if there are none).
     List(usize, &'static [&'static str]),
     /// Points (x, y) in order of x.
     Points,
@@ -133,19 +133,19 @@ impl Parameter {
         }
     }
 
-    /// The same within `range`.
+    /// This parameter, limited to `range`.
     pub const fn within(mut self, range: Range) -> Self {
         self.range = range;
         self
     }
 
-    /// The same with a default.
+    /// This parameter with a default.
     pub const fn or(mut self, default: f64) -> Self {
         self.default = Some(default);
         self
     }
 
-    /// The same, without effect at `neutral`.
+    /// This parameter, which has no effect at the value `neutral`.
     pub const fn neutral_at(mut self, neutral: f64) -> Self {
         self.neutral = neutral;
         self

@@ -17,7 +17,7 @@ pub fn sentences(next: &NextExperiment) -> Vec<String> {
             listed(&distinguished)
         )),
         Some(duration) => list.push(format!(
-            "a motion of {duration:.0} s within the joint limits makes effects testable that are not testable with these recordings: {}",
+            "a motion of {duration:.0} s within the joint limits makes {} testable",
             shown(next)
         )),
         None => list.push("no motion within the joint limits would give more information".to_owned()),
@@ -28,16 +28,17 @@ pub fn sentences(next: &NextExperiment) -> Vec<String> {
             advice.push(&undecided.instead);
         }
     }
+    let no_motion = match next.duration {
+        Some(_) => "that motion does not distinguish",
+        None => "no motion within the joint limits distinguishes",
+    };
     for instead in advice {
         let same = next
             .not_separated
             .iter()
             .filter(|undecided| undecided.instead == instead);
         let pairs_left = pairs(same.map(|undecided| (&undecided.finding, &undecided.rival)));
-        list.push(format!(
-            "that motion does not distinguish {}; instead, {instead}",
-            listed(&pairs_left)
-        ));
+        list.push(format!("{no_motion} {}; instead, {instead}", listed(&pairs_left)));
     }
     list
 }
@@ -94,7 +95,7 @@ pub fn name(what: &Confusable) -> String {
 
 #[cfg(test)]
 mod tests {
-    use diagnosis::{Left, Separation, Untold};
+    use diagnosis::{NotSeparated, Obstacle, Separation};
 
     use super::*;
 
@@ -104,12 +105,12 @@ mod tests {
             effect,
             joint: joint.map(str::to_owned),
         };
-        let undecided = |joint: &str| Untold {
+        let undecided = |joint: &str| NotSeparated {
             finding: on("inertial_scale", None),
             rival: on("torque_scale", Some(joint)),
             best: 0.0,
             needed: 4.0,
-            kind: Left::SameTorque,
+            kind: Obstacle::SameTorque,
             because: String::new(),
             instead: "weigh it".into(),
         };

@@ -119,7 +119,7 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
 /// More gaps than this are counted on the terminal, not told.
 const MOST_GAPS: usize = 3;
 
-/// What is told of a list of warnings, and how many gaps are not.
+/// The warnings to show of a list, and the number of gaps that are omitted.
 pub fn shortened<T>(list: impl Iterator<Item = T>, warning: impl Fn(&T) -> &Warning) -> (Vec<T>, usize) {
     let mut gaps = 0;
     let told = list.filter(|item| {

@@ -6,7 +6,7 @@ use effects::Effect;
 use recording::RegularRecording;
 
 use crate::error::ValidateError;
-use crate::learned::{self, LearnedOptions, Motion};
+use crate::learned::{self, LearnedOptions, RecordedMotion};
 use crate::rollout::{RolloutOptions, rollout};
 use crate::statistics::{mean_square, variance};
 
@@ -52,8 +52,8 @@ pub fn complete(
     Ok(Complete { report, remarks })
 }
 
-fn motion(trace: &Trace) -> Motion<'_> {
-    Motion {
+fn motion(trace: &Trace) -> RecordedMotion<'_> {
+    RecordedMotion {
         q: &trace.q,
         qd: &trace.qd,
         qdd: &trace.qdd,
@@ -74,8 +74,8 @@ fn learn(arm: &Arm, traces: &[Trace], report: &mut Report) -> Result<(), Validat
     if held.is_empty() || !moves(&train) {
         return Ok(());
     }
-    let training: Vec<Motion<'_>> = train.iter().map(|trace| motion(trace)).collect();
-    let tried: Vec<Motion<'_>> = held.iter().map(|trace| motion(trace)).collect();
+    let training: Vec<RecordedMotion<'_>> = train.iter().map(|trace| motion(trace)).collect();
+    let tried: Vec<RecordedMotion<'_>> = held.iter().map(|trace| motion(trace)).collect();
     let predicted = learned::predict(arm, &training, &tried, &LearnedOptions::default())?;
     for (joint, described) in arm.joints().iter().enumerate() {
         // Where the joint moves, as the other errors are; over all where it hardly does.

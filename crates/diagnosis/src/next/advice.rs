@@ -2,7 +2,7 @@
 
 use effects::Spec;
 
-use super::report::{Left, Untold};
+use super::report::{NotSeparated, Obstacle};
 use crate::findings::report::Confusable;
 
 /// Evidence below this (nats), or below this part of the evidence needed, counts as none: the two are one torque.
@@ -15,43 +15,43 @@ pub fn untold(
     rival: Confusable,
     [best, needed]: [f64; 2],
     sure: f64,
-    barred: Option<Left>,
-) -> Untold {
+    barred: Option<Obstacle>,
+) -> NotSeparated {
     let kind = if best.abs() < ALIAS.0.max(ALIAS.1 * needed) {
-        Left::SameTorque
+        Obstacle::SameTorque
     } else if let Some(reason) = barred {
         reason
     } else if best < sure {
-        Left::OutOfReach
+        Obstacle::OutOfReach
     } else {
-        Left::AnotherMotion
+        Obstacle::AnotherMotion
     };
     let because = match kind {
-        Left::SameTorque => "both give the same torque in every motion that was tried".to_owned(),
-        Left::OutOfReach => format!(
+        Obstacle::SameTorque => "both give the same torque in every motion that was tried".to_owned(),
+        Obstacle::OutOfReach => format!(
             "the best motion within the joint limits gives {:.1} nats of evidence, and a reliable distinction needs {sure:.1}",
             best.max(0.0)
         ),
-        Left::Unexplained => {
+        Obstacle::Unexplained => {
             "the joint has an unexplained residual, so that the outcome of a motion cannot be predicted".to_owned()
         }
-        Left::NotForetold => {
+        Obstacle::NotForetold => {
             "the prediction fails on these recordings: it says that they already distinguish the two, which they do not"
                 .to_owned()
         }
-        Left::AnotherMotion => {
+        Obstacle::AnotherMotion => {
             "another motion distinguishes them; the proposed one serves the other pairs better".to_owned()
         }
     };
     let instead = match kind {
-        Left::AnotherMotion => {
+        Obstacle::AnotherMotion => {
             "record the proposed motion, diagnose again with its recording, and let a further motion be proposed"
         }
-        Left::Unexplained => "resolve the unexplained residual of the joint first",
+        Obstacle::Unexplained => "resolve the unexplained residual of the joint first",
         _ => instead(finding.effect, rival.effect),
     };
     let instead = instead.to_owned();
-    Untold {
+    NotSeparated {
         finding,
         rival,
         best,

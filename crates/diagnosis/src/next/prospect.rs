@@ -49,9 +49,9 @@ pub struct Prospect<'a> {
     grid: (f64, Kernel, usize),
     /// When the motion would begin (s).
     start: f64,
-    /// Integrals over the recordings, one a joint: of [`moments`] …
+    /// The integrals of [`moments`] over the recordings, one entry per joint.
     torque: Vec<[f64; 3]>,
-    /// … and of [`powers`].
+    /// The integrals of [`powers`] over the recordings, one entry per joint.
     speed: Vec<[f64; 2]>,
 }
 
@@ -305,7 +305,7 @@ fn moments(sums: &mut [f64; 3], signal: &[f64], period: f64) {
     sums[2] += period * signal.iter().map(|v| v * v).sum::<f64>();
 }
 
-/// The same of the squares of speed and acceleration.
+/// Adds the integrals over time of the squares of speed and acceleration; ticks are `period` (s) apart.
 fn powers(sums: &mut [f64; 2], speed: &[f64], acceleration: &[f64], period: f64) {
     sums[0] += period * speed.iter().map(|v| v * v).sum::<f64>();
     sums[1] += period * acceleration.iter().map(|v| v * v).sum::<f64>();

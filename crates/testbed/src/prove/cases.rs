@@ -10,7 +10,7 @@ use super::{disturbance, tracking};
 use crate::cli::ProveArgs;
 use crate::conceal;
 
-/// So many seeds are tried for a case.
+/// The number of seeds that are tried for a case.
 const SEEDS: usize = 4;
 
 /// A case: where it is, and where its truth is.
@@ -27,8 +27,8 @@ pub struct Place {
 }
 
 /// Where the cases of a proof come from.
-pub enum Source {
-    /// So many, drawn from a seed.
+pub enum Cases {
+    /// A number of cases, drawn from a seed.
     Drawn {
         /// The seed.
         seed: u64,
@@ -48,7 +48,7 @@ pub enum Source {
     },
 }
 
-impl Source {
+impl Cases {
     /// What `args` ask for.
     ///
     /// # Errors

@@ -13,7 +13,7 @@ use faults::{Program, Seal, SealedCase, sha256};
 use scoring::{Score, Truth, true_terms, wrong_term};
 use serde::Serialize;
 
-use super::cases::{Files, Place, Source};
+use super::cases::{Cases, Files, Place};
 use super::child::Task;
 use super::disturbance::{self, Disturbance};
 use super::rows::{self, Row};
@@ -66,7 +66,7 @@ pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
         None => args.out.clone(),
     };
     let deferred = interrupt::Deferred::start();
-    let source = Source::new(args)?;
+    let source = Cases::new(args)?;
     let vault = Vault::new(&out)?;
     vault.begin(&source)?;
     let mut places = source.places(&vault.out)?;
@@ -91,13 +91,13 @@ pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
 
 /// Conceals, seals, diagnoses, opens, tries the controls, and closes the loop.
 fn protocol(
-    source: &Source,
+    source: &Cases,
     vault: &Vault,
     places: &[Place],
     jobs: usize,
     times: &mut Times,
 ) -> anyhow::Result<(Seal, Vec<Row>)> {
-    if let Source::Given { .. } = source {
+    if let Cases::Given { .. } = source {
         // A truth that cannot be read is better known before hours of diagnosis than after.
         for Place { name, truth, .. } in places {
             let text = std::fs::read_to_string(truth).with_context(|| truth.display().to_string())?;

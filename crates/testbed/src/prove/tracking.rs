@@ -86,7 +86,7 @@ pub struct Tracked {
     pub cut: Vec<f64>,
     /// Root mean square over joints and time (rad or m); `None` if the loop left all bounds.
     pub error: Option<f64>,
-    /// The same in a loop that sends the reference's velocity through the drives' filter: without the filter's lag.
+    /// Root mean square error in a loop in which the reference velocity passes the drives' filter, without its lag (rad or m).
     pub error_without_lag: Option<f64>,
 }
 
@@ -125,7 +125,7 @@ impl CaseTracking {
         over(self.error(Model::Diagnosed), self.error(Model::Exact))
     }
 
-    /// The same without the velocity filter's lag.
+    /// The diagnosed model's error over the exact one's, in the loop without the velocity filter's lag.
     pub fn over_exact_without_lag(&self) -> Option<f64> {
         over(
             self.error_without_lag(Model::Diagnosed),

@@ -6,7 +6,7 @@ use anyhow::{Context, ensure};
 use faults::{Program, Seal, SealedCase, sha256, sha256_of};
 use serde::{Deserialize, Serialize};
 
-use super::cases::{Files, Place, Source};
+use super::cases::{Cases, Files, Place};
 use super::child::{self, Ended, Task};
 use crate::output;
 
@@ -81,7 +81,7 @@ impl Vault {
     ///
     /// # Errors
     /// If it was begun for another, or by another program.
-    pub fn begin(&self, source: &Source) -> anyhow::Result<()> {
+    pub fn begin(&self, source: &Cases) -> anyhow::Result<()> {
         let begun = Begun {
             program: self.program.clone(),
             source: source.describe(),

@@ -184,7 +184,7 @@ fn row(tried: &Tried) -> Vec<String> {
     cells
 }
 
-/// The same agreement, by how a number is known.
+/// The agreement of the estimates with the published values, by their evidence.
 fn by_evidence(real: &Real) -> Block {
     let kinds = [
         (Evidence::Number, "`number`: given by the publishers"),
