@@ -63,13 +63,13 @@ pub struct Diagnosis {
     pub traces: Traces,
     /// The named effects that correct the torque model.
     pub effects: Vec<Effect>,
-    /// The motion of the next experiment, if one was asked for and tells more.
+    /// The motion of the next experiment, if one was requested and gives more information.
     pub next: Option<Reference>,
-    /// What was left out of the recordings, in sentences.
+    /// Remarks on the use of the recordings, in sentences.
     pub remarks: Vec<String>,
 }
 
-/// Diagnoses where and why `inputs` differ from `arm`. `progress` is told what is going on.
+/// Diagnoses where and why `inputs` differ from `arm`. `progress` receives the current step.
 ///
 /// The result depends on the inputs and options alone, not on the number of threads.
 ///

@@ -1,4 +1,5 @@
-//! From recordings to named effects: locate where a rigid model misses, name what it leaves out, refuse what has no name.
+//! From recordings to named effects: locates the residual of a rigid model, names the effects that the model omits, and
+//! reports residuals that no effect in the catalogue explains.
 
 mod data;
 mod diagnose;

@@ -1,4 +1,4 @@
-//! The next experiment: the motion that tells most of what the recordings leave open, within the robot's limits.
+//! The next experiment: the motion within the robot's limits that best distinguishes the remaining alternatives.
 //!
 //! A motion nobody has made yet is added to the recordings on paper: the torque that the findings say it needs, the columns
 //! of the findings and of their rivals along it, an error as large as the recordings'. The rivals are then fitted in the

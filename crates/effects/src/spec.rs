@@ -45,7 +45,7 @@ pub enum Against {
     LoadAlong,
     /// The velocity of another joint.
     OtherSpeed,
-    /// The torque that the effect predicts, where no one quantity tells it.
+    /// The torque that the effect predicts, where no single quantity describes it.
     Predicted,
 }
 

@@ -116,7 +116,7 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
     })
 }
 
-/// More gaps than this are counted on the terminal, not told.
+/// More gaps than this are counted on the terminal, and not listed.
 const MOST_GAPS: usize = 3;
 
 /// The warnings to show of a list, and the number of gaps that are omitted.

@@ -21,7 +21,7 @@ use crate::training;
 use folder::RunFolder;
 use observers::{Progress, View};
 
-/// Beyond so many samples training takes long enough to say so.
+/// The number of samples from which a note announces a long training.
 const MANY_SAMPLES: usize = 8000;
 
 /// What a run's summary.json holds.
@@ -54,7 +54,7 @@ struct Regression {
     /// Standard deviation of the noise (N m or N).
     noise: f64,
     log_marginal_likelihood: f64,
-    /// How many of the samples' directions the kernel matrix tells apart.
+    /// The numerical rank of the kernel matrix.
     rank: usize,
     /// What was added to the kernel matrix's diagonal, and why.
     conditioning: String,

@@ -10,12 +10,12 @@ use crate::learned::{self, LearnedOptions, RecordedMotion};
 use crate::rollout::{RolloutOptions, rollout};
 use crate::statistics::{mean_square, variance};
 
-/// A report with nothing left to fill in.
+/// A complete report.
 #[derive(Clone, Debug)]
 pub struct Complete {
     /// The diagnosis' report, with `held_out_nrmse_learned` of each joint and `rollout`.
     pub report: Report,
-    /// What the simulation left out, or why there is none; in sentences.
+    /// What the simulation omits, or why there is none; in sentences.
     pub remarks: Vec<String>,
 }
 
@@ -23,7 +23,7 @@ pub struct Complete {
 ///
 /// A correction is learned from the training traces and held against the held-out ones. The plant, with and without the
 /// effects named, is driven by the torques of the last recording held out, or of the last there is; where nothing was named
-/// there is nothing to compare. `progress` is told what is going on.
+/// there is nothing to compare. `progress` receives the current step.
 ///
 /// # Errors
 /// [`ValidateError::Learning`]. An arm that cannot be simulated (a link without mass) is a remark: a diagnosis in torque is of use

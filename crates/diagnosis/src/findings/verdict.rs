@@ -1,4 +1,4 @@
-//! What is left over, and the verdict.
+//! Unexplained residuals, and the verdict.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::regression::fit::Products;
 use crate::search::study::Study;
 use crate::selection::judge::Judged;
 
-/// What has structure and no name, on each joint.
+/// The structured residuals that no effect in the catalogue explains, on each joint.
 pub fn unexplained(study: &Study, judged: &Judged, bursts: &Bursts, left: &[Vec<f64>]) -> Vec<Unexplained> {
     let mut by_joint: BTreeMap<usize, (f64, Vec<(f64, String)>)> = BTreeMap::new();
     for member in &judged.nameless {
@@ -81,7 +81,7 @@ pub fn structured(fit: &JointFit) -> Option<f64> {
     is_structured.then_some(error)
 }
 
-/// Adds the joints that the findings leave poorly predicted.
+/// Adds the joints that are poorly predicted with the findings.
 pub fn leftover(study: &Study, fit: &BTreeMap<String, JointFit>, unexplained: &mut Vec<Unexplained>) {
     for (joint, name) in study.arm.joints().iter().map(|joint| &joint.name).enumerate() {
         let Some(this) = fit.get(name) else { continue };

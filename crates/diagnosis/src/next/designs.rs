@@ -8,7 +8,7 @@ use super::limits::{Limits, rounded, taken};
 
 /// How long a motion takes (s).
 pub const DURATION: f64 = 25.0;
-/// The motion proposed is looked at so many times a second for what it needs (Hz).
+/// The rate at which the proposed motion is checked against the limits (Hz).
 pub const FINE: f64 = 500.0;
 /// It begins and ends at rest, and fades within (s).
 const FADE: f64 = 3.0;

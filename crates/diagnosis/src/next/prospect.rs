@@ -1,4 +1,4 @@
-//! What the recordings and a motion that nobody has made yet would say together.
+//! The evidence of the recordings together with a motion that is not recorded yet.
 
 use effects::Term;
 use torque::{Motion, Reference};
@@ -19,9 +19,9 @@ use crate::thresholds;
 
 /// Between the last recording and the motion (s).
 const BETWEEN: f64 = 10.0;
-/// Ticks of a motion are so many times further apart than those of the recordings.
+/// The ratio of a proposed motion's ticks to those of the recordings.
 const COARSER: usize = 2;
-/// A torque that depends on itself (a delay) is found in so many passes.
+/// The number of passes for a torque that depends on itself (a delay).
 const PASSES: usize = 3;
 
 /// A finding and one thing that it could be instead, as sets of columns.

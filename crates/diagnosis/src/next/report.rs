@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::findings::report::Confusable;
 
-/// The motion that tells most, and what it would tell.
+/// The proposed motion, and what it distinguishes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NextExperiment {
     /// How long the motion takes (s); `None` if none would tell more.
@@ -13,7 +13,7 @@ pub struct NextExperiment {
     pub separates: Vec<Separation>,
     /// The confusions that it leaves: most of them no motion within the limits resolves. With what would.
     pub not_separated: Vec<NotSeparated>,
-    /// What could not be seen, and from which size it would be seen then.
+    /// Effects that are not testable, and their detectable size with the motion.
     pub shows: Vec<Shows>,
     /// How far the motion goes, joint by joint.
     pub limits: Vec<JointLimits>,
@@ -64,7 +64,7 @@ pub enum Obstacle {
     OutOfReach,
     /// Another motion would.
     AnotherMotion,
-    /// What the joint does is not explained, so that nothing can be said of a motion nobody made.
+    /// The joint has an unexplained residual, so that the outcome of a motion cannot be predicted.
     Unexplained,
     /// On paper the recordings tell the two apart already, and they did not: the paper cannot be trusted on these two.
     NotForetold,

@@ -97,7 +97,7 @@ pub fn window(term: &Term) -> Option<[f64; 2]> {
     term.is(&FORCE).then_some([term.sizes[0], term.sizes[1]])
 }
 
-/// A push is no more than so many times the arm's weight on Earth: the drives could not hold against it.
+/// The largest force of a contact as a multiple of the arm's weight: the drives could not hold against a larger one.
 const MOST_CONTACT: f64 = 4.0;
 /// Gravity on Earth (m/s²).
 const GRAVITY: f64 = 9.81;

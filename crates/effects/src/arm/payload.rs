@@ -54,7 +54,7 @@ pub static PARAMETER: Law = Law {
     ..Law::PLAIN
 };
 
-/// A payload is no more than so many times as heavy as the moving links.
+/// The largest mass of a payload as a multiple of the mass of the moving links.
 const MOST_PAYLOAD: f64 = 1.5;
 /// Loads on a tool, and their centres of mass (m) as a share of the arm's reach.
 const PAYLOAD_REACH: f64 = 0.5;

@@ -9,7 +9,7 @@ use crate::{
 #[derive(Debug)]
 pub struct ActuationDelay;
 
-/// The experiment that tells what lies between drive and link from what is late.
+/// The experiment that distinguishes elasticity and backlash from a delay.
 pub(super) const SECOND_ENCODER: Experiment = Experiment {
     rank: 4,
     text: "record a second encoder on the link side of the gear: it shows backlash and elasticity, and no delay",

@@ -10,7 +10,7 @@ use crate::{
 #[derive(Debug)]
 pub struct FrictionAsymmetry;
 
-/// What tells an offset of the reading from friction where no motion does.
+/// The experiment that distinguishes a torque offset from friction where no motion does.
 const BRAKE: &str = "read the torque with the brake closed and no current: a torque offset persists, friction does not";
 
 static SPEC: Spec = Spec {

@@ -52,7 +52,7 @@ pub static FADING: Law = Law {
     ..Law::PLAIN
 };
 
-/// What is left at a speed of what breaking away takes more.
+/// The remaining share of the additional breakaway friction at a speed.
 fn fading(qd: f64, velocity: f64, exponent: f64) -> f64 {
     (-(qd / velocity).abs().powf(exponent)).exp()
 }

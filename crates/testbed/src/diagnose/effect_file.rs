@@ -22,7 +22,7 @@ const MOST: f64 = 1e12;
 /// Effects, and whose they are.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EffectFile {
-    /// The robot's name in its URDF, where the file tells.
+    /// The robot's name in its URDF, if the file gives it.
     pub robot: Option<String>,
     /// The effects, in the file's order.
     pub effects: Vec<Effect>,

@@ -250,7 +250,7 @@ fn prepare(
 /// A drive is not sampled more slowly (Hz).
 const SLOWEST: f64 = 10.0;
 
-/// Why nothing can be told from a recording, whatever the arm, and the remedy.
+/// Why a recording cannot be diagnosed for any arm, and the remedy.
 fn unusable(regular: &RegularRecording, quality: &Quality) -> Option<String> {
     if quality.rate < SLOWEST {
         return Some(format!(

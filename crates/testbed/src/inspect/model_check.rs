@@ -24,7 +24,7 @@ pub struct Misfit {
     pub joint: Option<String>,
     /// What was found, and the remedy.
     pub text: String,
-    /// Whether nothing can be told of the robot before it is mended.
+    /// Whether it must be corrected before the robot can be diagnosed.
     #[serde(skip)]
     pub spoils: bool,
 }
@@ -141,11 +141,11 @@ impl Supposition {
 
 /// The fit of measured torques by the model's, with dry and viscous friction and an offset.
 pub(super) struct Fit {
-    /// What is left of each joint's variance, as a share.
+    /// The residual share of each joint's variance.
     left: Vec<f64>,
     /// The factor of the model's torque.
     pub(super) factor: Vec<f64>,
-    /// What is left without the model's torque.
+    /// The residual share without the model's torque.
     without: Vec<f64>,
     /// The measured torque's standard deviation over the model's.
     pub(super) size: Vec<f64>,
@@ -162,7 +162,7 @@ impl Fit {
     }
 }
 
-/// Suppositions are about joints that move: one at rest tells too little.
+/// Assumptions concern moving joints only, because a resting joint gives too little information.
 fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
     let dof = arm.dof();
     let names: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
@@ -314,7 +314,7 @@ fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
     fit
 }
 
-/// What is left of the variance of `measured` after `columns` and an offset (Gram-Schmidt, the first
+/// The residual variance of `measured` after `columns` and an offset (Gram-Schmidt, the first
 /// column last), and the factor of the first column.
 fn regress(columns: &[&Vec<f64>], measured: &[f64]) -> (f64, f64) {
     let centred = |values: &[f64]| -> Vec<f64> {

@@ -1,4 +1,4 @@
-//! Where cases come from: drawn from a seed, or anybody's folders.
+//! The cases of a proof: drawn from a seed, or from given folders.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -43,7 +43,7 @@ pub enum Cases {
     Given {
         /// Has `case_*`.
         cases: PathBuf,
-        /// Has `case_*.json`; a case without one is left out.
+        /// Has `case_*.json`; a case without one is omitted.
         truth: PathBuf,
     },
 }

@@ -1,4 +1,4 @@
-//! The proposed experiments: made on the concealed machine, and diagnosed again.
+//! The proposed experiments: recorded on the machine with the injected faults, and diagnosed again.
 
 use std::path::{Path, PathBuf};
 

@@ -61,7 +61,7 @@ impl Model {
     }
 }
 
-/// Something concealed in the machine that is not ordinary.
+/// An injected fault of the machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cause {
     /// Its name in the truth.
@@ -101,7 +101,7 @@ pub struct CaseTracking {
     pub start: f64,
     /// The joints' names, base to tip.
     pub joints: Vec<String>,
-    /// What is concealed and not ordinary.
+    /// The injected faults.
     pub concealed: Vec<Cause>,
     /// What was named, as the diagnosed model has it.
     pub named: Vec<Name>,

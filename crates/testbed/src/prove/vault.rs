@@ -10,7 +10,7 @@ use super::cases::{Cases, Files, Place};
 use super::child::{self, Ended, Task};
 use crate::output;
 
-/// What a finished process left: enough to see that it need not run again, and to run it again.
+/// The record of a finished process: sufficient to decide whether it must run again, and to repeat it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Record {
     /// SHA-256 of the program.
@@ -30,7 +30,7 @@ pub struct Record {
     pub error: Option<String>,
 }
 
-/// What a folder was begun for: cases that are concealed in it already are of this campaign.
+/// The campaign of a folder: the cases that are already in it belong to this campaign.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Begun {
     program: Program,
@@ -210,7 +210,7 @@ impl Vault {
         self.out.join(format!("{name}.next.toml"))
     }
 
-    /// What a process left: its record, and the JSON it wrote.
+    /// The results of a process: its record, and the JSON that it wrote.
     ///
     /// # Errors
     /// If that is not what its record says.

@@ -75,7 +75,7 @@ pub fn send(recording: &RecordingStream, arm: &Arm, report: &Report, span: [f64;
 }
 
 fn write(layout: &mut Layout<'_>, arm: &Arm, report: &Report, span: [f64; 2]) -> RecordingStreamResult<Node> {
-    let title = format!("{}: as recorded, redder where the model misses", arm.name());
+    let title = format!("{}: recorded motion, coloured by the residual", arm.name());
     let scene = layout.scene(arm, &title, 0.7)?;
     let summary = layout.view("TextDocument", "Diagnosis", SUMMARY, &[])?;
     let left = layout.container(ContainerKind::Vertical, &[scene, summary], |c| {

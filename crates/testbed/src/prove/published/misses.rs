@@ -6,7 +6,7 @@ use scoring::{Evidence, SaidFate};
 
 use super::Tried;
 
-/// A number that is further off is told up front.
+/// The relative difference above which a value is listed at the start.
 const FAR: f64 = 0.2;
 
 /// What was missed, and which of the publishers' own numbers are far from ours, robot by robot.

@@ -64,7 +64,7 @@ struct Done {
     sha256: String,
 }
 
-/// What a finished step left.
+/// The result of a finished step.
 ///
 /// # Errors
 /// If it cannot be read.

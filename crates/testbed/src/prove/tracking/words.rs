@@ -9,9 +9,9 @@ use scoring::{Name, quantile};
 
 use super::{CaseTracking, Model};
 
-/// What is in every case of the robot and asked of nobody.
+/// The baseline effects, which are in every case of the robot and not required to be found.
 const ORDINARY: [&str; 3] = ["coulomb_friction", "viscous_friction", "rotor_inertia"];
-/// A diagnosed model is to track no worse than so many times the exact one.
+/// The target for the tracking error with a diagnosed model over that with the exact one.
 const WANTED: f64 = 1.5;
 
 /// The heading, what was done, and the table; `cases` may be none.
