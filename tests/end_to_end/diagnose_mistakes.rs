@@ -47,7 +47,7 @@ fn files_in_each_others_places_are_told() {
     command[2] = "a.csv";
     says(
         &refused_command(&case, &command),
-        &["a.csv:1", "is no URDF", "begins with \"t,q_turn", "--train"],
+        &["a.csv:1", "is not a URDF", "begins with \"t,q_turn", "--train"],
     );
     case.sandbox.write("a.csv", &case.text("robot.urdf"));
     says(&refused(&case, &[]), &["a.csv:1: this is XML", "--robot"]);
@@ -68,7 +68,7 @@ fn positions_in_each_others_columns_are_told() {
         .succeed(&["inspect", "a.csv", "b.csv", "--robot", "robot.urdf"]);
     says(
         &text,
-        &["the positions of shoulder and elbow seem swapped; mend the header"],
+        &["the positions of shoulder and elbow seem swapped; correct the header"],
     );
     assert_eq!(text.matches("seem swapped").count(), 1, "{text}");
     // With velocities, these say which joint's they are.

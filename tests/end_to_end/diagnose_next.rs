@@ -22,7 +22,7 @@ fn the_proposed_motion_is_a_scenario_that_runs() {
     assert_eq!(next["duration"], 25.0);
     let told = next["separates"].as_array().expect("a list");
     assert!(!told.is_empty(), "{next:#}");
-    assert!(printed.contains("- next: a motion of 25 s"), "{printed}");
+    assert!(printed.contains("- next experiment: a motion of 25 s"), "{printed}");
     assert!(case.text("page.html").contains("The next experiment"));
     // As it is, and on the user's own robot.
     let ran = case
@@ -48,12 +48,12 @@ fn an_earlier_motion_does_not_stay_and_a_users_file_does() {
     let printed = case.diagnose(&["--json", "d.json", "--next", "next.toml"]);
     assert_eq!(case.sandbox.json("d.json")["next_experiment"]["duration"], Value::Null);
     assert!(
-        printed.contains("removed: next.toml, of an earlier diagnosis"),
+        printed.contains("removed: next.toml of an earlier diagnosis"),
         "{printed}"
     );
     assert!(!printed.contains("written: next.toml") && !case.sandbox.path("next.toml").exists());
     case.sandbox.write("task.toml", "title = \"mine\"\n");
     let refused = case.sandbox.refuse(&arguments(&["--next", "task.toml"]));
-    assert!(refused.contains("task.toml: is there, and is no proposal"), "{refused}");
+    assert!(refused.contains("task.toml: exists and is not a proposal"), "{refused}");
     assert_eq!(case.text("task.toml"), "title = \"mine\"\n");
 }

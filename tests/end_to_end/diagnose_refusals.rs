@@ -77,7 +77,7 @@ fn joints_that_do_not_fit_the_robot_are_named_with_their_columns() {
     let renamed = with_line(1, |header| header.replace("_shoulder", "_sholder"));
     says(
         &refused_with(&renamed),
-        &["a.csv", "no column q_shoulder", "q_sholder", "near", "--map"],
+        &["a.csv", "no column q_shoulder", "q_sholder", "similar", "--map"],
     );
     let two = with_line(1, |_| String::new());
     let mut lacking = "t,q_turn,q_shoulder,tau_turn,tau_shoulder".to_owned();
@@ -100,7 +100,7 @@ fn joints_that_do_not_fit_the_robot_are_named_with_their_columns() {
         &[
             "a.csv",
             "column q_hand",
-            "\"hand\" is no joint of trio",
+            "\"hand\" is not a joint of trio",
             "\"elbow\"",
             "--map",
         ],
@@ -115,7 +115,7 @@ fn another_robots_urdf_is_refused_with_what_does_not_fit() {
     says(
         &refused_command(&case, &command),
         &[
-            "a.csv: is of another robot",
+            "a.csv: belongs to another robot",
             "\"shoulder\"",
             "puma560",
             "\"joint6\"",
@@ -131,7 +131,7 @@ fn another_robots_urdf_is_refused_with_what_does_not_fit() {
     let stderr = String::from_utf8_lossy(&output.stderr);
     says(
         &stderr,
-        &["warning: a.csv: elbow: positions", "leave the URDF's limits"],
+        &["warning: a.csv: elbow: positions", "exceed the URDF's limits"],
     );
     command[2] = "gone.urdf";
     says(&refused_command(&case, &command), &["gone.urdf", "cannot be read"]);
@@ -211,7 +211,7 @@ fn what_is_fitted_cannot_be_the_proof() {
     };
     says(
         &refused_command(&case, &command("b.csv", "./b.csv")),
-        &["./b.csv: is among the training files and held out"],
+        &["./b.csv: is given as a training and as a held-out recording"],
     );
     says(
         &refused_command(&case, &command("a.csv", "c.csv")),
@@ -220,14 +220,14 @@ fn what_is_fitted_cannot_be_the_proof() {
     std::fs::copy(case.path("b.csv"), case.path("copy.csv")).expect("it can be copied");
     says(
         &refused_command(&case, &command("b.csv", "copy.csv")),
-        &["copy.csv: holds the same samples as b.csv"],
+        &["copy.csv: contains the same samples as b.csv"],
     );
     #[cfg(unix)]
     {
         std::os::unix::fs::symlink("b.csv", case.path("link.csv")).expect("it can be linked");
         says(
             &refused_command(&case, &command("b.csv", "link.csv")),
-            &["link.csv: is among the training files and held out"],
+            &["link.csv: is given as a training and as a held-out recording"],
         );
     }
 }
@@ -362,6 +362,6 @@ fn a_part_of_a_training_recording_is_no_proof() {
     case.sandbox.write("c.csv", &(part + "\n"));
     says(
         &refused(&case, &[]),
-        &["c.csv: holds a stretch of a.csv", "cannot be the proof"],
+        &["c.csv: contains a part of a.csv", "must be independent"],
     );
 }

@@ -45,7 +45,7 @@ fn a_good_recording_has_nothing_to_remark() {
         &text,
         &[
             "good.csv: 2 joints, 3000 rows, 12.00 s at 250 Hz, regular clock",
-            "nothing to remark",
+            "no remarks",
         ],
     );
     let json = sandbox.json("out.json");
@@ -77,7 +77,7 @@ fn flaws_are_told_with_their_place_and_are_no_failure() {
             "q_joint1: 1 single-sample spike",
             "at 4.000 s",
             "3 of ",
-            "nothing from 5.99",
+            "no rows from 5.99",
             "the stamps scatter about a clock of 250",
         ],
     );
@@ -258,8 +258,8 @@ fn real_recordings_are_inspected() {
     says(
         &text,
         &[
-            "nothing from 2.3000 s to 2.3430 s",
-            "line 3003: time starts anew",
+            "no rows from 2.3000 s to 2.3430 s",
+            "line 3003: time starts again",
             "iiwa_joint_7",
         ],
     );

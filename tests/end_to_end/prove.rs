@@ -100,7 +100,7 @@ fn cases_are_sealed_diagnosed_opened_and_scored_and_nothing_is_done_twice() {
     let truth = String::from_utf8(bytes(&sandbox, "given/truth/case_b.json")).expect("text");
     sandbox.write("given/truth/case_b.json", &truth.replace("\"seed\":1", "\"seed\":2"));
     let refused = sandbox.refuse(&COMMAND);
-    assert!(refused.contains("under seal was changed"), "{refused}");
+    assert!(refused.contains("sealed file was changed"), "{refused}");
     sandbox.write("given/truth/case_b.json", &truth);
     let answer = String::from_utf8(bytes(&sandbox, "proof/diagnoses/case_b.json")).expect("text");
     sandbox.write("proof/diagnoses/case_b.json", &answer.replace("trio", "duo"));

@@ -126,8 +126,8 @@ fn recordings_are_sealed_diagnosed_and_held_against_what_is_published() {
             "The drag is ours.",
             "chapter 3",
             recording,
-            "for 1 of all (effect, joint) pairs alone",
-            "without these 1 of 2 were named",
+            "for only 1 of all (effect, joint) pairs",
+            "Without these, 1 of 2 are named",
             "--published published.toml --recordings data",
         ] {
             assert!(text.contains(needed), "there is no {needed}");
@@ -142,11 +142,11 @@ fn recordings_are_sealed_diagnosed_and_held_against_what_is_published() {
     // Neither a recording nor what is published may change under seal.
     sandbox.write("published.toml", &PUBLISHED.replace("2500.0", "2600.0"));
     let refused = sandbox.refuse(&COMMAND);
-    assert!(refused.contains("under seal was changed"), "{refused}");
+    assert!(refused.contains("sealed file was changed"), "{refused}");
     sandbox.write("published.toml", PUBLISHED);
     sandbox.write("data/trio/c.csv", "t,q_turn,tau_turn\n0,0,0\n");
     let refused = sandbox.refuse(&COMMAND);
-    assert!(refused.contains("data/trio/c.csv: is not what was copied"), "{refused}");
+    assert!(refused.contains("data/trio/c.csv: differs from the copy"), "{refused}");
 }
 
 #[test]
@@ -196,7 +196,7 @@ fn what_cannot_be_is_refused_with_line_and_remedy() {
         (
             "train = [\"a.csv\", \"b.csv\"]",
             "train = [\"a.csv\", \"d.csv\"]",
-            "data/trio/d.csv: is not there, and robot \"trio\" needs it; get it from https://example.org/trio",
+            "data/trio/d.csv: does not exist, and robot \"trio\" needs it; get it from https://example.org/trio",
         ),
         (
             "train = [\"a.csv\", \"b.csv\"]",

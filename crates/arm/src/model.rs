@@ -57,7 +57,7 @@ impl Inertia {
         self.tensor - self.mass * c * c
     }
 
-    /// The same body seen from another frame, given as `other_from_self`.
+    /// This body in the coordinates of another frame, given as `other_from_self`.
     pub fn transformed(&self, other_from_self: &Pose) -> Self {
         let r = other_from_self.rotation;
         Self {

@@ -5,13 +5,13 @@ use nalgebra::{Rotation3, Unit, Vector3};
 use crate::model::{Arm, Inertia};
 
 impl Arm {
-    /// The same arm under another gravity (m/s², base frame).
+    /// This arm with another gravity (m/s², base frame).
     pub fn with_gravity(mut self, gravity: Vector3<f64>) -> Self {
         self.gravity = gravity;
         self
     }
 
-    /// The same arm on a base turned by `angle` (rad) about `axis` (in the base's frame, of any length but
+    /// This arm on a base turned by `angle` (rad) about `axis` (in the base's frame, of any length but
     /// zero): seen from the base, gravity is turned the other way, g' = R(axis, angle)ᵀ g.
     ///
     /// # Panics
@@ -23,7 +23,7 @@ impl Arm {
         self
     }
 
-    /// The same arm with drives: reflected rotor inertias (kg m² or kg), one a joint.
+    /// This arm with reflected rotor inertias (kg m² or kg), one per joint.
     ///
     /// # Panics
     /// If there is not one value a joint.

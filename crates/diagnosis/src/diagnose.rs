@@ -63,13 +63,13 @@ pub struct Diagnosis {
     pub traces: Traces,
     /// The named effects that correct the torque model.
     pub effects: Vec<Effect>,
-    /// The motion of the next experiment, if one was asked for and tells more.
+    /// The motion of the next experiment, if one was requested and gives more information.
     pub next: Option<Reference>,
-    /// What was left out of the recordings, in sentences.
+    /// Remarks on the use of the recordings, in sentences.
     pub remarks: Vec<String>,
 }
 
-/// Diagnoses where and why `inputs` differ from `arm`. `progress` is told what is going on.
+/// Diagnoses where and why `inputs` differ from `arm`. `progress` receives the current step.
 ///
 /// The result depends on the inputs and options alone, not on the number of threads.
 ///
@@ -82,7 +82,7 @@ pub fn diagnose(
     progress: &dyn Fn(&str),
 ) -> Result<Diagnosis, DiagnosisError> {
     check(arm, inputs, options.cutoff)?;
-    progress("filtering, and the model along the motion");
+    progress("filtering, rigid-body torques");
     let arm_and_known = known::Known::new(arm, &options.known)?;
     let may_be = |cause: Cause, joint: Option<usize>| {
         options.only.as_ref().is_none_or(|wanted| {
@@ -98,25 +98,25 @@ pub fn diagnose(
     let fitted = study.fitted.clone();
     let (judged, resampled) = match &options.only {
         Some(wanted) => {
-            progress("fitting the effects that were asked for");
+            progress("fitting the requested effects");
             let mut judged = hypothesis::fit(&mut study, wanted)?;
             let resampled = final_fit::as_given(&mut study, &mut judged);
             (judged, resampled)
         }
         None => {
             let chosen = plan::search(&mut study, progress);
-            progress("judging names");
+            progress("testing the selected effects");
             let products = study.products(|r| fitted[r]);
             let held = fitted.iter().any(|f| !f).then(|| study.products(|r| !fitted[r]));
             let mut judged = judge::judge(&study, &products, held.as_ref(), chosen);
-            progress("the last fit, and intervals");
+            progress("final fit and intervals");
             let resampled = final_fit::settled(&mut study, &mut judged);
             (judged, resampled)
         }
     };
     let products = study.products(|r| fitted[r]);
     let held = fitted.iter().any(|f| !f).then(|| study.products(|r| !fitted[r]));
-    progress("what else it could be");
+    progress("alternatives of the findings");
     let mut findings = findings(&study, &products, held.as_ref(), &judged, &resampled);
     findings.retain(|(finding, _)| {
         let same = |known: &Effect| known.name() == finding.effect && known.joint() == finding.joint.as_deref();
@@ -137,7 +137,7 @@ pub fn diagnose(
     let located = locate(&study, &left);
     let not_enough_data = not_enough(&study, &products);
     if !not_enough_data.is_empty() {
-        // What so little says is not said as if it were known.
+        // So little data does not support any finding.
         findings.clear();
     }
     let names = |held_out: bool| {
@@ -168,11 +168,11 @@ pub fn diagnose(
     let traces = traces(&study, &judged, &findings, &left);
     let not_observable = observability::unseen(&study, &products, &judged.named);
     if options.next && !not_enough_data.is_empty() {
-        let remark = "no motion is proposed: what it would take cannot be told from so little";
+        let remark = "no motion is proposed, because the recordings do not contain enough data";
         study.motions.remarks.push(remark.to_owned());
     }
     let next = if options.next && not_enough_data.is_empty() {
-        progress("what to record next");
+        progress("next experiment");
         let corrects = |(finding, _): &&(Finding, Option<usize>)| finding.corrects;
         let found = findings.iter().filter(corrects).map(|(finding, _)| &finding.as_effect);
         let effects: Vec<Effect> = options.known.iter().chain(found).cloned().collect();

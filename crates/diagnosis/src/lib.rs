@@ -1,4 +1,5 @@
-//! From recordings to named effects: locate where a rigid model misses, name what it leaves out, refuse what has no name.
+//! From recordings to named effects: locates the residual of a rigid model, names the effects that the model omits, and
+//! reports residuals that no effect in the catalogue explains.
 
 mod data;
 mod diagnose;
@@ -14,6 +15,7 @@ pub use data::motion::Input;
 pub use diagnose::{Diagnosis, Options, diagnose};
 pub use error::DiagnosisError;
 pub use findings::report::*;
-pub use next::{JointLimits, Left, NextExperiment, Separation, Shows, Untold};
+pub use findings::sentences::described;
+pub use next::{JointLimits, NextExperiment, NotSeparated, Obstacle, Separation, Shows};
 pub use search::hypothesis::Wanted;
 pub use selection::predict::LEAST_ROWS;

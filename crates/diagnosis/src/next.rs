@@ -1,4 +1,4 @@
-//! The next experiment: the motion that tells most of what the recordings leave open, within the robot's limits.
+//! The next experiment: the motion within the robot's limits that best distinguishes the remaining alternatives.
 //!
 //! A motion nobody has made yet is added to the recordings on paper: the torque that the findings say it needs, the columns
 //! of the findings and of their rivals along it, an error as large as the recordings'. The rivals are then fitted in the
@@ -27,7 +27,7 @@ mod limits;
 mod prospect;
 mod report;
 
-pub use report::{JointLimits, Left, NextExperiment, Separation, Shows, Untold};
+pub use report::{JointLimits, NextExperiment, NotSeparated, Obstacle, Separation, Shows};
 
 use designs::{DURATION, Design, FINE};
 use limits::Limits;
@@ -332,10 +332,10 @@ fn described(
         let [after, needed] = chosen.separations[k];
         let (finding, rival) = (confusion.finding.clone(), confusion.rival.clone());
         let barred = if !confusion.is_explained {
-            Some(Left::Unexplained)
+            Some(Obstacle::Unexplained)
         } else {
             // What is told already could not be confused.
-            (before[k][0] >= before[k][1].min(needed)).then_some(Left::NotForetold)
+            (before[k][0] >= before[k][1].min(needed)).then_some(Obstacle::NotForetold)
         };
         if after >= SURE * needed && barred.is_none() {
             separates.push(Separation {

@@ -1,20 +1,20 @@
-//! The numbers that the diagnosis was tuned with.
+//! Thresholds that several phases of the diagnosis share.
 
-/// The error that the best model may leave, as a share of a joint's torque spread.
+/// The residual that the best model may have, as a share of the standard deviation of the joint's torque.
 pub const TOLERANCE: f64 = 0.006;
-/// Below this share of its largest speed a joint rests.
+/// The velocity deadband as a share of the joint's largest speed: below it, the joint counts as resting.
 pub const REST: f64 = 0.015;
 /// Below this cut-off (Hz) delays, springs and gaps between drive and link cannot be told from each other.
 pub const LEAST_FOR_DYNAMICS: f64 = 5.0;
-/// A row moves steadily if the joint moves within so many widths of the second filter …
+/// A row moves steadily if the joint moves within this many widths of the second filter around it.
 pub const CORE: f64 = 1.2;
-/// … and through a quick reversal if it moves there and, within them, somewhere so many times as fast as that.
+/// A row is in a fast reversal if the joint moves within [`CORE`] widths of it and reaches this multiple of that speed there.
 pub const REVERSAL: f64 = 4.0;
 /// A joint that stays within this part of its range does not move.
 pub const YIELDING: f64 = 0.02;
-/// A joint's error that is less than this part of its torque's spread needs no explanation: what another joint's effect does to it …
+/// A joint whose error is below this part of the standard deviation of its torque needs no explanation.
 pub const EXPLAINED: f64 = 0.03;
-/// … may be wrong by this part.
+/// The part of its torque's standard deviation by which an effect of another joint may increase the error of such a joint ([`EXPLAINED`]).
 pub const HARMLESS: f64 = 0.001;
 /// The usual cut-off (Hz).
 pub const CUTOFF: f64 = 12.0;

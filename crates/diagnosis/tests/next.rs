@@ -2,7 +2,7 @@
 
 mod support;
 
-use diagnosis::{Diagnosis, Left, NextExperiment, Options, diagnose};
+use diagnosis::{Diagnosis, NextExperiment, Obstacle, Options, diagnose};
 use effects::Effect;
 use effects::drive::TorqueSaturation;
 use recording::{Recording, RegularRecording};
@@ -158,7 +158,7 @@ fn what_no_motion_tells_gets_advice_instead() {
         .iter()
         .find(|untold| untold.rival.effect == "torque_offset");
     let untold = untold.expect("it is said");
-    assert_eq!(untold.kind, Left::SameTorque);
+    assert_eq!(untold.kind, Obstacle::SameTorque);
     assert!(untold.instead.contains("brake"), "{}", untold.instead);
 }
 
@@ -195,7 +195,7 @@ fn no_motion_is_promised_to_tell_an_offset_that_sets_in() {
     assert!(!next.separates.iter().any(|pair| is_it(&pair.finding, &pair.rival)));
     let untold = next.not_separated.iter().find(|pair| is_it(&pair.finding, &pair.rival));
     let untold = untold.expect("it is said");
-    assert_eq!((untold.kind, untold.best), (Left::SameTorque, 0.0));
+    assert_eq!((untold.kind, untold.best), (Obstacle::SameTorque, 0.0));
     // And of nothing else that is told already.
     for pair in &next.separates {
         assert!(pair.before < pair.needed, "{pair:?}");

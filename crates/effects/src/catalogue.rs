@@ -35,7 +35,7 @@ pub static CATALOGUE: &[&dyn EffectKind] = &[
     &arm::ExternalContact,
 ];
 
-/// Forms without a name: what is none of the catalogue's effects is not to be given to the nearest.
+/// Unmodelled forms, which prevent that an effect outside the catalogue is attributed to the most similar one in it.
 pub static UNMODELLED: &[&dyn EffectKind] = &[
     &unmodelled::OwnPosition,
     &unmodelled::OtherPosition,

@@ -68,7 +68,7 @@ impl Effect {
         Self::of_kind(Kind::of(kind))
     }
 
-    /// The same.
+    /// An effect of the kind `kind`, as [`Self::of`] gives it.
     pub fn of_kind(kind: Kind) -> Self {
         let blank = |parameter: &Parameter| {
             let number = parameter.default.unwrap_or(f64::NAN);
@@ -87,21 +87,21 @@ impl Effect {
         }
     }
 
-    /// The same on the joint `name`.
+    /// This effect on the joint `name`.
     #[must_use]
     pub fn on(mut self, name: impl Into<String>) -> Self {
         self.joint = Some(name.into());
         self
     }
 
-    /// The same with another joint's motion in it.
+    /// This effect with the other joint on whose motion it depends.
     #[must_use]
     pub fn with_other(mut self, name: impl Into<String>) -> Self {
         self.other = Some(name.into());
         self
     }
 
-    /// The same with a parameter set; a key that the effect has not changes nothing.
+    /// This effect with a parameter set; a key that the effect does not have changes nothing.
     #[must_use]
     pub fn with(mut self, key: &str, value: impl Into<Value>) -> Self {
         if let Some(at) = self.place(key) {
@@ -110,7 +110,7 @@ impl Effect {
         self
     }
 
-    /// The same from `onset` on (s, on the recordings' own clock); `None`: always.
+    /// This effect from `onset` on (s, on the clock of the recordings); `None` for an effect that always acts.
     #[must_use]
     pub fn since(mut self, onset: Option<f64>) -> Self {
         self.onset = onset;

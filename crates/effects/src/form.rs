@@ -139,7 +139,7 @@ impl Form {
         }
     }
 
-    /// The same with another joint's motion in it.
+    /// This form with the motion of another joint in its terms.
     #[must_use]
     pub fn with(mut self, other: usize) -> Self {
         self.other = Some(other);
@@ -147,15 +147,15 @@ impl Form {
     }
 }
 
-/// How an effect sets in halfway.
+/// How an effect with an onset within the recordings is searched.
 #[derive(Clone, Copy, Debug)]
 pub struct SetsIn {
     /// Its place among those that are looked for; sums run in this order.
     pub turn: u8,
     /// Its columns, always acting, on a joint (of the whole arm: any).
     pub terms: fn(usize) -> Vec<Term>,
-    /// How many of the columns the onset is looked for with …
+    /// The number of columns with which the onset is searched.
     pub looked_for_with: usize,
-    /// … and how many of them a candidate then has, one candidate for each.
+    /// The numbers of columns of the candidates with an onset, one candidate for each.
     pub taken: &'static [usize],
 }

@@ -1,4 +1,4 @@
-//! The catalogue of what a rigid model leaves out: one file an effect, one line in [`CATALOGUE`].
+//! The catalogue of the effects that a rigid model omits: one file per effect, one line in [`CATALOGUE`].
 //!
 //! A file holds all that the program knows of an effect, behind the trait [`EffectKind`]: its [`Spec`] (name, parameters,
 //! relations, words), the forms to try, the law of its columns, what physics allows, how its parameters are read from an

@@ -54,14 +54,14 @@ impl Dry {
         }
     }
 
-    /// The same with a torque in both directions alike (N m or N).
+    /// This friction with an additional torque that is the same in both directions (N m or N).
     #[must_use]
     pub fn biased(mut self, bias: f64) -> Self {
         self.bias = bias;
         self
     }
 
-    /// The same, where the load matters.
+    /// This friction with a level that depends on the load.
     #[must_use]
     pub fn loaded(mut self) -> Self {
         self.depends_on_load = true;

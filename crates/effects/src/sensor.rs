@@ -10,8 +10,8 @@ pub use torque_scale::TorqueScale;
 
 use crate::Experiment;
 
-/// What tells offset and scale of a torque where no motion does.
+/// The experiment that distinguishes offset and scale of a torque where no motion does.
 const KNOWN_LOAD: Experiment = Experiment {
     rank: 5,
-    text: "read the torque under a known load at rest, once on either side of upright: offset and scale show there",
+    text: "read the torque at rest under a known load in two poses on opposite sides of the vertical: their sum shows the offset, their difference the scale",
 };

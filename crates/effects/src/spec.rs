@@ -45,7 +45,7 @@ pub enum Against {
     LoadAlong,
     /// The velocity of another joint.
     OtherSpeed,
-    /// The torque that the effect predicts, where no one quantity tells it.
+    /// The torque that the effect predicts, where no single quantity describes it.
     Predicted,
 }
 
@@ -54,7 +54,7 @@ pub enum Against {
 pub enum Shape {
     /// A number.
     Number,
-    /// So many numbers. A finding gives them one by one, under these keys (none: it does not).
+    /// A list of this many numbers. A finding gives them separately, under these keys (not at all if there are none).
     List(usize, &'static [&'static str]),
     /// Points (x, y) in order of x.
     Points,
@@ -133,57 +133,57 @@ impl Parameter {
         }
     }
 
-    /// The same within `range`.
+    /// This parameter, limited to `range`.
     pub const fn within(mut self, range: Range) -> Self {
         self.range = range;
         self
     }
 
-    /// The same with a default.
+    /// This parameter with a default.
     pub const fn or(mut self, default: f64) -> Self {
         self.default = Some(default);
         self
     }
 
-    /// The same, without effect at `neutral`.
+    /// This parameter, which has no effect at the value `neutral`.
     pub const fn neutral_at(mut self, neutral: f64) -> Self {
         self.neutral = neutral;
         self
     }
 
-    /// The same of another shape.
+    /// This parameter with another shape.
     pub const fn of(mut self, shape: Shape) -> Self {
         self.shape = shape;
         self
     }
 
-    /// The same with another remark than its unit.
+    /// This parameter with another remark than its unit.
     pub const fn remarked(mut self, remark: &'static str) -> Self {
         self.remark = Some(remark);
         self
     }
 }
 
-/// How it is told from which size on recordings would have shown an effect. Sizes are of its first main parameter.
+/// How the detectable size of an effect that was not found is determined. Sizes are of its first main parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unseen {
-    /// It is not.
+    /// No detectable size is determined.
     Never,
     /// Below the largest torque.
     Limit {
-        /// Why it was not seen.
+        /// Why it is not testable.
         because: &'static str,
     },
     /// By the sizes at which it was tried.
     Sized {
-        /// Why it was not seen.
+        /// Why it is not testable.
         because: &'static str,
-        /// The same where none of the sizes would have been.
+        /// Why it was not seen, where no size that was tried is detectable.
         if_none: &'static str,
         /// Whether small sizes are seen, not large ones.
         is_seen_below: bool,
     },
-    /// By the one coefficient that its torque is in proportion to.
+    /// By the one coefficient that its torque is proportional to.
     Linear {
         /// Why it was not seen where it has no form in these recordings.
         if_no_form: Option<&'static str>,
@@ -195,7 +195,7 @@ pub enum Unseen {
 }
 
 impl Unseen {
-    /// In proportion to a coefficient, and nothing else.
+    /// Proportional to a coefficient, with no further condition.
     pub const LINEAR: Self = Self::Linear {
         if_no_form: None,
         is_of_first: false,
@@ -203,12 +203,12 @@ impl Unseen {
     };
 }
 
-/// What to do where no motion tells an effect from another.
+/// The experiment to make where no motion distinguishes an effect from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Experiment {
-    /// Of two effects that no motion tells apart, the one with the higher rank says what to do.
+    /// Of two effects that no motion distinguishes, the one with the higher rank gives the experiment.
     pub rank: u8,
-    /// The experiment that tells it from others.
+    /// The experiment that distinguishes it from others.
     pub text: &'static str,
 }
 
@@ -219,13 +219,13 @@ pub struct Spec {
     pub name: &'static str,
     /// Its name in two or three words.
     pub title: &'static str,
-    /// What it is, for somebody who has not met it.
+    /// What it is, for readers who do not know it.
     pub meaning: &'static str,
-    /// Which recording tells it from what looks like it.
+    /// The recording that distinguishes it from similar effects.
     pub told_by: &'static str,
     /// The torque that it adds, or what it does (for the documentation).
     pub formula: &'static str,
-    /// A finding in a few words: `{key}` is a parameter with its unit, `{key%}` a hundred times it, `{other}` the other joint.
+    /// A finding as a noun phrase: `{key}` is a parameter with its unit, `{key%}` a hundred times it, `{other}` the other joint.
     pub sentence: &'static str,
     /// Where it is.
     pub scope: Scope,
@@ -235,7 +235,7 @@ pub struct Spec {
     pub derived: &'static [Parameter],
     /// The parameters that say how large it is, the best first.
     pub main: &'static [&'static str],
-    /// Whether it may set in halfway.
+    /// Whether it may begin within the recordings.
     pub may_set_in: bool,
     /// Whether there may be two on one joint, or on the arm.
     pub may_repeat: bool,
@@ -247,11 +247,11 @@ pub struct Spec {
     pub excludes: &'static [&'static str],
     /// The evidence that it must bring beyond that of its coefficients (nats).
     pub prior: f64,
-    /// Whether a URDF usually leaves it out: friction and the drives' inertia need less evidence.
+    /// Whether it is baseline: friction and rotor inertia, which a URDF usually omits, need less evidence.
     pub is_ordinary: bool,
     /// Whether it is the friction that every drive has.
     pub is_friction: bool,
-    /// Whether it is ordinary, or a constant beside that.
+    /// Whether it is a baseline effect, or a constant beside one.
     pub is_simple: bool,
     /// Whether there is but one form that it can have: it follows from rigid-body dynamics.
     pub is_certain_in_form: bool,
@@ -261,21 +261,21 @@ pub struct Spec {
     pub is_simulated: bool,
     /// Whether it says that masses are not the model's.
     pub is_wrong_mass: bool,
-    /// Whether it acts on the link's side of a drive that gives.
+    /// Whether it acts on the link side of an elastic drive.
     pub is_behind_the_drive: bool,
     /// What a URDF can hold of it.
     pub in_urdf: InUrdf,
-    /// What a figure shows it against.
+    /// The state against which figures show it.
     pub against: Against,
-    /// What structure that has no name depends on, for a form without a name.
+    /// What an unattributed residual depends on, for a form without a name.
     pub depends_on: &'static str,
-    /// How it is told that recordings did not show it.
+    /// How its detectable size is determined where it was not found.
     pub unseen: Unseen,
-    /// Its place among what recordings did not show.
+    /// Its place in the list of effects that are not testable.
     pub unseen_turn: u8,
-    /// What to do where no motion tells it from another.
+    /// The experiment to make where no motion distinguishes it from another effect.
     pub experiment: Option<Experiment>,
-    /// The same against particular others, before [`Self::experiment`].
+    /// Experiments that distinguish it from particular other effects; they precede [`Self::experiment`].
     pub experiments_against: &'static [(&'static str, &'static str)],
 }
 
@@ -315,7 +315,7 @@ impl Spec {
         experiments_against: &[],
     };
 
-    /// The same for a form that has no name.
+    /// [`Self::EMPTY`] for a form that has no name.
     pub const UNNAMED: Self = Self {
         prior: 9.0,
         ..Self::EMPTY

@@ -71,7 +71,7 @@ pub struct Law {
     pub other_form: Option<OtherForm>,
     /// Finer steps about what its sizes are, in turn.
     pub nudges: &'static [fn(&Term, f64) -> Term],
-    /// The same with ends that give, of a link of an inertia (kg m² or kg).
+    /// Terms with compliant ends of the gap, for a link of an inertia (kg m² or kg).
     pub softened: fn(&Term, f64) -> Vec<Term>,
     /// Whether a term's sizes make sense.
     pub is_sound: fn(&Term) -> bool,
@@ -163,31 +163,31 @@ impl Term {
         }
     }
 
-    /// The same with another joint in it.
+    /// This term with another joint in it.
     pub const fn of(mut self, other: usize) -> Self {
         self.of[1] = other;
         self
     }
 
-    /// The same in one of its forms.
+    /// This term in one of its forms.
     pub const fn form(mut self, form: usize) -> Self {
         self.form = form;
         self
     }
 
-    /// The same with its first sizes.
+    /// This term with its first sizes.
     pub fn sized<const N: usize>(mut self, sizes: [f64; N]) -> Self {
         self.sizes[..N].copy_from_slice(&sizes);
         self
     }
 
-    /// The same from a time on (s).
+    /// This term from a time on (s).
     pub fn since(mut self, from: f64) -> Self {
         self.from = Some(from);
         self
     }
 
-    /// The same, always acting.
+    /// This term without an onset.
     pub fn always(mut self) -> Self {
         self.from = None;
         self
@@ -226,7 +226,7 @@ impl Term {
         Some(values)
     }
 
-    /// The same term with one size times `factor`.
+    /// This term with one size multiplied by `factor`.
     pub fn varied(&self, size: Size, factor: f64) -> Self {
         let mut term = *self;
         if self.from.is_some() {

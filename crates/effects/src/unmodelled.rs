@@ -1,4 +1,4 @@
-//! Forms without a name: what is none of the catalogue's effects is not to be given to the nearest.
+//! Unmodelled forms, which prevent that an effect outside the catalogue is attributed to the most similar one in it.
 
 mod history;
 mod other_position;

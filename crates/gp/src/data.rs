@@ -78,7 +78,7 @@ impl TrainingSet {
         }
     }
 
-    /// The same samples with targets divided by `divisor`.
+    /// These samples with targets divided by `divisor`.
     pub(crate) fn with_targets_divided(mut self, divisor: f64) -> Self {
         for target in &mut self.targets {
             *target /= divisor;

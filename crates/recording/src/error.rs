@@ -66,7 +66,7 @@ pub enum RecordingError {
         reason: String,
     },
     /// Too few samples for a clock.
-    #[error("the recording has {rows} rows, too few to tell its clock; it takes at least {needed}")]
+    #[error("the recording has {rows} rows, too few to estimate its clock, which needs at least {needed}")]
     TooShort {
         /// The rows there are.
         rows: usize,

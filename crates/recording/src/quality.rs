@@ -42,10 +42,10 @@ pub struct Quality {
 impl Quality {
     /// The quality of `recording`, which on its clock is `regular`.
     pub fn of(recording: &Recording, regular: &RegularRecording) -> Self {
-        let motions: Vec<velocity::Motion> = regular
+        let motions: Vec<velocity::Slopes> = regular
             .q
             .iter()
-            .map(|q| velocity::Motion::of(q, &regular.segments, regular.period))
+            .map(|q| velocity::Slopes::of(q, &regular.segments, regular.period))
             .collect();
         let mut joints: Vec<JointQuality> = (0..regular.joints.len())
             .map(|joint| JointQuality::of(recording, regular, joint, &motions[joint]))

@@ -158,7 +158,7 @@ impl fmt::Display for Warning {
             }
             Self::Thinned { rows, kept, span } => write!(
                 f,
-                "{rows} rows are more than are kept: {kept} means over {:.3} ms stand for them",
+                "{rows} rows exceed the limit of rows in memory; they are replaced by {kept} means over {:.3} ms",
                 span * 1e3
             ),
             Self::ClockRestart {
@@ -168,7 +168,7 @@ impl fmt::Display for Warning {
                 placed,
             } => write!(
                 f,
-                "line {line}: time starts anew ({before} s, then {after} s): taken as another run, placed at {placed:.6} s"
+                "line {line}: time starts again ({before} s, then {after} s): treated as another run, placed at {placed:.6} s"
             ),
             Self::ColumnLeftOut { column, line, found } => {
                 write!(
@@ -191,16 +191,16 @@ impl fmt::Display for Warning {
             Self::NoRegularClock { share, period } => write!(
                 f,
                 "no regular clock fits the stamps (they scatter by {:.0} % of the period about {:.3} Hz); resampled by \
-                 interpolation, so derivatives are less sure: log with the drive's own clock",
+                 interpolation, which makes derivatives less accurate: record with the drive's own clock",
                 100.0 * share,
                 1.0 / period
             ),
             Self::LostRows { rows, of, time } => write!(
                 f,
-                "{rows} of {of} rows are missing one or a few at a time (the first at {time:.3} s); interpolated"
+                "{rows} of {of} rows are missing, one or a few at a time (the first at {time:.3} s); interpolated"
             ),
             Self::Gap { from, to, shift } => {
-                write!(f, "nothing from {from:.4} s to {to:.4} s; taken as separate pieces")?;
+                write!(f, "no rows from {from:.4} s to {to:.4} s; treated as separate segments")?;
                 if *shift == 0.0 {
                     Ok(())
                 } else {
@@ -217,13 +217,29 @@ impl fmt::Display for Warning {
                 let more = if times.len() > shown.len() { ", …" } else { "" };
                 write!(
                     f,
-                    "{}{joint}: {} single-sample spike{} (up to {largest:.3e}) at {}{more} s; interpolated",
+                    "{}{joint}: {} single-sample spike{} (up to {}) at {}{more} s; interpolated",
                     quantity.prefix(),
                     times.len(),
                     if times.len() == 1 { "" } else { "s" },
+                    short(*largest),
                     shown.join(", ")
                 )
             }
         }
+    }
+}
+
+/// Four significant digits, with an exponent only for very small and very large values.
+fn short(value: f64) -> String {
+    let magnitude = value.abs();
+    if value == 0.0 || (1e-3..1e4).contains(&magnitude) {
+        let digits = if value == 0.0 {
+            0.0
+        } else {
+            3.0 - magnitude.log10().floor()
+        };
+        format!("{value:.*}", digits.max(0.0) as usize)
+    } else {
+        format!("{value:.3e}")
     }
 }

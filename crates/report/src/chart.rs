@@ -38,7 +38,7 @@ impl Scale {
         self.from
     }
 
-    /// Round values, at most so many, with the decimals that tell them apart.
+    /// Round values, at most the given number, with the decimals that distinguish them.
     pub fn ticks(&self, most: usize) -> (Vec<f64>, usize) {
         let [low, high] = self.from;
         let rough = (high - low) / most.max(1) as f64;

@@ -1,4 +1,4 @@
-//! What people read of a diagnosis and of a proof: blocks, charts, pages, Markdown, terminal. Strings come out; nothing is written here.
+//! What people read of a diagnosis and of a proof: blocks, charts, pages, Markdown, terminal. It returns strings and writes no files.
 //!
 //! A diagnosis is a [`page`](page()) with figures of its own and a text for the [`terminal`]. Any other report is a list of
 //! [`block`]s, which [`block_page`] and [`markdown`] both render; [`score`] has those that say what a proof is worth.

@@ -2,7 +2,7 @@
 
 use crate::block::Block;
 
-/// The blocks and a last line; drawings are left out, their tables stay.
+/// The blocks and a last line; drawings are omitted, their tables are kept.
 pub fn markdown(blocks: &[Block], made: &str) -> String {
     let mut text = String::new();
     for block in blocks {

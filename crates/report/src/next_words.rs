@@ -7,31 +7,38 @@ use crate::words;
 /// More pairs than this are counted, not listed.
 const LISTED: usize = 6;
 
-/// What the motion is for, and what no motion tells; two sentences or three.
+/// What the motion distinguishes, and which pairs of effects no motion distinguishes.
 pub fn sentences(next: &NextExperiment) -> Vec<String> {
     let mut list = Vec::new();
-    let told = pairs(next.separates.iter().map(|pair| (&pair.finding, &pair.rival)));
+    let distinguished = pairs(next.separates.iter().map(|pair| (&pair.finding, &pair.rival)));
     match next.duration {
-        Some(duration) if !told.is_empty() => list.push(format!(
-            "a motion of {duration:.0} s within the limits should tell {}",
-            listed(&told)
+        Some(duration) if !distinguished.is_empty() => list.push(format!(
+            "a motion of {duration:.0} s within the joint limits should distinguish {}",
+            listed(&distinguished)
         )),
         Some(duration) => list.push(format!(
-            "a motion of {duration:.0} s within the limits would show what these recordings could not: {}",
+            "a motion of {duration:.0} s within the joint limits makes {} testable",
             shown(next)
         )),
-        None => list.push("no motion within the limits would tell more".to_owned()),
+        None => list.push("no motion within the joint limits would give more information".to_owned()),
     }
     let mut advice: Vec<&str> = Vec::new();
-    for untold in &next.not_separated {
-        if !advice.contains(&untold.instead.as_str()) {
-            advice.push(&untold.instead);
+    for undecided in &next.not_separated {
+        if !advice.contains(&undecided.instead.as_str()) {
+            advice.push(&undecided.instead);
         }
     }
+    let no_motion = match next.duration {
+        Some(_) => "that motion does not distinguish",
+        None => "no motion within the joint limits distinguishes",
+    };
     for instead in advice {
-        let same = next.not_separated.iter().filter(|untold| untold.instead == instead);
-        let left = pairs(same.map(|untold| (&untold.finding, &untold.rival)));
-        list.push(format!("not by that motion {}: {instead}", listed(&left)));
+        let same = next
+            .not_separated
+            .iter()
+            .filter(|undecided| undecided.instead == instead);
+        let pairs_left = pairs(same.map(|undecided| (&undecided.finding, &undecided.rival)));
+        list.push(format!("{no_motion} {}; instead, {instead}", listed(&pairs_left)));
     }
     list
 }
@@ -88,22 +95,22 @@ pub fn name(what: &Confusable) -> String {
 
 #[cfg(test)]
 mod tests {
-    use diagnosis::{Left, Separation, Untold};
+    use diagnosis::{NotSeparated, Obstacle, Separation};
 
     use super::*;
 
     #[test]
-    fn what_a_motion_tells_and_what_none_does_is_said_once() {
+    fn what_a_motion_distinguishes_is_stated_once() {
         let on = |effect: &'static str, joint: Option<&str>| Confusable {
             effect,
             joint: joint.map(str::to_owned),
         };
-        let untold = |joint: &str| Untold {
+        let undecided = |joint: &str| NotSeparated {
             finding: on("inertial_scale", None),
             rival: on("torque_scale", Some(joint)),
             best: 0.0,
             needed: 4.0,
-            kind: Left::SameTorque,
+            kind: Obstacle::SameTorque,
             because: String::new(),
             instead: "weigh it".into(),
         };
@@ -116,16 +123,19 @@ mod tests {
                 after: 20.0,
                 needed: 4.0,
             }],
-            not_separated: vec![untold("a"), untold("b")],
+            not_separated: vec![undecided("a"), undecided("b")],
             shows: Vec::new(),
             limits: Vec::new(),
         };
         let said = sentences(&next);
         assert_eq!(said.len(), 2);
         assert!(
-            said[0].ends_with("should tell viscous friction on a from quadratic drag"),
+            said[0].ends_with("should distinguish viscous friction on a from quadratic drag"),
             "{said:?}"
         );
-        assert!(said[1].contains("torque scale on 2 joints: weigh it"), "{said:?}");
+        assert!(
+            said[1].contains("torque scale on 2 joints; instead, weigh it"),
+            "{said:?}"
+        );
     }
 }

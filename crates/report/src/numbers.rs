@@ -45,7 +45,7 @@ fn signed(text: &str) -> String {
     }
 }
 
-/// With so many decimals; powers of ten beyond six digits.
+/// `value` with `decimals` decimals; as a power of ten beyond six digits.
 pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return "–".into();
@@ -56,7 +56,7 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     signed(&format!("{value:.decimals$}"))
 }
 
-/// The decimals that give `value` so many significant digits.
+/// The number of decimals that give `value` `digits` significant digits.
 fn decimals_of(value: f64, digits: i32) -> i32 {
     if value == 0.0 || !value.is_finite() {
         return 0;
@@ -69,12 +69,12 @@ pub fn short(value: f64) -> String {
     fixed(value, decimals_of(value, 3).clamp(0, 8) as usize)
 }
 
-/// Three significant digits without noughts at the end.
+/// Three significant digits without trailing zeros.
 pub fn trimmed(value: f64) -> String {
-    without_noughts(&short(value))
+    without_trailing_zeros(&short(value))
 }
 
-fn without_noughts(text: &str) -> String {
+fn without_trailing_zeros(text: &str) -> String {
     if text.contains('.') && !text.contains('e') {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
@@ -88,11 +88,11 @@ pub fn quantity(value: f64, unit: &str) -> String {
     join(short(value / scaled.factor), &scaled.unit)
 }
 
-/// A quantity without noughts at the end, for thresholds: `2 ms`.
+/// A quantity without trailing zeros, for thresholds: `2 ms`.
 pub fn round_quantity(value: f64, unit: &str) -> String {
     let scaled = scaled(value.abs(), without_one(unit));
     let value = value / scaled.factor;
-    let text = without_noughts(&fixed(value, decimals_of(value, 2).clamp(0, 8) as usize));
+    let text = without_trailing_zeros(&fixed(value, decimals_of(value, 2).clamp(0, 8) as usize));
     join(text, &scaled.unit)
 }
 
@@ -104,12 +104,12 @@ fn join(text: String, unit: &str) -> String {
     }
 }
 
-/// No unit is written in several ways.
+/// The unit, or nothing for a dimensionless value, which is written in several ways.
 fn without_one(unit: &str) -> &str {
     if matches!(unit, "1" | "-" | "–") { "" } else { unit }
 }
 
-/// A parameter whose value is a share of something: shown in per cent.
+/// Whether the parameter is a share of something, which is shown in per cent.
 fn is_relative(name: &str, unit: &str) -> bool {
     without_one(unit).is_empty() && matches!(name, "relative" | "amplitude")
 }
@@ -147,7 +147,7 @@ fn shown(name: &str, parameter: &Parameter) -> Shown {
     }
 }
 
-/// `2.10 ± 0.10 N m`; a lopsided interval is written out.
+/// `2.10 ± 0.10 N m`; an asymmetric interval is written with both bounds.
 pub fn with_interval(name: &str, parameter: &Parameter) -> String {
     let Shown {
         value,
@@ -180,7 +180,7 @@ pub fn value_and_interval(name: &str, parameter: &Parameter) -> (String, String)
     (join(value, &shown.unit), join(format!("{low} … {high}"), &shown.unit))
 }
 
-/// A relative error: `.94`, `2.3`, `.004`.
+/// A relative error: `0.94`, `2.3`, `0.004`.
 pub fn nrmse(value: f64) -> String {
     if !value.is_finite() {
         return "–".into();
@@ -191,11 +191,10 @@ pub fn nrmse(value: f64) -> String {
         size if !(0.0005..0.0095).contains(&size) => format!("{value:.2}"),
         _ => format!("{value:.3}"),
     };
-    let text = text.strip_prefix('0').map_or(text.clone(), str::to_owned);
-    if text == ".00" { "0".into() } else { text }
+    if text == "0.00" { "0".into() } else { text }
 }
 
-/// `.94 → .12`, a dash for what there is not.
+/// `0.94 → 0.12`, with a dash for a missing value.
 pub fn before_after(before: Option<f64>, after: Option<f64>) -> String {
     let text = |value: Option<f64>| value.map_or("–".to_owned(), nrmse);
     match (before, after) {
@@ -204,7 +203,7 @@ pub fn before_after(before: Option<f64>, after: Option<f64>) -> String {
     }
 }
 
-/// Whole per cents; less than one is said so.
+/// Whole per cents; a positive share below 0.5 % is written as `<1 %`.
 pub fn percent(share: f64) -> String {
     if !share.is_finite() {
         "–".into()
@@ -213,6 +212,29 @@ pub fn percent(share: f64) -> String {
     } else {
         format!("{:.0} %", 100.0 * share)
     }
+}
+
+/// A ratio to a standard deviation: `12 %`, and from one on a factor, `3.2 ×`.
+pub fn share(ratio: f64) -> String {
+    if ratio.is_finite() && ratio >= 1.005 {
+        format!("{} ×", factor(ratio))
+    } else {
+        percent(ratio)
+    }
+}
+
+/// A ratio to the standard deviation of a joint's torque, in words.
+pub fn of_torque_spread(ratio: f64) -> String {
+    if ratio.is_finite() && ratio >= 1.005 {
+        format!("{} times the torque's standard deviation", factor(ratio))
+    } else {
+        format!("{} of the torque's standard deviation", percent(ratio))
+    }
+}
+
+/// Two significant digits below ten, whole numbers above, powers of ten far above.
+fn factor(ratio: f64) -> String {
+    fixed(ratio, usize::from(ratio < 9.95))
 }
 
 /// Per cents, to a tenth where they are not whole.
@@ -289,16 +311,20 @@ mod tests {
     #[test]
     fn errors_and_shares_are_short() {
         for (value, text) in [
-            (0.94, ".94"),
+            (0.94, "0.94"),
             (2.31, "2.3"),
-            (0.004, ".004"),
+            (0.004, "0.004"),
             (0.0, "0"),
             (0.999, "1.0"),
         ] {
             assert_eq!(nrmse(value), text);
         }
-        assert_eq!(before_after(Some(0.94), Some(0.12)), ".94 → .12");
+        assert_eq!(before_after(Some(0.94), Some(0.12)), "0.94 → 0.12");
         assert_eq!(percent(0.002), "<1 %");
+        assert_eq!(share(0.92), "92 %");
+        assert_eq!(share(8564.8), "8565 ×");
+        assert_eq!(of_torque_spread(3.21), "3.2 times the torque's standard deviation");
+        assert_eq!(of_torque_spread(0.4), "40 % of the torque's standard deviation");
         assert_eq!(probability(0.999), ">99 %");
         assert_eq!(round_quantity(0.002, "s"), "2 ms");
         assert_eq!(quantity(-0.00001, ""), "−0.0000100");

@@ -22,7 +22,7 @@ use figures::Figures;
 const ALL_POINTS: usize = 80_000;
 const MOST_POINTS: usize = 1500;
 
-/// Everything that the parts of a page draw from.
+/// The data that the parts of a page are drawn from.
 struct Page<'a> {
     report: &'a Report,
     figures: Figures<'a>,
@@ -81,7 +81,7 @@ impl<'a> Page<'a> {
     }
 }
 
-/// A key's entry: a swatch and what it stands for.
+/// A legend's entry: a swatch and its meaning.
 fn key(class: &str, what: &str) -> Markup {
     html! { span.key { span class={ "swatch " (class) } {} (what) } }
 }

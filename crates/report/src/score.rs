@@ -1,4 +1,4 @@
-//! What a score says, as blocks that the page and the Markdown file are both made of.
+//! A proof's score as blocks, from which the page and the Markdown file are made.
 
 mod experiments;
 mod figures;
@@ -15,10 +15,10 @@ pub use experiments::experiments;
 pub use results::{calibration, controls, found, numbers};
 pub use words::{counted, figure, name, number, share, wanted};
 
-/// What was declared not observable is listed from this expressed share on.
+/// The expressed share from which effects declared not testable are listed.
 const LARGE: f64 = 0.06;
 
-/// The title, what came of all cases, and the figures that were asked for; why a figure is not reached.
+/// The title, the outcome of all cases, the targets, and why a target is not reached.
 pub fn opening(score: &Score) -> Vec<Block> {
     let reached = score
         .targets
@@ -45,12 +45,12 @@ pub fn opening(score: &Score) -> Vec<Block> {
             reached.to_owned(),
         ]
     });
-    let head = ["", "figure", "Wilson 95 %", "of", "wanted", "reached"];
+    let head = ["", "figure", "Wilson 95 % interval", "of", "target", "reached"];
     let mut list = vec![
-        Block::Title("Concealed physics: what was found, what was not, and where it fails".into()),
+        Block::Title("Injected faults: what is found, what is missed, and where the diagnosis fails".into()),
         text(format!(
-            "{} concealed effects in {} cases were diagnosed by processes that were given the recordings and a rigid URDF alone. {reached} of the \
-             {asked} figures that were asked for are reached. {}",
+            "{} effects were injected in {} cases. The diagnosis ran in processes that had access to the recordings and a rigid URDF only. {reached} of the \
+             {asked} targets are reached. {}",
             score.concealed.len(),
             score.cases,
             unanswered(score),
@@ -60,7 +60,7 @@ pub fn opening(score: &Score) -> Vec<Block> {
     ];
     for target in score.targets.iter().filter(|target| target.reached == Some(false)) {
         let reason = match target.id == Figure::Tracking {
-            true => "the section about the closed loop tells it case by case.".to_owned(),
+            true => "see the section on the closed loop for each case.".to_owned(),
             false => reasons::reason(target, score),
         };
         list.push(text(format!("**{}**: {reason}", target.what)));
@@ -68,19 +68,19 @@ pub fn opening(score: &Score) -> Vec<Block> {
     list
 }
 
-/// How many cases have no answer, and what that does to the figures.
+/// How many cases have no answer, and how the figures count them.
 fn unanswered(score: &Score) -> String {
     match score.unanswered.as_slice() {
-        [] => "All cases got an answer.".to_owned(),
+        [] => "All cases have an answer.".to_owned(),
         list => format!(
-            "Cases without an answer: {} ({}); nothing counts as found there, and they are in no figure about what was named, about errors or about intervals.",
+            "Cases without an answer: {} ({}). Their effects count as not found, and they are excluded from the figures on named effects, errors and intervals.",
             list.len(),
             list.join(", ")
         ),
     }
 }
 
-/// What the diagnosis was let off: neither F1 nor coverage asks for it.
+/// The effects that F1 and coverage exclude, because the diagnosis declared them not testable.
 fn exempt(score: &Score) -> String {
     let exempt = || {
         let counted = score.concealed.iter().filter(|o| o.counts);
@@ -100,8 +100,8 @@ fn exempt(score: &Score) -> String {
         list => format!(": {}", list.join(", ")),
     };
     format!(
-        "Neither F1 nor coverage asks for what a diagnosis declared not observable at its size: {} effects, the largest with an expressed share of {}, {} above {}{list}. \
-         If they count as missed and as not covered, macro F1 is {} and the truth is in the finding or its confusable set in {}.",
+        "F1 and coverage exclude the effects that a diagnosis declares not testable at their size: {} effects, the largest with an expressed share of {}, {} above {}{list}. \
+         If these count as missed and as not covered, macro F1 is {}, and the ground truth is in the finding or its confusable set in {}.",
         exempt().count(),
         share(largest),
         large.len(),
@@ -111,13 +111,13 @@ fn exempt(score: &Score) -> String {
     )
 }
 
-/// Every failure: what was missed, named falsely, or refused without cause.
+/// All failures: effects missed, effects named falsely, and refusals without reason.
 pub fn failures(score: &Score) -> Vec<Block> {
     let mut rows = Vec::new();
     for outcome in score.concealed.iter().filter(|o| o.counts && !o.fate.is_found()) {
         let fate = match outcome.fate {
             Fate::Covered => "in a confusable set only",
-            Fate::NotObservable => "declared not observable",
+            Fate::NotObservable => "declared not testable",
             Fate::Refused => "joint refused",
             Fate::Found | Fate::SameMachine | Fate::Missed => "missed",
         };
@@ -137,12 +137,12 @@ pub fn failures(score: &Score) -> Vec<Block> {
     for wrong in &score.false_names {
         let what = name(&(wrong.effect.clone(), wrong.joint.clone()));
         let there = if wrong.concealed_there.is_empty() {
-            "nothing there".to_owned()
+            "nothing injected there".to_owned()
         } else {
-            format!("there: {}", wrong.concealed_there.join(", "))
+            format!("injected there: {}", wrong.concealed_there.join(", "))
         };
         let admits = if wrong.admits_the_truth {
-            "; the truth is in its confusable set"
+            "; the ground truth is in its confusable set"
         } else {
             ""
         };
@@ -172,9 +172,9 @@ pub fn failures(score: &Score) -> Vec<Block> {
     }
     rows.sort();
     vec![
-        Block::Heading("Where it fails: every failure"),
+        Block::Heading("All failures"),
         text(format!(
-            "{} in all; `diagnoses/CASE.json` and `truth/CASE.json` hold the whole of it.",
+            "There are {} failures. `diagnoses/CASE.json` and `truth/CASE.json` hold the details.",
             rows.len()
         )),
         table(&["case", "what", "how", "share"], 3, rows),

@@ -1,15 +1,15 @@
-//! Tables on the terminal, and the diagnosis there: the verdict, a short table, a sentence a finding, and what is left.
+//! Text for the terminal: tables, and the diagnosis with its verdict, findings, unexplained residuals and next experiment.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, presets};
-use diagnosis::{Finding, NotObservable, Report};
+use diagnosis::{Finding, NotObservable, Report, Unexplained};
 
 use crate::statistics::rms;
 use crate::{next_words, numbers, words};
 
-/// The widest that lines are where nothing forces them to be wider.
+/// The width of lines in characters; a single longer word exceeds it.
 const WIDTH: usize = 80;
 
 /// A table with its first column at the left and numbers at the right.
@@ -27,42 +27,32 @@ pub fn table(header: impl IntoIterator<Item = String>) -> Table {
     table
 }
 
-/// Everything that is printed at the end of a diagnosis; ends with a newline.
+/// The text that is printed at the end of a diagnosis; it ends with a newline.
 pub fn diagnosis(report: &Report) -> String {
     let mut text = wrapped(&words::verdict(report), "");
     if !report.findings.is_empty() {
         let _ = writeln!(text, "\n{}\n", findings(report));
-        for finding in &report.findings {
-            text += &wrapped(&finding.sentence, "- ");
-            if !finding.confusable_with.is_empty() {
-                text += &wrapped(&format!("could also be {}", alternatives(finding)), "    ");
-            }
-        }
+        text += &wrapped(&columns(report), "");
+        text.push('\n');
     }
-    for left in &report.unexplained {
-        let on: Vec<String> = left.depends_on.iter().map(|code| words::dependence(code)).collect();
-        let depends = if on.is_empty() {
-            "nothing tried predicts it".to_owned()
-        } else {
-            format!("it depends on {}", words::list(&on))
-        };
-        let share = numbers::percent(left.share);
-        text += &wrapped(
-            &format!("{}: {share} of its torque has no name; {depends}", left.joint),
-            "- ",
-        );
-        if !left.next.is_empty() {
-            text += &wrapped(&format!("next: {}", left.next), "    ");
+    for finding in &report.findings {
+        text += &details(finding);
+    }
+    for open in &report.unexplained {
+        text += &wrapped(&format!("{}: {}", open.joint, unexplained(open)), "- ");
+        if !open.next.is_empty() {
+            text += &wrapped(&format!("next experiment: {}", open.next), "    ");
         }
     }
     for reason in &report.not_enough_data {
         text += &wrapped(&format!("not enough data: {reason}"), "- ");
     }
     if !report.not_observable.is_empty() {
-        text += &wrapped(&format!("could not be seen: {}", unseen(&report.not_observable)), "- ");
+        let list = not_testable(&report.not_observable);
+        text += &wrapped(&format!("not testable with these recordings: {list}"), "- ");
     }
     for sentence in report.next_experiment.iter().flat_map(next_words::sentences) {
-        text += &wrapped(&sentence, "- next: ");
+        text += &wrapped(&sentence, "- next experiment: ");
     }
     let rollout = rollout(report);
     if !rollout.is_empty() {
@@ -77,18 +67,63 @@ pub fn prose(report: &Report) -> String {
     for finding in &report.findings {
         let _ = writeln!(text, "- {}", finding.sentence);
     }
-    for left in &report.unexplained {
-        let share = numbers::percent(left.share);
+    for open in &report.unexplained {
         let _ = writeln!(
             text,
-            "- {}: {share} of its torque has no name. {}",
-            left.joint, left.next
+            "- {}: {}. Next experiment: {}.",
+            open.joint,
+            unexplained(open),
+            open.next
         );
     }
     for reason in &report.not_enough_data {
         let _ = writeln!(text, "- not enough data: {reason}");
     }
     text
+}
+
+/// The size of an unexplained residual and what it depends on.
+fn unexplained(open: &Unexplained) -> String {
+    let size = numbers::of_torque_spread(open.share);
+    let on: Vec<String> = open.depends_on.iter().map(|code| words::dependence(code)).collect();
+    if on.is_empty() {
+        format!("unexplained residual {size}; no regressor that was tried predicts it")
+    } else {
+        format!("unexplained residual {size}; it depends on {}", words::list(&on))
+    }
+}
+
+/// What the table does not show of a finding: its further parameters, and its alternatives. Empty if there are neither.
+fn details(finding: &Finding) -> String {
+    let place = finding.joint.as_deref().unwrap_or("whole arm");
+    let start = format!("{place}, {}", words::effect(finding));
+    let could_be = format!("could also be {}", alternatives(finding));
+    let sizes = effects::spec(finding.effect).map_or(0, |spec| spec.sentence.matches('{').count());
+    let has_more = sizes > 1 || finding.parameters.contains_key("onset") || !finding.corrects;
+    match (has_more, finding.confusable_with.is_empty()) {
+        (false, true) => String::new(),
+        (false, false) => wrapped(&format!("{start}: {could_be}"), "- "),
+        (true, is_alone) => {
+            let mut text = wrapped(&format!("{start}: {}", words::described(finding)), "- ");
+            if !is_alone {
+                text += &wrapped(&could_be, "    ");
+            }
+            text
+        }
+    }
+}
+
+/// What the table's last two columns are.
+fn columns(report: &Report) -> String {
+    let recordings = if report.recordings.held_out.is_empty() {
+        "training"
+    } else {
+        "held-out"
+    };
+    format!(
+        "share: standard deviation of the effect's torque over that of the measured torque; error: RMS torque error on the \
+         {recordings} recordings over the same, nominal model → with the effects found"
+    )
 }
 
 /// A finding's alternatives: `payload, or asymmetric friction on joint_2`.
@@ -105,7 +140,7 @@ pub fn alternatives(finding: &Finding) -> String {
 
 /// The findings by joint, the joint with the largest share first.
 fn findings(report: &Report) -> String {
-    let mut table = table(["joint", "cause", "size", "share", "held out"].map(str::to_owned));
+    let mut table = table(["joint", "effect", "size", "share", "error"].map(str::to_owned));
     table.set_content_arrangement(ContentArrangement::Dynamic);
     table.set_width(WIDTH as u16);
     for (index, column) in table.column_iter_mut().enumerate() {
@@ -135,13 +170,13 @@ fn findings(report: &Report) -> String {
                 } else {
                     String::new()
                 },
-                words::cause(finding),
+                words::effect(finding),
                 size.map_or("–".into(), |(name, parameter)| {
                     numbers::with_interval(name, parameter)
                 }),
-                numbers::percent(finding.share),
+                numbers::share(finding.share),
                 if is_first || joint.is_none() {
-                    held_out(report, finding)
+                    error(report, finding)
                 } else {
                     String::new()
                 },
@@ -156,16 +191,33 @@ fn findings(report: &Report) -> String {
         .join("\n")
 }
 
-/// The error of the joint where the finding shows most, before and after.
-pub fn held_out(report: &Report, finding: &Finding) -> String {
-    let fit = words::shows_on(finding).and_then(|joint| report.fit.get(joint));
-    fit.map_or("–".into(), |fit| {
-        numbers::before_after(fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented)
+/// Whether errors are of held-out recordings, or of those that were fitted.
+pub fn error_title(report: &Report) -> &'static str {
+    if report.recordings.held_out.is_empty() {
+        "training error"
+    } else {
+        "held-out error"
+    }
+}
+
+/// The error of the joint on which the finding has its largest share, nominal and with the effects found.
+pub fn error(report: &Report, finding: &Finding) -> String {
+    words::shows_on(finding).map_or("–".into(), |joint| error_of(report, joint))
+}
+
+/// The error of a joint, nominal and with the effects found.
+pub fn error_of(report: &Report, joint: &str) -> String {
+    report.fit.get(joint).map_or("–".into(), |fit| {
+        if report.recordings.held_out.is_empty() {
+            numbers::before_after(Some(fit.train_nrmse_nominal), Some(fit.train_nrmse_augmented))
+        } else {
+            numbers::before_after(fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented)
+        }
     })
 }
 
-/// `backlash (3 joints, above .3 to .9 mrad); …`
-fn unseen(list: &[NotObservable]) -> String {
+/// `backlash on 3 joints; torque scale on elbow`.
+fn not_testable(list: &[NotObservable]) -> String {
     let mut by_effect: BTreeMap<&'static str, Vec<&NotObservable>> = BTreeMap::new();
     for entry in list {
         by_effect.entry(entry.effect).or_default().push(entry);
@@ -183,7 +235,7 @@ fn unseen(list: &[NotObservable]) -> String {
     parts.collect::<Vec<_>>().join("; ")
 }
 
-/// How the simulated arm follows, where the named effects change most.
+/// How closely the simulated arm follows the recording, with the nominal model and with the effects found.
 fn rollout(report: &Report) -> String {
     let over_joints =
         |pick: fn(&diagnosis::JointRollout) -> f64| rms(report.rollout.values().map(pick)).map(|rms| 1e3 * rms);
@@ -192,7 +244,7 @@ fn rollout(report: &Report) -> String {
         return String::new();
     };
     format!(
-        "simulated against recorded motion, RMS over the joints: {} → {} mrad (or mm)",
+        "simulated motion, RMS position error over the joints: {} → {} mrad (or mm)",
         numbers::short(before),
         numbers::short(after)
     )

@@ -2,27 +2,39 @@
 
 use std::collections::BTreeSet;
 
-use diagnosis::{Finding, Parameter, Report, Verdict};
+use diagnosis::{Finding, JointFit, Parameter, Report, Verdict};
+
+use crate::numbers;
+use crate::statistics::rms;
 
 /// How an effect is spoken of.
 pub struct Wording {
     /// Its name in two or three words.
     pub name: &'static str,
-    /// What it is, for somebody who has not met it.
+    /// What it is, for readers who do not know it.
     pub meaning: &'static str,
-    /// Which experiment tells it from what looks like it.
+    /// Which experiment distinguishes it from similar effects.
     pub told_by: &'static str,
     /// The parameters that say how large it is, the best first.
     main: &'static [&'static str],
 }
 
-/// What a finding is called: friction that only the motor's current shows is on the motor's side of the torque sensor.
-pub fn cause(finding: &Finding) -> String {
+/// The title of a finding's effect. Friction that only the motor's current shows is on the motor's side of the torque sensor.
+pub fn effect(finding: &Finding) -> String {
     let name = wording(finding.effect).name;
     if !finding.corrects && finding.effect.ends_with("_friction") {
         format!("motor-side {name}")
     } else {
         name.to_owned()
+    }
+}
+
+/// A finding's effect with its parameters, as a noun phrase; of a finding between two sensors, also where it acts.
+pub fn described(finding: &Finding) -> String {
+    let text = diagnosis::described(finding, &numbers::quantity);
+    match &finding.place.state {
+        Some(place) if !finding.corrects => format!("{text}, {place}"),
+        _ => text,
     }
 }
 
@@ -77,12 +89,13 @@ pub fn dependence(code: &str) -> String {
         };
     }
     match code {
-        "own_position" => "its own position".into(),
-        "own_speed" => "its own speed".into(),
-        "own_acceleration" => "its own acceleration".into(),
+        "own_position" => "the joint's position".into(),
+        "own_speed" => "the joint's velocity".into(),
+        "own_acceleration" => "the joint's acceleration".into(),
         "time" => "time".into(),
-        "history" => "what it did before (hysteresis)".into(),
-        "load" => "the torque it carries".into(),
+        "history" => "the joint's past motion (hysteresis)".into(),
+        "load" => "the load torque".into(),
+        "own_position_times_speed" => "the product of the joint's position and velocity".into(),
         other => other.replace('_', " "),
     }
 }
@@ -105,7 +118,7 @@ pub fn shows_on(finding: &Finding) -> Option<&str> {
     })
 }
 
-/// The verdict as a sentence, before everything else.
+/// The verdict in one sentence or two. When most of the mismatch remains unexplained, the first sentence says so.
 pub fn verdict(report: &Report) -> String {
     let effects = count(report.findings.len(), "effect");
     let joints: BTreeSet<_> = report.findings.iter().filter_map(|f| f.joint.as_deref()).collect();
@@ -121,34 +134,59 @@ pub fn verdict(report: &Report) -> String {
         on.push("the whole arm".to_owned());
     }
     let on = list(&on);
-    let left: Vec<String> = report.unexplained.iter().map(|left| left.joint.clone()).collect();
-    let left = if left.len() > 3 {
-        format!("{} joints", left.len())
+    let open: Vec<String> = report.unexplained.iter().map(|open| open.joint.clone()).collect();
+    let open = if open.len() > 3 {
+        format!("{} joints", open.len())
     } else {
-        list(&left)
+        list(&open)
     };
+    let is_validated = !report.recordings.held_out.is_empty();
     match report.verdict {
         Verdict::NoMismatch if report.findings.is_empty() => {
-            "The model explains the recordings: nothing is missing that they could show.".into()
+            "The model explains the recordings: no unmodelled effect is detectable in them.".into()
         }
-        Verdict::NoMismatch => format!("The model explains the recordings up to {effects} on {on}."),
-        Verdict::Explained => {
-            format!("The model leaves out {effects} on {on}. Named and added, they explain the difference.")
+        Verdict::NoMismatch => format!("The model explains the recordings, apart from {effects} on {on}."),
+        Verdict::Explained if is_validated => {
+            format!("The model omits {effects} on {on}. With these effects, the model explains the recordings.")
         }
-        Verdict::PartlyExplained if left.is_empty() => {
-            format!("The model leaves out {effects} on {on}. They explain part of the difference, not all of it.")
-        }
+        Verdict::Explained => format!(
+            "The model omits {effects} on {on}. With these effects, the model fits the training recordings; the fit is \
+             not validated, because no recording is held out."
+        ),
         Verdict::PartlyExplained => {
-            format!("The model leaves out {effects} on {on}, and something without a name on {left}.")
+            let open = if open.is_empty() {
+                "The effects account for a part of the mismatch only.".to_owned()
+            } else {
+                format!("An unmodelled residual remains on {open}.")
+            };
+            match remaining(report) {
+                Some([before, after]) => format!(
+                    "Most of the mismatch is unexplained: with {effects} on {on}, the RMS torque error over the joints \
+                     only falls from {} to {} times the torque's standard deviation. {open}",
+                    numbers::nrmse(before),
+                    numbers::nrmse(after)
+                ),
+                None => format!("The model omits {effects} on {on}. {open}"),
+            }
         }
-        Verdict::Unexplained if left.is_empty() => {
-            "Robot and model differ, and no effect that was tried explains how.".into()
+        Verdict::Unexplained if open.is_empty() => {
+            "The mismatch between model and recordings is unexplained: no effect in the catalogue accounts for it."
+                .into()
         }
         Verdict::Unexplained => {
-            format!("Robot and model differ on {left}, and no effect that was tried explains how.")
+            format!("The mismatch on {open} is unexplained: no effect in the catalogue accounts for it.")
         }
-        Verdict::NotEnoughData => "These recordings do not say enough for a diagnosis.".into(),
+        Verdict::NotEnoughData => "The recordings do not contain enough data for a diagnosis.".into(),
     }
+}
+
+/// The RMS over the joints of the relative torque error, nominal and with the effects found, where more than half of it
+/// remains; on held-out recordings where there are any.
+fn remaining(report: &Report) -> Option<[f64; 2]> {
+    let over_joints = |pick: &dyn Fn(&JointFit) -> f64| rms(report.fit.values().map(pick));
+    let before = over_joints(&|fit| fit.held_out_nrmse_nominal.unwrap_or(fit.train_nrmse_nominal))?;
+    let after = over_joints(&|fit| fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented))?;
+    (before.is_finite() && after > 0.5 * before).then_some([before, after])
 }
 
 /// `1 effect`, `3 effects`.

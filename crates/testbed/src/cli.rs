@@ -25,62 +25,62 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Print the paper's tables I and II and its figure 4, ours beside theirs
+    /// Print tables I and II and figure 4 of the paper, with our results beside the published ones
     Tables(TablesArgs),
-    /// Find which physics a robot's model leaves out, from recordings
+    /// Find the physical effects that a robot's model omits, from recordings
     Diagnose(DiagnoseArgs),
-    /// Say what recordings are worth, before anything is fitted to them
+    /// Check the quality of recordings before anything is fitted to them
     Inspect(InspectArgs),
-    /// Conceal physics in recordings, seal it, diagnose, open the seal and score
+    /// Test the diagnosis blind: inject faults, seal the ground truth, diagnose, open the seal and score
     Prove(ProveArgs),
-    /// Make recordings of a simulated robot with physics concealed in them, and the truth in a file apart
+    /// Make recordings of a simulated robot with injected faults, and the ground truth in a separate file
     Conceal(ConcealArgs),
 }
 
-/// Close the loop on one scenario.
+/// Run one scenario in closed loop.
 #[derive(Debug, Args)]
 pub struct RunArgs {
     /// The scenario: a name under scenarios/, or a .toml file
     #[arg(long, value_name = "NAME|FILE")]
     pub scenario: String,
 
-    /// The torque model that the controller feeds forward [default: the scenario's; independent-joint where it names none]
+    /// The feed-forward torque model of the controller [default: the scenario's, otherwise independent-joint]
     #[arg(long, value_enum)]
     pub model: Option<ModelKind>,
 
-    /// What the model is trained on: scenarios, or recordings (.csv) [default: the scenario's own list]
+    /// The training data of the model: scenarios, or recordings (.csv) [default: the scenario's list]
     #[arg(long, value_name = "A,B,…", value_delimiter = ',')]
     pub train: Option<Vec<String>>,
 
-    /// The regressions' length scales: one for all inputs, as in the paper, or one an input
+    /// The length scales of the regressions: one for all inputs, as in the paper, or one per input
     #[arg(long, value_enum, default_value = "one")]
     pub length_scales: LengthScalesArg,
 
-    /// Where Rerun shows the run: off, save[=FILE], spawn or connect[=URL] [default: save into the run's folder]
+    /// Output to Rerun: off, save[=FILE], spawn or connect[=URL] [default: save in the run's folder]
     #[cfg_attr(not(feature = "viewer"), arg(hide = true))]
     #[arg(long, value_name = "WHERE", value_parser = parse_rerun)]
     pub rerun: Option<Rerun>,
 
-    /// The run's folder [default: a new one under runs/]
+    /// The folder of the run [default: a new one under runs/]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 
-    /// Write the run's summary to this file as well
+    /// Also write the summary of the run to this file
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
 
-    /// Seed of what is random: the noise of the scenario's sensors
+    /// The random seed, for the noise of the scenario's sensors
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
 }
 
 #[derive(Debug, Args)]
 pub struct TablesArgs {
-    /// The regressions' length scales: one for all inputs, as in the paper, or one an input
+    /// The length scales of the regressions: one for all inputs, as in the paper, or one per input
     #[arg(long, value_enum, default_value = "one")]
     pub length_scales: LengthScalesArg,
 
-    /// Write the tables to this file as well
+    /// Also write the tables to this file
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
 }
@@ -91,7 +91,7 @@ pub struct InspectArgs {
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
 
-    /// The robot's URDF: names, limits, signs and torques are compared with it
+    /// The robot's URDF, with which names, limits, signs and torques are compared
     #[arg(long, value_name = "URDF")]
     pub robot: Option<String>,
 
@@ -99,7 +99,7 @@ pub struct InspectArgs {
     #[arg(long, value_name = "MAP")]
     pub map: Option<PathBuf>,
 
-    /// Write everything to this file as JSON
+    /// Write the complete result to this file as JSON
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
 }
@@ -118,11 +118,11 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "URDF")]
     pub robot: String,
 
-    /// The recordings to fit (.csv)
+    /// The training recordings (.csv), to which the effects are fitted
     #[arg(long, required = true, num_args = 1.., value_name = "FILE")]
     pub train: Vec<PathBuf>,
 
-    /// The recordings to prove the fit on; without one no finding is proved
+    /// The held-out recordings (.csv), on which the fit is validated; without one, no finding is validated
     #[arg(long, num_args = 1.., value_name = "FILE")]
     pub held_out: Vec<PathBuf>,
 
@@ -130,16 +130,16 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "MAP")]
     pub map: Option<PathBuf>,
 
-    /// Effects that the model is known to leave out (.toml, as --model writes them): they are not reported again
+    /// Effects that the model is known to omit (.toml, as written by --model); they are not reported again
     #[arg(long, value_name = "FILE")]
     pub known: Option<PathBuf>,
 
-    /// Leave out what the diagnosis is compared with, the simulation and the learned correction: quicker
+    /// Skip the comparison with the simulation and with the learned correction, which is faster
     #[arg(long)]
     pub torques_only: bool,
 
-    /// Fit these effects and no others, to try a hypothesis: effect:joint or, of the whole arm, effect; or a file (.toml, as
-    /// --model writes), whose sizes do not matter
+    /// Test a hypothesis by fitting only these effects: effect:joint, or effect for the whole arm; or a file (.toml, as written
+    /// by --model), whose parameter values are ignored
     #[arg(long, value_name = "EFFECT:JOINT,…|FILE", conflicts_with = "known")]
     pub only: Option<String>,
 
@@ -147,130 +147,130 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
 
-    /// Write a page to this file (.html): figures, parameters, what could not be seen
+    /// Write a page to this file (.html): figures, parameters, effects that are not testable
     #[arg(long, value_name = "OUT")]
     pub report: Option<PathBuf>,
 
-    /// Write the corrected model to this file (.toml): the known effects and those found
+    /// Write the corrected model to this file (.toml): the known effects and the effects found
     #[arg(long, value_name = "OUT")]
     pub model: Option<PathBuf>,
 
-    /// Write the URDF with what it can hold of the corrected model to this file
+    /// Write the URDF to this file, with those effects of the corrected model that a URDF can represent
     #[arg(long, value_name = "OUT")]
     pub urdf: Option<PathBuf>,
 
-    /// Propose the motion that tells most of what is left open, and write it to this file as a scenario (.toml)
+    /// Propose the motion that best distinguishes the remaining alternatives, and write it to this file as a scenario (.toml)
     #[arg(long, value_name = "OUT", conflicts_with = "only")]
     pub next: Option<PathBuf>,
 
-    /// Where Rerun shows the diagnosis: off, save[=FILE], spawn or connect[=URL]
+    /// Output to Rerun: off, save[=FILE], spawn or connect[=URL]
     #[cfg_attr(not(feature = "viewer"), arg(hide = true))]
     #[arg(long, value_name = "WHERE", value_parser = parse_rerun)]
     pub rerun: Option<Rerun>,
 
-    /// How many threads; the result is the same [default: one a core]
+    /// The number of threads, which does not change the result [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,
 
-    /// Half-power frequency of the low-pass filter (Hz)
+    /// The half-power frequency of the low-pass filter (Hz)
     #[arg(long, value_name = "HZ", value_parser = parse_frequency)]
     pub cutoff: Option<f64>,
 }
 
 #[derive(Debug, Args)]
 pub struct ProveArgs {
-    /// Robots that come with testbed, or URDF files; drawn cases take turns [default: puma560 seven_axis]
+    /// Robots included in testbed, or URDF files; the cases alternate between them [default: puma560 seven_axis]
     #[arg(long, num_args = 1.., value_name = "NAME|URDF")]
     pub robot: Vec<String>,
 
-    /// How many cases to draw
+    /// The number of cases to draw
     #[arg(long, value_name = "N", default_value_t = 200)]
     pub cases: usize,
 
-    /// The seed that they are drawn from
+    /// The seed from which the cases are drawn
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
 
-    /// Where everything is kept; the same command goes on where an interrupted one stopped
+    /// The folder of the proof; after an interruption, the same command continues
     #[arg(long, value_name = "DIR", default_value = "proof")]
     pub out: PathBuf,
 
-    /// Take these cases instead: folders case_*, each with a .urdf, train*.csv and held_out*.csv
+    /// Use these cases instead: folders case_*, each with a .urdf, train*.csv and held_out*.csv
     #[arg(long, value_name = "DIR", conflicts_with_all = ["robot", "cases", "seed"])]
     pub cases_from: Option<PathBuf>,
 
-    /// Where the truths of --cases-from are (case_*.json) [default: truth/ beside the cases]
+    /// The folder of the ground truths of --cases-from (case_*.json) [default: truth/ beside the cases]
     #[arg(long, value_name = "DIR", requires = "cases_from", conflicts_with_all = ["robot", "cases", "seed"])]
     pub truth: Option<PathBuf>,
 
-    /// Take real robots' recordings instead, with what their publishers say as the truth (.toml, such as docs/published.toml)
+    /// Use recordings of real robots instead, with the published values as ground truth (.toml, such as docs/published.toml)
     #[arg(long, value_name = "FILE", requires = "recordings", conflicts_with_all = ["robot", "cases", "seed", "cases_from", "shard", "merge"])]
     pub published: Option<PathBuf>,
 
-    /// Where the recordings of --published are: a folder a robot
+    /// The folder of the recordings of --published, with one folder per robot
     #[arg(long, value_name = "DIR", requires = "published")]
     pub recordings: Option<PathBuf>,
 
-    /// Write the report to this file as Markdown as well
+    /// Also write the report to this file as Markdown
     #[arg(long, value_name = "FILE")]
     pub markdown: Option<PathBuf>,
 
-    /// Do the k-th of n shares of the cases and write it to OUT/shard-k-of-n.parquet, for --merge
+    /// Run the k-th of n parts of the cases and write it to OUT/shard-k-of-n.parquet, for --merge
     #[arg(long, value_name = "k/n", value_parser = Shard::parse)]
     pub shard: Option<Shard>,
 
-    /// Score all shares in this folder instead, as one proof
+    /// Score all parts in this folder instead, as one proof
     #[arg(long, value_name = "DIR", conflicts_with_all = ["robot", "cases", "seed", "cases_from", "shard"])]
     pub merge: Option<PathBuf>,
 
-    /// How many processes at once; the result is the same [default: one a core]
+    /// The number of concurrent processes, which does not change the result [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,
 }
 
 #[derive(Debug, Args)]
 pub struct ConcealArgs {
-    /// Robots that come with testbed, or URDF files; cases take turns [default: puma560 seven_axis]
+    /// Robots included in testbed, or URDF files; the cases alternate between them [default: puma560 seven_axis]
     #[arg(long, num_args = 1.., value_name = "NAME|URDF")]
     pub robot: Vec<String>,
 
-    /// What to conceal (.toml, as diagnose --model writes it; an effect may have an onset and a form), sizes as given
+    /// The effects to inject (.toml, as written by diagnose --model; an effect may have an onset and a form), with their values
     #[arg(long, value_name = "FILE", required_unless_present = "seed")]
     pub effects: Option<PathBuf>,
 
-    /// What everything is drawn from; with --effects motions and noise only
+    /// The seed of all random choices; with --effects, of motions and noise only
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
 
-    /// How many cases are drawn
+    /// The number of cases to draw
     #[arg(long, value_name = "K", default_value_t = 1, conflicts_with = "effects", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub cases: u32,
 
-    /// The folder: case_000 … in it hold recordings, truth/ the truth
+    /// The output folder: case_000, … contain the recordings, truth/ the ground truth
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 
-    /// Rows a second of recordings with --effects (Hz)
+    /// With --effects: the sampling rate of the recordings (Hz)
     #[arg(long, value_name = "HZ", default_value_t = 250, requires = "effects")]
     pub rate: u32,
 
-    /// With --effects: stamps jitter by a tenth of the period
+    /// With --effects: jitter the time stamps by 10 % of the period
     #[arg(long, requires = "effects")]
     pub jitter: bool,
 
-    /// With --effects: a hundredth of the rows is lost
+    /// With --effects: drop 1 % of the rows
     #[arg(long, requires = "effects")]
     pub lost: bool,
 
-    /// With --effects: ordinary Coulomb and viscous friction on every joint, drawn from the seed
+    /// With --effects: add baseline Coulomb and viscous friction on every joint, drawn from the seed
     #[arg(long, requires = "effects")]
     pub friction: bool,
 
-    /// How many training recordings there are with --effects
+    /// With --effects: the number of training recordings
     #[arg(long, value_name = "N", default_value_t = 3, requires = "effects", value_parser = clap::value_parser!(u8).range(1..=20))]
     pub training: u8,
 
-    /// How many threads; the result is the same [default: one a core]
+    /// The number of threads, which does not change the result [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,
 }
@@ -300,7 +300,7 @@ fn parse_frequency(text: &str) -> Result<f64, String> {
 pub enum LengthScalesArg {
     /// One for all inputs (the paper's equation 4)
     One,
-    /// One an input: in which units the inputs are does not matter then
+    /// One per input, which makes the result independent of the inputs' units
     PerInput,
 }
 

@@ -1,4 +1,4 @@
-//! `testbed conceal`: recordings of a simulated robot with physics concealed in them, and the truth in a file apart.
+//! `testbed conceal`: recordings of a simulated robot with injected faults, and the ground truth in a separate file.
 
 mod effects;
 

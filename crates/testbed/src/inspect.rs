@@ -116,10 +116,10 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
     })
 }
 
-/// More gaps than this are counted on the terminal, not told.
+/// More gaps than this are counted on the terminal, and not listed.
 const MOST_GAPS: usize = 3;
 
-/// What is told of a list of warnings, and how many gaps are not.
+/// The warnings to show of a list, and the number of gaps that are omitted.
 pub fn shortened<T>(list: impl Iterator<Item = T>, warning: impl Fn(&T) -> &Warning) -> (Vec<T>, usize) {
     let mut gaps = 0;
     let told = list.filter(|item| {
@@ -140,7 +140,7 @@ fn shown(report: &FileReport<'_>) -> String {
         "regular clock".to_owned()
     } else {
         format!(
-            "stamps off by {:.1} % of a period",
+            "time stamps deviate by {:.1} % of a period",
             100.0 * quality.jitter_rms * quality.rate
         )
     };
@@ -196,7 +196,7 @@ fn shown(report: &FileReport<'_>) -> String {
         let _ = writeln!(text, "- {}{}", about(misfit.joint.as_deref()), misfit.text);
     }
     if report.warnings.is_empty() && quality.findings.is_empty() && report.against_robot.is_empty() {
-        let _ = writeln!(text, "- nothing to remark");
+        let _ = writeln!(text, "- no remarks");
     }
     let _ = writeln!(text);
     text

@@ -167,7 +167,7 @@ pub fn load_arm(robot: &str, scenario: &Source) -> anyhow::Result<(Arm, PathBuf)
         let known: Vec<String> = ROBOTS.iter().map(|(name, _)| (*name).to_owned()).collect();
         let hint = nearest(robot, &known).map_or(String::new(), |nearest| format!("did you mean \"{nearest}\"? "));
         bail!(
-            "there is no robot of that name; {hint}there are {}, or give the path of a .urdf file",
+            "there is no robot of this name; {hint}there are {}, or give the path of a .urdf file",
             known.join(", ")
         );
     }
@@ -197,7 +197,7 @@ fn refuse_no_xml(path: &Path) -> anyhow::Result<()> {
     if !text.starts_with('<') {
         let line: String = text.lines().next().unwrap_or_default().chars().take(40).collect();
         bail!(
-            "{}:1: is no URDF, which is XML: it begins with \"{line}\"; give the robot's URDF here, recordings after \
+            "{}:1: is not a URDF, which is XML: it begins with \"{line}\"; give the robot's URDF here, recordings after \
              --train or --held-out",
             path.display()
         );

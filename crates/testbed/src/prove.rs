@@ -1,4 +1,4 @@
-//! `testbed prove`: physics concealed and sealed, diagnosed by processes that know nothing of it, opened and scored.
+//! `testbed prove`: injected faults, sealed, diagnosed by processes without access to the ground truth, opened and scored.
 
 mod cases;
 mod child;

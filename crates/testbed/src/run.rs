@@ -21,7 +21,7 @@ use crate::training;
 use folder::RunFolder;
 use observers::{Progress, View};
 
-/// Beyond so many samples training takes long enough to say so.
+/// The number of samples from which a note announces a long training.
 const MANY_SAMPLES: usize = 8000;
 
 /// What a run's summary.json holds.
@@ -54,7 +54,7 @@ struct Regression {
     /// Standard deviation of the noise (N m or N).
     noise: f64,
     log_marginal_likelihood: f64,
-    /// How many of the samples' directions the kernel matrix tells apart.
+    /// The numerical rank of the kernel matrix.
     rank: usize,
     /// What was added to the kernel matrix's diagonal, and why.
     conditioning: String,
@@ -176,7 +176,7 @@ fn check_outputs(args: &RunArgs, scenario: &Scenario, sources: &[String]) -> any
     inputs.extend(
         sources
             .iter()
-            .map(|source| ("what the model learns from", PathBuf::from(source))),
+            .map(|source| ("the model's training data", PathBuf::from(source))),
     );
     folder::check_distinct(&outputs, &inputs)
 }
@@ -207,14 +207,11 @@ fn notes(args: &RunArgs, kind: ModelKind, scenario: &Scenario, samples: &Samples
         eprintln!("note: {note}");
     }
     if args.train.is_some() && !kind.learns() {
-        eprintln!(
-            "note: the model \"{}\" does not learn; --train is not used",
-            kind.flag()
-        );
+        eprintln!("note: the model \"{}\" is not trained; --train is ignored", kind.flag());
     }
     if samples.len() > MANY_SAMPLES {
         eprintln!(
-            "note: training on {} samples may take minutes; a lower reference.sample_rate takes fewer",
+            "note: training on {} samples may take minutes; a lower reference.sample_rate reduces their number",
             samples.len()
         );
     }
@@ -238,7 +235,7 @@ fn notes(args: &RunArgs, kind: ModelKind, scenario: &Scenario, samples: &Samples
         .collect();
     if !names.is_empty() {
         eprintln!(
-            "note: the reference leaves the position limits of {}; the plant does not enforce them",
+            "note: the reference exceeds the position limits of {}; the plant does not enforce them",
             names.join(", ")
         );
     }

@@ -6,16 +6,16 @@ use effects::Effect;
 use recording::RegularRecording;
 
 use crate::error::ValidateError;
-use crate::learned::{self, LearnedOptions, Motion};
+use crate::learned::{self, LearnedOptions, RecordedMotion};
 use crate::rollout::{RolloutOptions, rollout};
 use crate::statistics::{mean_square, variance};
 
-/// A report with nothing left to fill in.
+/// A complete report.
 #[derive(Clone, Debug)]
 pub struct Complete {
     /// The diagnosis' report, with `held_out_nrmse_learned` of each joint and `rollout`.
     pub report: Report,
-    /// What the simulation left out, or why there is none; in sentences.
+    /// What the simulation omits, or why there is none; in sentences.
     pub remarks: Vec<String>,
 }
 
@@ -23,7 +23,7 @@ pub struct Complete {
 ///
 /// A correction is learned from the training traces and held against the held-out ones. The plant, with and without the
 /// effects named, is driven by the torques of the last recording held out, or of the last there is; where nothing was named
-/// there is nothing to compare. `progress` is told what is going on.
+/// there is nothing to compare. `progress` receives the current step.
 ///
 /// # Errors
 /// [`ValidateError::Learning`]. An arm that cannot be simulated (a link without mass) is a remark: a diagnosis in torque is of use
@@ -36,9 +36,9 @@ pub fn complete(
     progress: &dyn Fn(&'static str),
 ) -> Result<Complete, ValidateError> {
     let mut report = diagnosis.report.clone();
-    progress("learning a correction to compare with");
+    progress("learned correction, for comparison");
     learn(arm, &diagnosis.traces.recordings, &mut report)?;
-    progress("driving the simulated arm");
+    progress("simulation");
     let simulated = recordings
         .iter()
         .rfind(|input| input.held_out)
@@ -52,8 +52,8 @@ pub fn complete(
     Ok(Complete { report, remarks })
 }
 
-fn motion(trace: &Trace) -> Motion<'_> {
-    Motion {
+fn motion(trace: &Trace) -> RecordedMotion<'_> {
+    RecordedMotion {
         q: &trace.q,
         qd: &trace.qd,
         qdd: &trace.qdd,
@@ -74,8 +74,8 @@ fn learn(arm: &Arm, traces: &[Trace], report: &mut Report) -> Result<(), Validat
     if held.is_empty() || !moves(&train) {
         return Ok(());
     }
-    let training: Vec<Motion<'_>> = train.iter().map(|trace| motion(trace)).collect();
-    let tried: Vec<Motion<'_>> = held.iter().map(|trace| motion(trace)).collect();
+    let training: Vec<RecordedMotion<'_>> = train.iter().map(|trace| motion(trace)).collect();
+    let tried: Vec<RecordedMotion<'_>> = held.iter().map(|trace| motion(trace)).collect();
     let predicted = learned::predict(arm, &training, &tried, &LearnedOptions::default())?;
     for (joint, described) in arm.joints().iter().enumerate() {
         // Where the joint moves, as the other errors are; over all where it hardly does.
@@ -100,7 +100,7 @@ fn learn(arm: &Arm, traces: &[Trace], report: &mut Report) -> Result<(), Validat
     Ok(())
 }
 
-/// Drives the simulated arm with the recorded torques, with and without what was found; remarks to pass on.
+/// Drives the simulated arm with the recorded torques, with and without the effects found; returns remarks for the user.
 fn simulate(
     arm: &Arm,
     known: &[Effect],
@@ -126,7 +126,7 @@ fn simulate(
     ] {
         if count > 0 {
             remarks.push(format!(
-                "the {name} arm left the recorded motion by more than a turn or a metre in {count} of {windows} windows; its distance is a lower bound"
+                "the {name} arm departs from the recorded motion by more than one revolution or one metre in {count} of {windows} windows; its position error is a lower bound"
             ));
         }
     }

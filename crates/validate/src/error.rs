@@ -7,10 +7,10 @@ use torque::TorqueError;
 #[derive(Debug, thiserror::Error)]
 pub enum ValidateError {
     /// There is no row to learn from, or a regression failed.
-    #[error("learning a correction: {0}")]
+    #[error("learned correction: {0}")]
     Learning(#[source] TorqueError),
     /// The recording lacks a joint of the arm.
-    #[error("joint \"{joint}\" is not in the recording: it cannot be simulated")]
+    #[error("joint \"{joint}\" is not in the recording, so that it cannot be simulated")]
     Joint {
         /// The joint's name.
         joint: String,
@@ -22,7 +22,7 @@ pub enum ValidateError {
         period: f64,
     },
     /// No segment of the recording is long enough.
-    #[error("no stretch of the recording is as long as a rollout's window, {window} s")]
+    #[error("no gap-free part of the recording is as long as a rollout window, {window} s")]
     Window {
         /// The window's length (s).
         window: f64,

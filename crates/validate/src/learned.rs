@@ -7,7 +7,7 @@ use crate::error::ValidateError;
 
 /// Motion and torque of one recording, `[joint][row]`, joints as the arm's: rad, rad/s, rad/s², N m (or m …, N).
 #[derive(Clone, Copy)]
-pub struct Motion<'a> {
+pub struct RecordedMotion<'a> {
     /// Positions.
     pub q: &'a [Vec<f64>],
     /// Velocities.
@@ -43,7 +43,7 @@ impl Default for LearnedOptions {
     }
 }
 
-impl Motion<'_> {
+impl RecordedMotion<'_> {
     fn rows(&self) -> usize {
         self.q.first().map_or(0, Vec::len)
     }
@@ -65,14 +65,14 @@ impl Motion<'_> {
 ///
 /// # Panics
 /// If a signal has not one row a joint of the arm, or rows of different lengths.
-pub fn learn(arm: &Arm, training: &[Motion<'_>], options: &LearnedOptions) -> Result<Learned, ValidateError> {
+pub fn learn(arm: &Arm, training: &[RecordedMotion<'_>], options: &LearnedOptions) -> Result<Learned, ValidateError> {
     let dof = arm.dof();
     let mut samples = Samples::new(dof);
     let mut row_of = [vec![0.0; dof], vec![0.0; dof], vec![0.0; dof], vec![0.0; dof]];
     for (recording, row) in chosen(training, options.samples) {
         let motion = &training[recording];
         for (into, signal) in row_of.iter_mut().zip([motion.q, motion.qd, motion.qdd, motion.tau]) {
-            Motion::row(signal, row, into);
+            RecordedMotion::row(signal, row, into);
         }
         let [q, qd, qdd, tau] = &row_of;
         samples
@@ -91,8 +91,8 @@ pub fn learn(arm: &Arm, training: &[Motion<'_>], options: &LearnedOptions) -> Re
 /// As [`learn`].
 pub fn predict(
     arm: &Arm,
-    training: &[Motion<'_>],
-    held_out: &[Motion<'_>],
+    training: &[RecordedMotion<'_>],
+    held_out: &[RecordedMotion<'_>],
     options: &LearnedOptions,
 ) -> Result<Vec<Vec<Vec<f64>>>, ValidateError> {
     let dof = arm.dof();
@@ -100,12 +100,12 @@ pub fn predict(
     let mut row_of = [vec![0.0; dof], vec![0.0; dof], vec![0.0; dof], vec![0.0; dof]];
     let mut workspace = Workspace::new(dof);
     let mut prediction = Prediction::new(dof);
-    let mut predict = |motion: &Motion<'_>| {
+    let mut predict = |motion: &RecordedMotion<'_>| {
         let mut torque = vec![Vec::with_capacity(motion.rows()); dof];
         for row in 0..motion.rows() {
             let [q, qd, qdd, _] = &mut row_of;
             for (into, signal) in [(&mut *q, motion.q), (&mut *qd, motion.qd), (&mut *qdd, motion.qdd)] {
-                Motion::row(signal, row, into);
+                RecordedMotion::row(signal, row, into);
             }
             model.predict(&mut workspace, q, qd, qdd, &mut prediction);
             for (joint, torque) in torque.iter_mut().enumerate() {
@@ -118,11 +118,11 @@ pub fn predict(
 }
 
 /// The rows to learn from, as (recording, row).
-fn chosen(training: &[Motion<'_>], samples: usize) -> Vec<(usize, usize)> {
+fn chosen(training: &[RecordedMotion<'_>], samples: usize) -> Vec<(usize, usize)> {
     let ever = |joint: usize| training.iter().any(|motion| motion.moving[joint].contains(&true));
     let joints = training.first().map_or(0, |motion| motion.moving.len());
     let movers: Vec<usize> = (0..joints).filter(|&joint| ever(joint)).collect();
-    let rows_where = |fits: &dyn Fn(&Motion<'_>, usize) -> bool| -> Vec<(usize, usize)> {
+    let rows_where = |fits: &dyn Fn(&RecordedMotion<'_>, usize) -> bool| -> Vec<(usize, usize)> {
         let rows = training.iter().enumerate();
         rows.flat_map(|(recording, motion)| (0..motion.rows()).map(move |row| (recording, row)))
             .filter(|&(recording, row)| fits(&training[recording], row))
@@ -178,9 +178,9 @@ mod tests {
             data
         }
 
-        fn motion(&self) -> Motion<'_> {
+        fn motion(&self) -> RecordedMotion<'_> {
             let [q, qd, qdd, tau] = &self.0;
-            Motion {
+            RecordedMotion {
                 q,
                 qd,
                 qdd,
@@ -210,7 +210,7 @@ mod tests {
         let truth = Corrected::new(&arm, &effects).expect("they are physical");
         let training = [Data::new(&truth, 2500, 0.0), Data::new(&truth, 2500, 0.05)];
         let held_out = Data::new(&truth, 2500, 0.1);
-        let motions: Vec<Motion<'_>> = training.iter().map(Data::motion).collect();
+        let motions: Vec<RecordedMotion<'_>> = training.iter().map(Data::motion).collect();
         let started = Instant::now();
         let options = LearnedOptions::default();
         let predicted = predict(&arm, &motions, &[held_out.motion()], &options).expect("it learns");

@@ -1,4 +1,4 @@
-//! What a diagnosis is held against: a correction learned from the same recordings, and the simulated arm driven by the recorded torques.
+//! The comparisons that complete a diagnosis: a correction learned from the same recordings, and the simulated arm driven by the recorded torques.
 //!
 //! [`complete`] takes a diagnosis and its recordings and gives the report with every figure filled in that [`diagnosis`]
 //! itself leaves open: the learned correction's held-out error, and how the simulated arm follows the recorded motion.

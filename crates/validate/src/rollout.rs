@@ -89,7 +89,7 @@ struct Course<'a> {
 /// Drives the plant of `arm`, and that of `arm` with `effects`, by the torques of `recording` over windows.
 ///
 /// The same inputs give the same bits. A window that a variant leaves counts with the distance at which it left (a lower
-/// bound) and is told in [`Rollout`].
+/// bound) and is counted in [`Rollout`].
 ///
 /// # Errors
 /// [`ValidateError`], if a joint is not in the recording, an effect does not fit the arm, no window fits in the recording, or the plant
@@ -149,7 +149,7 @@ pub fn rollout(
     };
     let (nominal, augmented) = rayon::join(
         || run("the nominal arm", nominal),
-        || run("the arm with the named effects", augmented),
+        || run("the arm with the effects found", augmented),
     );
     let (nominal, augmented) = (nominal?, augmented?);
 

@@ -137,7 +137,7 @@ impl Motions {
         let mut motions = Self::at(inputs, cutoff);
         if motions.cutoff < cutoff {
             motions.remarks.push(format!(
-                "the slowest recording allows a filter at {:.1} Hz instead of {cutoff:.0} Hz: what is quicker is not seen",
+                "the lowest sampling rate limits the filter to {:.1} Hz instead of {cutoff:.0} Hz; faster effects are not detectable",
                 motions.cutoff
             ));
         }
@@ -175,12 +175,12 @@ impl Motions {
             cutoff,
             tempo: Vec::new(),
             one_clock: overlap.is_none(),
-            remarks: [(false, "to be fitted"), (true, "held out")]
+            remarks: [(false, "training"), (true, "held-out")]
                 .into_iter()
-                .filter(|&(role, _)| used(role) < 1.0)
+                .filter(|&(role, _)| seconds(role) > MOST_SECONDS)
                 .map(|(role, what)| {
                     format!(
-                        "{:.0} s are {what}; of these {MOST_SECONDS:.0} s are used, in stretches of {WINDOW:.0} s spread evenly",
+                        "of the {:.0} s of {what} recordings, {MOST_SECONDS:.0} s are used, in evenly spaced windows of {WINDOW:.0} s",
                         seconds(role)
                     )
                 })
@@ -188,8 +188,8 @@ impl Motions {
         };
         if let Some([a, b]) = overlap {
             motions.remarks.push(format!(
-                "{a} and {b} overlap in time: what warms, what sets in and what was before is not asked; if the one was made \
-                 after the other, let its times follow the other's"
+                "{a} and {b} overlap in time, so that effects that depend on the order of the recordings (warming, onsets) are \
+                 not tested; if one was recorded after the other, give it later time stamps"
             ));
         }
         let mut end = 0.0;

@@ -5,11 +5,11 @@ use rayon::prelude::*;
 use crate::findings::report::{Located, Region, TimeWindow};
 use crate::search::study::Study;
 
-/// A joint is located where its nominal residual is so many times what noise and filtering leave.
+/// A joint is located if its nominal residual exceeds the errors of noise and filtering by this factor.
 const OVER_NOISE: f64 = 2.0;
 /// Bins of an axis of state.
 const BINS: usize = 6;
-/// A region stands out if its residual is so many times the joint's.
+/// A region is reported if its residual exceeds the joint's by this factor.
 const STANDS_OUT: f64 = 1.3;
 /// The length of a stretch of time (s).
 const WINDOW: f64 = 1.0;

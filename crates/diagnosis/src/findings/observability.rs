@@ -1,4 +1,4 @@
-//! Effects that the recordings could not show, and the size from which they would have been seen.
+//! Effects that are not testable with the recordings, and the size from which they are detectable.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::search::problem::Chosen;
 use crate::search::study::Study;
 use crate::selection::judge::{LEAST_EVIDENCE, LEAST_SHARE};
 
-/// A linear effect is said to be hidden if it could be as large as this part of the joint's torque unseen.
+/// A linear effect is listed as not testable if it could reach this part of the joint's torque undetected.
 const HIDDEN: f64 = 0.06;
 
 /// How well a column shows on a joint.
@@ -40,7 +40,7 @@ impl Visibility {
     }
 }
 
-/// What could not be seen beside `chosen`.
+/// The effects that are not testable beside the selection `chosen`.
 pub fn unseen(study: &Study, products: &Products, chosen: &Chosen) -> Vec<NotObservable> {
     let dof = study.motions.dof;
     let mut list: Vec<NotObservable> = (0..dof)
@@ -143,7 +143,7 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
                     least * visibility.spread / visibility.torque.max(1e-300)
                 };
                 if share > HIDDEN {
-                    let because = "other effects found explain the same torque in these motions";
+                    let because = "the effects found explain the same torque in these motions";
                     let size = if is_of_first {
                         least / chosen.fit.coefficient(candidate.columns[0]).max(0.0)
                     } else {

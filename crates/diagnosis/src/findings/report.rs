@@ -1,4 +1,4 @@
-//! The diagnosis as others read it: `testbed diagnose --json`, schema `testbed.diagnosis/1`.
+//! The diagnosis as programs read it: `testbed diagnose --json`, schema `testbed.diagnosis/1`.
 
 use std::collections::BTreeMap;
 
@@ -20,11 +20,11 @@ pub struct Report {
     pub verdict: Verdict,
     /// The effects named, the largest share first.
     pub findings: Vec<Finding>,
-    /// What has structure and no name.
+    /// Structured residuals that no effect in the catalogue explains.
     pub unexplained: Vec<Unexplained>,
-    /// Effects that these recordings could not show.
+    /// Effects that are not testable with these recordings.
     pub not_observable: Vec<NotObservable>,
-    /// Why nothing more can be said, where the data are too few; empty otherwise.
+    /// Why there are not enough data for a diagnosis; empty if there are.
     pub not_enough_data: Vec<String>,
     /// Where the nominal model misses, joint by joint.
     pub located: Vec<Located>,
@@ -32,7 +32,7 @@ pub struct Report {
     pub fit: BTreeMap<String, JointFit>,
     /// How the simulated arm follows the recorded one; empty where it was not simulated.
     pub rollout: BTreeMap<String, JointRollout>,
-    /// The motion that tells most of what is open; where it was asked for.
+    /// The motion that best distinguishes the remaining alternatives, if one was requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next_experiment: Option<NextExperiment>,
 }
@@ -52,13 +52,13 @@ pub struct RecordingNames {
 pub enum Verdict {
     /// The model explains the recordings.
     NoMismatch,
-    /// What differs has names.
+    /// The findings explain the mismatch.
     Explained,
-    /// Some of it has.
+    /// The findings explain a part of the mismatch.
     PartlyExplained,
-    /// None of it has.
+    /// There is no finding, and a mismatch remains.
     Unexplained,
-    /// The recordings do not say.
+    /// The recordings do not contain enough data.
     NotEnoughData,
 }
 
@@ -78,11 +78,11 @@ pub struct Finding {
     pub probability: f64,
     /// Standard deviation of its torque over that of the measured torque, training recordings; the largest of the joints.
     pub share: f64,
-    /// The same for each joint it acts on.
+    /// The share of each joint that it acts on.
     pub share_by_joint: BTreeMap<String, f64>,
     /// Relative drop of the NRMSE, over recordings it was not fitted to; `None` if none of them tries it.
     pub held_out_gain: Option<f64>,
-    /// What explains nearly as much in its place.
+    /// Effects that explain nearly as much in its place.
     pub confusable_with: Vec<Confusable>,
     /// Where it acts.
     #[serde(rename = "where")]
@@ -108,7 +108,7 @@ pub struct Parameter {
     pub unit: &'static str,
 }
 
-/// What a finding could be instead.
+/// An alternative of a finding.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Confusable {
     /// The catalogue's name.
@@ -130,12 +130,12 @@ pub struct Place {
     pub state: Option<String>,
 }
 
-/// Structure without a name.
+/// A structured residual that no effect in the catalogue explains.
 #[derive(Clone, Debug, Serialize)]
 pub struct Unexplained {
     /// The joint.
     pub joint: String,
-    /// Standard deviation of what is left and has structure, over that of the measured torque.
+    /// Standard deviation of the structured residual over that of the measured torque.
     pub share: f64,
     /// `own_position`, `own_speed`, `time`, `history`, `other_joint:NAME`, …; empty if nothing tried predicts it.
     pub depends_on: Vec<String>,
@@ -145,7 +145,7 @@ pub struct Unexplained {
     pub next: String,
 }
 
-/// An effect that the recordings could not show.
+/// An effect that is not testable with the recordings.
 #[derive(Clone, Debug, Serialize)]
 pub struct NotObservable {
     /// The catalogue's name.
@@ -154,9 +154,9 @@ pub struct NotObservable {
     pub joint: Option<String>,
     /// Why.
     pub because: String,
-    /// The size from which it would have been seen.
+    /// The size from which it is detectable.
     pub would_be_seen_above: BTreeMap<&'static str, f64>,
-    /// The size below which it would have been seen: a limit, a stiffness.
+    /// The size below which it is detectable: a limit, a stiffness.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub would_be_seen_below: BTreeMap<&'static str, f64>,
 }
@@ -222,9 +222,9 @@ pub struct JointFit {
     pub train_nrmse_nominal: f64,
     /// With the named effects, training recordings, moving samples.
     pub train_nrmse_augmented: f64,
-    /// Autocorrelation of the augmented residual at lag .1 s (0: white).
+    /// Autocorrelation of the augmented residual at a lag of 0.1 s (0: white).
     pub residual_autocorrelation: f64,
-    /// The same of the nominal residual.
+    /// Autocorrelation of the nominal residual at a lag of 0.1 s.
     pub residual_autocorrelation_nominal: f64,
 }
 

@@ -9,11 +9,11 @@ use crate::search::candidate::Cause;
 use crate::search::problem::{Chosen, Problem};
 use crate::search::study::Study;
 
-/// A rival explains nearly as much if it loses no more than this part of what the finding explains …
+/// An alternative explains nearly as much if it loses at most this part of what the finding explains.
 const NEARLY: f64 = 0.08;
-/// … or no more than this (nats).
+/// An alternative also explains nearly as much if it loses at most this evidence (nats).
 const NEARLY_NATS: f64 = 4.0;
-/// So many of the most promising rivals are fitted in full.
+/// The number of the most promising alternatives that are fitted in full.
 const TRIED: usize = 8;
 /// However clear the evidence, the catalogue may lack the right name.
 const SUREST: f64 = 0.985;

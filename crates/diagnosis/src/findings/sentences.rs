@@ -1,10 +1,10 @@
-//! Findings in one sentence, and which experiment would tell more.
+//! A finding in one sentence, and the experiment that narrows an unexplained residual down.
 
 use std::collections::BTreeMap;
 
 use crate::findings::report::{Finding, JointFit};
 
-/// A number with three digits, without an exponent where it can be helped.
+/// A number with three significant digits, with an exponent only when it is very small or very large.
 fn number(value: f64) -> String {
     let magnitude = value.abs();
     if value == 0.0 {
@@ -17,34 +17,42 @@ fn number(value: f64) -> String {
     }
 }
 
-/// The sentence of the finding's effect with its numbers.
-fn filled(finding: &Finding) -> String {
-    let mut parts = finding.as_effect.spec().sentence.split('{');
+/// The finding's effect as a noun phrase with its parameters; `quantity` formats a value with its unit (`1`: none).
+pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> String {
+    let pattern = effects::spec(finding.effect).map_or("", |spec| spec.sentence);
+    let mut parts = pattern.split('{');
     let mut text = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let (key, rest) = part.split_once('}').unwrap_or((part, ""));
-        let number = |key: &str, factor: f64| finding.parameters.get(key).map(|p| (number(factor * p.value), p.unit));
+        let value = |key: &str| finding.parameters.get(key);
         match (key, key.strip_suffix('%')) {
             ("other", _) => text.push_str(finding.other.as_deref().unwrap_or("another joint")),
-            (_, Some(key)) => text.push_str(&number(key, 100.0).map_or_else(String::new, |(number, _)| number)),
-            _ => match number(key, 1.0) {
-                Some((number, "1")) => text.push_str(&number),
-                Some((number, unit)) => text.push_str(&format!("{number} {unit}")),
-                None => {}
-            },
+            (_, Some(key)) => text.push_str(&value(key).map_or_else(String::new, |p| quantity(100.0 * p.value, "1"))),
+            _ => text.push_str(&value(key).map_or_else(String::new, |p| quantity(p.value, p.unit))),
         }
         text.push_str(rest);
     }
-    text
+    match finding.parameters.get("onset") {
+        Some(onset) => format!("{text} from {} on", quantity(onset.value, onset.unit)),
+        None => text,
+    }
+}
+
+/// A ratio of standard deviations in words; a ratio above one is no percentage.
+fn of_torque(ratio: f64) -> String {
+    if ratio >= 1.005 {
+        format!("{} times the torque's standard deviation", number(ratio))
+    } else {
+        format!("{:.0} % of the torque's standard deviation", 100.0 * ratio)
+    }
 }
 
 /// A finding in one sentence.
 pub fn of(finding: &Finding, fit: &BTreeMap<String, JointFit>) -> String {
-    let what = filled(finding);
-    let what = match finding.parameters.get("onset") {
-        Some(onset) => format!("{what} from {} s on", number(onset.value)),
-        None => what,
-    };
+    let what = described(finding, &|value, unit| match unit {
+        "1" => number(value),
+        unit => format!("{} {unit}", number(value)),
+    });
     let at = finding.joint.clone().or_else(|| {
         let largest = finding.share_by_joint.iter().max_by(|a, b| a.1.total_cmp(b.1));
         largest.map(|(joint, _)| joint.clone())
@@ -59,15 +67,15 @@ pub fn of(finding: &Finding, fit: &BTreeMap<String, JointFit>) -> String {
     if let (false, Some(_), Some(between)) = (finding.corrects, &finding.joint, &finding.place.state) {
         let smaller = finding.held_out_gain.map_or_else(String::new, |gain| {
             format!(
-                ", with which the difference of the two is {:.0} % smaller on held-out recordings",
+                ", with which the difference between the two sensors is {:.0} % smaller on held-out recordings",
                 100.0 * gain
             )
         });
         return format!("{place}, {between}: {what}{smaller}");
     }
     let share = match finding.joint {
-        Some(_) => format!("{:.0} % of its torque", 100.0 * finding.share),
-        None => format!("up to {:.0} % of a joint's torque", 100.0 * finding.share),
+        Some(_) => of_torque(finding.share),
+        None => format!("up to {} of a joint", of_torque(finding.share)),
     };
     let effect = match held_out {
         Some((joint, before, after)) if finding.joint.is_none() => {
@@ -79,20 +87,22 @@ pub fn of(finding: &Finding, fit: &BTreeMap<String, JointFit>) -> String {
     format!("{place}: {what}, {share}{effect}")
 }
 
-/// Which experiment would tell what lies behind structure that depends on `on`.
+/// The experiment that shows which effect causes a residual that depends on `on` (`own_position`, `history`, …).
 pub fn next_experiment(joint: &str, on: &str) -> String {
     if let Some(other) = on.strip_prefix("other_joint:") {
         return format!("move {joint} alone with {other} at rest, then {other} alone with {joint} at rest");
     }
     match on {
-        "own_position" => {
-            format!("sweep {joint} slowly through its whole range, both ways, with all others at rest, at two speeds")
-        }
-        "history" => format!(
-            "repeat one motion of {joint} after pauses of different length and with reversals of different amplitude"
+        "own_position" => format!(
+            "sweep {joint} slowly over its whole range in both directions, with all other joints at rest, at two speeds"
         ),
-        "own_position_times_speed" => format!("sweep {joint} through its range at three constant speeds, both ways"),
-        "time" => format!("repeat one and the same motion of {joint} every minute for ten minutes"),
-        _ => format!("move {joint} alone at three constant speeds, both ways, twice"),
+        "history" => format!(
+            "repeat one motion of {joint} after pauses of different lengths and with reversals of different amplitudes"
+        ),
+        "own_position_times_speed" => {
+            format!("sweep {joint} over its range at three constant speeds, in both directions")
+        }
+        "time" => format!("repeat one motion of {joint} every minute for ten minutes"),
+        _ => format!("move {joint} alone at three constant speeds, in both directions, twice"),
     }
 }

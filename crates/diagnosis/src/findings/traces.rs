@@ -8,7 +8,7 @@ use crate::findings::report::{Finding, Trace, Traces};
 use crate::search::study::Study;
 use crate::selection::judge::Judged;
 
-/// All signals on the rows, `left` being what the named effects leave.
+/// All signals on the rows; `left` is the augmented residual.
 pub fn traces(study: &Study, judged: &Judged, findings: &[(Finding, Option<usize>)], left: &[Vec<f64>]) -> Traces {
     let dof = study.motions.dof;
     let table = &study.table;

@@ -11,7 +11,7 @@ use crate::search::scan;
 use crate::search::study::Study;
 use crate::selection::judge::Judged;
 
-/// A burst is so many times the median of all windows of its length, and of what the model leaves by itself.
+/// A burst exceeds the median of all windows of its length, and the residual of the model itself, by this factor.
 const OVER_THE_REST: f64 = 6.0;
 /// One force on the tool must explain this part of a burst's power, on pieces it was not fitted to.
 const ONE_FORCE: f64 = 0.8;

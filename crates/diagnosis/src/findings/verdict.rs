@@ -1,4 +1,4 @@
-//! What is left over, and the verdict.
+//! Unexplained residuals, and the verdict.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::regression::fit::Products;
 use crate::search::study::Study;
 use crate::selection::judge::Judged;
 
-/// What has structure and no name, on each joint.
+/// The structured residuals that no effect in the catalogue explains, on each joint.
 pub fn unexplained(study: &Study, judged: &Judged, bursts: &Bursts, left: &[Vec<f64>]) -> Vec<Unexplained> {
     let mut by_joint: BTreeMap<usize, (f64, Vec<(f64, String)>)> = BTreeMap::new();
     for member in &judged.nameless {
@@ -60,15 +60,15 @@ pub fn unexplained(study: &Study, judged: &Judged, bursts: &Bursts, left: &[Vec<
         .collect()
 }
 
-/// An error (NRMSE) above this, on recordings held out if there are any, is not explained …
+/// An error (NRMSE) above this is not explained if it also exceeds the noise ([`ABOVE_NOISE`]); on held-out recordings if there are any.
 const POOR: f64 = 0.35;
-/// … if it is more than so many times the noise.
+/// The ratio to the noise that a poor error ([`POOR`]) exceeds.
 const ABOVE_NOISE: f64 = 3.0;
-/// Nor is an error above this, where the recordings were fitted and where they were held out …
+/// An error (NRMSE) above this, on training and on held-out recordings, is not explained if it is also structured.
 const STRUCTURED: f64 = 0.06;
-/// … if it is more than so many times the noise …
+/// The ratio to the noise that a structured error ([`STRUCTURED`]) exceeds.
 const STRUCTURED_ABOVE_NOISE: f64 = 4.0;
-/// … and its autocorrelation from row to row is more than this: neither noise nor what filters leave has so long a memory.
+/// The autocorrelation from row to row that a structured error exceeds: neither noise nor filter residues reach it.
 const REMEMBERS: f64 = 0.6;
 
 /// The error (NRMSE) that the findings leave on a joint, if it is too large and too regular to be noise.
@@ -81,7 +81,7 @@ pub fn structured(fit: &JointFit) -> Option<f64> {
     is_structured.then_some(error)
 }
 
-/// Adds the joints that the findings leave poorly predicted.
+/// Adds the joints that are poorly predicted with the findings.
 pub fn leftover(study: &Study, fit: &BTreeMap<String, JointFit>, unexplained: &mut Vec<Unexplained>) {
     for (joint, name) in study.arm.joints().iter().map(|joint| &joint.name).enumerate() {
         let Some(this) = fit.get(name) else { continue };
@@ -99,7 +99,7 @@ pub fn leftover(study: &Study, fit: &BTreeMap<String, JointFit>, unexplained: &m
             next: if was_fitted {
                 sentences::next_experiment(name, "")
             } else {
-                format!("record {name} in motion among the recordings to be fitted")
+                format!("add a training recording in which {name} moves")
             },
             time: Vec::new(),
         });
@@ -109,7 +109,7 @@ pub fn leftover(study: &Study, fit: &BTreeMap<String, JointFit>, unexplained: &m
 /// The least time in motion (s) and of reversals that a diagnosis needs on some joint.
 const LEAST_MOTION: f64 = 4.0;
 
-/// Why these recordings do not say enough, if they do not.
+/// Why the recordings are not enough for a diagnosis; empty if they are.
 pub fn not_enough(study: &Study, products: &Products) -> Vec<String> {
     let seconds = |joint: usize| -> f64 {
         let counts = study.table.joints[joint]
@@ -128,7 +128,7 @@ pub fn not_enough(study: &Study, products: &Products) -> Vec<String> {
         reasons.push("no joint moves in the training recordings".to_owned());
     } else if longest < LEAST_MOTION {
         reasons.push(format!(
-            "the training recordings hold {longest:.1} s of motion; {LEAST_MOTION:.0} s and several reversals on each joint are the least"
+            "the training recordings contain {longest:.1} s of motion; a diagnosis needs at least {LEAST_MOTION:.0} s and several reversals of each joint"
         ));
     }
     reasons

@@ -1,11 +1,11 @@
-//! What would tell where no motion does.
+//! The experiment to make where no motion distinguishes two effects.
 
 use effects::Spec;
 
-use super::report::{Left, Untold};
+use super::report::{NotSeparated, Obstacle};
 use crate::findings::report::Confusable;
 
-/// Less than this (nats), or than this part of what tells, is nothing: the two are one torque.
+/// Evidence below this (nats), or below this part of the evidence needed, counts as none: the two are one torque.
 const ALIAS: (f64, f64) = (1.0, 0.1);
 
 /// The confusion of `finding` with `rival`, which the best motion for it sets `best` apart (nats), where `needed` would tell.
@@ -15,41 +15,43 @@ pub fn untold(
     rival: Confusable,
     [best, needed]: [f64; 2],
     sure: f64,
-    barred: Option<Left>,
-) -> Untold {
+    barred: Option<Obstacle>,
+) -> NotSeparated {
     let kind = if best.abs() < ALIAS.0.max(ALIAS.1 * needed) {
-        Left::SameTorque
+        Obstacle::SameTorque
     } else if let Some(reason) = barred {
         reason
     } else if best < sure {
-        Left::OutOfReach
+        Obstacle::OutOfReach
     } else {
-        Left::AnotherMotion
+        Obstacle::AnotherMotion
     };
     let because = match kind {
-        Left::SameTorque => "the two are the same torque in every motion tried".to_owned(),
-        Left::OutOfReach => format!(
-            "no motion tried within the limits sets them further apart than {:.1} nats, and {sure:.1} would be sure to tell",
+        Obstacle::SameTorque => "both give the same torque in every motion that was tried".to_owned(),
+        Obstacle::OutOfReach => format!(
+            "the best motion within the joint limits gives {:.1} nats of evidence, and a reliable distinction needs {sure:.1}",
             best.max(0.0)
         ),
-        Left::Unexplained => {
-            "something without a name is left there, so that what a motion would tell cannot be foretold".to_owned()
+        Obstacle::Unexplained => {
+            "the joint has an unexplained residual, so that the outcome of a motion cannot be predicted".to_owned()
         }
-        Left::NotForetold => {
-            "by this prediction the recordings tell the two apart already, and they do not: what a motion would tell cannot be foretold"
+        Obstacle::NotForetold => {
+            "the prediction fails on these recordings: it says that they already distinguish the two, which they do not"
                 .to_owned()
         }
-        Left::AnotherMotion => {
-            "another motion would tell, but this one serves the others better: propose again after it".to_owned()
+        Obstacle::AnotherMotion => {
+            "another motion distinguishes them; the proposed one serves the other pairs better".to_owned()
         }
     };
     let instead = match kind {
-        Left::AnotherMotion => "run the motion, diagnose with its recording, and propose again",
-        Left::Unexplained => "find first what is unexplained there",
+        Obstacle::AnotherMotion => {
+            "record the proposed motion, diagnose again with its recording, and let a further motion be proposed"
+        }
+        Obstacle::Unexplained => "resolve the unexplained residual of the joint first",
         _ => instead(finding.effect, rival.effect),
     };
     let instead = instead.to_owned();
-    Untold {
+    NotSeparated {
         finding,
         rival,
         best,
@@ -60,7 +62,7 @@ pub fn untold(
     }
 }
 
-/// The experiment that tells two effects apart which no motion does.
+/// The experiment that distinguishes two effects which no motion distinguishes.
 fn instead(finding: &str, rival: &str) -> &'static str {
     let specs = [finding, rival].map(effects::spec);
     let against = |spec: Option<&'static Spec>, other: &str| {
@@ -74,7 +76,7 @@ fn instead(finding: &str, rival: &str) -> &'static str {
             .max_by_key(|experiment| experiment.rank)
             .map(|experiment| experiment.text)
     };
-    of_two
-        .or_else(of_one)
-        .unwrap_or("another sensor: a torque sensor or an encoder behind the gear, or a known load on the tool")
+    of_two.or_else(of_one).unwrap_or(
+        "add a sensor (a torque sensor or an encoder on the link side of the gear), or attach a known load to the tool",
+    )
 }

@@ -8,7 +8,7 @@ use super::limits::{Limits, rounded, taken};
 
 /// How long a motion takes (s).
 pub const DURATION: f64 = 25.0;
-/// The motion proposed is looked at so many times a second for what it needs (Hz).
+/// The rate at which the proposed motion is checked against the limits (Hz).
 pub const FINE: f64 = 500.0;
 /// It begins and ends at rest, and fades within (s).
 const FADE: f64 = 3.0;
@@ -20,11 +20,11 @@ const GOLDEN: f64 = 0.618_033_988_749_895;
 const DETUNED: f64 = 0.17;
 /// What is slow moves at this part of the speed.
 const SLOW: f64 = 0.25;
-/// A motion that needs too much is slowed down and made smaller by a factor, so often at most.
+/// The largest number of times that a motion beyond the limits is slowed down and made smaller.
 const STEPS: usize = 12;
-/// Limits are looked at so many times a second while designs are compared, and a motion is slowed down by this factor …
+/// While designs are compared: the rate at which limits are checked (Hz), and the factor by which a motion is slowed down.
 const COMPARED: (f64, f64) = (25.0, 0.85);
-/// … and so many times a second before one is proposed, by that factor.
+/// Before a motion is proposed: the rate at which limits are checked (Hz), and the factor by which it is slowed down.
 const PROPOSED: (f64, f64) = (FINE, 0.99);
 
 /// How a joint's motion is made up.
@@ -81,7 +81,7 @@ impl Design {
         self.shrunk(limits, [self.speed, self.amplitude], COMPARED)
     }
 
-    /// The same for a motion to be proposed, looked at closely, with the parts that [`Self::within`] gave or less.
+    /// The motion to be proposed, within `limits` at the finer rate, with at most the parts that [`Self::within`] returned.
     pub fn surely_within(&self, limits: &Limits, parts: [f64; 2]) -> Option<(Reference, [f64; 2])> {
         self.shrunk(limits, parts, PROPOSED)
     }

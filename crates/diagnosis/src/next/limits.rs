@@ -12,14 +12,14 @@ use crate::search::study::Study;
 const MARGIN: f64 = 0.05;
 /// The part of a velocity and an effort limit that a motion may take.
 const WITHIN: f64 = 0.8;
-/// No further from the middle of what was recorded than this many times as far as recorded, and no faster than this many
-/// times: nobody knows what stands there …
+/// The largest distance from the middle of the recorded range, as a multiple of the recorded distance, and the largest speed as
+/// a multiple of the recorded one: the environment beyond is unknown.
 const BEYOND: (f64, f64) = (1.5, 3.0);
-/// … and less far where the findings do not explain the recordings: the torque out there is not known.
+/// These multiples if the findings do not explain the recordings, because the torque beyond the recorded range is unknown.
 const BEYOND_UNEXPLAINED: (f64, f64) = (1.0, 1.5);
-/// Where the URDF has no limit: so many times the speed, and the torque, that were recorded.
+/// Without a velocity limit in the URDF: the largest speed as a multiple of the recorded one.
 const FASTER_UNLIMITED: f64 = 2.0;
-/// Likewise, of the torque.
+/// Without an effort limit in the URDF: the largest torque as a multiple of the recorded one.
 const STRONGER_UNLIMITED: f64 = 1.5;
 
 /// What each joint may do.

@@ -1,4 +1,4 @@
-//! What the recordings and a motion that nobody has made yet would say together.
+//! The evidence of the recordings together with a motion that is not recorded yet.
 
 use effects::Term;
 use torque::{Motion, Reference};
@@ -19,9 +19,9 @@ use crate::thresholds;
 
 /// Between the last recording and the motion (s).
 const BETWEEN: f64 = 10.0;
-/// Ticks of a motion are so many times further apart than those of the recordings.
+/// The ratio of a proposed motion's ticks to those of the recordings.
 const COARSER: usize = 2;
-/// A torque that depends on itself (a delay) is found in so many passes.
+/// The number of passes for a torque that depends on itself (a delay).
 const PASSES: usize = 3;
 
 /// A finding and one thing that it could be instead, as sets of columns.
@@ -49,9 +49,9 @@ pub struct Prospect<'a> {
     grid: (f64, Kernel, usize),
     /// When the motion would begin (s).
     start: f64,
-    /// Integrals over the recordings, one a joint: of [`moments`] …
+    /// The integrals of [`moments`] over the recordings, one entry per joint.
     torque: Vec<[f64; 3]>,
-    /// … and of [`powers`].
+    /// The integrals of [`powers`] over the recordings, one entry per joint.
     speed: Vec<[f64; 2]>,
 }
 
@@ -305,7 +305,7 @@ fn moments(sums: &mut [f64; 3], signal: &[f64], period: f64) {
     sums[2] += period * signal.iter().map(|v| v * v).sum::<f64>();
 }
 
-/// The same of the squares of speed and acceleration.
+/// Adds the integrals over time of the squares of speed and acceleration; ticks are `period` (s) apart.
 fn powers(sums: &mut [f64; 2], speed: &[f64], acceleration: &[f64], period: f64) {
     sums[0] += period * speed.iter().map(|v| v * v).sum::<f64>();
     sums[1] += period * acceleration.iter().map(|v| v * v).sum::<f64>();

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::findings::report::Confusable;
 
-/// The motion that tells most, and what it would tell.
+/// The proposed motion, and what it distinguishes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NextExperiment {
     /// How long the motion takes (s); `None` if none would tell more.
@@ -12,59 +12,59 @@ pub struct NextExperiment {
     /// The confusions that it should resolve.
     pub separates: Vec<Separation>,
     /// The confusions that it leaves: most of them no motion within the limits resolves. With what would.
-    pub not_separated: Vec<Untold>,
-    /// What could not be seen, and from which size it would be seen then.
+    pub not_separated: Vec<NotSeparated>,
+    /// Effects that are not testable, and their detectable size with the motion.
     pub shows: Vec<Shows>,
     /// How far the motion goes, joint by joint.
     pub limits: Vec<JointLimits>,
 }
 
-/// How far apart a finding and what it could be instead are, before the motion and after it: how much worse (nats) the
-/// rival explains the recordings. They are told apart above `needed`.
+/// The evidence (nats) for a finding against an alternative, before and after the motion. Above `needed`, the two are
+/// distinguished.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Separation {
     /// The finding.
     pub finding: Confusable,
-    /// What it could be instead.
+    /// The alternative.
     pub rival: Confusable,
-    /// In the recordings there are.
+    /// The evidence in the present recordings (nats).
     pub before: f64,
-    /// With the motion.
+    /// The evidence with the motion (nats).
     pub after: f64,
-    /// What tells them apart then.
+    /// The evidence that distinguishes them (nats).
     pub needed: f64,
 }
 
-/// A confusion that the motion leaves.
+/// A finding and an alternative that the motion does not distinguish.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Untold {
+pub struct NotSeparated {
     /// The finding.
     pub finding: Confusable,
-    /// What it could be instead.
+    /// The alternative.
     pub rival: Confusable,
-    /// The most that any motion tried would set them apart (nats).
+    /// The largest evidence of all motions that were tried (nats).
     pub best: f64,
-    /// What would tell them apart there.
+    /// The evidence that distinguishes them (nats).
     pub needed: f64,
-    /// Why it is left, in a word.
-    pub kind: Left,
-    /// The same in a sentence.
+    /// The reason in one word.
+    pub kind: Obstacle,
+    /// The reason in a sentence.
     pub because: String,
-    /// The experiment that would tell.
+    /// The experiment that distinguishes them.
     pub instead: String,
 }
 
-/// Why a motion leaves a confusion.
+/// Why a motion does not distinguish two effects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Left {
+pub enum Obstacle {
     /// The two are the same torque in every motion.
     SameTorque,
     /// No motion within the limits sets them far enough apart.
     OutOfReach,
     /// Another motion would.
     AnotherMotion,
-    /// What the joint does is not explained, so that nothing can be said of a motion nobody made.
+    /// The joint has an unexplained residual, so that the outcome of a motion cannot be predicted.
     Unexplained,
     /// On paper the recordings tell the two apart already, and they did not: the paper cannot be trusted on these two.
     NotForetold,
@@ -79,9 +79,9 @@ pub struct Shows {
     pub joint: Option<String>,
     /// What its size is called.
     pub parameter: &'static str,
-    /// The size from which (a torque limit: below which) the recordings would have shown it; `None` if at no size.
+    /// The detectable size in the present recordings (of a torque limit: the largest); `None` if there is none.
     pub before: Option<f64>,
-    /// The same with the motion.
+    /// The detectable size with the motion.
     pub after: f64,
 }
 

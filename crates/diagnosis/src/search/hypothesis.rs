@@ -79,7 +79,7 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
     for Place { wanted: one, .. } in waiting {
         let place = one.joint.as_deref().unwrap_or("the whole arm");
         let remark = format!(
-            "{} on {place}: these recordings do not try it; it is left out",
+            "{} on {place}: not testable with these recordings; it is not fitted",
             one.effect
         );
         study.motions.remarks.push(remark);

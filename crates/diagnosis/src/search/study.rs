@@ -82,7 +82,9 @@ impl Study {
         for joint in measure::dead(&motions, &rigid, &torque) {
             torque[joint] = 0.0;
             let name = &arm.joints()[joint].name;
-            let remark = format!("{name}: its torque hardly varies while the model's does; it is left out");
+            let remark = format!(
+                "{name}: the measured torque is almost constant while the model's varies; the joint is not diagnosed"
+            );
             motions.remarks.push(remark);
         }
         let scales = scales(&motions, torque);

@@ -123,7 +123,7 @@ fn normal(state: &mut u64) -> f64 {
     (0..12).map(|_| uniform(state)).sum::<f64>() - 6.0
 }
 
-/// The same on its clock.
+/// The recording on its clock.
 pub fn regular(recording: &Recording) -> RegularRecording {
     recording.regular().expect("the clock is regular").0
 }
@@ -137,7 +137,7 @@ pub fn diagnosed(believed: &Arm, robot: &Arm, concealed: Concealed<'_>, known: V
     diagnosed_with(believed, robot, concealed, &options).expect("it can be diagnosed")
 }
 
-/// The same with any options.
+/// The diagnosis with the given options.
 pub fn diagnosed_with(
     believed: &Arm,
     robot: &Arm,

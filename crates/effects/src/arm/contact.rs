@@ -13,10 +13,10 @@ pub struct ExternalContact;
 static SPEC: Spec = Spec {
     name: "external_contact",
     title: "external contact",
-    meaning: "a force on the arm for a while (a touch, a collision, a person)",
-    told_by: "the same motion once more, untouched",
-    formula: "a force on the tool for a while",
-    sentence: "a force of {force} on the tool for {duration} from {start}",
+    meaning: "a temporary external force on the arm (contact with a person or an object, a collision)",
+    told_by: "the same motion repeated without contact",
+    formula: "a force on the tool for a limited time",
+    sentence: "a force of {force} on the tool for {duration}, from {start} on",
     scope: Scope::Arm,
     parameters: &[
         Parameter::new("start", Quantity::Time),
@@ -32,7 +32,7 @@ static SPEC: Spec = Spec {
     against: Against::Time,
     experiment: Some(Experiment {
         rank: 2,
-        text: "record the same motion again with nothing in the arm's way",
+        text: "repeat the motion with the arm free of contact",
     }),
     ..Spec::EMPTY
 };
@@ -97,7 +97,7 @@ pub fn window(term: &Term) -> Option<[f64; 2]> {
     term.is(&FORCE).then_some([term.sizes[0], term.sizes[1]])
 }
 
-/// A push is no more than so many times the arm's weight on Earth: the drives could not hold against it.
+/// The largest force of a contact as a multiple of the arm's weight: the drives could not hold against a larger one.
 const MOST_CONTACT: f64 = 4.0;
 /// Gravity on Earth (m/s²).
 const GRAVITY: f64 = 9.81;

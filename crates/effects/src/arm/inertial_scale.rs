@@ -13,9 +13,9 @@ static SPEC: Spec = Spec {
     name: "inertial_scale",
     title: "inertial scale",
     meaning: "all masses and inertias are a constant multiple of the model's",
-    told_by: "a known payload: a torque scale would change it too",
+    told_by: "a known payload: a torque scale changes its apparent mass, an inertial scale does not",
     formula: "all masses and inertias × k",
-    sentence: "all masses and inertias {factor} times the model's",
+    sentence: "masses and inertias of {factor} times the model's",
     scope: Scope::Arm,
     parameters: &[Parameter::new("factor", Quantity::Ratio)
         .within(Range::Positive)

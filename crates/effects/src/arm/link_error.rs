@@ -13,9 +13,9 @@ static SPEC: Spec = Spec {
     name: "link_inertial_error",
     title: "link inertia error",
     meaning: "a link's mass or inertia differs from the model's",
-    told_by: "more postures and faster moves of the neighbouring joints",
+    told_by: "more postures, and faster motions of the neighbouring joints",
     formula: "mass and inertia of the link behind the joint × (1 + relative)",
-    sentence: "a link whose mass and inertia are off by {relative%} %",
+    sentence: "a link whose mass and inertia differ from the model's by {relative%} %",
     parameters: &[Parameter::new("relative", Quantity::Ratio)
         .within(Range::AboveMinusOne)
         .remarked("true over model, less one")],

@@ -15,8 +15,8 @@ pub struct Payload;
 static SPEC: Spec = Spec {
     name: "payload",
     title: "payload",
-    meaning: "a body at the tool that the model does not have",
-    told_by: "the same motion with and without the tool's load",
+    meaning: "a body at the tool that the model does not contain",
+    told_by: "the same motion with and without the load on the tool",
     formula: "a body on the tool",
     sentence: "a payload of {mass} at the tool",
     scope: Scope::Arm,
@@ -40,7 +40,7 @@ static SPEC: Spec = Spec {
     in_urdf: InUrdf::Inertials,
     experiment: Some(Experiment {
         rank: 9,
-        text: "take off what the tool carries and record the same motion: what is left is not a payload",
+        text: "remove the load from the tool and record the same motion: an effect that remains is not a payload",
     }),
     ..Spec::EMPTY
 };
@@ -54,7 +54,7 @@ pub static PARAMETER: Law = Law {
     ..Law::PLAIN
 };
 
-/// A payload is no more than so many times as heavy as the moving links.
+/// The largest mass of a payload as a multiple of the mass of the moving links.
 const MOST_PAYLOAD: f64 = 1.5;
 /// Loads on a tool, and their centres of mass (m) as a share of the arm's reach.
 const PAYLOAD_REACH: f64 = 0.5;

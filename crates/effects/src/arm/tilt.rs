@@ -12,9 +12,9 @@ pub struct GravityMisalignment;
 static SPEC: Spec = Spec {
     name: "gravity_misalignment",
     title: "tilted base",
-    meaning: "the base does not stand level: gravity points elsewhere than in the model",
-    told_by: "a level, or rests in postures all around the base",
-    formula: "the base tilted",
+    meaning: "the base is not level, so that the direction of gravity differs from the model's",
+    told_by: "a spirit level on the base, or static poses all around the base",
+    formula: "gravity rotated by the angle about the axis",
     sentence: "a base tilted by {angle}",
     scope: Scope::Arm,
     parameters: &[
@@ -28,7 +28,7 @@ static SPEC: Spec = Spec {
     is_behind_the_drive: true,
     experiment: Some(Experiment {
         rank: 7,
-        text: "put a level on the base: what is left then is not a tilt",
+        text: "level the base with a spirit level and record again: an effect that remains is not a tilt",
     }),
     ..Spec::EMPTY
 };

@@ -16,11 +16,11 @@ pub const FARTHEST_COUPLED: usize = 2;
 static SPEC: Spec = Spec {
     name: "transmission_coupling",
     title: "transmission coupling",
-    meaning: "another joint's motion turns this joint's drive (a geared wrist)",
-    told_by: "moves of each of the two joints alone",
-    formula: "another joint's motion turns this one's drive, and this one's that one's: it acts on both. Looked for between joints \
-              next to each other or one apart",
-    sentence: "a drive turned by {other} too, with {viscous} of friction and {inertia} of inertia",
+    meaning: "the motion of another joint turns the drive of this joint (geared wrist)",
+    told_by: "motions of each of the two joints alone",
+    formula: "the drive of each of two joints also turns with the other joint, so that the effect acts on both; tested for \
+              joints that are neighbours or have one joint between them",
+    sentence: "a drive that also turns with {other}, with a viscous friction of {viscous} and an inertia of {inertia}",
     parameters: &[
         Parameter::new("viscous", Quantity::Damping),
         Parameter::new("coulomb", Quantity::Torque).or(0.0),

@@ -9,26 +9,26 @@ use crate::{
 #[derive(Debug)]
 pub struct ActuationDelay;
 
-/// The experiment that tells what lies between drive and link from what is late.
+/// The experiment that distinguishes elasticity and backlash from a delay.
 pub(super) const SECOND_ENCODER: Experiment = Experiment {
     rank: 4,
-    text: "record a second encoder behind the gear: it sees a gap or a spring, and no delay",
+    text: "record a second encoder on the link side of the gear: it shows backlash and elasticity, and no delay",
 };
 
 static SPEC: Spec = Spec {
     name: "actuation_delay",
     title: "actuation delay",
-    meaning: "the torque comes later than it was commanded",
-    told_by: "sines at several frequencies",
+    meaning: "the torque is applied later than it is commanded",
+    told_by: "sinusoidal motions at several frequencies",
     formula: "applied(t) = commanded(t − T)",
-    sentence: "torque applied {delay} late",
+    sentence: "a delay of {delay} between commanded and applied torque",
     parameters: &[Parameter::new("delay", Quantity::Time).within(Range::NotNegative)],
     main: &["delay"],
     is_simulated: true,
     experiment: Some(SECOND_ENCODER),
     unseen: Unseen::Sized {
-        because: "a shorter delay shifts the torque by less than its noise",
-        if_none: "a shorter delay shifts the torque by less than its noise",
+        because: "a shorter delay changes the torque by less than the noise",
+        if_none: "a shorter delay changes the torque by less than the noise",
         is_seen_below: false,
     },
     unseen_turn: 5,

@@ -16,10 +16,10 @@ pub struct JointElasticity;
 static SPEC: Spec = Spec {
     name: "joint_elasticity",
     title: "joint elasticity",
-    meaning: "the drive turns the link through a spring (belt, harmonic drive)",
-    told_by: "a second encoder, or a resonance that moves with the load",
-    formula: "the drive on a spring to the link",
-    sentence: "a spring of {stiffness} between drive and link",
+    meaning: "the drive moves the link through an elastic transmission (belt, harmonic drive)",
+    told_by: "a second encoder on the link, or a resonance that changes with the load",
+    formula: "a spring and damper between drive and link",
+    sentence: "a transmission stiffness of {stiffness} between drive and link",
     parameters: &[
         Parameter::new("stiffness", Quantity::Stiffness).within(Range::Positive),
         Parameter::new("damping", Quantity::Damping).within(Range::NotNegative),
@@ -31,8 +31,8 @@ static SPEC: Spec = Spec {
     is_simulated: true,
     experiment: Some(SECOND_ENCODER),
     unseen: Unseen::Sized {
-        because: "a stiffer joint deflects less than these recordings show",
-        if_none: "a stiffer joint deflects less than these recordings show",
+        because: "a stiffer joint deflects less than these recordings can resolve",
+        if_none: "a stiffer joint deflects less than these recordings can resolve",
         is_seen_below: true,
     },
     unseen_turn: 4,

@@ -13,10 +13,10 @@ pub struct RotorInertia;
 static SPEC: Spec = Spec {
     name: "rotor_inertia",
     title: "rotor inertia",
-    meaning: "the drive's own rotor, which the gear makes heavy at the joint",
+    meaning: "the inertia of the drive's rotor, reflected to the joint by the gear",
     told_by: "the same accelerations in other postures, with and without a payload",
     formula: "Ia q̈",
-    sentence: "a drive's inertia of {inertia}",
+    sentence: "a reflected rotor inertia of {inertia}",
     parameters: &[Parameter::new("inertia", Quantity::Inertia).within(Range::NotNegative)],
     main: &["inertia"],
     prior: 4.0,
@@ -25,8 +25,8 @@ static SPEC: Spec = Spec {
     against: Against::Acceleration,
     experiment: Some(Experiment {
         rank: 8,
-        text: "put a body of known inertia on the tool: a drive's inertia does not change with the pose and the load, a link's does; \
-               or take the drive's from its data sheet (--known)",
+        text: "attach a body of known inertia to the tool: the rotor inertia is independent of posture and load, the inertia of a \
+               link is not; or take the rotor inertia from the data sheet (--known)",
     }),
     unseen: Unseen::LINEAR,
     unseen_turn: 7,

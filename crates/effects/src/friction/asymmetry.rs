@@ -10,17 +10,16 @@ use crate::{
 #[derive(Debug)]
 pub struct FrictionAsymmetry;
 
-/// What tells an offset of the reading from friction where no motion does.
-const BRAKE: &str =
-    "read the drive's torque with its brake closed and no current: an offset of the reading stays, friction does not";
+/// The experiment that distinguishes a torque offset from friction where no motion does.
+const BRAKE: &str = "read the torque with the brake closed and no current: a torque offset persists, friction does not";
 
 static SPEC: Spec = Spec {
     name: "friction_asymmetry",
     title: "asymmetric friction",
-    meaning: "dry friction that differs between the two directions",
-    told_by: "rests between moves of both directions: an offset stays at rest, asymmetric friction does not",
+    meaning: "Coulomb friction that differs between the two directions of motion",
+    told_by: "pauses between motions in both directions: an offset persists at rest, asymmetric friction does not",
     formula: "F₊ forwards, −F₋ backwards",
-    sentence: "dry friction that depends on the direction, {positive} forwards and {negative} backwards",
+    sentence: "Coulomb friction that depends on the direction, {positive} forwards and {negative} backwards",
     parameters: &[
         Parameter::new("positive", Quantity::Torque),
         Parameter::new("negative", Quantity::Torque),

@@ -13,10 +13,10 @@ pub struct CoulombFriction;
 static SPEC: Spec = Spec {
     name: "coulomb_friction",
     title: "Coulomb friction",
-    meaning: "dry friction: a constant torque against the motion, whatever its speed",
+    meaning: "dry friction: a torque of constant magnitude against the motion",
     told_by: "slow reversals of this joint alone",
     formula: "Fc sgn q̇",
-    sentence: "dry friction of {level}",
+    sentence: "Coulomb friction of {level}",
     parameters: &[Parameter::new("level", Quantity::Torque).within(Range::NotNegative)],
     main: &["level"],
     prior: 2.0,

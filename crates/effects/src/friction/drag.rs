@@ -14,8 +14,8 @@ static SPEC: Spec = Spec {
     title: "quadratic drag",
     meaning: "a torque against the motion that grows with the square of its speed",
     told_by: "a wider range of speeds",
-    formula: "c |q̇|ᵖ sgn q̇, p about 2: it is fitted, between 1.4 and 3.2",
-    sentence: "a drag of {coefficient}",
+    formula: "c |q̇|ᵖ sgn q̇; the exponent p is about 2 and is fitted between 1.4 and 3.2",
+    sentence: "quadratic drag of {coefficient}",
     parameters: &[
         Parameter::new("coefficient", Quantity::Drag).within(Range::NotNegative),
         Parameter::new("exponent", Quantity::Ratio).or(2.0).remarked(""),

@@ -13,10 +13,10 @@ pub struct LoadDependentFriction;
 static SPEC: Spec = Spec {
     name: "load_dependent_friction",
     title: "load-dependent friction",
-    meaning: "gear friction that grows with the torque the gear carries",
+    meaning: "gear friction that grows with the torque transmitted by the gear",
     told_by: "the same speed under several loads or postures",
     formula: "(F₀ + μ |τ rigid|) sgn q̇",
-    sentence: "dry friction of {coulomb} and {gain} of the load",
+    sentence: "Coulomb friction of {coulomb}, plus {gain} times the load torque",
     parameters: &[
         Parameter::new("coulomb", Quantity::Torque).within(Range::NotNegative),
         Parameter::new("gain", Quantity::Ratio)

@@ -15,10 +15,10 @@ pub struct StribeckFriction;
 static SPEC: Spec = Spec {
     name: "stribeck_friction",
     title: "Stribeck friction",
-    meaning: "dry friction that is larger at very low speed (breakaway) than in motion",
-    told_by: "constant speeds from creeping upwards",
+    meaning: "Coulomb friction that is larger at very low speed (breakaway) than in fast motion",
+    told_by: "motions at constant speeds, from very slow to fast",
     formula: "(Fc + (Fs − Fc) e^(−|q̇/v|^δ)) sgn q̇",
-    sentence: "dry friction that falls from {breakaway} to {coulomb} within about {velocity}",
+    sentence: "friction that falls from {breakaway} at breakaway to {coulomb}, with a Stribeck velocity of {velocity}",
     parameters: &[
         Parameter::new("coulomb", Quantity::Torque).within(Range::NotNegative),
         Parameter::new("breakaway", Quantity::Torque).within(Range::NotNegative),
@@ -52,7 +52,7 @@ pub static FADING: Law = Law {
     ..Law::PLAIN
 };
 
-/// What is left at a speed of what breaking away takes more.
+/// The remaining share of the additional breakaway friction at a speed.
 fn fading(qd: f64, velocity: f64, exponent: f64) -> f64 {
     (-(qd / velocity).abs().powf(exponent)).exp()
 }

@@ -16,10 +16,10 @@ pub const FASTEST_WARMING: f64 = 8.0;
 static SPEC: Spec = Spec {
     name: "thermal_drift",
     title: "warming friction",
-    meaning: "dry friction that falls as the drive warms up",
-    told_by: "a longer recording from cold, one motion repeated",
-    formula: "dry friction × (1 + a e^(−t/T))",
-    sentence: "dry friction of {coulomb}, larger by a factor {amplitude} at first, fading within {time_constant}",
+    meaning: "Coulomb friction that falls as the drive warms up",
+    told_by: "a longer recording of one repeated motion that starts with a cold drive",
+    formula: "Coulomb friction × (1 + a e^(−t/T))",
+    sentence: "Coulomb friction of {coulomb} on the warm drive, larger by {amplitude%} % at first, with a time constant of {time_constant}",
     parameters: &[
         Parameter::new("coulomb", Quantity::Torque)
             .within(Range::NotNegative)
@@ -36,10 +36,10 @@ static SPEC: Spec = Spec {
     against: Against::TimeAlong,
     experiment: Some(Experiment {
         rank: 3,
-        text: "record the same motion on the cold and on the warm drive, on one clock",
+        text: "record the same motion with the cold and with the warm drive, on one clock",
     }),
     unseen: Unseen::Linear {
-        if_no_form: Some("the recordings are shorter than a drive takes to warm"),
+        if_no_form: Some("the recordings are shorter than the time that a drive takes to warm up"),
         is_of_first: true,
         is_of_all_torque: false,
     },

@@ -13,8 +13,8 @@ pub struct ViscousFriction;
 static SPEC: Spec = Spec {
     name: "viscous_friction",
     title: "viscous friction",
-    meaning: "a torque against the motion, in proportion to its speed",
-    told_by: "several constant speeds, slow to fast",
+    meaning: "a torque against the motion, proportional to its speed",
+    told_by: "motions at several constant speeds, from slow to fast",
     formula: "Fv q̇",
     sentence: "viscous friction of {coefficient}",
     parameters: &[Parameter::new("coefficient", Quantity::Damping).within(Range::NotNegative)],

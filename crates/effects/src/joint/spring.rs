@@ -15,8 +15,8 @@ static SPEC: Spec = Spec {
     title: "spring",
     meaning: "a torque that depends on the joint's position (counterbalance, gas spring, cable)",
     told_by: "slow sweeps over the whole range, with and without a payload",
-    formula: "K (q − q₀), or a curve where it bends",
-    sentence: "a spring-like torque of {stiffness} about {rest}",
+    formula: "K (q − q₀), or a curve over the position where the spring is nonlinear",
+    sentence: "a spring torque with a stiffness of {stiffness} and its zero at {rest}",
     parameters: &[
         Parameter::new("stiffness", Quantity::Stiffness),
         Parameter::new("rest", Quantity::Position),
@@ -37,9 +37,9 @@ static SPEC: Spec = Spec {
 
 /// A point of a curve counts where the joint, in motion, comes so near that its tent is this high.
 const VISITED: f64 = 0.5;
-/// Between its points a spring's curve may fall, for noise, by this part of all its rise …
+/// The largest part of its total rise by which a spring's curve may fall between two points, due to noise.
 const LARGEST_FALL: f64 = 0.05;
-/// … and on the whole by this part.
+/// The largest part of its total rise by which a spring's curve may fall over all its points together.
 const ALL_FALLS: f64 = 0.1;
 /// The points of a curve.
 const POINTS: usize = 12;

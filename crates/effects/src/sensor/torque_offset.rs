@@ -14,7 +14,7 @@ static SPEC: Spec = Spec {
     name: "torque_offset",
     title: "torque offset",
     meaning: "a constant added to the measured torque",
-    told_by: "rests in several postures",
+    told_by: "static poses in several postures",
     formula: "constant",
     sentence: "a constant torque of {offset}",
     parameters: &[Parameter::new("offset", Quantity::Torque)],

@@ -14,10 +14,10 @@ pub struct TorqueScale;
 static SPEC: Spec = Spec {
     name: "torque_scale",
     title: "torque scale",
-    meaning: "the measured torque is a constant multiple of the true one (a gain or a torque constant is wrong)",
+    meaning: "the measured torque is a constant multiple of the true torque (wrong gain or torque constant)",
     told_by: "a known payload",
     formula: "measured = k × true",
-    sentence: "torque measured {factor} times too large",
+    sentence: "a measured torque of {factor} times the true torque",
     parameters: &[Parameter::new("factor", Quantity::Ratio)
         .within(Range::Positive)
         .neutral_at(1.0)
@@ -38,8 +38,8 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-const KNOWN_BODY: &str = "put a body of known mass on the tool and record the same motion: a wrong scale of the torque changes its weight, \
-     wrong masses of the links do not";
+const KNOWN_BODY: &str = "attach a body of known mass to the tool and record the same motion: a torque scale changes its apparent weight, \
+     wrong link masses do not";
 
 impl EffectKind for TorqueScale {
     fn spec(&self) -> &'static Spec {

@@ -59,7 +59,7 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
         });
     };
     if joints.iter().all(|joint| !joint.moves) {
-        let text = "no joint moves, so nothing but gravity and offsets can be learnt; record a motion".into();
+        let text = "no joint moves, so that only gravity and offsets can be identified; record a motion".into();
         add(FindingKind::NoMotion, None, text);
     }
     for joint in joints.iter().filter(|joint| joint.tau_range.0 == joint.tau_range.1) {
@@ -72,7 +72,7 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
     for (index, joint) in joints.iter().enumerate() {
         if let Some((_, other)) = swapped.iter().find(|(position, _)| *position == index) {
             let text = format!(
-                "its recorded velocity is not its position's slope, but that of \"{}\" is; were columns swapped? Mend the \
+                "its recorded velocity is not its position's slope, but that of \"{}\" is; were columns swapped? Correct the \
                  header or map the columns",
                 joints[*other].joint
             );
@@ -87,7 +87,7 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
         if reach > 4.0 * std::f64::consts::PI && !in_degrees {
             let text = format!(
                 "positions reach {}: degrees taken for radians, or millimetres for metres? Give q_unit in a column \
-                 map; for a joint that turns without end this is as it should be",
+                 map; for a continuous joint this is normal",
                 if reach < 1e4 {
                     format!("{reach:.1}")
                 } else {
@@ -98,7 +98,7 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
         }
         for (value, share) in joint.plateaus.iter().flatten() {
             let text = format!(
-                "the torque stays at its extreme of {value:.4} for {:.1} % of the time: a limit? What the model asked beyond \
+                "the torque stays at its extreme of {value:.4} for {:.1} % of the time: a limit? Commanded torque beyond \
                  it was not applied",
                 100.0 * share
             );
@@ -107,7 +107,7 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
         let range = joint.q_range.1 - joint.q_range.0;
         if let Some(step) = joint.q_step.filter(|&step| joint.moves && step > range / 1000.0) {
             let text = format!(
-                "the encoder's step ({step:.2e}) is {:.1} % of the whole motion; accelerations will be coarse: move further",
+                "the encoder's step ({step:.2e}) is {:.1} % of the whole motion; the accelerations are coarse: use a larger motion",
                 100.0 * step / range
             );
             add(FindingKind::CoarseEncoder, Some(joint), text);
@@ -120,7 +120,7 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
         .collect();
     if !still.is_empty() && still.len() < joints.len() {
         let text = format!(
-            "{} {} not move: nothing of {} friction or drive can be learnt here",
+            "{} {} not move, so that {} friction and drive cannot be identified",
             still.join(", "),
             if still.len() == 1 { "does" } else { "do" },
             if still.len() == 1 { "its" } else { "their" },
@@ -133,7 +133,7 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
         && most.abs().max(least.abs()) > (0.5 * regular.period).max(5e-4)
     {
         let text = format!(
-            "recorded velocities are {}: filtered, it seems; testbed differentiates the positions instead",
+            "recorded velocities are {}, probably by a filter; testbed differentiates the positions instead",
             lateness(*least, *most)
         );
         add(FindingKind::VelocityLate, None, text);
@@ -164,7 +164,7 @@ fn velocity(joint: &JointQuality, add: &mut impl FnMut(FindingKind, Option<&Join
     let Some(ratio) = joint.velocity_ratio else {
         if let Some(correlation) = joint.velocity_correlation.filter(|correlation| correlation.abs() < 0.6) {
             let text = format!(
-                "the recorded velocity has little to do with the position's slope (correlation {correlation:.2}); check its \
+                "the recorded velocity is hardly correlated with the position's derivative (correlation {correlation:.2}); check its \
                  column"
             );
             add(FindingKind::VelocityUnrelated, Some(joint), text);
@@ -177,7 +177,7 @@ fn velocity(joint: &JointQuality, add: &mut impl FnMut(FindingKind, Option<&Join
             .is_some_and(|correlation| correlation.abs() > 0.95)
     {
         let text =
-            "the recorded velocity has the sign opposite to the position's slope; turn one (sign in a column map)";
+            "the recorded velocity has the sign opposite to the position's slope; invert one (sign in a column map)";
         add(FindingKind::VelocitySign, Some(joint), text.into());
     }
     let size = ratio.abs();

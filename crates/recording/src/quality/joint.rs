@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::measures;
-use super::velocity::Motion;
+use super::velocity::Slopes;
 use crate::{Recording, RegularRecording};
 
 /// The least motion that counts as one (rad or m).
@@ -50,7 +50,7 @@ pub struct JointQuality {
 
 impl JointQuality {
     /// The quality of `joint`, which moves by `motion`; nothing yet about its recorded velocity.
-    pub(super) fn of(recording: &Recording, regular: &RegularRecording, joint: usize, motion: &Motion) -> Self {
+    pub(super) fn of(recording: &Recording, regular: &RegularRecording, joint: usize, motion: &Slopes) -> Self {
         let (q, tau) = (&regular.q[joint], &regular.tau[joint]);
         let (low, high) = measures::range(q);
         // Interpolated values lie between the quantiser's.

@@ -13,7 +13,7 @@ const MOST_TICKS: usize = 80;
 const SAMPLES: usize = 20_000;
 
 /// A joint's velocity by slopes of its position.
-pub struct Motion {
+pub struct Slopes {
     /// Slopes, at every tick that has the neighbours; 0 elsewhere.
     pub speed: Vec<f64>,
     /// Neighbours on either side that a slope takes.
@@ -22,7 +22,7 @@ pub struct Motion {
     pub gain: f64,
 }
 
-impl Motion {
+impl Slopes {
     /// The slopes of `q` over some milliseconds.
     pub fn of(q: &[f64], segments: &[Segment], period: f64) -> Self {
         let side = ((SPAN / period).round() as usize).clamp(1, 16);
@@ -66,7 +66,7 @@ fn likeness(first: &[f64], second: &[f64], ticks: &[usize], limit: isize) -> f64
 
 /// Compares recorded velocities with the positions' slopes, into `joints`; the pairs of joints
 /// (position, velocity) whose velocities are swapped.
-pub fn compare(regular: &RegularRecording, motions: &[Motion], joints: &mut [JointQuality]) -> Vec<(usize, usize)> {
+pub fn compare(regular: &RegularRecording, motions: &[Slopes], joints: &mut [JointQuality]) -> Vec<(usize, usize)> {
     let Some(qd) = &regular.qd else { return Vec::new() };
     let reach = ((LONGEST_LAG / regular.period) as usize).clamp(4, MOST_TICKS);
     let Some(side) = motions.first().map(|motion| motion.side + reach) else {

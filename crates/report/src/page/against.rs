@@ -1,4 +1,4 @@
-//! Against which state an effect shows: its horizontal axis, and how residuals are turned for it.
+//! The state against which an effect is drawn: its horizontal axis, and the sign that is applied to residuals.
 
 use arm::{Arm, JointKind};
 use diagnosis::{Finding, Trace};
@@ -16,14 +16,14 @@ pub enum Against {
     LoadAlong,
     /// Time; torques count along the motion.
     TimeAlong,
-    /// What the effect predicts, where no one state tells it.
+    /// The torque that the effect predicts, where no single state describes it.
     Predicted,
     /// The speed of another joint.
     OtherSpeed(usize),
 }
 
 impl Against {
-    /// What tells most about `finding`.
+    /// The state that shows `finding` best.
     pub fn of(finding: &Finding, arm: &Arm) -> Self {
         use effects::Against as Of;
         let spec = effects::spec(finding.effect);
@@ -44,7 +44,7 @@ impl Against {
         }
     }
 
-    /// What a leftover depends on, where that is one quantity of the state.
+    /// The state that an unexplained residual depends on, where it is a single quantity.
     pub fn of_dependence(code: &str, arm: &Arm) -> Option<Self> {
         match code {
             "own_position" => Some(Self::Position),
@@ -72,14 +72,14 @@ impl Against {
         let torque = unit("torque", "force");
         match self {
             Self::Position => ("position".into(), unit("rad", "m")),
-            Self::Speed => ("speed".into(), unit("rad/s", "m/s")),
+            Self::Speed => ("velocity".into(), unit("rad/s", "m/s")),
             Self::Acceleration => ("acceleration".into(), unit("rad/s²", "m/s²")),
             Self::Time | Self::TimeAlong => ("time".into(), "s"),
-            Self::Load => (format!("the model's {torque}"), unit("N m", "N")),
-            Self::LoadAlong => (format!("the model's |{torque}|"), unit("N m", "N")),
-            Self::Predicted => (format!("{torque} that the effect predicts"), unit("N m", "N")),
+            Self::Load => (format!("model {torque}"), unit("N m", "N")),
+            Self::LoadAlong => (format!("model |{torque}|"), unit("N m", "N")),
+            Self::Predicted => (format!("{torque} predicted by the effect"), unit("N m", "N")),
             Self::OtherSpeed(other) => (
-                format!("speed of {}", arm.joints()[other].name),
+                format!("velocity of {}", arm.joints()[other].name),
                 if slides(other) { "m/s" } else { "rad/s" },
             ),
         }
@@ -102,7 +102,7 @@ impl Against {
         }
     }
 
-    /// What torques are multiplied by at a row: the sign of the motion, or one.
+    /// The factor applied to torques at a row: the sign of the velocity, or one.
     pub fn turn(self, trace: &Trace, joint: usize, row: usize) -> f64 {
         if !self.is_along() {
             return 1.0;

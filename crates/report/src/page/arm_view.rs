@@ -1,4 +1,4 @@
-//! The arm as it stood in a recording, its joints coloured by how far the model misses there.
+//! The arm in a posture of a recording, its joints coloured by the nominal model's torque error.
 
 use arm::{Arm, Vector3, Workspace};
 use diagnosis::{Report, Traces};
@@ -17,7 +17,7 @@ const RADIUS: f64 = 12.0;
 const LABEL: f64 = 46.0;
 const LONGEST_LABEL: usize = 34;
 
-/// Upper ends of the colours' ranges: nominal error over the spread of the torque.
+/// Upper bounds of the colour classes: nominal error over the torque's standard deviation.
 pub const CLASSES: [f64; 4] = [0.05, 0.15, 0.4, 0.8];
 
 /// The colour's class of an error.
@@ -213,29 +213,29 @@ fn spread_out(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
 /// Names and findings at both sides, with lines to the joints.
 fn labels(svg: &mut Svg, report: &Report, arm: &Arm, joints: &[[f64; 2]], tool: [f64; 2]) {
     let mut all: Vec<Label> = Vec::new();
-    let causes = |joint: Option<&str>| {
+    let effects = |joint: Option<&str>| {
         let own = report
             .findings
             .iter()
             .filter(|finding| finding.joint.as_deref() == joint);
-        let names: Vec<String> = own.map(words::cause).collect();
+        let names: Vec<String> = own.map(words::effect).collect();
         names.join(", ")
     };
     for (i, joint) in arm.joints().iter().enumerate() {
         let error = report.fit.get(&joint.name).map(|fit| fit.train_nrmse_nominal);
-        let mut below = causes(Some(&joint.name));
-        if report.unexplained.iter().any(|left| left.joint == joint.name) {
+        let mut below = effects(Some(&joint.name));
+        if report.unexplained.iter().any(|open| open.joint == joint.name) {
             below = if below.is_empty() {
-                "unexplained".into()
+                "unexplained residual".into()
             } else {
-                format!("{below}, unexplained")
+                format!("{below}, unexplained residual")
             };
         }
         let name = match error {
             Some(error) => format!(
                 "{} · {}",
                 clipped(&joint.name, LONGEST_LABEL - 7),
-                numbers::percent(error)
+                numbers::share(error)
             ),
             None => clipped(&joint.name, LONGEST_LABEL),
         };
@@ -246,7 +246,7 @@ fn labels(svg: &mut Svg, report: &Report, arm: &Arm, joints: &[[f64; 2]], tool: 
             link: Some(i),
         });
     }
-    let whole = causes(None);
+    let whole = effects(None);
     if !whole.is_empty() {
         all.push(Label {
             at: tool,
@@ -323,7 +323,7 @@ fn legend(svg: &mut Svg) {
         [WIDTH - 470.0, y + 4.0],
         "tick",
         "end",
-        "model's torque error, of the joint's torque",
+        "model's torque error over the torque's std",
     );
     let mut from = 0.0;
     for class in 0..=CLASSES.len() {

@@ -1,4 +1,4 @@
-//! Residuals against the state that matters, before and after, the named effect drawn through them.
+//! Residuals against a state, before and after, with the effect drawn through them.
 
 use diagnosis::{Finding, Trace};
 
@@ -14,14 +14,14 @@ const PANEL: [f64; 2] = [530.0, 300.0];
 type Point = [f64; 4];
 
 impl Figures<'_> {
-    /// Before and after against the state that matters to finding number `index`, the effect drawn through.
+    /// The residuals before and after, against the state that shows finding number `index`, with its effect drawn through them.
     pub fn against_state(&self, finding: &Finding, index: usize, joint: usize) -> Option<[String; 2]> {
         let against = Against::of(finding, self.arm);
         let mut points = self.points_of(index, joint, against);
         if let (Against::Time, Some(first), Some(last)) =
             (against, finding.place.time.first(), finding.place.time.last())
         {
-            // What is far from it would only make it narrow.
+            // Data far from the event would only make it narrow in the figure.
             let around = 2.0 * (last[1] - first[0]).max(0.1);
             points.retain(|point| (first[0] - around..=last[1] + around).contains(&point[0]));
         }
@@ -33,17 +33,17 @@ impl Figures<'_> {
         self.cloud(joint, against, &points, bins)
     }
 
-    /// What is left on a joint, against a state that it depends on.
-    pub fn leftover(&self, joint: usize, against: Against) -> Option<String> {
+    /// The residual of a joint with all effects found, against a state that it depends on.
+    pub fn unexplained(&self, joint: usize, against: Against) -> Option<String> {
         let mut points = Vec::new();
         for trace in &self.traces.recordings {
-            for (row, left) in trace.residual_augmented.get(joint).into_iter().flatten().enumerate() {
+            for (row, residual) in trace.residual_augmented.get(joint).into_iter().flatten().enumerate() {
                 let moves = trace.moving.get(joint).and_then(|moving| moving.get(row));
                 let Some(state) = against.value(trace, joint, row).filter(|_| moves != Some(&false)) else {
                     continue;
                 };
-                if state.is_finite() && left.is_finite() {
-                    points.push([state, *left, *left, 0.0]);
+                if state.is_finite() && residual.is_finite() {
+                    points.push([state, *residual, *residual, 0.0]);
                 }
             }
         }

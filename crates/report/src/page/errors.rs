@@ -1,4 +1,4 @@
-//! How well each joint is predicted: the chart and table of held-out errors, and the simulated motion.
+//! How well each joint's torque is predicted: chart and table of the errors, and the simulated motion.
 
 use arm::JointKind;
 use diagnosis::JointFit;
@@ -31,22 +31,22 @@ impl Page<'_> {
         let optional = |value: Option<f64>| value.map_or("–".to_owned(), numbers::nrmse);
         let is_held_out = fits.iter().any(|(_, _, fit)| fit.held_out_nrmse_nominal.is_some());
         html! {
-            h2 { "Torque error, joint by joint" }
+            h2 { "Torque error of each joint" }
             @if !is_held_out {
-                p { "There are no errors on held-out recordings: these are on the recordings that were fitted, which flatters." }
+                p { "No recording was held out. These are the errors on the training recordings, which underestimate the error on other motions." }
             }
             figure {
                 (PreEscaped(dumbbells(&fits)))
                 figcaption {
-                    (key("dot k-before", "nominal model")) (key("dot k-after", "with the named effects"))
-                    @if is_held_out { (key("dot k-learned", "learned correction (IJL), for comparison")) }
+                    (key("dot k-before", "nominal model")) (key("dot k-after", "with the effects found"))
+                    @if is_held_out { (key("dot k-learned", "learned correction (Independent Joint Learning), for comparison")) }
                 }
             }
             div.scroll { table {
                 thead { tr {
-                    th { "joint" } th.n { "spread of the torque" }
-                    th.n { "nominal" } th.n { "with named effects" } th.n { "learned" }
-                    th.n { "at rest, nominal → named" } th.n { "fitted, nominal → named" } th.n { "left at .1 s" }
+                    th { "joint" } th.n { "torque, standard deviation" }
+                    th.n { "nominal" } th.n { "with effects" } th.n { "learned" }
+                    th.n { "at rest, nominal → with effects" } th.n { "training, nominal → with effects" } th.n { "autocorrelation at 0.1 s" }
                 } }
                 tbody {
                     @for (joint, name, fit) in &fits {
@@ -64,26 +64,27 @@ impl Page<'_> {
                 }
             } }
             p.small.soft {
-                "Errors are RMS over the spread of the measured torque: 1 is as good as knowing the mean torque alone. Nominal, named \
-                 and learned are on held-out recordings, where the joint moves. At rest, dry friction may hold any torque up to its level: \
-                 the error is what is beyond it. The last column is \
-                 the autocorrelation of what is left at a lag of .1 s: near 0 nothing more can be learnt from it."
+                "Errors are RMS torque errors over the standard deviation of the measured torque: a prediction by the mean torque \
+                 has an error of 1. The columns nominal, with effects and learned are for the held-out recordings while the joint \
+                 moves. At rest, dry friction can hold any torque up to its level, and the error is the excess over that level. The \
+                 last column is the autocorrelation of the residual at a lag of 0.1 s: a value near 0 means that the residual is \
+                 noise."
             }
         }
     }
 
-    /// How the simulated arm follows the recording.
+    /// How closely the simulated arm follows the recording.
     pub(super) fn rollout(&self) -> Markup {
         if self.report.rollout.is_empty() {
             return html! {};
         }
         let joints = self.figures.arm.joints();
         html! {
-            h2 { "Simulated motion against the recording" }
-            p { "The simulated arm is driven by the recorded torques, first as the model has it, then with the named effects added." }
+            h2 { "Simulated motion compared with the recording" }
+            p { "The simulated arm is driven by the recorded torques, first with the nominal model, then with the effects found." }
             div.scroll { table {
                 thead { tr {
-                    th { "joint" } th.n { "nominal, RMS distance" } th.n { "with named effects" } th.n { "smaller by a factor of" }
+                    th { "joint" } th.n { "nominal, RMS position error" } th.n { "with effects" } th.n { "reduction factor" }
                 } }
                 tbody {
                     @for joint in joints {
@@ -104,7 +105,7 @@ impl Page<'_> {
     }
 }
 
-/// Better or worse than before, by class; neither where there is no telling.
+/// The style class of an error that fell or rose; none where it hardly changed.
 fn verdict_of(fit: &JointFit) -> Option<&'static str> {
     let factor = fit.held_out_nrmse_nominal? / fit.held_out_nrmse_augmented?;
     better(factor, 1.02)
@@ -120,7 +121,7 @@ fn better(factor: f64, from: f64) -> Option<&'static str> {
     }
 }
 
-/// A row a joint: nominal, named and learned error on a logarithmic axis.
+/// One row per joint: the nominal, augmented and learned error on a logarithmic axis.
 fn dumbbells(fits: &[(usize, &str, &JointFit)]) -> String {
     let values = |fit: &JointFit| match (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented) {
         (None, None) => [Some(fit.train_nrmse_nominal), Some(fit.train_nrmse_augmented), None],
@@ -149,7 +150,7 @@ fn dumbbells(fits: &[(usize, &str, &JointFit)]) -> String {
             }
         }
     }
-    let title = "RMS error over the spread of the torque (logarithmic)";
+    let title = "RMS torque error over the torque's standard deviation (logarithmic)";
     svg.text([0.5 * (LEFT + RIGHT), bottom + 35.0], "axis", "middle", title);
     for (row, (joint, name, fit)) in fits.iter().enumerate() {
         let y = 10.0 + ROW * (row as f64 + 0.5);

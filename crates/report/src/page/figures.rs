@@ -6,7 +6,7 @@ use diagnosis::{TimeWindow, Trace, Traces};
 use crate::chart::{Scale, Svg, thinned};
 use crate::numbers;
 
-/// What the figures of one page share.
+/// The data that all figures of a page are drawn from.
 pub struct Figures<'a> {
     pub traces: &'a Traces,
     pub arm: &'a Arm,
@@ -19,7 +19,7 @@ const STRIP: [f64; 2] = [1080.0, 250.0];
 pub const LEFT: f64 = 66.0;
 
 impl Figures<'_> {
-    /// What the joint's torque is measured in.
+    /// The unit of the joint's torque.
     pub fn torque_unit(&self, joint: usize) -> &'static str {
         match self.arm.joints()[joint].kind {
             JointKind::Revolute => "N m",
@@ -136,7 +136,7 @@ fn heading(trace: &Trace, number: usize, room: f64) -> String {
     .unwrap_or_default()
 }
 
-/// Stretches of time in which the joint rests.
+/// Intervals of time in which the joint is at rest.
 fn rests(trace: &Trace, joint: usize) -> Vec<[f64; 2]> {
     let Some(moving) = trace.moving.get(joint) else {
         return Vec::new();

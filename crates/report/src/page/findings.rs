@@ -1,4 +1,4 @@
-//! A section a joint: its residual in time, then every finding with its figures and parameters.
+//! One section per joint: its residual over time, then each finding with its figures and parameters.
 
 use diagnosis::{Finding, Located, Unexplained};
 use maud::{Markup, PreEscaped, html};
@@ -8,7 +8,7 @@ use super::place::regions;
 use super::{Page, key};
 use crate::{numbers, terminal, words};
 
-/// A joint shows a whole-arm effect's figure from this share of its torque on.
+/// The share of a joint's torque from which a whole-arm effect is shown in the joint's section.
 const SHOWN_SHARE: f64 = 0.02;
 
 impl Page<'_> {
@@ -32,7 +32,7 @@ impl Page<'_> {
                     .is_some_and(|share| *share >= SHOWN_SHARE)
         };
         self.report.findings.iter().any(touches)
-            || self.report.unexplained.iter().any(|left| left.joint == name)
+            || self.report.unexplained.iter().any(|open| open.joint == name)
             || self.located(name).is_some()
     }
 
@@ -68,56 +68,56 @@ impl Page<'_> {
             @for (index, finding) in self.findings_on(Some(name)) { (self.finding(index, finding)) }
             @let others = self.shared(name);
             @if !others.is_empty() {
-                p { "Effects of the whole arm or of other joints act here too: "
+                p { "Effects of the whole arm or of other joints also act on this joint: "
                     @for (number, (index, finding)) in others.iter().enumerate() {
                         @if number > 0 { ", " }
-                        a href={ "#finding-" (index + 1) } { (words::cause(finding)) }
-                        @if let Some(share) = finding.share_by_joint.get(name) { " (" (numbers::percent(*share)) " of the torque)" }
+                        a href={ "#finding-" (index + 1) } { (words::effect(finding)) }
+                        @if let Some(share) = finding.share_by_joint.get(name) { " (" (numbers::share(*share)) " of the torque)" }
                     }
                     "."
                 }
             }
-            @for left in self.report.unexplained.iter().filter(|left| left.joint == name) {
+            @for open in self.report.unexplained.iter().filter(|open| open.joint == name) {
                 div.finding.open {
-                    h4 { "Unexplained" span.size { (numbers::percent(left.share)) " of the torque" } }
+                    h4 { "Unexplained residual" span.size { (numbers::of_torque_spread(open.share)) } }
                     p.sentence {
-                        @if left.depends_on.is_empty() {
-                            "What is left has structure, but nothing that was tried predicts it."
+                        @if open.depends_on.is_empty() {
+                            "The residual has structure, but no regressor that was tried predicts it."
                         } @else {
-                            @let on: Vec<String> = left.depends_on.iter().map(|code| words::dependence(code)).collect();
-                            "What is left depends on " (words::list(&on)) ", in a way that is none of the catalogue's."
+                            @let on: Vec<String> = open.depends_on.iter().map(|code| words::dependence(code)).collect();
+                            "The residual depends on " (words::list(&on)) ", in a way that no effect in the catalogue describes."
                         }
                     }
-                    (self.leftovers(joint, left))
-                    @if !left.next.is_empty() { p { b { "Measure next: " } (left.next) } }
+                    (self.residuals_against(joint, open))
+                    @if !open.next.is_empty() { p { b { "Next experiment: " } (open.next) "." } }
                 }
             }
         }
     }
 
-    /// What is left against what it depends on: two figures at the most.
-    fn leftovers(&self, joint: usize, left: &Unexplained) -> Markup {
+    /// The residual against the quantities that it depends on, in at most two figures.
+    fn residuals_against(&self, joint: usize, open: &Unexplained) -> Markup {
         let arm = self.figures.arm;
-        let states = left
+        let states = open
             .depends_on
             .iter()
             .filter_map(|code| Against::of_dependence(code, arm));
         let panels: Vec<String> = states
-            .filter_map(|against| self.figures.leftover(joint, against))
+            .filter_map(|against| self.figures.unexplained(joint, against))
             .take(2)
             .collect();
         html! {
             @if !panels.is_empty() {
                 div.pair {
                     @for panel in panels {
-                        figure { (PreEscaped(panel)) figcaption { (key("k-after", "what is left, all named effects taken out")) } }
+                        figure { (PreEscaped(panel)) figcaption { (key("k-after", "residual with all effects found")) } }
                     }
                 }
             }
         }
     }
 
-    /// The residuals of joints without a section, folded away.
+    /// The residuals of the joints without a section, in a collapsed block.
     pub(super) fn quiet_joints(&self) -> Markup {
         let quiet = (0..self.figures.arm.dof()).filter(|&joint| !self.has_section(joint));
         let strips: Vec<_> = quiet
@@ -126,7 +126,7 @@ impl Page<'_> {
         html! {
             @if !strips.is_empty() {
                 details {
-                    summary { "Residuals of the joints where nothing was found (" (strips.len()) ")" }
+                    summary { "Residuals of the joints without findings (" (strips.len()) ")" }
                     @for (joint, strip) in strips {
                         h3 { "Joint " (joint + 1) " · " (self.figures.arm.joints()[joint].name) }
                         figure { (PreEscaped(strip)) figcaption { (self.residual_key(false)) } }
@@ -136,7 +136,7 @@ impl Page<'_> {
         }
     }
 
-    /// Findings not of this joint that act on it.
+    /// Findings of other joints or of the whole arm that act on this joint.
     fn shared(&self, name: &str) -> Vec<(usize, &Finding)> {
         let all = self.report.findings.iter().enumerate();
         all.filter(|(_, finding)| {
@@ -158,18 +158,18 @@ impl Page<'_> {
             ul.stats {
                 @if fit.held_out_nrmse_nominal.is_some() {
                     li { b { (numbers::before_after(fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented)) }
-                        "held-out error, before → after" }
+                        "held-out error, nominal → with effects" }
                 } @else {
                     li { b { (numbers::before_after(Some(fit.train_nrmse_nominal), Some(fit.train_nrmse_augmented))) }
-                        "error where fitted, before → after" }
+                        "training error, nominal → with effects" }
                 }
-                li { b { (numbers::quantity(fit.torque_std, unit)) } "spread of the measured torque" }
+                li { b { (numbers::quantity(fit.torque_std, unit)) } "standard deviation of the measured torque" }
                 li { b { (numbers::quantity(fit.noise, unit)) } "measured noise" }
                 @if let Some(located) = located {
                     li { b { "× " (numbers::fixed(located.over_noise, usize::from(located.over_noise < 10.0))) }
-                        "residual over the noise left" }
+                        "nominal residual over the noise after filtering" }
                     @if let Some(share) = located.repeatable {
-                        li { b { (numbers::percent(share)) } "of it repeats with the motion" }
+                        li { b { (numbers::percent(share)) } "of the residual repeats with the motion" }
                     }
                 }
             }
@@ -183,32 +183,32 @@ impl Page<'_> {
         html! {
             div.finding id={ "finding-" (index + 1) } {
                 h4 {
-                    (words::capital(&words::cause(finding)))
+                    (words::capital(&words::effect(finding)))
                     @if let Some(other) = &finding.other { " by " (other) }
                     @if let Some((name, parameter)) = words::main_parameter(finding) {
                         span.size { (numbers::with_interval(name, parameter)) }
                     }
                     span.odds {
                         "probability " (numbers::probability(finding.probability)) " · "
-                        (numbers::percent(finding.share)) " of the torque"
+                        (numbers::share(finding.share)) " of the torque"
                         @if let Some(gain) = finding.held_out_gain {
-                            " · held-out error " (numbers::percent(gain)) " lower with it"
+                            " · reduces the held-out error by " (numbers::percent(gain))
                         }
                     }
                 }
-                p.sentence { (finding.sentence) }
+                p.sentence { (words::capital(&words::described(finding))) "." }
                 @if let Some((joint, [before, after])) = panels {
                     div.pair {
                         figure { (PreEscaped(before)) figcaption {
                             (key("k-before", if self.figures.has_company(index, joint) {
-                                "before, other named effects taken out"
+                                "before: residual with all other effects found"
                             } else {
                                 "before: measured − nominal model"
                             }))
                             (key("k-effect", "the effect"))
                         } }
                         figure { (PreEscaped(after)) figcaption {
-                            (key("k-after", "after: all named effects taken out"))
+                            (key("k-after", "after: residual with all effects found"))
                             @if finding.joint.is_none() { "(" (self.figures.arm.joints()[joint].name) ")" }
                         } }
                     }
@@ -218,7 +218,7 @@ impl Page<'_> {
         }
     }
 
-    /// What it means, what it could be instead, where it acts.
+    /// The effect's meaning, its alternatives, and where it acts.
     fn background(&self, finding: &Finding) -> Markup {
         let wording = words::wording(finding.effect);
         let other = terminal::alternatives(finding);
@@ -227,8 +227,8 @@ impl Page<'_> {
                 @if !wording.meaning.is_empty() { dt { "What it is" } dd { (words::capital(wording.meaning)) "." } }
                 @if !other.is_empty() {
                     dt { "It could also be" }
-                    dd { (words::capital(&other)) ": these recordings hardly tell them apart. "
-                        @if !wording.told_by.is_empty() { "To tell: " (wording.told_by) "." } }
+                    dd { (words::capital(&other)) ". These recordings do not distinguish them reliably. "
+                        @if !wording.told_by.is_empty() { "Experiment that distinguishes them: " (wording.told_by) "." } }
                 }
                 @if finding.place.state.is_some() || !finding.place.time.is_empty() {
                     dt { "Where" }
@@ -241,11 +241,11 @@ impl Page<'_> {
                     }
                 }
                 @if finding.joint.is_none() && finding.share_by_joint.len() > 1 {
-                    dt { "Share of the torque, joint by joint" }
+                    dt { "Share of each joint's torque" }
                     dd {
                         @for (number, (joint, share)) in finding.share_by_joint.iter().enumerate() {
                             @if number > 0 { ", " }
-                            (self.link(Some(joint))) " " (numbers::percent(*share))
+                            (self.link(Some(joint))) " " (numbers::share(*share))
                         }
                     }
                 }

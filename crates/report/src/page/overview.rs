@@ -1,4 +1,4 @@
-//! The first screen: what the numbers say in a line, and the findings as a table.
+//! The first screen: the held-out error in one sentence, and the findings as a table.
 
 use maud::{Markup, html};
 
@@ -6,7 +6,7 @@ use super::{Page, key};
 use crate::{numbers, terminal, words};
 
 impl Page<'_> {
-    /// `3 recordings to learn from, 1 held out`.
+    /// `4 recordings, 1 held out`.
     pub(super) fn recordings_in_short(&self) -> String {
         let names = &self.report.recordings;
         let held_out = match names.held_out.len() {
@@ -19,9 +19,9 @@ impl Page<'_> {
         )
     }
 
-    /// The held-out error in a sentence, and what stands in the way of saying more.
+    /// The held-out error in a sentence, and why the data are not enough where they are not.
     pub(super) fn lead(&self) -> Markup {
-        // Joints where the model misses: the others have nothing to gain.
+        // Joints with a model error; the effects cannot improve the others.
         let missed = |name: &str| self.report.located.iter().any(|located| located.joint == name);
         let any = self.report.fit.keys().any(|name| missed(name));
         let fits = || {
@@ -39,19 +39,18 @@ impl Page<'_> {
         let before = median(|fit| fit.held_out_nrmse_nominal);
         let after = median(|fit| fit.held_out_nrmse_augmented);
         let of_joints = if self.report.fit.len() > 1 {
-            " (median of the joints where the model misses)."
+            " times the torque's standard deviation (median over the joints with a model error)."
         } else {
-            "."
+            " times the torque's standard deviation."
         };
         html! {
             @if let (Some(before), Some(after)) = (before, after) {
                 p.lead {
                     @if self.report.findings.is_empty() {
-                        "On recordings that were held out, the model's torque error is " (numbers::nrmse(before))
-                        " of the torque's spread" (of_joints)
+                        "On the held-out recordings, the model's RMS torque error is " (numbers::nrmse(before)) (of_joints)
                     } @else {
-                        "On recordings that were held out, the torque error falls from " b { (numbers::nrmse(before)) }
-                        " to " b { (numbers::nrmse(after)) } " of the torque's spread" (of_joints)
+                        "On the held-out recordings, the RMS torque error " (changes(before, after)) " from "
+                        b { (numbers::nrmse(before)) } " to " b { (numbers::nrmse(after)) } (of_joints)
                     }
                 }
             }
@@ -74,8 +73,8 @@ impl Page<'_> {
             h2 { "What was found" }
             div.scroll { table {
                 thead { tr {
-                    th { "joint" } th { "cause" } th { "size, with its 95 % interval" } th { "share of the torque" }
-                    th.n { "probability" } th.n { "held-out error" } th { "could also be" }
+                    th { "joint" } th { "effect" } th { "size with its 95 % interval" } th { "share of the torque" }
+                    th.n { "probability" } th.n { (terminal::error_title(self.report)) } th { "could also be" }
                 } }
                 tbody {
                     @for (index, finding) in self.report.findings.iter().enumerate() {
@@ -83,54 +82,53 @@ impl Page<'_> {
                         @let is_continued = last.replace(joint) == Some(joint);
                         tr class=[is_continued.then_some("continued")] {
                             td.name { @if is_continued { (words::joint(joint)) } @else { (self.link(joint)) } }
-                            td { a href={ "#finding-" (index + 1) } { (words::cause(finding)) } }
+                            td { a href={ "#finding-" (index + 1) } { (words::effect(finding)) } }
                             td.nowrap {
                                 @if let Some((name, parameter)) = words::main_parameter(finding) {
                                     (numbers::with_interval(name, parameter))
                                 }
                             }
-                            td.nowrap { (bar(finding.share)) (numbers::percent(finding.share)) }
+                            td.nowrap { (bar(finding.share)) (numbers::share(finding.share)) }
                             td.n { (numbers::probability(finding.probability)) }
-                            td.n { (terminal::held_out(self.report, finding)) }
+                            td.n { (terminal::error(self.report, finding)) }
                             td.small { (terminal::alternatives(finding)) }
                         }
                     }
-                    @for left in &self.report.unexplained {
+                    @for open in &self.report.unexplained {
                         tr {
-                            td.name { (self.link(Some(&left.joint))) }
-                            td { "unexplained" }
+                            td.name { (self.link(Some(&open.joint))) }
+                            td { "unexplained residual" }
                             td { "–" }
-                            td.nowrap { (bar(left.share)) (numbers::percent(left.share)) }
+                            td.nowrap { (bar(open.share)) (numbers::share(open.share)) }
                             td.n { "–" }
-                            td.n { (self.held_out_of(&left.joint)) }
+                            td.n { (terminal::error_of(self.report, &open.joint)) }
                             td {}
                         }
                     }
                 }
             } }
             p.small.soft {
-                "Share: spread (standard deviation) of the effect's torque over that of the measured torque. Held-out error: RMS of \
-                 what the model does not explain, over the spread of the measured torque, on recordings that nothing was fitted to; \
-                 nominal model → with all effects named. It is the joint's, so it repeats where a joint has several findings."
+                "Share: standard deviation of the effect's torque over the standard deviation of the measured torque. The error is \
+                 the RMS torque error over the standard deviation of the measured torque, with the nominal model → with all effects \
+                 found; held-out recordings are not used in any fit. The error belongs to the joint and is repeated for each of its \
+                 findings."
             }
         }
     }
 
-    fn held_out_of(&self, joint: &str) -> String {
-        self.report.fit.get(joint).map_or("–".into(), |fit| {
-            numbers::before_after(fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented)
-        })
-    }
-
-    /// What the colours of a residual mean.
+    /// The legend of a residual's colours.
     pub(super) fn residual_key(&self, has_windows: bool) -> Markup {
         html! {
             (key("k-before", "before: measured − nominal model"))
-            (key("k-after", "after: − named effects too"))
+            (key("k-after", "after: measured − nominal model − effects found"))
             (key("box k-rest", "at rest, not fitted"))
-            @if has_windows { (key("box k-window", "where it is largest")) }
+            @if has_windows { (key("box k-window", "largest residual")) }
         }
     }
+}
+
+fn changes(before: f64, after: f64) -> &'static str {
+    if after < before { "falls" } else { "rises" }
 }
 
 fn bar(share: f64) -> Markup {

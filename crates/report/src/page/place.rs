@@ -1,4 +1,4 @@
-//! Where a joint's model misses, in words.
+//! The regions of state and time in which a joint's residual is largest, in words.
 
 use arm::{Joint, JointKind};
 use diagnosis::{Located, Region, TimeWindow};
@@ -6,7 +6,7 @@ use maud::{Markup, html};
 
 use crate::numbers;
 
-/// Stretches of time.
+/// Intervals of time, six at most.
 pub fn windows(windows: &[TimeWindow]) -> String {
     let shown = windows
         .iter()
@@ -14,7 +14,7 @@ pub fn windows(windows: &[TimeWindow]) -> String {
         .map(|window| format!("{:.1} to {:.1} s of {}", window.start, window.end, window.recording));
     let mut text = shown.collect::<Vec<_>>().join(", ");
     if windows.len() > 6 {
-        text += &format!(" and {} more stretches", windows.len() - 6);
+        text += &format!(" and {} more intervals", windows.len() - 6);
     }
     text
 }
@@ -26,11 +26,11 @@ pub fn regions(located: &Located, joint: &Joint) -> Markup {
     }
     html! {
         p.small {
-            b { "Where the model misses most: " }
+            b { "Largest nominal residual: " }
             @for (number, region) in located.regions.iter().enumerate() {
                 @if number > 0 { "; " }
                 (words_of(region, joint)) " (" (numbers::before_after(Some(region.residual), Some(region.residual_augmented)))
-                " of the torque's spread)"
+                " times the torque's standard deviation)"
             }
             @if !located.time.is_empty() {
                 @if !located.regions.is_empty() { "; " }
@@ -53,7 +53,7 @@ fn words_of(region: &Region, joint: &Joint) -> String {
     };
     let [from, to] = region.range.map(numbers::trimmed);
     match region.axis {
-        "near_reversal" => format!("within {to} {unit} of standstill"),
+        "near_reversal" => format!("speed below {to} {unit}"),
         axis => format!("{} from {from} to {to} {unit}", axis.replace('_', " ")),
     }
 }

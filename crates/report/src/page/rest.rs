@@ -1,4 +1,4 @@
-//! The end of the page: what could not be seen, all parameters in SI units, where it all came from.
+//! The end of the page: effects that are not testable, the next experiment, all parameters in SI units, provenance.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::statistics::quantile;
 use crate::{next_words, numbers, words};
 
 impl Page<'_> {
-    /// Effects that may be there all the same.
+    /// Effects that may be present although they were not found.
     pub(super) fn not_observable(&self) -> Markup {
         let mut groups: BTreeMap<(&str, &str), Vec<&NotObservable>> = BTreeMap::new();
         for entry in &self.report.not_observable {
@@ -19,10 +19,10 @@ impl Page<'_> {
         }
         html! {
             @if !groups.is_empty() {
-                h2 { "What these recordings could not show" }
-                p { "Not found does not mean not there: these effects would have been seen only above the sizes given." }
+                h2 { "Not testable with these recordings" }
+                p { "These effects may be present: the recordings only reveal them at the sizes given." }
                 div.scroll { table {
-                    thead { tr { th { "effect" } th { "because" } th { "would be seen above" } } }
+                    thead { tr { th { "effect" } th { "reason" } th { "detectable size" } } }
                     tbody {
                         @for entries in groups.values() {
                             tr {
@@ -40,7 +40,7 @@ impl Page<'_> {
         }
     }
 
-    /// What to record next, where that was asked for.
+    /// The next experiment, where one was requested.
     pub(super) fn next_experiment(&self) -> Markup {
         html! {
             @if let Some(next) = &self.report.next_experiment {
@@ -48,7 +48,7 @@ impl Page<'_> {
                 ul { @for sentence in next_words::sentences(next) { li { (words::capital(&sentence)) "." } } }
                 @if !next.separates.is_empty() {
                     div.scroll { table {
-                        thead { tr { th { "finding" } th { "or" } th.n { "apart now (nats)" } th.n { "with the motion" } th.n { "needed" } } }
+                        thead { tr { th { "finding" } th { "alternative" } th.n { "evidence now (nats)" } th.n { "with the motion" } th.n { "needed" } } }
                         tbody { @for pair in &next.separates { tr {
                             td { (next_words::name(&pair.finding)) }
                             td { (next_words::name(&pair.rival)) }
@@ -62,7 +62,7 @@ impl Page<'_> {
         }
     }
 
-    /// Every number once more as programs take it.
+    /// All parameters in SI units, for use in programs.
     pub(super) fn all_parameters(&self) -> Markup {
         html! {
             @if !self.report.findings.is_empty() {
@@ -94,13 +94,13 @@ impl Page<'_> {
     /// The recordings and the program.
     pub(super) fn provenance(&self) -> Markup {
         let names = &self.report.recordings;
-        let all = names.train.iter().map(|name| (name, "fitted"));
+        let all = names.train.iter().map(|name| (name, "training"));
         let all = all.chain(names.held_out.iter().map(|name| (name, "held out")));
         let find = |name: &str| self.figures.traces.recordings.iter().find(|trace| trace.name == name);
         html! {
-            h2 { "Recordings, and how this page was made" }
+            h2 { "Recordings and provenance" }
             div.scroll { table {
-                thead { tr { th { "recording" } th { "used" } th.n { "length" } th.n { "diagnosed at" } th { "joints that move" } } }
+                thead { tr { th { "recording" } th { "use" } th.n { "duration" } th.n { "sampling rate of the diagnosis" } th { "joints that move" } } }
                 tbody {
                     @for (name, used) in all {
                         @let facts = find(name).map(|trace| self.facts(trace));
@@ -118,9 +118,9 @@ impl Page<'_> {
             } }
             p.small.soft {
                 "Made by testbed " (env!("CARGO_PKG_VERSION")) " (" code { "testbed diagnose" } "), schema " code { (self.report.schema) }
-                ". Torques and motion went through the same zero-phase filter; residual is measured torque less the rigid model's. A share \
-                 is a ratio of standard deviations, so shares need not add up to one. Probability: how often the effect would be found again \
-                 on resampled recordings. The same recordings give the same page, byte for byte."
+                ". Torques and motion are filtered with the same zero-phase filter. The residual is the measured torque minus the torque of the \
+                 rigid model. A share is a ratio of standard deviations, so that shares do not add up to one. The probability is the rate \
+                 at which the effect is found again on resampled recordings. The same recordings give the same page, byte for byte."
             }
         }
     }
@@ -147,7 +147,7 @@ impl Page<'_> {
         (format!("{:.1} s", last - first), rate, moving)
     }
 
-    /// The sizes from which an effect would have been seen, with the units its parameters have.
+    /// The sizes from which an effect is detectable, with the units of its parameters.
     fn sizes(&self, entry: &NotObservable) -> String {
         let joint = entry.joint.as_deref().and_then(|name| self.index(name));
         let kind = joint.map_or(JointKind::Revolute, |joint| self.figures.arm.joints()[joint].kind);

@@ -1,4 +1,4 @@
-//! What came of the proposed experiments, as blocks of the report.
+//! The outcome of the proposed experiments, as blocks of the report.
 
 use std::collections::BTreeMap;
 
@@ -7,35 +7,36 @@ use scoring::{After, Confusion, Experiments, InCase};
 use super::words::{counted, name};
 use crate::block::{Block, table, text};
 
-/// The section; nothing where no diagnosis left anything open. `looked_at` cases were looked at for a proposal.
+/// The section; empty if no finding has an alternative. `looked_at` is the number of cases that were examined.
 pub fn experiments(experiments: &Experiments, looked_at: usize) -> Vec<Block> {
     if experiments.confusions.is_empty() {
         return Vec::new();
     }
     let head = [
         "named",
-        "could be instead",
+        "alternative",
         "confusions",
-        "a motion proposed",
-        "made",
+        "motion proposed",
+        "recorded",
         "resolved",
-        "no motion tells",
+        "same torque",
         "out of reach",
         "joint unexplained",
-        "not foretold",
+        "prediction fails",
     ];
     let mut list = vec![
         Block::Heading("The next experiment"),
         text(format!(
-            "A confusion is a finding and one thing that it could be instead, one of the two concealed. The diagnosis proposes one motion for all of its \
-             confusions (`--next`). Of {looked_at} cases spread evenly over the campaign (all, of fewer) those with a proposal for a confusion, {} cases, were \
-             recorded once more along that motion, within the URDF's limits, by whoever concealed (made .7 or .5 as large about its middle where the position \
-             loop could not hold the machine); a new process was given that recording beside the old ones. Resolved: what is concealed is named, and the other neither named nor among what it could be.",
+            "A confusion is a finding and one of its alternatives, where one of the two is injected. The diagnosis proposes one motion for all of its \
+             confusions (`--next`). Of {looked_at} cases spread evenly over the campaign (or all, if there are fewer), the {} cases with a proposal for a confusion were \
+             recorded again along that motion, within the URDF's limits, on the machine with the injected faults. The motion was scaled by 0.7 or 0.5 about its \
+             middle where the position loop could not follow it. A new process then diagnosed that recording together with the earlier ones. A confusion is resolved if the \
+             injected effect is named and the other is neither named nor an alternative.",
             experiments.cases
         )),
         text(format!(
-            "Resolved of those for which a motion was proposed: {}. In the same cases, of those for which none was: {}; of all of them: {}. The diagnosis \
-             chooses what it proposes for{}. Named then of what was declared not observable: {}.",
+            "Resolved, of the confusions with a proposed motion: {}. Resolved in the same cases, of those without a proposed motion: {}; of all confusions: {}. The diagnosis \
+             selects the confusions that it proposes a motion for{}. Effects that were declared not testable and are named afterwards: {}.",
             counted(&experiments.resolved),
             counted(&experiments.resolved_unasked),
             counted(&experiments.resolved_of_all),
@@ -44,22 +45,22 @@ pub fn experiments(experiments: &Experiments, looked_at: usize) -> Vec<Block> {
         )),
         table(&head, 2, kinds(&experiments.confusions)),
         text(
-            "No motion tells: predicted to be the same torque in every motion tried, as with masses all too large and torques all measured too large. The \
-             diagnosis says which other experiment would tell. Out of reach: no motion tried within the limits sets them far enough apart. Joint unexplained: \
-             something without a name is left there, and nothing is promised. Not foretold: the same prediction says that the recordings tell already what they \
-             do not, and nothing is promised.",
+            "Same torque: both effects give the same torque in every motion that was tried, as an inertial scale and a torque scale on all joints do; the \
+             diagnosis recommends another experiment. Out of reach: no motion within the limits gives enough evidence. Joint unexplained: the joint has an \
+             unexplained residual, so that no outcome is predicted. Prediction fails: the prediction says that the present recordings already distinguish the two effects, \
+             which they do not, so that no outcome is predicted.",
         ),
     ];
     let failed: Vec<Vec<String>> = experiments.confusions.iter().filter_map(unresolved).collect();
     if !failed.is_empty() {
-        let head = ["case", "named", "could be instead", "after the experiment"];
+        let head = ["case", "named", "alternative", "after the experiment"];
         list.push(table(&head, 4, failed));
     }
     let changes: Vec<Vec<String>> = [
-        ("a true name gained", &experiments.gained),
-        ("**a true name lost**", &experiments.lost),
-        ("**a false name added**", &experiments.false_added),
-        ("a false name dropped", &experiments.false_dropped),
+        ("true name gained", &experiments.gained),
+        ("**true name lost**", &experiments.lost),
+        ("**false name added**", &experiments.false_added),
+        ("false name removed", &experiments.false_dropped),
     ]
     .into_iter()
     .filter(|(_, names)| !names.is_empty())
@@ -69,13 +70,13 @@ pub fn experiments(experiments: &Experiments, looked_at: usize) -> Vec<Block> {
     })
     .collect();
     if !changes.is_empty() {
-        list.push(text("What else changed from the first diagnosis to the second:"));
+        list.push(text("Other changes from the first diagnosis to the second:"));
         list.push(table(&["", "cases"], 2, changes));
     }
     list
 }
 
-/// What is left without the most frequent pair.
+/// The rate without the most frequent pair.
 fn rarer(experiments: &Experiments) -> String {
     experiments.most_frequent.as_ref().map_or_else(String::new, |[a, b]| {
         let rarer = counted(&experiments.resolved_of_rarer);
@@ -115,11 +116,11 @@ fn kinds(confusions: &[Confusion]) -> Vec<Vec<String>> {
     kinds.into_iter().map(row).collect()
 }
 
-/// A row for a confusion that a motion was made for in vain.
+/// The row of a confusion that the proposed motion did not resolve.
 fn unresolved(confusion: &Confusion) -> Option<Vec<String>> {
     let after = match confusion.after? {
         After::Resolved => return None,
-        After::StillConfused => "the truth is named, and could still be the other",
+        After::StillConfused => "the ground truth is named; the other is still an alternative",
         After::WrongNamed => "the other is named",
         After::NeitherNamed => "neither is named",
         After::NoAnswer => "the motion could not be recorded or diagnosed",
@@ -134,7 +135,7 @@ fn unresolved(confusion: &Confusion) -> Option<Vec<String>> {
     })
 }
 
-/// Why fewer are resolved than were asked for.
+/// Why the target for resolved confusions is not reached.
 pub fn reason(experiments: &Experiments) -> String {
     let failed = experiments.confusions.iter().filter_map(unresolved);
     let words: Vec<String> = failed

@@ -57,7 +57,7 @@ pub fn detection(curve: &Curve) -> String {
 
 /// Outcome against probability.
 pub fn calibration(calibration: &Calibration) -> String {
-    let (mut svg, y) = frame("Calibration of the probabilities", "right");
+    let (mut svg, y) = frame("Calibration of the probabilities", "correct");
     let x = Scale::new([0.4, 1.0], [LEFT, RIGHT]);
     svg.line([x.place(0.4), y.place(0.4)], [x.place(1.0), y.place(1.0)], "mark");
     for share in [0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0] {
@@ -67,7 +67,7 @@ pub fn calibration(calibration: &Calibration) -> String {
         [0.5 * (LEFT + RIGHT), BOTTOM + 38.0],
         "axis",
         "middle",
-        "probability that was given",
+        "stated probability",
     );
     for bin in &calibration.bins {
         point(&mut svg, &y, x.place(bin.said.max(0.4)), &bin.right);

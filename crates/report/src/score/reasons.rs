@@ -1,4 +1,4 @@
-//! Why a figure is not reached, from the score itself.
+//! Why a target is not reached, from the score itself.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ pub fn reason(target: &Target, score: &Score) -> String {
         Figure::EmptyCases => {
             let empty = score.false_names.iter().filter(|name| name.concealed_there.is_empty());
             format!(
-                "named where nothing is concealed: {}.",
+                "named where nothing is injected: {}.",
                 tally(empty.map(|name| name.effect.as_str()))
             )
         }
@@ -34,10 +34,13 @@ pub fn reason(target: &Target, score: &Score) -> String {
         Figure::Covered => {
             let missed = score.concealed.iter().filter(|o| o.is_asked());
             let missed = missed.filter(|o| !o.fate.is_covered());
-            format!("neither: {}.", tally(missed.map(|o| o.effect.as_str())))
+            format!(
+                "neither in the finding nor in its confusable set: {}.",
+                tally(missed.map(|o| o.effect.as_str()))
+            )
         }
         Figure::HeldOut => held_out(score),
-        Figure::Tracking => "the section about the closed loop tells it case by case.".to_owned(),
+        Figure::Tracking => "see the section on the closed loop for each case.".to_owned(),
         Figure::Confusions => experiments::reason(&score.experiments),
     }
 }
@@ -87,7 +90,7 @@ fn families(score: &Score) -> String {
         .filter(|o| o.share.is_some_and(|share| share < 0.06))
         .count();
     format!(
-        "brought down by {}. Of {} effects not found {below} have an expressed share under 6 %; of those above it {found} of {all} are found.",
+        "the lowest are {}. Of the {} effects that are not found, {below} have an expressed share below 6 %; of all effects above 6 %, {found} of {all} are found.",
         words.join(", "),
         small.len(),
     )
@@ -113,9 +116,9 @@ fn parameters(score: &Score, intervals: bool) -> String {
     worst.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let words: Vec<String> = worst.into_iter().take(6).map(|(_, text)| text).collect();
     let what = if intervals {
-        "too narrow, or their middle is off"
+        "intervals that miss the ground truth most often"
     } else {
-        "worst in the median"
+        "largest median errors"
     };
     if words.is_empty() {
         return "no parameter stands out.".to_owned();
@@ -137,5 +140,9 @@ fn held_out(score: &Score) -> String {
         .take(8)
         .map(|(ratio, case)| format!("{case} ({ratio:.2})"))
         .collect();
-    format!("{} cases above 1.1, the worst {}.", worst.len(), words.join(", "))
+    format!(
+        "{} cases have a ratio above 1.1; the largest are {}.",
+        worst.len(),
+        words.join(", ")
+    )
 }

@@ -9,7 +9,7 @@ use super::words::{counted, number, share};
 use crate::block::{Block, table, text};
 use crate::numbers::percent_to_a_tenth as percent;
 
-/// By family, against size, and what was called what.
+/// Detection by family and by size, and the confusion matrix.
 pub fn found(score: &Score) -> Vec<Block> {
     let line = |(name, f): (&String, &Family)| {
         vec![
@@ -28,24 +28,24 @@ pub fn found(score: &Score) -> Vec<Block> {
     };
     let head = [
         "effect",
-        "concealed",
+        "injected",
         "found",
-        "of these by another name of the same machine",
+        "of these by an equivalent name",
         "in a confusable set",
         "joint refused",
-        "declared not observable",
+        "declared not testable",
         "missed",
         "named falsely",
         "F1",
-        "found of those too small",
+        "found of those below the required size",
     ];
     let mut list = vec![
-        Block::Heading("What was found"),
+        Block::Heading("Effects found"),
         text(format!(
-            "An effect is found if its name and its joint are named. What comes with it (plain friction under a friction curve, the drive's inertia behind a \
-             spring) is neither right nor wrong. Ordinary friction, and the drives' inertia of the PUMA, are counted apart: found {}, {} false. F1 does \
-             not ask for what a diagnosis declared not observable at its size, and takes dry friction that differs by direction and an offset beside \
-             dry friction for one, if each is said to be what the other could be: simulated, they give the same recording. If the former is counted \
+            "An effect is found if its name and its joint are named. Effects that accompany it (Coulomb friction beside a friction curve, rotor inertia behind a \
+             spring) count as neither right nor wrong. Baseline friction, and the rotor inertia of the PUMA, are counted separately: found {}, {} false. F1 \
+             excludes effects that a diagnosis declares not testable at their size. It treats asymmetric friction, and a torque offset beside Coulomb friction, \
+             as equivalent if the diagnosis lists each as an alternative of the other, because both give the same recording in simulation. If the former count \
              as missed and the latter as false, macro F1 is {} instead of {}.",
             counted(&score.ordinary),
             score.ordinary_false,
@@ -57,9 +57,9 @@ pub fn found(score: &Score) -> Vec<Block> {
     for curve in &score.detection {
         let is_share = curve.measure == "expressed_share";
         let caption = if is_share {
-            "Found against the effect's expressed share, with Wilson's 95 % interval; hollow: found or in a finding's confusable set."
+            "Detection rate against the effect's expressed share, with Wilson's 95 % interval. Hollow circles: found or in a finding's confusable set."
         } else {
-            "Found against the effect's size over what noise hides: the standard deviation of its torque over that of the noise on one sample of its joint's torque."
+            "Detection rate against the effect's signal-to-noise ratio: the standard deviation of its torque over that of the noise on one sample of its joint's torque."
         };
         list.push(Block::Figure {
             svg: figures::detection(curve),
@@ -79,20 +79,20 @@ pub fn found(score: &Score) -> Vec<Block> {
         let size = if is_share {
             "expressed share"
         } else {
-            "over what noise hides"
+            "signal-to-noise ratio"
         };
-        let head = [size, "found", "found or confusable", "declared not observable"];
+        let head = [size, "found", "found or confusable", "declared not testable"];
         list.push(table(&head, 1, rows.collect()));
     }
     list.push(text(format!(
-        "Empty cases in which something was named: {}. Outside the catalogue, refused on the right joint: {}; given a wrong name, on whatever joint: {}. \
-         Refused with nothing outside the catalogue: {}.",
+        "Cases without an injected fault in which an effect is named: {}. Effects outside the catalogue that are refused on the right joint: {}; that get a wrong name on any joint: {}. \
+         Refusals in cases with nothing outside the catalogue: {}.",
         counted(&score.empty_with_a_false_name),
         counted(&score.outside_refused),
         counted(&score.outside_with_a_wrong_name),
         counted(&score.refused_without_cause),
     )));
-    list.push(Block::Heading("What it was called"));
+    list.push(Block::Heading("Confusion matrix"));
     list.extend(confusion(&score.confusion));
     list
 }
@@ -117,7 +117,7 @@ fn confusion(matrix: &BTreeMap<String, BTreeMap<String, usize>>) -> Vec<Block> {
         .chain(words.clone().take(2))
         .collect();
     let columns: Vec<String> = effects.iter().map(|&name| name.clone()).chain(words.skip(2)).collect();
-    let mut head = vec!["concealed ↓, called →".to_owned()];
+    let mut head = vec!["injected ↓, named →".to_owned()];
     head.extend(columns.iter().enumerate().map(|(k, name)| match k < effects.len() {
         true => (k + 1).to_string(),
         false => label(name),
@@ -140,8 +140,8 @@ fn confusion(matrix: &BTreeMap<String, BTreeMap<String, usize>>) -> Vec<Block> {
     };
     vec![
         text(
-            "A concealed effect that was not found is under the largest false name on its joint, or under what was said instead; a false name that stands for \
-             no such effect is in the row \"nothing there\".",
+            "An injected effect that is not found is counted under the largest false name on its joint, or under the answer given instead. A false name that replaces \
+             no injected effect is in the row \"nothing there\".",
         ),
         Block::Table {
             rows: rows.iter().enumerate().map(row).collect(),
@@ -179,15 +179,15 @@ pub fn numbers(score: &Score) -> Vec<Block> {
         "found",
         "median error",
         "90th percentile",
-        "95 % intervals that hold the truth",
+        "95 % intervals that contain the ground truth",
     ];
     let [median, ninetieth] = two(&score.main_parameters);
     vec![
-        Block::Heading("How large it was said to be"),
+        Block::Heading("Parameter errors"),
         text(format!(
-            "Of the effects found, ordinary ones left out, the parameter that says how large the effect is (bold) was wrong by {median} in the median and by \
-             {ninetieth} at the 90th percentile; the 95 % intervals of all parameters hold the truth in {}. A factor's error is told in parts of its distance \
-             from one. Where two forms of dry friction share a joint, their levels are not compared: whose part is whose is a matter of words.",
+            "For the effects found, without baseline effects, the error of the main parameter (bold) is {median} in the median and \
+             {ninetieth} at the 90th percentile; the 95 % intervals of all parameters contain the ground truth in {}. The error of a factor is relative to its distance \
+             from one. Where two forms of Coulomb friction act on one joint, their levels are not compared, because the split between them is arbitrary.",
             counted(&score.intervals),
         )),
         table(&head, 2, rows.collect()),
@@ -222,22 +222,22 @@ pub fn controls(score: &Score) -> Vec<Block> {
         "cases",
         "median",
         "90th percentile",
-        "over the true terms’, median",
+        "over the true terms, median",
         "90th percentile",
     ];
     let rows = vec![
-        of("as it was given (nominal)", &|case| case.nominal),
+        of("nominal model", &|case| case.nominal),
         of("a wrong term in place of a true one", &|case| case.wrong_term),
-        of("a learned correction alone", &|case| case.learned),
-        of("**as it was diagnosed**", &|case| case.diagnosed),
+        of("learned correction alone", &|case| case.learned),
+        of("**diagnosed model**", &|case| case.diagnosed),
         of("the true terms", &|case| case.true_terms),
     ];
     vec![
-        Block::Heading("Against controls"),
+        Block::Heading("Comparison with controls"),
         text(format!(
-            "Errors on the recording held out (NRMSE, root mean square over the joints), in cases with nothing outside the catalogue. \"The true terms\" are \
-             fitted by name with no search, after the truth was opened, to the same recordings; \"a wrong term\" has another name on the same joint in place of \
-             the largest. Joint by joint the diagnosis' error over the true terms' is {} in the median and {} at the 90th percentile.",
+            "Errors on the held-out recording (NRMSE, root mean square over the joints), in cases with nothing outside the catalogue. \"The true terms\" are \
+             fitted to the same recordings after the ground truth is opened, by name and without a search; \"a wrong term\" replaces the largest effect by another one \
+             on the same joint. For single joints, the error of the diagnosed model over that of the true terms is {} in the median and {} at the 90th percentile.",
             number(score.over_true_terms_by_joint.median),
             number(score.over_true_terms_by_joint.ninetieth),
         )),
@@ -255,9 +255,9 @@ pub fn calibration(score: &Score) -> Vec<Block> {
         ]
     });
     vec![
-        Block::Heading("Whether its probabilities can be believed"),
+        Block::Heading("Calibration of the probabilities"),
         text(format!(
-            "Findings that are not ordinary, by the probability they were given. Brier score {}, mean distance of said and found {}; of all findings {} and {}.",
+            "Findings without the baseline effects, by their stated probability. The Brier score is {}, and the mean calibration error is {}; for all findings they are {} and {}.",
             number(score.calibration.brier),
             number(score.calibration.error),
             number(score.calibration_of_all.brier),
@@ -265,8 +265,12 @@ pub fn calibration(score: &Score) -> Vec<Block> {
         )),
         Block::Figure {
             svg: figures::calibration(&score.calibration),
-            caption: "Share of findings that were right against the probability they were given; the line is where both are the same.".into(),
+            caption: "Share of correct findings against the stated probability; on the line, both are equal.".into(),
         },
-        table(&["probability", "mean said", "right"], 1, rows.collect()),
+        table(
+            &["probability", "mean stated probability", "correct"],
+            1,
+            rows.collect(),
+        ),
     ]
 }

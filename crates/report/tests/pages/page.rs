@@ -16,12 +16,12 @@ fn the_page_needs_nothing_else_and_says_it_all() {
         assert!(!text.contains(foreign), "the page has {foreign}");
     }
     for part in [
-        "The model leaves out 8 effects",
+        "The model omits 8 effects",
         "shoulder_lift_joint",
         "62.0 ± 3.1 N m/rad",
         "could also be",
         "Sweep this joint alone",
-        "What these recordings could not show",
+        "Not testable with these recordings",
         "c_held_out.csv",
         "six &amp; one",
         env!("CARGO_PKG_VERSION"),

@@ -60,7 +60,7 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
     for remark in remarks {
         eprintln!("note: simulation: {remark}");
     }
-    // What is known is part of the model that the findings come on top of.
+    // The known effects are a part of the model that the findings correct.
     let effects = [options.known.as_slice(), &diagnosis.effects].concat();
     let removed = write(args, &arm, &urdf_path, &diagnosis, effects)?;
     output::print(&report::terminal::diagnosis(&diagnosis.report))?;
@@ -71,7 +71,7 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
     if let Some(path) = removed {
         let path = path.display();
         output::print(&format!(
-            "removed: {path}, of an earlier diagnosis: this one proposes no motion\n"
+            "removed: {path} of an earlier diagnosis, because this one proposes no motion\n"
         ))?;
     }
     Ok(())
@@ -90,7 +90,7 @@ fn load_robot(robot: &str) -> anyhow::Result<(Arm, PathBuf)> {
     Ok((arm, path))
 }
 
-/// Writes what `args` ask for; the earlier proposal that was removed, if none took its place.
+/// Writes the requested files; returns the path of an earlier proposal that was removed without a new one.
 fn write<'a>(
     args: &'a DiagnoseArgs,
     arm: &Arm,

@@ -22,7 +22,7 @@ const MOST: f64 = 1e12;
 /// Effects, and whose they are.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EffectFile {
-    /// The robot's name in its URDF, where the file tells.
+    /// The robot's name in its URDF, if the file gives it.
     pub robot: Option<String>,
     /// The effects, in the file's order.
     pub effects: Vec<Effect>,
@@ -86,8 +86,8 @@ impl EffectFile {
     /// If an effect cannot be written as TOML.
     pub fn to_text(&self) -> anyhow::Result<String> {
         let mut text = String::from(
-            "# Effects that the URDF leaves out; testbed diagnose reads them with --known.\n\
-             # SI units at the joint; of a prismatic joint read N for N m and m for rad.\n\n",
+            "# Effects that the URDF omits; testbed diagnose reads them with --known.\n\
+             # SI units at the joint; for a prismatic joint, read N for N m and m for rad.\n\n",
         );
         text.push_str(&format!("schema = \"{SCHEMA}\"\n"));
         if let Some(robot) = &self.robot {
@@ -166,7 +166,7 @@ pub fn effect(source: &Source, span: Range<usize>, table: toml::Table, arm: &Arm
     };
     if let Some((key, value)) = table.iter().find(|(_, value)| huge(value)) {
         let value = value.as_float().unwrap_or_default();
-        let reason = format!("{key} is {value:e}, beyond what any arm has; check its unit");
+        let reason = format!("{key} is {value:e}, which no arm has; check its unit");
         return Err(fail(source, key_span(&source.text, &span, Some(key)), &reason));
     }
     let effect = Effect::deserialize(toml::Value::Table(table)).map_err(|error| {

@@ -49,7 +49,7 @@ pub fn check_outputs(args: &DiagnoseArgs) -> anyhow::Result<()> {
     for (k, path) in outputs.iter().enumerate() {
         if let Some(other) = outputs[..k].iter().find(|other| output::is_same(other, path)) {
             bail!(
-                "{}: is to be written twice; give each output a file of its own",
+                "{}: is given for two outputs; give each output its own file",
                 other.display()
             );
         }
@@ -144,7 +144,7 @@ pub fn read(args: &DiagnoseArgs, arm: &Arm, progress: &ProgressBar) -> anyhow::R
         });
         if let Some(twin) = twin {
             bail!(
-                "{}: holds the same samples as {}; a recording can be used once, to train or held out",
+                "{}: contains the same samples as {}; use a recording once, for training or held out",
                 prepared.name,
                 twin.name
             );
@@ -154,7 +154,7 @@ pub fn read(args: &DiagnoseArgs, arm: &Arm, progress: &ProgressBar) -> anyhow::R
             .find(|known| known.held_out != prepared.held_out && overlap(&known.regular, &prepared.regular));
         if let Some(source) = source {
             bail!(
-                "{}: holds a stretch of {}, sample for sample; what is fitted cannot be the proof",
+                "{}: contains a part of {}, sample for sample; a held-out recording must be independent of the training recordings",
                 prepared.name,
                 source.name
             );
@@ -180,7 +180,7 @@ fn refuse_twice(files: &[(&PathBuf, bool)]) -> anyhow::Result<()> {
         if let Some((_, other)) = files[..k].iter().find(same) {
             match (other, held_out) {
                 (false, true) | (true, false) => bail!(
-                    "{}: is among the training files and held out; what is fitted cannot be the proof",
+                    "{}: is given as a training and as a held-out recording; a held-out recording must be independent",
                     path.display()
                 ),
                 _ => bail!("{}: is given twice", path.display()),
@@ -250,7 +250,7 @@ fn prepare(
 /// A drive is not sampled more slowly (Hz).
 const SLOWEST: f64 = 10.0;
 
-/// Why nothing can be told from a recording, whatever the arm, and the remedy.
+/// Why a recording cannot be diagnosed for any arm, and the remedy.
 fn unusable(regular: &RegularRecording, quality: &Quality) -> Option<String> {
     if quality.rate < SLOWEST {
         return Some(format!(
@@ -304,7 +304,7 @@ fn order(recording: &Recording, arm: &Arm, name: &str, map: Option<&Path>) -> an
         .collect();
     if !foreign.is_empty() && lacking.len() == known.len() {
         bail!(
-            "{name}: is of another robot: its joints are {}, those of {} are {}; give the URDF of the robot that was recorded, or a column map (--map)",
+            "{name}: belongs to another robot: its joints are {}, those of {} are {}; give the URDF of the robot that was recorded, or a column map (--map)",
             quoted(&recording.joints),
             arm.name(),
             quoted(&known)
@@ -323,7 +323,7 @@ fn order(recording: &Recording, arm: &Arm, name: &str, map: Option<&Path>) -> an
     }
     if let Some(joint) = lacking.first() {
         let hint = nearest(joint, &foreign).map_or_else(String::new, |near| {
-            format!("; its column q_{near} has a name that is near")
+            format!("; the name of its column q_{near} is similar")
         });
         bail!(
             "{name}: has no column q_{joint} for {} of {}{hint}; record all joints of the arm, or name their columns in a column map (--map)",
@@ -333,7 +333,7 @@ fn order(recording: &Recording, arm: &Arm, name: &str, map: Option<&Path>) -> an
     }
     if let Some(joint) = foreign.first() {
         bail!(
-            "{name}: column q_{joint}: {} is no joint of {}, which has {}; leave the column out with a column map (--map), or give the URDF of the robot that was recorded",
+            "{name}: column q_{joint}: {} is not a joint of {}, which has {}; leave the column out with a column map (--map), or give the URDF of the robot that was recorded",
             quoted(&foreign),
             arm.name(),
             quoted(&known)

@@ -21,7 +21,7 @@ const FIRST_LINE: &str = "# The next experiment, proposed by testbed diagnose.\n
 pub fn check_replaceable(path: &Path) -> anyhow::Result<()> {
     ensure!(
         !path.is_file() || std::fs::metadata(path)?.len() == 0 || is_earlier(path)?,
-        "--next {}: is there, and is no proposal of an earlier diagnosis; give another file",
+        "--next {}: exists and is not a proposal of an earlier diagnosis; give another file",
         path.display()
     );
     Ok(())
@@ -75,7 +75,9 @@ fn text(robot: &str, next: &NextExperiment, motion: &Reference) -> String {
         let _ = writeln!(text, "# {words}");
     };
     if !next.separates.is_empty() {
-        line("It should tell apart (by how much the second explains worse, before and with this motion; what tells):");
+        line(
+            "It should distinguish (evidence against the second effect before and with this motion; evidence needed):",
+        );
     }
     for pair in &next.separates {
         let [before, after, needed] = [pair.before, pair.after, pair.needed].map(numbers::short);
@@ -83,17 +85,17 @@ fn text(robot: &str, next: &NextExperiment, motion: &Reference) -> String {
         line(&format!("  {finding} and {rival}: {before} -> {after} nats ({needed})"));
     }
     if !next.not_separated.is_empty() {
-        line("It does not tell apart:");
+        line("It does not distinguish:");
     }
     for pair in &next.not_separated {
         let (finding, rival) = (name(&pair.finding), name(&pair.rival));
         line(&format!("  {finding} and {rival}: {}; {}", pair.because, pair.instead));
     }
     if !next.shows.is_empty() {
-        line("It would show from a smaller size on, or at all (a torque limit: from a higher one on):");
+        line("It makes these effects testable, or testable at a smaller size (a torque limit: at a higher one):");
     }
     for shows in &next.shows {
-        let before = shows.before.map_or_else(|| "no size".to_owned(), numbers::short);
+        let before = shows.before.map_or_else(|| "not testable".to_owned(), numbers::short);
         let (effect, after) = (words::wording(shows.effect).name, numbers::short(shows.after));
         let joint = words::joint(shows.joint.as_deref());
         line(&format!(
@@ -102,7 +104,7 @@ fn text(robot: &str, next: &NextExperiment, motion: &Reference) -> String {
         ));
     }
     line(
-        "It needs of each joint, of what it may (the URDF's limits with a margin, and not far beyond what was recorded):",
+        "Required position, velocity and torque of each joint, and what is allowed (the URDF's limits with a margin, near the recorded range):",
     );
     for joint in &next.limits {
         let [low, high] = joint.position.map(numbers::short);
@@ -114,8 +116,8 @@ fn text(robot: &str, next: &NextExperiment, motion: &Reference) -> String {
             joint.joint
         ));
     }
-    line("Nobody has looked for what stands in the arm's way: run it slowly first.");
-    line("On a robot, let it follow the columns reference_<joint> of the recording that this scenario leaves.");
+    line("Collisions with the environment are not checked: run the motion slowly first.");
+    line("On a robot, follow the columns reference_<joint> of the recording that this scenario writes.");
     let list = |values: &[f64]| {
         let words: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
         format!("[{}]", words.join(", "))

@@ -9,11 +9,11 @@ use super::smooth::Smooth;
 use super::torque_unit::{self, MOTOR_SIDE, deviation};
 use crate::library::nearest;
 
-/// A joint's torque is explained where this share of its variance is left at most.
+/// A joint's torque is explained if its residual has at most this share of its variance.
 const EXPLAINED: f64 = 0.2;
-/// A supposition must lower the joints' mean log of what is left by this much in all…
+/// An assumption must reduce the mean log residual of the joints by at least this much.
 const GAIN: f64 = 2.0;
-/// …and be better than the next by this much.
+/// An assumption must be better than the next one by at least this reduction of the mean log residual.
 const LEAD: f64 = 1.0;
 /// A torque more than this times the model's is in another unit.
 const OTHER_UNIT: f64 = 100.0;
@@ -24,7 +24,7 @@ pub struct Misfit {
     pub joint: Option<String>,
     /// What was found, and the remedy.
     pub text: String,
-    /// Whether nothing can be told of the robot before it is mended.
+    /// Whether it must be corrected before the robot can be diagnosed.
     #[serde(skip)]
     pub spoils: bool,
 }
@@ -47,7 +47,7 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
         let (low, high) = measured.q_range;
         if low < limits.lower - 1e-2 || high > limits.upper + 1e-2 {
             add(format!(
-                "positions {} … {} leave the URDF's limits {:.3} … {:.3}; check unit, zero and sign, or the limits",
+                "positions {} … {} exceed the URDF's limits {:.3} … {:.3}; check unit, zero and sign, or the limits",
                 rounded(low, 4),
                 rounded(high, 4),
                 limits.lower,
@@ -141,11 +141,11 @@ impl Supposition {
 
 /// The fit of measured torques by the model's, with dry and viscous friction and an offset.
 pub(super) struct Fit {
-    /// What is left of each joint's variance, as a share.
+    /// The residual share of each joint's variance.
     left: Vec<f64>,
     /// The factor of the model's torque.
     pub(super) factor: Vec<f64>,
-    /// What is left without the model's torque.
+    /// The residual share without the model's torque.
     without: Vec<f64>,
     /// The measured torque's standard deviation over the model's.
     pub(super) size: Vec<f64>,
@@ -162,7 +162,7 @@ impl Fit {
     }
 }
 
-/// Suppositions are about joints that move: one at rest tells too little.
+/// Assumptions concern moving joints only, because a resting joint gives too little information.
 fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
     let dof = arm.dof();
     let names: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
@@ -198,7 +198,7 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
             spoils: true,
         }];
     }
-    let remedy = "mend the header, or map the columns (--map)";
+    let remedy = "correct the header, or map the columns (--map)";
     if let Some((gain, best, fit)) = scored.first() {
         let next = scored[1..].iter().find(|(_, other, _)| !best.same_joint(*other));
         let lead = gain - next.map_or(0.0, |next| next.0);
@@ -215,14 +215,14 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
             match *best {
                 Supposition::Flipped(joint) | Supposition::TorqueFlipped(joint) if good(&joint) => {
                     let text = if rival {
-                        "the torque or the position has the sign opposite to the URDF's axis; turn one (tau_sign = -1, or \
+                        "the torque or the position has the sign opposite to the URDF's axis; invert one (tau_sign = -1, or \
                          sign and tau_sign, in a column map)"
                     } else if matches!(best, Supposition::TorqueFlipped(_)) {
-                        "the torque has the sign opposite to the URDF's axis; turn it (tau_sign = -1 in a column map)"
+                        "the torque has the sign opposite to the URDF's axis; invert it (tau_sign = -1 in a column map)"
                     } else if fit.factor[joint] < 0.0 {
-                        "position and torque have the sign opposite to the URDF's axis; turn both (sign = -1 in a column map)"
+                        "position and torque have the sign opposite to the URDF's axis; invert both (sign = -1 in a column map)"
                     } else {
-                        "the position has the sign opposite to the URDF's axis; turn it (sign = -1 and tau_sign = -1 in a \
+                        "the position has the sign opposite to the URDF's axis; invert it (sign = -1 and tau_sign = -1 in a \
                          column map)"
                     };
                     return vec![told(Some(joint), text.into())];
@@ -314,7 +314,7 @@ fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
     fit
 }
 
-/// What is left of the variance of `measured` after `columns` and an offset (Gram-Schmidt, the first
+/// The residual variance of `measured` after `columns` and an offset (Gram-Schmidt, the first
 /// column last), and the factor of the first column.
 fn regress(columns: &[&Vec<f64>], measured: &[f64]) -> (f64, f64) {
     let centred = |values: &[f64]| -> Vec<f64> {

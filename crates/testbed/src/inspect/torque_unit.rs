@@ -7,7 +7,7 @@ use report::numbers::rounded;
 pub const MOTOR_SIDE: f64 = 0.05;
 /// As much on all joints is another unit; no payload does that.
 const LARGE_EVERYWHERE: f64 = 30.0;
-/// Torques so many times too large, their unit (for forces, too), and the remedy.
+/// Factors of the torques, the unit that each suggests (for forces, too), and the remedy.
 const UNITS: [(f64, &str, &str); 4] = [
     (1e3, "mN m (or mN)", "tau_unit = \"mN m\", or tau_scale = 0.001"),
     (1e2, "N cm", "tau_scale = 0.01"),

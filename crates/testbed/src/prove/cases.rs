@@ -1,4 +1,4 @@
-//! Where cases come from: drawn from a seed, or anybody's folders.
+//! The cases of a proof: drawn from a seed, or from given folders.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use super::{disturbance, tracking};
 use crate::cli::ProveArgs;
 use crate::conceal;
 
-/// So many seeds are tried for a case.
+/// The number of seeds that are tried for a case.
 const SEEDS: usize = 4;
 
 /// A case: where it is, and where its truth is.
@@ -27,8 +27,8 @@ pub struct Place {
 }
 
 /// Where the cases of a proof come from.
-pub enum Source {
-    /// So many, drawn from a seed.
+pub enum Cases {
+    /// A number of cases, drawn from a seed.
     Drawn {
         /// The seed.
         seed: u64,
@@ -43,12 +43,12 @@ pub enum Source {
     Given {
         /// Has `case_*`.
         cases: PathBuf,
-        /// Has `case_*.json`; a case without one is left out.
+        /// Has `case_*.json`; a case without one is omitted.
         truth: PathBuf,
     },
 }
 
-impl Source {
+impl Cases {
     /// What `args` ask for.
     ///
     /// # Errors
@@ -60,7 +60,7 @@ impl Source {
                 for folder in [cases, &truth] {
                     ensure!(
                         folder.is_dir(),
-                        "{}: is no folder; --cases-from takes one with folders case_*, --truth one with case_*.json",
+                        "{}: is not a folder; --cases-from takes a folder of folders case_*, --truth a folder of case_*.json",
                         folder.display()
                     );
                 }
@@ -167,7 +167,7 @@ impl Source {
             return Ok(());
         }
         let Self::Drawn { robots, plans, .. } = self else {
-            bail!("{}: is not there", place.truth.display());
+            bail!("{}: does not exist", place.truth.display());
         };
         // Half of a case is what an interruption left.
         if place.truth.exists() {
@@ -210,13 +210,13 @@ fn given(cases: &Path, truth: &Path) -> anyhow::Result<Vec<Place>> {
     names.retain(|name| truth.join(format!("{name}.json")).is_file());
     ensure!(
         !names.is_empty(),
-        "{}: has no folder case_* whose truth is in {}; give the truths\u{2019} folder with --truth",
+        "{}: has no folder case_* with a ground truth in {}; give the folder of the ground truths with --truth",
         cases.display(),
         truth.display()
     );
     if names.len() < all {
         let (left_out, truth) = (all - names.len(), truth.display());
-        eprintln!("note: {left_out} of {all} cases have no truth in {truth}; they are left out");
+        eprintln!("note: {left_out} of {all} cases have no ground truth in {truth}; they are omitted");
     }
     let place = |(number, name): (usize, String)| Place {
         number,

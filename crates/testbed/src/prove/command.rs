@@ -13,7 +13,7 @@ use faults::{Program, Seal, SealedCase, sha256};
 use scoring::{Score, Truth, true_terms, wrong_term};
 use serde::Serialize;
 
-use super::cases::{Files, Place, Source};
+use super::cases::{Cases, Files, Place};
 use super::child::Task;
 use super::disturbance::{self, Disturbance};
 use super::rows::{self, Row};
@@ -66,7 +66,7 @@ pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
         None => args.out.clone(),
     };
     let deferred = interrupt::Deferred::start();
-    let source = Source::new(args)?;
+    let source = Cases::new(args)?;
     let vault = Vault::new(&out)?;
     vault.begin(&source)?;
     let mut places = source.places(&vault.out)?;
@@ -91,18 +91,17 @@ pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
 
 /// Conceals, seals, diagnoses, opens, tries the controls, and closes the loop.
 fn protocol(
-    source: &Source,
+    source: &Cases,
     vault: &Vault,
     places: &[Place],
     jobs: usize,
     times: &mut Times,
 ) -> anyhow::Result<(Seal, Vec<Row>)> {
-    if let Source::Given { .. } = source {
+    if let Cases::Given { .. } = source {
         // A truth that cannot be read is better known before hours of diagnosis than after.
         for Place { name, truth, .. } in places {
             let text = std::fs::read_to_string(truth).with_context(|| truth.display().to_string())?;
-            rows::truth::<Truth>(name, &text)
-                .with_context(|| format!("{}: mend it, or take it away", truth.display()))?;
+            rows::truth::<Truth>(name, &text).with_context(|| format!("{}: correct or remove it", truth.display()))?;
         }
     }
     times.of("conceal", || {
@@ -123,7 +122,7 @@ fn protocol(
     // Only now.
     let truths: Mutex<BTreeMap<String, String>> = Mutex::default();
     times.of("controls", || {
-        work::all("trying the controls", &pairs, jobs, |(place, sealed)| {
+        work::all("fitting the controls", &pairs, jobs, |(place, sealed)| {
             let bytes = std::fs::read(&place.truth).with_context(|| place.truth.display().to_string())?;
             sealed.check_truth(&bytes)?;
             let text = String::from_utf8(bytes).with_context(|| place.truth.display().to_string())?;
@@ -150,9 +149,12 @@ fn protocol(
     let mut truths = truths.into_inner().unwrap_or_default();
     times.of("experiments", || {
         let chosen = experiments::chosen(source, vault, &pairs)?;
-        work::all("making the proposed experiments", &chosen, jobs, |(place, sealed)| {
-            experiments::make(source, vault, place, sealed, &truths[&place.name])
-        })
+        work::all(
+            "recording the proposed experiments",
+            &chosen,
+            jobs,
+            |(place, sealed)| experiments::make(source, vault, place, sealed, &truths[&place.name]),
+        )
     })?;
     let chosen = source.tracked()?;
     let tracked: Vec<_> = pairs

@@ -23,11 +23,11 @@ use crate::{library, paper, simulation, tables, training};
 pub const CASE: &str = "paper";
 /// What is recorded to fit, as in the paper's table I.
 const TRAIN: &str = "taskA";
-/// What is held out, and where torque errors are told.
+/// The held-out task, for which torque errors are given.
 const TEST: &str = "taskD";
 /// What the URDF says of a correct arm's torques.
 const EFFECT: &str = "inertial_scale";
-/// What it cannot be told from without a known load: every joint's torque measured by the same factor too small.
+/// The alternative that cannot be excluded without a known load: a common scale of all measured torques.
 const ALIAS: &str = "torque_scale";
 /// A mean squared torque error below this is rounding beside torques of tens of N m ((N m)²).
 const ROUNDING: f64 = 1e-6;

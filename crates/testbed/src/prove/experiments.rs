@@ -1,4 +1,4 @@
-//! The proposed experiments: made on the concealed machine, and diagnosed again.
+//! The proposed experiments: recorded on the machine with the injected faults, and diagnosed again.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use faults::{FaultError, SealedCase, record_again, sha256_of};
 use scoring::Answer;
 use serde::{Deserialize, Serialize};
 
-use super::cases::{Place, Source};
+use super::cases::{Cases, Place};
 use super::child::{MORE, NEXT, Task};
 use super::rows;
 use super::vault::{Vault, made_of};
@@ -49,11 +49,11 @@ impl Made {
 /// # Errors
 /// If a diagnosis is not what its record says.
 pub fn chosen<'a>(
-    source: &Source,
+    source: &Cases,
     vault: &Vault,
     pairs: &[(&'a Place, &'a SealedCase)],
 ) -> anyhow::Result<Vec<(&'a Place, &'a SealedCase)>> {
-    let Source::Drawn { plans, .. } = source else {
+    let Cases::Drawn { plans, .. } = source else {
         // The machine of a case that was given is not at hand.
         return Ok(Vec::new());
     };
@@ -80,8 +80,8 @@ pub fn chosen<'a>(
 ///
 /// # Errors
 /// If a file cannot be read or written, the process cannot be started, or the user interrupts.
-pub fn make(source: &Source, vault: &Vault, place: &Place, sealed: &SealedCase, truth: &str) -> anyhow::Result<()> {
-    let Source::Drawn { robots, plans, .. } = source else {
+pub fn make(source: &Cases, vault: &Vault, place: &Place, sealed: &SealedCase, truth: &str) -> anyhow::Result<()> {
+    let Cases::Drawn { robots, plans, .. } = source else {
         return Ok(());
     };
     let folder = folder(vault, place);

@@ -94,7 +94,7 @@ pub fn run(args: &ProveArgs, path: &Path, recordings: &Path) -> anyhow::Result<(
     output::write_json(&vault.out.join("answers.json"), &answers)?;
     // Only now.
     let truths: Mutex<BTreeMap<String, Published>> = Mutex::default();
-    work::all("fitting what is said", &pairs, jobs, |(place, sealed)| {
+    work::all("fitting the published effects", &pairs, jobs, |(place, sealed)| {
         let bytes = std::fs::read(&place.truth).with_context(|| place.truth.display().to_string())?;
         sealed.check_truth(&bytes)?;
         let truth: Published = serde_json::from_slice(&bytes).with_context(|| place.truth.display().to_string())?;
@@ -155,7 +155,7 @@ fn write(args: &ProveArgs, out: &Path, real: &Real) -> anyhow::Result<()> {
     let made = "Made by `testbed prove --published`; the same recordings, file and program give the same bytes.";
     let blocks = page::blocks(real);
     let eyebrow = format!("testbed proof · {} · sealed as `{}`", names(real), real.seal.whole);
-    let text = report::block_page("Concealed in the real world", &eyebrow, &blocks, made);
+    let text = report::block_page("Real robots: a blind proof", &eyebrow, &blocks, made);
     output::write_text(&html, &text)?;
     if let Some(path) = &args.markdown {
         output::write_text(path, &report::markdown(&blocks, made))?;

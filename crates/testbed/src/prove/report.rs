@@ -17,7 +17,7 @@ pub fn page(proof: &Proof) -> String {
         "Made by testbed {} (`testbed prove`). The same seed and program give the same page, byte for byte.",
         proof.seal.program.version
     );
-    report::block_page("Concealed physics: a proof", &eyebrow, &blocks(proof), &made)
+    report::block_page("Injected faults: a blind proof", &eyebrow, &blocks(proof), &made)
 }
 
 /// The report as Markdown.
@@ -32,7 +32,7 @@ pub fn markdown(proof: &Proof) -> String {
 fn blocks(proof: &Proof) -> Vec<Block> {
     let of = &proof.score;
     let mut list = score::opening(of);
-    list.extend(concealed(proof));
+    list.extend(injected(proof));
     list.extend(score::found(of));
     list.extend(score::numbers(of));
     list.extend(score::controls(of));
@@ -45,28 +45,28 @@ fn blocks(proof: &Proof) -> Vec<Block> {
     list
 }
 
-fn concealed(proof: &Proof) -> Vec<Block> {
+fn injected(proof: &Proof) -> Vec<Block> {
     let score = &proof.score;
     let empty = score.empty;
     let outside = score.outside.len();
     vec![
-        Block::Heading("What was concealed, and from whom"),
+        Block::Heading("Cases and protocol"),
         text(format!(
-            "The {} (`{}`): {empty} hold nothing but ordinary friction, {outside} something outside the catalogue, the others {} effects of the \
-             catalogue's. The recordings are of a simulated arm that has them; the URDF beside them has not. An effect's expressed share is the largest \
-             part of a joint's torque (in standard deviations) that vanishes when the arm is simulated without it; under {} nobody is asked to find it.",
+            "The {} (`{}`): {empty} contain baseline friction only, {outside} contain an effect outside the catalogue, the others {} effects of the \
+             catalogue. The recordings are of a simulated arm with these effects; the URDF beside them does not contain them. The expressed share of an effect is the largest \
+             part of a joint's torque (in standard deviations) that vanishes when the arm is simulated without the effect; effects below {} are not required to be found.",
             proof.seal.source,
             &proof.seal.whole[..12],
             score.concealed.len(),
             percent(scoring::LEAST_SHARE),
         )),
         text(
-            "Before the first diagnosis the SHA-256 of the program, of every recording and URDF and of every truth was written (`seal.json`, \
-             `SHA256SUMS`). Each diagnosis then ran in a process of its own, without environment, in a new folder that held copies of the recordings and the \
-             URDF and nothing else; the program that diagnoses is the one sealed. The hashes of all diagnoses were written (`answers.json`) before the first \
-             truth was read, and a truth that is not the one sealed is refused. It is a protocol and no prison: what keeps the diagnosis honest is that \
-             it is the command that anyone runs, with the same arguments, and that the same seed and program give the same bytes. Choose a seed of your \
-             own, and nobody can have tuned on it.",
+            "Before the first diagnosis, the SHA-256 hashes of the program, of all recordings and URDFs and of all ground truths are written (`seal.json`, \
+             `SHA256SUMS`). Each diagnosis then runs in its own process, without environment variables, in a new folder that contains only copies of the recordings and the \
+             URDF; the program that diagnoses is the sealed one. The hashes of all diagnoses are written (`answers.json`) before the first \
+             ground truth is read, and a ground truth that differs from the sealed one is refused. This protocol is not a sandbox. It can be verified because the diagnosis \
+             is the public command with the same arguments for all cases, and because the same seed and program give the same bytes. A seed of your own choice \
+             excludes that the diagnosis was tuned on the cases.",
         ),
         Block::Code(proof.command.clone()),
     ]
@@ -86,11 +86,11 @@ fn hashes(proof: &Proof) -> Vec<Block> {
     vec![
         Block::Heading("The seal"),
         text(format!(
-            "Program: testbed {}, SHA-256 `{}`. All under seal: `{}`, the SHA-256 of `SHA256SUMS`. Recordings and URDF: the SHA-256 of their lines there, without folders.",
+            "Program: testbed {}, SHA-256 `{}`. Complete seal: `{}`, the SHA-256 of `SHA256SUMS`. Recordings and URDF: the SHA-256 of their lines in that file, without folders.",
             proof.seal.program.version, proof.seal.program.sha256, proof.seal.whole
         )),
         table(
-            &["case", "recordings and URDF", "truth", "diagnosis"],
+            &["case", "recordings and URDF", "ground truth", "diagnosis"],
             4,
             rows.collect(),
         ),

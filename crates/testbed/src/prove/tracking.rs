@@ -53,7 +53,7 @@ impl Model {
     pub fn title(self) -> &'static str {
         match self {
             Self::Nominal => "nominal",
-            Self::Diagnosed => "with the diagnosed cause",
+            Self::Diagnosed => "with the diagnosed effects",
             Self::Learned => "with IJL",
             Self::Both => "with both",
             Self::Exact => "exact",
@@ -61,7 +61,7 @@ impl Model {
     }
 }
 
-/// Something concealed in the machine that is not ordinary.
+/// An injected fault of the machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cause {
     /// Its name in the truth.
@@ -86,7 +86,7 @@ pub struct Tracked {
     pub cut: Vec<f64>,
     /// Root mean square over joints and time (rad or m); `None` if the loop left all bounds.
     pub error: Option<f64>,
-    /// The same in a loop that sends the reference's velocity through the drives' filter: without the filter's lag.
+    /// Root mean square error in a loop in which the reference velocity passes the drives' filter, without its lag (rad or m).
     pub error_without_lag: Option<f64>,
 }
 
@@ -101,7 +101,7 @@ pub struct CaseTracking {
     pub start: f64,
     /// The joints' names, base to tip.
     pub joints: Vec<String>,
-    /// What is concealed and not ordinary.
+    /// The injected faults.
     pub concealed: Vec<Cause>,
     /// What was named, as the diagnosed model has it.
     pub named: Vec<Name>,
@@ -125,7 +125,7 @@ impl CaseTracking {
         over(self.error(Model::Diagnosed), self.error(Model::Exact))
     }
 
-    /// The same without the velocity filter's lag.
+    /// The diagnosed model's error over the exact one's, in the loop without the velocity filter's lag.
     pub fn over_exact_without_lag(&self) -> Option<f64> {
         over(
             self.error_without_lag(Model::Diagnosed),

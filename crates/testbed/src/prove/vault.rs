@@ -6,11 +6,11 @@ use anyhow::{Context, ensure};
 use faults::{Program, Seal, SealedCase, sha256, sha256_of};
 use serde::{Deserialize, Serialize};
 
-use super::cases::{Files, Place, Source};
+use super::cases::{Cases, Files, Place};
 use super::child::{self, Ended, Task};
 use crate::output;
 
-/// What a finished process left: enough to see that it need not run again, and to run it again.
+/// The record of a finished process: sufficient to decide whether it must run again, and to repeat it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Record {
     /// SHA-256 of the program.
@@ -30,7 +30,7 @@ pub struct Record {
     pub error: Option<String>,
 }
 
-/// What a folder was begun for: cases that are concealed in it already are of this campaign.
+/// The campaign of a folder: the cases that are already in it belong to this campaign.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Begun {
     program: Program,
@@ -81,7 +81,7 @@ impl Vault {
     ///
     /// # Errors
     /// If it was begun for another, or by another program.
-    pub fn begin(&self, source: &Source) -> anyhow::Result<()> {
+    pub fn begin(&self, source: &Cases) -> anyhow::Result<()> {
         let begun = Begun {
             program: self.program.clone(),
             source: source.describe(),
@@ -101,7 +101,7 @@ impl Vault {
         let (there_is, this_is) = (what(&there), what(&begun));
         ensure!(
             there == begun,
-            "{}: was begun for {there_is}; this is {}; give another --out",
+            "{}: was begun for {there_is}, and this is {}; give another --out",
             self.out.display(),
             if there_is == this_is {
                 "the same with another URDF".to_owned()
@@ -144,7 +144,7 @@ impl Vault {
             );
             ensure!(
                 there == seal,
-                "{folder}: other cases are sealed there, or a file under seal was changed; give another --out"
+                "{folder}: other cases are sealed there, or a sealed file was changed; give another --out"
             );
         } else {
             output::write_json(&path, &seal)?;
@@ -210,7 +210,7 @@ impl Vault {
         self.out.join(format!("{name}.next.toml"))
     }
 
-    /// What a process left: its record, and the JSON it wrote.
+    /// The results of a process: its record, and the JSON that it wrote.
     ///
     /// # Errors
     /// If that is not what its record says.

@@ -68,7 +68,7 @@ impl RunFolder {
                 Err(error) => return Err(error).with_context(|| remedy(&path)),
             }
         }
-        bail!("runs/ has no number left")
+        bail!("runs/ is full: all run numbers are in use; give a folder with --out DIR")
     }
 }
 

@@ -108,11 +108,11 @@ impl Drives {
             let resolved = rotors[j] > 0.0 && stiffness * step * step <= lighter && damping * step <= lighter;
             if !resolved {
                 drives.remarks.push(format!(
-                    "{name}: its rotor is simulated with the link, but for the static deflection ({})",
+                    "{name}: the rotor is simulated as a part of the link, with the static deflection of the drive only ({})",
                     if rotors[j] > 0.0 {
-                        "the spring is too stiff for the step"
+                        "the spring is too stiff for the time step"
                     } else {
-                        "no rotor inertia is named"
+                        "no rotor inertia is known"
                     }
                 ));
             }

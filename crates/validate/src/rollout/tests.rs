@@ -150,7 +150,7 @@ fn what_cannot_be_run_is_said() {
     let error = rollout(&arm, &[], &[], &recording, &options)
         .expect_err("it is too short")
         .to_string();
-    assert!(error.contains("no stretch"), "{error}");
+    assert!(error.contains("no gap-free part"), "{error}");
     // Torques that are nothing like the robot's: both variants leave, and say so.
     for tau in &mut recording.tau {
         tau.fill(5000.0);

@@ -96,7 +96,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
                 state: (row.0 == "coulomb_friction").then(|| "within 0.05 rad/s of a reversal".into()),
             },
             sentence: format!(
-                "{}: {} of {main} {value}; held-out error .94 → .12.",
+                "{}: {} of {main} {value}; held-out error 0.94 → 0.12.",
                 joint.as_deref().unwrap_or("The whole arm"),
                 row.0.replace('_', " ")
             ),

@@ -60,7 +60,7 @@ pub fn log_styles(recording: &RecordingStream, arm: &Arm, report: &Report) -> Re
         }
         let findings = (0..report.findings.len()).filter(|&number| acts(report, number, &joint.name));
         for (nth, number) in findings.enumerate() {
-            let name = words::cause(&report.findings[number]);
+            let name = words::effect(&report.findings[number]);
             let style = style(&name, EFFECTS[nth % EFFECTS.len()], 1.5);
             recording.log_static(entity(&effect_entity(number)), &style)?;
         }
@@ -75,7 +75,7 @@ pub fn send(recording: &RecordingStream, arm: &Arm, report: &Report, span: [f64;
 }
 
 fn write(layout: &mut Layout<'_>, arm: &Arm, report: &Report, span: [f64; 2]) -> RecordingStreamResult<Node> {
-    let title = format!("{}: as recorded, redder where the model misses", arm.name());
+    let title = format!("{}: recorded motion, coloured by the residual", arm.name());
     let scene = layout.scene(arm, &title, 0.7)?;
     let summary = layout.view("TextDocument", "Diagnosis", SUMMARY, &[])?;
     let left = layout.container(ContainerKind::Vertical, &[scene, summary], |c| {

@@ -13,30 +13,30 @@ pub fn blocks(of: &Disturbance) -> Vec<Block> {
     let mut list = vec![
         Block::Heading("The paper's own disturbance"),
         text(format!(
-            "A PUMA 560 does task A under its exact model; all masses and inertia tensors of the URDF beside the recording are {} times the true ones, \
-             the error of the paper that testbed began with (Um, Park and Park 2014). Task D is held out. The case was sealed and diagnosed as all others, \
-             and is in none of the figures above.",
+            "A PUMA 560 performs task A with its exact model; all masses and inertia tensors of the URDF beside the recording are {} times the true ones, \
+             which is the error studied by Um, Park and Park (2014). Task D is held out. The case is sealed and diagnosed like all others, \
+             and is not included in the figures above.",
             of.inertia_scale
         )),
         text(found(of)),
     ];
     list.extend(of.diagnosed.as_ref().map(|errors| {
         let level = if of.is_rounding {
-            format!("below {ROUNDING:e} (N m)², which is rounding beside torques of tens of N m")
+            format!("below {ROUNDING:e} (N m)², which is rounding error for torques of tens of N m")
         } else {
             format!("**not** below {ROUNDING:e} (N m)²")
         };
         text(format!(
-            "On task D the URDF with what was named put in errs by {} (N m)² in the mean over the joints, {level}. What is left of it is the hold of the \
-             torque: the loop keeps it for a millisecond and the recording has it at the start, half a millisecond before the motion that it is right for. \
-             Filtering leaves far less, as positions and torques go through the same filter.",
+            "On task D, the mean squared torque error of the corrected URDF is {} (N m)² in the mean over the joints, {level}. The remaining error is due to the zero-order hold \
+             of the torque: the loop holds it for one millisecond, and the recording contains it at the start of the interval, half a millisecond before the motion that it corresponds to. \
+             Filtering contributes far less, because positions and torques pass the same filter.",
             rounded(errors.mean, 3)
         ))
     }));
     list.push(text(
-        "Mean squared torque error on task D, (N m)²; the models learned from task A, as in the paper's table I. The paper's own means stand beside ours, \
-         those of its table II after learning from tasks A, B and C. It is no contest of equals: the models learn a function from 800 samples and know no \
-         names; the diagnosis has all of the run, and the true cause is one number of its catalogue.",
+        "Mean squared torque error on task D, (N m)²; the models are trained on task A, as in the paper's table I. The paper's own means are given beside ours; \
+         those of its table II are after training on tasks A, B and C. The comparison is not between equals: the models learn a function from 800 samples without \
+         prior knowledge of effects; the diagnosis uses the complete run, and the true effect is one parameter of its catalogue.",
     ));
     list.push(errors(of));
     list
@@ -50,25 +50,25 @@ fn found(of: &Disturbance) -> String {
         words.collect::<Vec<_>>().join(", ")
     };
     let mut sentences = vec![match (of.is_one_finding, of.findings.is_empty()) {
-        (true, _) => format!("The diagnosis names `{EFFECT}` and nothing else."),
+        (true, _) => format!("The diagnosis names `{EFFECT}` and no other effect."),
         (false, true) => "The diagnosis names **nothing**.".to_owned(),
         (false, false) => format!("The diagnosis names {}, **not `{EFFECT}` alone**.", list(&of.findings)),
     }];
     sentences.extend(of.factor.as_ref().map(size));
     if of.aliases_are_all_torque_scales {
         sentences.push(
-            "It says that it could as well be `torque_scale` on every joint, and nothing besides: without a known load, inertias that are too large \
-             and torques that are all measured too small are one and the same."
+            "The only alternative that it states is `torque_scale` on every joint: without a known load, an inertial scale and a common torque scale \
+             give the same recordings."
                 .to_owned(),
         );
     } else if !of.findings.is_empty() {
         let said = if of.aliases.is_empty() {
-            "nothing".to_owned()
+            "none".to_owned()
         } else {
             list(&of.aliases)
         };
         sentences.push(format!(
-            "It says that it could as well be {said}, **not `torque_scale` on every joint**."
+            "The alternative that it states is {said}, **not `torque_scale` on every joint**."
         ));
     }
     sentences.join(" ")
@@ -78,13 +78,13 @@ fn size(factor: &Factor) -> String {
     let bound = |bound: Option<f64>| bound.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
     let [low, high] = factor.ci95.map(bound);
     let holds = if factor.is_covered {
-        "holds"
+        "contains"
     } else {
-        "**does not hold**"
+        "**does not contain**"
     };
     format!(
-        "The true inertias are {:.6} times the URDF's, it says; the truth is {:.6}, which is {} off. Its 95 % interval, {low} to {high}, {holds} the truth; \
-         it is as wide as it is because every interval allows for a hundredth of the value, for what filtering and a form that is not quite right leave.",
+        "The estimated factor of the inertias is {:.6}; the ground truth is {:.6}, and the error is {}. The 95 % interval, {low} to {high}, {holds} the ground truth; \
+         its width includes one per cent of the value, which every interval allows for filtering and model form errors.",
         factor.value,
         factor.truth,
         rounded(factor.off.abs(), 2)
@@ -106,7 +106,7 @@ fn errors(of: &Disturbance) -> Block {
         .map(|Other { row, paper_table_2 }| line(row.model.title(), &row.mse, row.mean, [row.paper, *paper_table_2]))
         .collect();
     if let Some(errors) = &of.diagnosed {
-        rows.push(line("**as it was diagnosed**", &errors.mse, errors.mean, [None; 2]));
+        rows.push(line("**diagnosed model**", &errors.mse, errors.mean, [None; 2]));
     }
     let numbers: Vec<String> = (1..=joints).map(|joint| format!("joint {joint}")).collect();
     let mut head = vec!["model"];

@@ -30,7 +30,7 @@ pub fn numbers(robots: &[Tried]) -> Option<String> {
         return None;
     }
     let bottom = TOP + STEP * rows.len() as f64;
-    let mut svg = Svg::new(WIDTH, bottom + 40.0, "Numbers found over numbers published");
+    let mut svg = Svg::new(WIDTH, bottom + 40.0, "Ratio of estimated to published values");
     let ends = [TICKS[0].ln(), TICKS[TICKS.len() - 1].ln()];
     let x = Scale::new(ends, [LEFT, RIGHT]);
     // A ratio that is off the axis, or negative, is drawn at its end.
@@ -41,7 +41,12 @@ pub fn numbers(robots: &[Tried]) -> Option<String> {
         svg.text([at, bottom + 16.0], "tick", "middle", &format!("{tick}"));
     }
     let middle = 0.5 * (LEFT + RIGHT);
-    svg.text([middle, bottom + 34.0], "axis", "middle", "found over published");
+    svg.text(
+        [middle, bottom + 34.0],
+        "axis",
+        "middle",
+        "estimated over published value",
+    );
     for (k, (label, evidence, number)) in rows.iter().enumerate() {
         let y = TOP + STEP * (k as f64 + 0.5);
         svg.text([LEFT - 12.0, y + 4.0], "tick", "end", label);

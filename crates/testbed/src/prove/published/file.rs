@@ -147,10 +147,10 @@ impl File {
             let place = source.place(robot.span());
             let robot = robot.into_inner();
             let is_name = !robot.name.is_empty() && !robot.name.contains(['/', '\\']) && !robot.name.starts_with('.');
-            ensure!(is_name, "{place}: \"{}\" is no name of a folder", robot.name);
+            ensure!(is_name, "{place}: \"{}\" is not the name of a folder", robot.name);
             ensure!(
                 !robots.iter().any(|other| other.name == robot.name),
-                "{place}: robot \"{}\" is there twice; keep one of the two",
+                "{place}: robot \"{}\" is given twice; keep one of the two",
                 robot.name
             );
             ensure_some(&robot.train, &place, "train")?;
@@ -159,7 +159,7 @@ impl File {
             for (k, file) in files.iter().enumerate() {
                 ensure!(
                     !file.is_empty() && !file.contains(['/', '\\']) && !files[..k].contains(file),
-                    "{place}: \"{file}\" is given twice, or is no file of the robot's folder"
+                    "{place}: \"{file}\" is given twice, or is not a file of the robot's folder"
                 );
             }
             for file in robot.train.iter().chain(&robot.held_out) {
@@ -286,8 +286,7 @@ impl File {
         for (key, numbers) in &says.parameters {
             let name = key.get_ref();
             let [effect] = says.effects.as_slice() else {
-                let reason =
-                    "which of several effects is meant is not said, so there can be no number; name one effect";
+                let reason = "several effects are given, to which no value can belong; name one effect";
                 return Err(self.fail(key.span(), reason));
             };
             let effect = effect.get_ref();

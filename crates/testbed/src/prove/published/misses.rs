@@ -6,7 +6,7 @@ use scoring::{Evidence, SaidFate};
 
 use super::Tried;
 
-/// A number that is further off is told up front.
+/// The relative difference above which a value is listed at the start.
 const FAR: f64 = 0.2;
 
 /// What was missed, and which of the publishers' own numbers are far from ours, robot by robot.
@@ -47,12 +47,12 @@ pub fn blocks(robots: &[Tried]) -> Vec<Block> {
     let mut list = Vec::new();
     if !missed.is_empty() {
         list.push(text(format!(
-            "**Missed.** {missed}. Why, as far as it is known, is in the notes under each robot."
+            "**Missed.** {missed}. The notes under each robot give the reasons, as far as they are known."
         )));
     }
     if !far.is_empty() {
         list.push(text(format!(
-            "**More than {} away from the publishers\u{2019} own number.** {far}.",
+            "**Difference of more than {} from the published value.** {far}.",
             percent(FAR)
         )));
     }

@@ -14,16 +14,16 @@ pub fn blocks(real: &Real) -> Vec<Block> {
     list.extend(misses::blocks(&real.robots));
     list.extend(figure::numbers(&real.robots).map(|svg| Block::Figure {
         svg,
-        caption: "Each number that was found over the one published, with our 95 % interval; hollow: constants of a model they use. What is off the axis is drawn at its end.".into(),
+        caption: "Ratio of the estimated to the published value, with our 95 % interval. Hollow circles are constants of a model that the publishers use. Values outside the axis are drawn at its end.".into(),
     }));
     list.extend(errors(real));
     list.extend(protocol(real));
     list.extend(origins(real));
-    list.push(Block::Heading("Robot by robot"));
+    list.push(Block::Heading("Results of each robot"));
     list.push(text(
-        "How it is known: a `number` is the publishers\u{2019} own; `derived` is what follows from a law they give; a `constant` is one of a model they use, of which it is not said that it was measured; a `statement` has no number. `same torque` is the \
-         same law in other words: friction of F₊ forwards and F₋ backwards is Coulomb friction of (F₊ + F₋)/2 with an offset of (F₊ − F₋)/2, and a coupling acts on both its joints. A \
-         difference is (found − published)/|published|. `could be` is another effect that explains the recordings nearly as well, by the diagnosis\u{2019} own account. Notes of ours were written after results had been seen.",
+        "Evidence: a `number` is a value given by the publishers; `derived` follows from a law that they give; a `constant` belongs to a model that they use, without a statement that it was measured; a `statement` has no value. `same torque` is an \
+         equivalent parameterisation: friction of F₊ forwards and F₋ backwards equals Coulomb friction of (F₊ + F₋)/2 with an offset of (F₊ − F₋)/2, and a coupling acts on both of its joints. A \
+         difference is (found − published)/|published|. An `alternative` is another effect that, according to the diagnosis, explains the recordings nearly as well. Our notes were written after the results were known.",
     ));
     list.extend(real.robots.iter().flat_map(robot_page::blocks));
     list.extend(hashes(real));
@@ -64,7 +64,7 @@ fn opening(real: &Real) -> Vec<Block> {
     let found = sum(&[Named, SameTorque]);
     let absent = match real.absent.as_slice() {
         [] => String::new(),
-        list => format!(" Not tried, as their folders were not there: {}.", list.join(", ")),
+        list => format!(" Not tested, because their folders are missing: {}.", list.join(", ")),
     };
     let mut rows: Vec<Vec<String>> = real.robots.iter().map(row).collect();
     rows.push(vec![
@@ -86,24 +86,24 @@ fn opening(real: &Real) -> Vec<Block> {
     ]);
     let head = [
         "robot",
-        "said to be there",
+        "published effects",
         "named",
-        "named as the same torque",
-        "only as what it could be",
-        "declared not observable",
-        "joint left unexplained",
+        "named by an equivalent effect",
+        "alternative only",
+        "declared not testable",
+        "joint unexplained",
         "missed",
         "numbers inside our 95 % interval",
         "median difference",
-        "named besides, not published",
-        "named against what is published",
+        "named, not published",
+        "contradicting the publication",
     ];
     vec![
-        Block::Title("Concealed in the real world: published recordings, diagnosed under seal".into()),
+        Block::Title("Real robots: published recordings, diagnosed blind".into()),
         text(format!(
-            "Recordings of {} real machines, published by others, were diagnosed by processes that were given the recordings and a rigid URDF alone. Of {said} things \
-             that the publishers say are there (an effect on a joint), {found} were named. Where they give a number and we name the effect, {inside} numbers are inside our 95 % interval; the \
-             median difference is {median}. {contradicted} names contradict what is published.{absent}",
+            "Published recordings of {} real machines were diagnosed by processes that had access to the recordings and a rigid URDF only. Of {said} effects \
+             that the publishers report (an effect on a joint), {found} are named. Where the publishers give a value and the diagnosis names the effect, {inside} values are inside our 95 % interval; the \
+             median difference is {median}. {contradicted} names contradict the publication.{absent}",
             real.robots.len()
         )),
         text(how_hard(real)),
@@ -147,9 +147,9 @@ fn how_hard(real: &Real) -> String {
         list.join(", ")
     };
     format!(
-        "How much could have failed: publishers say of few effects that they are not there, so that a name could have contradicted them for {pairs} of all \
-         (effect, joint) pairs alone, on {} of {} robots ({list}). Of the {all} things said to be there {several} leave open which of several effects is \
-         meant (\u{201c}Coulomb or viscous\u{201d}); without these {} of {} were named, and of these {named_of_several} of {several}.",
+        "Limits of this test: publishers rarely state that an effect is absent, so that a name can contradict the publication for only {pairs} of all \
+         (effect, joint) pairs, on {} of {} robots ({list}). Of the {all} published effects, {several} leave open which of several effects is \
+         meant (\u{201c}Coulomb or viscous\u{201d}). Without these, {} of {} are named; of these, {named_of_several} of {several}.",
         deniable.len(),
         real.robots.len(),
         named - named_of_several,
@@ -184,10 +184,10 @@ fn row(tried: &Tried) -> Vec<String> {
     cells
 }
 
-/// The same agreement, by how a number is known.
+/// The agreement of the estimates with the published values, by their evidence.
 fn by_evidence(real: &Real) -> Block {
     let kinds = [
-        (Evidence::Number, "`number`: the publishers\u{2019} own"),
+        (Evidence::Number, "`number`: given by the publishers"),
         (Evidence::Derived, "`derived` from a law they give"),
         (Evidence::Constant, "`constant` of a model they use"),
     ];
@@ -200,8 +200,8 @@ fn by_evidence(real: &Real) -> Block {
         (published > 0).then(|| vec![(*words).to_owned(), published.to_string(), inside, median])
     });
     let head = [
-        "how a number is known",
-        "numbers published",
+        "evidence",
+        "values published",
         "inside our 95 % interval, of those found",
         "median difference",
     ];
@@ -212,9 +212,9 @@ fn by_evidence(real: &Real) -> Block {
 pub const ERRORS: [&str; 6] = [
     "held-out error, URDF",
     "diagnosed",
-    "what is said, fitted",
+    "published effects, fitted",
     "learned",
-    "simulated motion off by (mrad or mm), URDF",
+    "simulated position error (mrad or mm), URDF",
     "diagnosed",
 ];
 
@@ -242,12 +242,12 @@ fn errors(real: &Real) -> Vec<Block> {
             motion(|rollout| rollout.diagnosed),
         ]
     };
-    let head = [&["robot", "recordings, fitted and held out", "verdict"], &ERRORS[..]].concat();
+    let head = [&["robot", "recordings, training and held out", "verdict"], &ERRORS[..]].concat();
     vec![
         text(
-            "How well each model predicts recordings it was not fitted to: NRMSE of the torque (root mean square error over the torque\u{2019}s standard deviation, samples in motion), root mean square \
-             over the joints; and how far the simulated arm, driven by the recorded torques over short windows, strays from the recorded motion. `what is said, fitted` has exactly the effects that the \
-             publishers name, their sizes fitted to the same recordings (`diagnose --only`); `learned` is Independent Joint Learning on the same recordings. A distance of hundreds of mrad means that the simulation runs away, and is a lower bound.",
+            "Prediction of the held-out recordings by each model: NRMSE of the torque (root mean square error over the torque\u{2019}s standard deviation, samples in motion), root mean square \
+             over the joints; and the RMS position error of the simulated arm, driven by the recorded torques over short windows. `published effects, fitted` contains exactly the effects that the \
+             publishers name, with their parameters fitted to the same recordings (`diagnose --only`); `learned` is Independent Joint Learning on the same recordings. A position error of hundreds of mrad means that the simulation diverges; it is a lower bound.",
         ),
         table(&head, 3, real.robots.iter().map(row).collect()),
     ]
@@ -255,16 +255,16 @@ fn errors(real: &Real) -> Vec<Block> {
 
 fn protocol(real: &Real) -> Vec<Block> {
     vec![
-        Block::Heading("How it was done, and what it does not show"),
+        Block::Heading("Protocol and limits"),
         text(
-            "Before the first diagnosis the SHA-256 of the program, of each recording and URDF and of what is published was written (`seal.json`, `SHA256SUMS`). Each diagnosis ran in a process of its \
-             own, without environment, in a new folder that held copies of the recordings and the URDF and nothing else: the command that anyone runs, with the same arguments for all robots. What is published is read at the start, to be \
-             checked and sealed; no diagnosis is given it, and nothing is held against it before the hashes of all diagnoses are written (`answers.json`).",
+            "Before the first diagnosis, the SHA-256 hashes of the program, of each recording and URDF and of the published values are written (`seal.json`, `SHA256SUMS`). Each diagnosis runs in its own \
+             process, without environment variables, in a new folder that contains only copies of the recordings and the URDF; it is the public command with the same arguments for all robots. The published values are read at the start, to be \
+             checked and sealed; no diagnosis has access to them, and no comparison is made before the hashes of all diagnoses are written (`answers.json`).",
         ),
         text(
-            "**It is a blind run of the program, not a blind test of the method**: these recordings, and most of the published numbers, were known to those who wrote the diagnosis while they wrote it. \
-             The test on physics that nobody had seen is the other one (`docs/proof.md`). Publishers\u{2019} knowledge is no complete truth either: their numbers are estimates with another filter, from recordings that may not be these, \
-             or constants of a controller. So a name counts as false only where what is published contradicts it; a name that nobody published is listed as such, and nobody knows whether it is right.",
+            "**This is a blind run of the program, not a blind test of the method**: the authors of the diagnosis knew these recordings and most of the published values while they wrote it. \
+             The test with unseen injected faults is in `docs/proof.md`. The publications are not a complete ground truth either: their values are estimates with another filter, possibly from other recordings, \
+             or constants of a controller. A name therefore counts as false only where the publication contradicts it; a name without a publication is listed as such, and its correctness is unknown.",
         ),
         Block::Code(real.command.clone()),
     ]
@@ -282,12 +282,12 @@ fn origins(real: &Real) -> Vec<Block> {
             source.converted.clone(),
         ]
     };
-    let head = ["folder", "source", "licence", "files there", "how ours differ"];
+    let head = ["folder", "source", "licence", "files there", "differences of our files"];
     vec![
-        Block::Heading("Where the recordings come from"),
+        Block::Heading("Origin of the recordings"),
         text(
-            "None of it is in this repository: each has its own licence. To repeat the proof make one folder a robot in a folder of your choice (`--recordings`), with `robot.urdf` and the recordings as CSV: `t` (s), `q_<joint>` (rad or m), `qd_<joint>` where \
-             the robot gave it, `tau_<joint>` (N m or N at the joint); more columns are described in `docs/recordings.md`. Numbers at the joint, SI, nothing filtered, nothing resampled. How ours differ from the sources is what the notes that came with this collection of recordings, and the sources\u{2019} own programs, say; it was not checked against the originals number by number. The seal at the end has the SHA-256 of each of our files; files made anew, rounded in another way, have others. A robot whose folder is not there is left out, and said to be.",
+            "The recordings are not part of this repository, because each has its own licence. To repeat the proof, make one folder per robot in a folder of your choice (`--recordings`), with `robot.urdf` and the recordings as CSV: `t` (s), `q_<joint>` (rad or m), `qd_<joint>` where \
+             the robot gave it, `tau_<joint>` (N m or N at the joint); more columns are described in `docs/recordings.md`. Values are in SI units at the joint, neither filtered nor resampled. The differences from the sources are taken from the notes of this collection of recordings and from the sources\u{2019} own programs; the values were not compared with the originals one by one. The seal at the end contains the SHA-256 of each of our files; files that are converted again with other rounding have other hashes. A robot without a folder is omitted, and the report says so.",
         ),
         table(&head, 5, real.robots.iter().map(row).collect()),
     ]
@@ -303,7 +303,7 @@ fn hashes(real: &Real) -> Vec<Block> {
             let hash = sealed.files.get(&theirs).map_or_else(String::new, |hash| code(hash));
             rows.push(vec![name.clone(), code(&ours), hash]);
         }
-        rows.push(vec![name.clone(), "what is published".into(), code(&sealed.truth)]);
+        rows.push(vec![name.clone(), "published values".into(), code(&sealed.truth)]);
         let answer = real.answers.get(name).cloned().flatten();
         let answer = answer.map_or_else(|| "none".to_owned(), |hash| code(&hash));
         rows.push(vec![name.clone(), "the diagnosis".into(), answer]);
@@ -311,7 +311,7 @@ fn hashes(real: &Real) -> Vec<Block> {
     vec![
         Block::Heading("The seal"),
         text(format!(
-            "Program: testbed {}, SHA-256 `{}`. All under seal: `{}`, the SHA-256 of `SHA256SUMS`. Source: {}.",
+            "Program: testbed {}, SHA-256 `{}`. Complete seal: `{}`, the SHA-256 of `SHA256SUMS`. Source: {}.",
             real.seal.program.version, real.seal.program.sha256, real.seal.whole, real.seal.source
         )),
         table(&["robot", "file", "SHA-256"], 3, rows),

@@ -20,11 +20,11 @@ pub fn blocks(tried: &Tried) -> Vec<Block> {
         list.push(text(format!("There is no diagnosis: {reason}")));
     }
     let head = [
-        "said to be there",
-        "how it is known",
-        "what came of it",
+        "published effect",
+        "evidence",
+        "outcome",
         "published",
-        "found, and its 95 % interval",
+        "found, with its 95 % interval",
         "difference",
         "inside",
     ];
@@ -37,15 +37,15 @@ pub fn blocks(tried: &Tried) -> Vec<Block> {
         }
     });
     let seen: Vec<&str> = seen.into_iter().map(String::as_str).collect();
-    list.push(text(format!("Said in: {}.", seen.join("; "))));
+    list.push(text(format!("Sources: {}.", seen.join("; "))));
     if score.besides.is_empty() {
-        list.push(text("Nothing else was named."));
+        list.push(text("No further effect is named."));
     } else {
         let head = [
-            "named besides",
+            "also named",
             "published?",
-            "in words",
-            "could be",
+            "description",
+            "alternatives",
             "share",
             "probability",
         ];
@@ -54,7 +54,7 @@ pub fn blocks(tried: &Tried) -> Vec<Block> {
     list.push(text(unseen(tried)));
     list.push(errors(tried));
     for note in &robot.notes {
-        list.push(text(format!("**Note of ours.** {note}")));
+        list.push(text(format!("**Our note.** {note}")));
     }
     list
 }
@@ -104,9 +104,9 @@ fn came_of(outcome: &SaidOutcome) -> String {
     match outcome.fate {
         SaidFate::Named => "named".into(),
         SaidFate::SameTorque => format!("same torque: {other}"),
-        SaidFate::Confusable => format!("could be, for {other}"),
-        SaidFate::NotObservable => "declared not observable".into(),
-        SaidFate::Unexplained => "**missed**; the joint is left unexplained".into(),
+        SaidFate::Confusable => format!("alternative of {other}"),
+        SaidFate::NotObservable => "declared not testable".into(),
+        SaidFate::Unexplained => "**missed**; the joint is unexplained".into(),
         SaidFate::Missed => "**missed**".into(),
     }
 }
@@ -116,7 +116,7 @@ fn compared(number: &Compared) -> [String; 4] {
     let scale = number.published;
     let published = quantity(number.published, scale, &number.unit, true);
     let Some(found) = number.found else {
-        return [published, "no such number".into(), String::new(), String::new()];
+        return [published, "not estimated".into(), String::new(), String::new()];
     };
     let bound =
         |bound: Option<f64>| bound.map_or_else(|| "–".to_owned(), |bound| quantity(bound, scale, &number.unit, false));
@@ -152,8 +152,8 @@ fn signed_percent(share: f64) -> String {
 
 fn besides(besides: &Besides) -> Vec<String> {
     let published = match (&besides.contradicted_by, besides.comes_with) {
-        (Some(place), _) => format!("**against** {place}"),
-        (None, true) => "comes with what is said".to_owned(),
+        (Some(place), _) => format!("**contradicts** {place}"),
+        (None, true) => "accompanies a published effect".to_owned(),
         (None, false) => "not published".to_owned(),
     };
     let others: Vec<String> = besides.confusable_with.iter().map(name).collect();
@@ -182,8 +182,8 @@ fn in_short(sentence: &str) -> &str {
 fn unseen(tried: &Tried) -> String {
     let score = &tried.score;
     let unexplained = match score.unexplained.as_slice() {
-        [] => "No joint is left unexplained.".to_owned(),
-        joints => format!("Left unexplained: {}.", joints.join(", ")),
+        [] => "No joint has an unexplained residual.".to_owned(),
+        joints => format!("Unexplained residual on: {}.", joints.join(", ")),
     };
     let mut by_joints: BTreeMap<(Reverse<usize>, &Vec<String>), Vec<String>> = BTreeMap::new();
     for (effect, joints) in &score.not_observable {
@@ -204,7 +204,7 @@ fn unseen(tried: &Tried) -> String {
     });
     let groups: Vec<String> = groups.collect();
     format!(
-        "{unexplained} Said not to show in these recordings, or not below some size: {}.",
+        "{unexplained} Not testable with these recordings, or only above a certain size: {}.",
         groups.join("; ")
     )
 }

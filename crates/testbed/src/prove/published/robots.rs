@@ -26,7 +26,7 @@ pub fn there(file: &File, recordings: &Path) -> anyhow::Result<(Vec<Robot>, Vec<
             let path = folder.join(name);
             ensure!(
                 path.is_file(),
-                "{}: is not there, and robot \"{}\" needs it; get it from {}",
+                "{}: does not exist, and robot \"{}\" needs it; get it from {}",
                 path.display(),
                 robot.name,
                 robot.source.url
@@ -45,7 +45,7 @@ pub fn there(file: &File, recordings: &Path) -> anyhow::Result<(Vec<Robot>, Vec<
         absent.join(", ")
     );
     for name in &absent {
-        eprintln!("note: {looked}/{name}: is not there; the robot is left out");
+        eprintln!("note: {looked}/{name}: does not exist; the robot is omitted");
     }
     Ok((robots, absent))
 }
@@ -84,7 +84,7 @@ pub fn stage(robot: &Robot, folder: &Path, place: &Place) -> anyhow::Result<()> 
         if to.is_file() {
             ensure!(
                 sha256_of(&from)? == sha256_of(&to)?,
-                "{}: is not what was copied from it to {}; give another --out",
+                "{}: differs from the copy in {}; give another --out",
                 from.display(),
                 to.display()
             );
@@ -98,7 +98,7 @@ pub fn stage(robot: &Robot, folder: &Path, place: &Place) -> anyhow::Result<()> 
         let name = entry.file_name().to_string_lossy().into_owned();
         ensure!(
             known.contains(&name),
-            "{}: is of another proof; give another --out",
+            "{}: belongs to another proof; give another --out",
             entry.path().display()
         );
     }

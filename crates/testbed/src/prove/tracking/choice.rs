@@ -1,4 +1,4 @@
-//! Which cases are tracked: told by the campaign's plan, before anything is simulated.
+//! The selection of the cases to track, from the campaign's plan and before anything is simulated.
 
 use std::collections::BTreeSet;
 

@@ -25,13 +25,13 @@ pub struct Run {
 pub enum Rate {
     /// The reference's as it is, as in the loop that recordings are made in: the filter's lag is an error under every model.
     AsItIs,
-    /// The reference's through the same filter: nothing but the model is left.
+    /// The reference velocity passes the same filter, so that only model errors remain.
     Filtered,
 }
 
 /// Tracks the course on `machine` with the gains of `task` and the feed-forward of `plan`.
 ///
-/// The feedback's mass matrix is that of the URDF with the drives' ordinary inertias, as in the loop that the recordings were made in.
+/// The feedback's mass matrix is that of the URDF with the drives' baseline rotor inertias, as in the loop that the recordings were made in.
 ///
 /// # Errors
 /// If the controller does not fit the arm.

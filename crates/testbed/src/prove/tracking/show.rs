@@ -1,4 +1,4 @@
-//! The closed loop of a case in Rerun: the arm with the diagnosed cause beside its reference, and a line a model.
+//! The closed loop of a case in Rerun: the arm with the diagnosed effects beside its reference, and one line per model.
 //!
 //! Entities: `world/{actual,reference}/link_<i>`, and for every joint `joint/<name>/` with `error/<model>` and `torque/<model>`.
 

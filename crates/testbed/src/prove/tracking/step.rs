@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Case;
 use crate::output;
-use crate::prove::cases::{Place, Source};
+use crate::prove::cases::{Cases, Place};
 use crate::prove::rows;
 use crate::prove::vault::{Vault, made_of};
 
@@ -17,7 +17,7 @@ use crate::prove::vault::{Vault, made_of};
 ///
 /// # Errors
 /// If the seal is broken, or the case cannot be tracked.
-pub fn track(source: &Source, vault: &Vault, place: &Place, sealed: &SealedCase, truth: &str) -> anyhow::Result<()> {
+pub fn track(source: &Cases, vault: &Vault, place: &Place, sealed: &SealedCase, truth: &str) -> anyhow::Result<()> {
     let model = vault.model(&format!("diagnoses/{}", place.name))?;
     let named = sha256(model.as_deref().unwrap_or_default().as_bytes());
     let made_of = made_of([&vault.program.sha256, &sealed.inputs(), &sealed.truth, &named]);
@@ -64,7 +64,7 @@ struct Done {
     sha256: String,
 }
 
-/// What a finished step left.
+/// The result of a finished step.
 ///
 /// # Errors
 /// If it cannot be read.

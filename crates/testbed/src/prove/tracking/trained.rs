@@ -9,7 +9,7 @@ use effects::Effect;
 use effects::drive::{ActuationDelay, TorqueSaturation};
 use recording::{Recording, RegularRecording};
 use torque::{Learned, Prediction, Workspace};
-use validate::learned::{self, LearnedOptions, Motion};
+use validate::learned::{self, LearnedOptions, RecordedMotion};
 
 use super::plan::correction;
 
@@ -85,11 +85,11 @@ impl Recorded {
             }
             changed.push([q, tau]);
         }
-        let motions: Vec<Motion<'_>> = self
+        let motions: Vec<RecordedMotion<'_>> = self
             .traces
             .iter()
             .zip(&changed)
-            .map(|(trace, [q, tau])| Motion {
+            .map(|(trace, [q, tau])| RecordedMotion {
                 q,
                 qd: &trace.qd,
                 qdd: &trace.qdd,
