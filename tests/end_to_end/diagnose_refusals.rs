@@ -267,11 +267,11 @@ fn outputs_that_cannot_be_written_are_refused_before_anything_is_read() {
     assert_eq!(case.text("a.csv"), recorded);
     says(
         &refused(&["--json", "o.json", "--report", "o.json"]),
-        &["o.json", "written twice"],
+        &["o.json", "given for two outputs"],
     );
     says(
         &refused(&["--json", "new.json", "--report", "./new.json"]),
-        &["new.json", "written twice"],
+        &["new.json", "given for two outputs"],
     );
     case.sandbox.write("known.toml", "schema = \"testbed.model/1\"\n");
     says(
