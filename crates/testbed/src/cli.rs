@@ -191,12 +191,21 @@ pub struct ProveArgs {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
 
+    /// Whether half of the cases look like reality: a little of everything on every joint, torque constants off, friction of the day, coloured and
+    /// quantised torques, gearboxes that give, tools drawn and not mounted, files with clocks of their own
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, default_value_t = true, default_missing_value = "true", action = clap::ArgAction::Set)]
+    pub lifelike: bool,
+
+    /// How wrong the URDFs' inertials are everywhere, about relative [default: 0, 0.03, 0.1 and 0.3 in turns]
+    #[arg(long, value_name = "SIGMA", value_parser = parse_urdf_error)]
+    pub urdf_error: Option<f64>,
+
     /// Where everything is kept; the same command goes on where an interrupted one stopped
     #[arg(long, value_name = "DIR", default_value = "proof")]
     pub out: PathBuf,
 
     /// Take these cases instead: folders case_*, each with a .urdf, train*.csv and held_out*.csv
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["robot", "cases", "seed"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["robot", "cases", "seed", "lifelike", "urdf_error"])]
     pub cases_from: Option<PathBuf>,
 
     /// Where the truths of --cases-from are (case_*.json) [default: truth/ beside the cases]
@@ -246,6 +255,15 @@ pub struct ConcealArgs {
     #[arg(long, value_name = "K", default_value_t = 1, conflicts_with = "effects", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub cases: u32,
 
+    /// Whether half of the cases (with --effects: the case) look like reality: a little of everything on every joint, torque constants off,
+    /// friction of the day, coloured and quantised torques, gearboxes that give, tools drawn and not mounted, files with clocks of their own
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, default_value_t = false, default_missing_value = "true", action = clap::ArgAction::Set)]
+    pub lifelike: bool,
+
+    /// How wrong the URDFs' inertials are everywhere, about relative [default: 0, 0.03, 0.1 and 0.3 in turns; with --effects 0]
+    #[arg(long, value_name = "SIGMA", value_parser = parse_urdf_error)]
+    pub urdf_error: Option<f64>,
+
     /// The folder: case_000 … in it hold recordings, truth/ the truth
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -292,6 +310,13 @@ fn parse_frequency(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(hertz) if (0.1..=1000.0).contains(&hertz) => Ok(hertz),
         _ => Err("give a frequency from 0.1 to 1000 Hz".into()),
+    }
+}
+
+fn parse_urdf_error(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(sigma) if (0.0..=1.0).contains(&sigma) => Ok(sigma),
+        _ => Err("give a number from 0 (exact) to 1".into()),
     }
 }
 
