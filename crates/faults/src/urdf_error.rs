@@ -151,7 +151,7 @@ impl Open {
     fn read(&mut self, tag: &BytesStart<'_>) -> Result<(), FaultError> {
         let text = |name: &str| -> Result<String, FaultError> {
             let found = tag.try_get_attribute(name).map_err(unreadable)?;
-            let value = found.map(|attribute| attribute.unescape_value().map(|value| value.into_owned()));
+            let value = found.map(|attribute| attribute.unescape_value().map(std::borrow::Cow::into_owned));
             Ok(value.transpose().map_err(unreadable)?.unwrap_or_default())
         };
         let fill = |text: &str, target: &mut [f64]| -> Result<(), FaultError> {

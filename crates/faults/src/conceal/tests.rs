@@ -256,7 +256,7 @@ fn a_tool_that_is_not_mounted_is_in_the_urdf_alone() {
         ..Settings::default()
     };
     let record = |effects: &[Injected]| conceal_effects(&robot, "one", effects, &settings).expect("it can be");
-    let (with, without) = (record(&[tool.clone()]), record(&[]));
+    let (with, without) = (record(std::slice::from_ref(&tool)), record(&[]));
     assert_eq!(with.train, without.train);
     let mass = |urdf: &str| {
         let arm = Arm::from_urdf_text(urdf, "case").expect("it is an arm");
