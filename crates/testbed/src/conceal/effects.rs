@@ -49,7 +49,9 @@ pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Vec<Injected>> {
             if effect.is_not_mounted() {
                 // What is checked is the body that is drawn.
                 for key in ["mass", "inertia"] {
-                    table.entry(key).and_modify(negate);
+                    if let Some(value) = table.get_mut(key) {
+                        negate(value);
+                    }
                 }
             }
             effect_file::effect(&source, span.clone(), table, arm)?;
