@@ -55,6 +55,15 @@ impl Arm {
         self
     }
 
+    /// The arm with `body` (in the link's frame) in place of moving link `link` (from 0).
+    ///
+    /// # Panics
+    /// If there is no such link.
+    pub fn with_link_inertia(mut self, link: usize, body: Inertia) -> Self {
+        self.joints[link].inertia = body;
+        self
+    }
+
     /// The arm with `payload` welded to its tool: mass (kg), centre of mass (m) and tensor about it (kg m²) in the
     /// frame of [`Self::tool_frame`].
     pub fn with_payload(mut self, payload: &Inertia) -> Self {

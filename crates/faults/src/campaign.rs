@@ -6,19 +6,24 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::fault::{Fault, families, outside};
 use crate::robot::Robot;
+use crate::urdf_error::SIGMAS;
 
 /// Cases drawn from a seed: a third hold nothing but ordinary friction, a tenth something outside the catalogue, the others one to
 /// three effects of it, every family about as often; half are easy, half hard.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Campaign {
     /// What everything is drawn from.
     pub seed: u64,
     /// How many cases there are.
     pub cases: usize,
+    /// Whether half of the cases look like reality ([`CasePlan::lifelike`]).
+    pub lifelike: bool,
+    /// How wrong the URDFs are, about relative; `None`: 0, 0.03, 0.1 and 0.3 in turns, so that a quarter is exact.
+    pub urdf_error: Option<f64>,
 }
 
 /// What a case is to be, before sizes are drawn.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CasePlan {
     /// The case's place in its campaign, from 0.
     pub index: usize,
@@ -33,6 +38,12 @@ pub struct CasePlan {
     pub background_friction: bool,
     /// Names of the effects.
     pub effects: Vec<String>,
+    /// Whether it looks like reality: every joint has a little of everything, torque constants are off, friction is another in each
+    /// recording, the torque's noise is coloured and quantised, gearboxes give, tools are drawn that are not mounted, and some files have
+    /// clocks of their own.
+    pub lifelike: bool,
+    /// How wrong the inertials of the URDF are everywhere, about relative.
+    pub urdf_error: f64,
 }
 
 impl Campaign {
@@ -48,29 +59,43 @@ impl Campaign {
         let (ordinary, unknown) = (count(1.0 / 3.0), count(0.1));
         let mut outside = Deck::new(outside());
         let mut families = Deck::new(families());
-        let mut effects: Vec<Vec<String>> = vec![Vec::new(); ordinary];
-        effects.extend((0..unknown).map(|_| vec![outside.next(&mut random).to_owned()]));
+        let mut effects: Vec<(Vec<String>, bool)> = Vec::new();
+        // Every other one of each kind looks like reality.
         while effects.len() < self.cases {
-            let size = *[1, 2, 2, 3].choose(&mut random).unwrap_or(&1);
-            effects.push(families.hand(size, &mut random));
+            let lifelike = self.lifelike && effects.len() % 2 == 1;
+            let names = match effects.len() {
+                number if number < ordinary => Vec::new(),
+                number if number < ordinary + unknown => vec![outside.next(&mut random).to_owned()],
+                _ => {
+                    let sizes: &[usize] = if lifelike { &[1, 2, 2, 3, 3, 5] } else { &[1, 2, 2, 3] };
+                    let size = sizes.choose(&mut random).copied().unwrap_or(1);
+                    families.hand(size, &mut random)
+                }
+            };
+            effects.push((names, lifelike));
         }
         // Where friction is and how hard a case is has nothing to do with what is in it.
         let mut quarters: Vec<bool> = (0..self.cases).map(|i| i % 4 != 0).collect();
         let mut halves: Vec<bool> = (0..self.cases).map(|i| i % 2 == 1).collect();
+        let mut errors: Vec<f64> = (0..self.cases).map(|i| SIGMAS[i % SIGMAS.len()]).collect();
         effects.shuffle(&mut random);
         quarters.shuffle(&mut random);
         halves.shuffle(&mut random);
+        errors.shuffle(&mut random);
         let digits = self.cases.saturating_sub(1).to_string().len().max(3);
-        let cases = effects.into_iter().zip(quarters).zip(halves).enumerate();
+        let cases = effects.into_iter().zip(quarters).zip(halves).zip(errors).enumerate();
         cases
-            .map(|(index, ((effects, background_friction), hard))| CasePlan {
+            .map(|(index, ((((effects, lifelike), friction), hard), error))| CasePlan {
                 index,
                 name: format!("case_{index:0digits$}"),
                 // Fits the integers of any JSON reader.
                 seed: random.random::<u64>() >> 11,
                 hard,
-                background_friction,
+                // Every real joint has it.
+                background_friction: friction || lifelike,
                 effects,
+                lifelike,
+                urdf_error: self.urdf_error.unwrap_or(error),
             })
             .collect()
     }
@@ -145,35 +170,58 @@ mod tests {
 
     use super::*;
 
+    fn campaign(seed: u64, cases: usize, lifelike: bool) -> Campaign {
+        Campaign {
+            seed,
+            cases,
+            lifelike,
+            urdf_error: None,
+        }
+    }
+
     #[test]
     fn cases_are_shared_out_as_promised() {
-        let plans = Campaign { seed: 7, cases: 300 }.plans();
-        let count = |holds: &dyn Fn(&CasePlan) -> bool| plans.iter().filter(|plan| holds(plan)).count();
-        assert_eq!(count(&|plan| plan.effects.is_empty()), 100);
-        assert_eq!(
-            count(&|plan| plan.effects.iter().any(|name| name.ends_with("_unknown"))),
-            30
-        );
-        assert_eq!(count(&|plan| plan.hard), 150);
-        assert_eq!(count(&|plan| !plan.background_friction), 75);
-        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-        for name in plans.iter().flat_map(|plan| &plan.effects) {
-            *counts.entry(name).or_default() += 1;
+        for lifelike in [false, true] {
+            let plans = campaign(7, 300, lifelike).plans();
+            let count = |holds: &dyn Fn(&CasePlan) -> bool| plans.iter().filter(|plan| holds(plan)).count();
+            assert_eq!(count(&|plan| plan.effects.is_empty()), 100);
+            assert_eq!(
+                count(&|plan| plan.effects.iter().any(|name| name.ends_with("_unknown"))),
+                30
+            );
+            assert_eq!(count(&|plan| plan.hard), 150);
+            assert!(count(&|plan| !plan.background_friction) <= 75);
+            for sigma in SIGMAS {
+                assert_eq!(count(&|plan| plan.urdf_error == sigma), 75);
+            }
+            let real = usize::from(lifelike);
+            assert_eq!(count(&|plan| plan.lifelike), 150 * real);
+            assert!(plans.iter().all(|plan| plan.background_friction || !plan.lifelike));
+            assert!((5 * real..=150 * real).contains(&count(&|plan| plan.effects.len() == 5)));
+            let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+            for name in plans.iter().flat_map(|plan| &plan.effects) {
+                *counts.entry(name).or_default() += 1;
+            }
+            assert_eq!(counts.len(), families().len() + outside().len());
+            let of = |names: &[&str]| {
+                let list = || names.iter().map(|name| counts[name]);
+                list().max().unwrap_or(0) - list().min().unwrap_or(0)
+            };
+            assert!(of(&outside()) <= 1 && of(&families()) <= 3, "{counts:?}");
         }
-        assert_eq!(counts.len(), families().len() + outside().len());
-        let of = |names: &[&str]| {
-            let list = || names.iter().map(|name| counts[name]);
-            list().max().unwrap_or(0) - list().min().unwrap_or(0)
-        };
-        assert!(of(&outside()) <= 1 && of(&families()) <= 3, "{counts:?}");
     }
 
     #[test]
     fn a_plan_depends_on_the_seed_alone() {
-        let campaign = Campaign { seed: 1, cases: 30 };
-        assert_eq!(campaign.plans(), campaign.plans());
-        assert_eq!(campaign.case(3), campaign.plans().into_iter().nth(3));
-        assert_eq!(campaign.case(30), None);
-        assert_ne!(campaign.plans(), Campaign { seed: 2, cases: 30 }.plans());
+        let campaign = |seed: u64| campaign(seed, 30, true);
+        assert_eq!(campaign(1).plans(), campaign(1).plans());
+        assert_eq!(campaign(1).case(3), campaign(1).plans().into_iter().nth(3));
+        assert_eq!(campaign(1).case(30), None);
+        assert_ne!(campaign(1).plans(), campaign(2).plans());
+        let same = Campaign {
+            urdf_error: Some(0.1),
+            ..campaign(1)
+        };
+        assert!(same.plans().iter().all(|plan| plan.urdf_error == 0.1));
     }
 }

@@ -103,6 +103,8 @@ mod tests {
             torque_noise: vec![0.0; robot.arm().dof()],
             encoder_quantum: 1e-5,
             period: 1e-3,
+            urdf_sigma: None,
+            lifelike: None,
         }
     }
 

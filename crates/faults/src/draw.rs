@@ -6,7 +6,7 @@ use rand::Rng;
 use rand::seq::IndexedRandom;
 use rand_chacha::ChaCha8Rng;
 
-use crate::fault::{Fault, Place, coulomb_friction, viscous_friction};
+use crate::fault::{Fault, Leaves, Place, coulomb_friction, viscous_friction};
 use crate::robot::Robot;
 use crate::truth::Injected;
 
@@ -17,6 +17,8 @@ const ONSET: f64 = 0.12;
 pub(crate) struct Scales<'a> {
     pub robot: &'a Robot,
     pub hard: bool,
+    /// Whether the case is to look like reality.
+    pub lifelike: bool,
     /// Standard deviation of each joint's torque (N m or N), without faults.
     pub spreads: &'a [f64],
     /// Of each joint, the sizes of its torque in increasing order (N m or N).
@@ -33,6 +35,8 @@ pub(crate) struct Site<'a> {
     pub robot: &'a Robot,
     /// Whether the case is of the harder kind.
     pub hard: bool,
+    /// Whether the case is to look like reality.
+    pub lifelike: bool,
     /// When the first training recording begins and the last ends (s).
     pub span: (f64, f64),
     pub joint: usize,
@@ -71,12 +75,13 @@ impl Scales<'_> {
             scales: self,
             robot: self.robot,
             hard: self.hard,
+            lifelike: self.lifelike,
             span: self.span,
             joint,
         };
         let mut drawn = (fault.draw)(bare, &site, random);
         let sets_in = random.random_bool(ONSET);
-        if sets_in && fault.sets_in {
+        if sets_in && fault.sets_in && drawn.leaves() != Leaves::Tool {
             let (from, to) = self.span;
             drawn.onset = Some(from + (to - from) * random.random_range(0.3..0.7));
         }

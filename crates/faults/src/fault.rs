@@ -145,6 +145,8 @@ pub(crate) enum Leaves {
     DryFriction,
     /// The rotor of a drive whose spring is rigid.
     Rotor,
+    /// A tool that the URDF has and the machine has not: without the fault it is mounted.
+    Tool,
 }
 
 /// How a fault is made `factor` as large.
@@ -255,5 +257,6 @@ mod prelude {
     pub(super) use crate::draw::{log_uniform, sign, sometimes};
     pub(super) use crate::error::FaultError;
     pub(super) use crate::part::{At, Body, Connection, DriveLaw, DryAt, DryLaw, DrySum, LinkLaw, Piece, What};
+    pub(super) use crate::pseudo_inertia::moved;
     pub(super) use crate::robot::has_another_joint;
 }

@@ -15,6 +15,7 @@ mod fault;
 mod machine;
 mod motion;
 mod part;
+mod pseudo_inertia;
 mod record_again;
 mod robot;
 mod seal;
@@ -22,6 +23,7 @@ mod sensor;
 #[cfg(test)]
 mod test_robots;
 mod truth;
+mod urdf_error;
 
 pub use campaign::{Campaign, CasePlan};
 pub use case::write_case;
@@ -34,4 +36,4 @@ pub use motion::{DURATION, PAUSE};
 pub use record_again::record_again;
 pub use robot::Robot;
 pub use seal::{Program, Seal, SealError, SealedCase, sha256, sha256_of};
-pub use truth::{Injected, Truth};
+pub use truth::{Injected, Lifelike, Truth};

@@ -292,7 +292,7 @@ impl<'a> Simulation<'a> {
     fn joint_torque(&mut self, j: usize, time: f64) -> f64 {
         let applied = self.drives[j].applied(&self.parts.drive_at(j, time));
         let (parts, loads) = (self.parts, self.loads[j]);
-        let dry = |v: f64| resistance(parts.dry(j, time), &DryAt::new(v, time, loads));
+        let dry = |v: f64| resistance(parts.dry(j, time), &DryAt::new(v, time, loads)).times(parts.friction[j]);
         let smooth = |q: f64, v: f64| parts.smooth(j, time).map(|law| law.torque(q, v)).sum::<f64>();
         let (q, v) = (self.plant.q()[j], self.plant.qd()[j]);
         let inner = match &mut self.rotors[j] {

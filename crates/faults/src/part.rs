@@ -17,8 +17,19 @@ pub(crate) struct Part {
 /// One thing that a fault brings.
 pub(crate) struct Piece {
     pub what: What,
-    /// Whether it is there from the start, and stays when the fault is taken away.
-    pub stays: bool,
+    /// In which of the two machines it is.
+    pub there: There,
+}
+
+/// In which machine a piece is: in the one with the fault, or in the one without it.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum There {
+    /// With the fault, from its onset on.
+    With,
+    /// In both, from the start.
+    Always,
+    /// Only without it, from the start: what the user believes to be there and is not.
+    Without,
 }
 
 /// What it is, and the joint it is on.
@@ -46,14 +57,25 @@ impl What {
     pub(crate) fn stays(self) -> Piece {
         Piece {
             what: self,
-            stays: true,
+            there: There::Always,
+        }
+    }
+
+    /// As a piece that comes when its fault is taken away.
+    pub(crate) fn comes_without(self) -> Piece {
+        Piece {
+            what: self,
+            there: There::Without,
         }
     }
 }
 
 impl From<What> for Piece {
     fn from(what: What) -> Self {
-        Self { what, stays: false }
+        Self {
+            what,
+            there: There::With,
+        }
     }
 }
 
@@ -151,6 +173,16 @@ pub(crate) struct DrySum {
 pub(crate) struct Resistance {
     pub level: f64,
     pub bias: f64,
+}
+
+impl Resistance {
+    /// So many times as much.
+    pub(crate) fn times(self, factor: f64) -> Self {
+        Self {
+            level: factor * self.level,
+            bias: factor * self.bias,
+        }
+    }
 }
 
 /// The dry friction that its parts make.

@@ -28,12 +28,26 @@ pub(crate) struct Sensors {
     pub quantum: f64,
     /// Standard deviation of the noise on each torque (N m or N).
     pub noise: Vec<f64>,
+    /// Time constant of that noise (s); 0: white.
+    pub noise_time: f64,
+    /// The steps in which torques are reported (N m or N); 0, or none at all: none.
+    pub torque_quantum: Vec<f64>,
+    /// Whether time begins at each recording's own start.
+    pub own_clocks: bool,
 }
 
 impl Sensors {
     /// The nominal period (s).
     pub(crate) fn period(&self) -> f64 {
         self.ticks as f64 * TICK
+    }
+
+    /// A torque in the steps that joint `j` reports.
+    fn counted(&self, j: usize, tau: f64) -> f64 {
+        match self.torque_quantum.get(j) {
+            Some(&step) if step > 0.0 => (tau / step).round() * step,
+            _ => tau,
+        }
     }
 
     /// The recording of `run` along `reference`.
@@ -48,22 +62,36 @@ impl Sensors {
             ..Recording::default()
         };
         let mut qd = vec![Vec::new(); n];
+        // Noise of the first order: as large as white noise, and alike from row to row.
+        let kept = if self.noise_time > 0.0 {
+            (-self.period() / self.noise_time).exp()
+        } else {
+            0.0
+        };
+        let fresh = (1.0 - kept * kept).sqrt();
+        let mut noise = vec![0.0; n];
+        let mut is_first = true;
+        let zero = if self.own_clocks { reference.start } else { 0.0 };
         // The last tick is the end of the last interval, not a row.
         for tick in (LEAD..reference.ticks() - 1).step_by(self.ticks) {
             let mut normal = || -> f64 { StandardNormal.sample(random) };
             let late = normal().clamp(-MOST_JITTER, MOST_JITTER) * JITTER * self.period();
-            let noise: Vec<f64> = self.noise.iter().map(|noise| noise * normal()).collect();
+            for (noise, size) in noise.iter_mut().zip(&self.noise) {
+                let drawn = size * normal();
+                *noise = if is_first { drawn } else { kept * *noise + fresh * drawn };
+            }
+            is_first = false;
             let keep = random.random::<f64>() >= LOST;
             if self.lost && !keep {
                 continue;
             }
-            let time = reference.time(tick) + if self.jitter { late } else { 0.0 };
+            let time = reference.time(tick) - zero + if self.jitter { late } else { 0.0 };
             recording.time.push(rounded(time, 6));
             for j in 0..n {
                 let at = tick * n + j;
                 recording.q[j].push(rounded(run.q[at], 5));
                 qd[j].push(rounded(run.qd[at], 4));
-                recording.tau[j].push(significant(run.tau[at] + noise[j], 5));
+                recording.tau[j].push(significant(self.counted(j, run.tau[at] + noise[j]), 5));
             }
         }
         recording.qd = Some(qd);
@@ -118,6 +146,9 @@ mod tests {
             lost: false,
             quantum: 1e-5,
             noise: vec![0.5; n],
+            noise_time: 0.0,
+            torque_quantum: Vec::new(),
+            own_clocks: false,
         };
         let record = |sensors: &Sensors| sensors.record(&robot, &reference, &run, &mut ChaCha8Rng::seed_from_u64(9));
         let recording = record(&clean);
@@ -128,6 +159,22 @@ mod tests {
             .collect();
         assert!((deviation(&noise) - 0.5).abs() < 0.02, "{}", deviation(&noise));
         assert!((recording.q[1][100] - run.q[(LEAD + 400) * n + 1]).abs() <= 0.51e-5);
+
+        // Coloured noise is as large, and alike from row to row; torques come in steps; a clock of its own begins at nothing.
+        let real = record(&Sensors {
+            noise_time: 0.02,
+            torque_quantum: vec![0.125; n],
+            own_clocks: true,
+            ..clean.clone()
+        });
+        assert_eq!((real.time[0], real.time[6249]), (0.0, 24.996));
+        let noise: Vec<f64> = (0..6250)
+            .map(|row| real.tau[2][row] - run.tau[(LEAD + 4 * row) * n + 2])
+            .collect();
+        let lagged: f64 = noise.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / 6249.0;
+        assert!((deviation(&noise) - 0.5).abs() < 0.06, "{}", deviation(&noise));
+        assert!((lagged / 0.25 - (-0.2_f64).exp()).abs() < 0.15, "{lagged}");
+        assert!(real.tau[2].iter().all(|tau| (tau / 0.125).fract() == 0.0));
 
         let rough = record(&Sensors {
             jitter: true,

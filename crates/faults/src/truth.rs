@@ -32,6 +32,26 @@ pub struct Truth {
     /// The recordings' nominal period (s); zero where the truth does not tell.
     #[serde(default)]
     pub period: f64,
+    /// How wrong the inertials of the case's URDF are everywhere, about relative; 0: exact but for what is concealed; `None` where the
+    /// truth does not tell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub urdf_sigma: Option<f64>,
+    /// What the case has of real life beside what is concealed; `None` for a plain one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lifelike: Option<Lifelike>,
+}
+
+/// What real recordings have and nobody asks for; small effects of every joint are in [`Truth::concealed`], as [`Injected::minor`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Lifelike {
+    /// Factor of all friction, `[recording][joint]`, training first, then what is held out.
+    pub friction: Vec<Vec<f64>>,
+    /// Time constant of the noise on torques (s); 0: white.
+    pub noise_time: f64,
+    /// The steps in which torques are reported (N m or N); 0: none.
+    pub torque_quantum: Vec<f64>,
+    /// Whether each file's time begins at its own start. `onset` and `start` then stay on the one clock of the case.
+    pub own_clocks: bool,
 }
 
 /// One effect of the true machine.
@@ -50,6 +70,9 @@ pub struct Injected {
     /// When it sets in (s, on the recordings' clock), where it is not there from the start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub onset: Option<f64>,
+    /// Whether it is one of the small things that every real joint has: nobody asks for it, and its name is not false.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub minor: bool,
     /// The largest part of a joint's torque (in standard deviations, over the training recordings) that vanishes when the
     /// machine is run without the effect; `None` for the ordinary friction of the background.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -65,6 +88,7 @@ impl Injected {
             parameters: BTreeMap::new(),
             form: None,
             onset: None,
+            minor: false,
             expressed_share: None,
         }
     }
@@ -101,8 +125,22 @@ impl Injected {
         Fault::named(&self.effect)
     }
 
+    /// As one of the small things that every real joint has.
+    pub(crate) fn minor(mut self) -> Self {
+        self.minor = true;
+        self
+    }
+
+    /// Whether it is a tool that is drawn in the URDF and not mounted.
+    pub fn is_not_mounted(&self) -> bool {
+        self.effect == "payload" && self.number("mass").is_some_and(|mass| mass < 0.0)
+    }
+
     /// What stays of it when it is taken away.
     pub(crate) fn leaves(&self) -> Leaves {
+        if self.is_not_mounted() {
+            return Leaves::Tool;
+        }
         self.fault().map_or(Leaves::Nothing, |fault| fault.leaves)
     }
 

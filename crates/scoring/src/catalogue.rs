@@ -9,6 +9,12 @@ pub const ORDINARY_WITH_DRIVES: &[&str] = &["coulomb_friction", "viscous_frictio
 /// The inertia of a drive.
 pub const DRIVE_INERTIA: &str = "rotor_inertia";
 
+/// A general change of links' masses, centres of mass and inertias.
+pub const INERTIALS: &str = "inertial_parameters";
+
+/// A link whose inertial is wrong.
+pub const LINK_INERTIAL: &str = "link_inertial_error";
+
 /// Names that a wrong term on a joint is taken from.
 pub const ON_A_JOINT: [&str; 9] = [
     "quadratic_drag",
@@ -64,6 +70,16 @@ pub fn parameters(effect: &str) -> &'static [&'static str] {
         "spring" => &["stiffness"],
         "external_contact" => &["force", "duration"],
         _ => &[],
+    }
+}
+
+/// Whether a number of an effect on a joint is in proportion to the torque that it was weighed with.
+pub fn is_weighed(effect: &str, parameter: &str) -> bool {
+    match parameter {
+        "coefficient" | "level" | "positive" | "negative" | "breakaway" | "coulomb" | "viscous" | "inertia"
+        | "amplitude" | "stiffness" | "damping" => true,
+        "offset" => effect == "torque_offset",
+        _ => false,
     }
 }
 

@@ -26,7 +26,7 @@ pub struct WrongTerm {
 /// The true terms, with another name on the same joint in place of the most expressed one that is not ordinary; which, is
 /// told by `number`, the case's. `None` where nothing but the ordinary is concealed.
 pub fn wrong_term(truth: &Truth, number: usize) -> Option<WrongTerm> {
-    let named = truth.concealed.iter().filter(|concealed| {
+    let named = truth.of_note().filter(|concealed| {
         !concealed.is_outside_the_catalogue()
             && !is_ordinary(truth, concealed.name())
             && !parameters(concealed.name()).is_empty()
@@ -63,6 +63,8 @@ pub struct HeldOut {
     pub case: String,
     /// Whether something outside the catalogue is concealed: the true terms then lack what has no name.
     pub outside_the_catalogue: bool,
+    /// Whether the URDF is wrong everywhere, or joints have the small things of real ones: the true terms then lack these.
+    pub beside_the_terms: bool,
     /// The model as it was given.
     pub nominal: Option<f64>,
     /// With what the diagnosis named.
@@ -76,6 +78,11 @@ pub struct HeldOut {
 }
 
 impl HeldOut {
+    /// Whether the true terms are all that is concealed, so that they are a standard.
+    pub fn has_all_terms(&self) -> bool {
+        !self.outside_the_catalogue && !self.beside_the_terms
+    }
+
     /// The diagnosis' error over the true terms'.
     pub fn over_true_terms(&self) -> Option<f64> {
         Some(self.diagnosed? / self.true_terms?.max(1e-12))
@@ -101,6 +108,7 @@ pub fn held_out(truth: &Truth, answer: &Answer, oracle: Option<&Answer>, wrong: 
     HeldOut {
         case: truth.case.clone(),
         outside_the_catalogue: !Key::new(truth).unknown.is_empty(),
+        beside_the_terms: truth.has_a_wrong_urdf() || truth.concealed.iter().any(|concealed| concealed.minor),
         nominal: over(Some(answer), &|fit| fit.held_out_nrmse_nominal),
         diagnosed: over(Some(answer), &|fit| fit.held_out_nrmse_augmented),
         true_terms: over(oracle, &|fit| fit.held_out_nrmse_augmented),

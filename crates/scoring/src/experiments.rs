@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::answer::{Answer, EffectOnJoint};
 use crate::intervals::Counted;
-use crate::rules::{Key, Name, found, is_declared_unseen};
+use crate::rules::{Key, Name, counted_findings, found, is_declared_unseen};
 use crate::score::Tried;
 
 /// A second diagnosis, with the recording of the motion that the first proposed.
@@ -107,12 +107,16 @@ pub fn experiments(cases: &[Tried]) -> Experiments {
     let mut all = Experiments::default();
     let mut unseen = Vec::new();
     for case in cases {
-        let Some(first) = &case.answer else { continue };
+        let Some(first) = case.answer.as_ref().map(|first| counted_findings(&case.truth, first)) else {
+            continue;
+        };
+        let first = &first;
         let key = Key::new(&case.truth);
         let second = match &case.again {
-            Some(Again::Answer(second)) => Some(second.as_ref()),
+            Some(Again::Answer(second)) => Some(counted_findings(&case.truth, second)),
             _ => None,
         };
+        let second = second.as_ref();
         all.cases += usize::from(case.again.is_some());
         for mut confusion in confusions(&case.truth.case, first, &key) {
             confusion.after = case.again.as_ref().map(|_| after(&confusion, second, &key));
@@ -120,7 +124,7 @@ pub fn experiments(cases: &[Tried]) -> Experiments {
         }
         let Some(second) = second else { continue };
         let (before, now) = (found(first), found(second));
-        for concealed in &case.truth.concealed {
+        for concealed in case.truth.of_note() {
             let name = (concealed.name().to_owned(), concealed.joint.clone());
             if !before.contains(&name) && is_declared_unseen(first, concealed) {
                 unseen.push(now.contains(&name));

@@ -15,6 +15,7 @@ mod plain;
 mod published;
 mod rules;
 mod score;
+mod strict;
 mod summary;
 mod targets;
 mod truth;
@@ -36,6 +37,7 @@ pub use published::{
 };
 pub use rules::{LEAST_SHARE, Name};
 pub use score::{Family, Score, Tried, score};
+pub use strict::{SIZE_WITHIN, Strict, StrictFamily, UrdfError, UrdfGroup};
 pub use summary::{Curve, Errors, ParameterScore, SizeBin};
 pub use targets::{Figure, Target};
 pub use truth::{Injected, Truth};

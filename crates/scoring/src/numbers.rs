@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::answer::Named;
-use crate::catalogue::{is_dry_friction, is_friction_curve, neutral, parameters};
+use crate::catalogue::{is_dry_friction, is_friction_curve, is_weighed, neutral, parameters};
 use crate::truth::{Injected, Truth};
 
 /// One number of a finding against the truth's.
@@ -19,7 +19,7 @@ pub struct ScoredNumber {
     pub parameter: String,
     /// Whether it is the number that says how large the effect is.
     pub main: bool,
-    /// What it is.
+    /// What it is, in the unit of the joint's recorded torque.
     pub truth: f64,
     /// What was said.
     pub value: f64,
@@ -57,7 +57,7 @@ fn scale(concealed: &Injected, parameter: &str, truth: f64) -> f64 {
 /// Whether several forms of dry friction are on the joint: how much of the level is whose is then a matter of words.
 fn shares_a_level(truth: &Truth, concealed: &Injected) -> bool {
     let same = |other: &&Injected| other.joint == concealed.joint && is_dry_friction(other.name());
-    is_dry_friction(concealed.name()) && truth.concealed.iter().filter(same).count() > 1
+    is_dry_friction(concealed.name()) && truth.of_note().filter(same).count() > 1
 }
 
 /// Whether the numbers mean something else than the catalogue's: the effect, or another part of the joint's friction curve, has
@@ -67,7 +67,7 @@ fn is_of_another_form(truth: &Truth, concealed: &Injected) -> bool {
         let of_the_curve = is_friction_curve(other.name()) && is_friction_curve(concealed.name());
         other.form.is_some() && other.joint == concealed.joint && of_the_curve
     };
-    concealed.form.is_some() || truth.concealed.iter().any(bends)
+    concealed.form.is_some() || truth.of_note().any(bends)
 }
 
 /// The numbers of a finding of `concealed`.
@@ -85,7 +85,12 @@ pub fn sized(truth: &Truth, concealed: &Injected, finding: &Named) -> Vec<Scored
         let (Some(true_value), Some(number)) = (truth_value(concealed, key), finding.parameters.get(*key)) else {
             continue;
         };
-        let scale = scale(concealed, key, true_value);
+        let unit = match is_weighed(concealed.name(), key) {
+            true => truth.torque_unit(concealed.joint.as_deref()),
+            false => 1.0,
+        };
+        let true_value = unit * true_value;
+        let scale = unit * scale(concealed, key, true_value / unit);
         let Some(value) = number.value.filter(|_| scale > 0.0) else {
             continue;
         };

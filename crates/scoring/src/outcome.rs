@@ -5,7 +5,9 @@ use serde::{Deserialize, Serialize};
 use crate::answer::{Answer, EffectOnJoint, Named};
 use crate::intervals::quantile;
 use crate::numbers::{ScoredNumber, sized};
-use crate::rules::{Key, LEAST_SHARE, Name, found, found_or_confusable, is_declared_unseen, is_ordinary, same_machine};
+use crate::rules::{
+    Key, LEAST_SHARE, Name, counted_findings, found, found_or_confusable, is_declared_unseen, is_ordinary, same_machine,
+};
 use crate::score::Tried;
 use crate::truth::Injected;
 
@@ -147,15 +149,14 @@ impl CaseOutcome {
 pub fn outcomes(case: &Tried) -> CaseOutcome {
     let truth = &case.truth;
     let empty = Answer::default();
-    let answer = case.answer.as_ref().unwrap_or(&empty);
+    let answer = &counted_findings(truth, case.answer.as_ref().unwrap_or(&empty));
     let key = Key::new(truth);
     let named = found(answer);
     let covered = found_or_confusable(answer);
     let ordinary = |name: &Name| is_ordinary(truth, &name.0);
     // What is concealed by the name that it was given, where that is another of the same machine.
     let other_names: Vec<(Name, Name)> = truth
-        .concealed
-        .iter()
+        .of_note()
         .filter_map(|concealed| {
             let (given, meant) = (
                 same_machine(truth, concealed)?,
@@ -191,10 +192,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
     result.ordinary_false = named.iter().filter(|n| !key.allows(n) && ordinary(n)).count();
     for name in key.known.iter().filter(|name| !ordinary(name)) {
         // Of several of one name, the most expressed.
-        let same = truth
-            .concealed
-            .iter()
-            .filter(|c| c.name() == name.0 && c.joint == name.1);
+        let same = truth.of_note().filter(|c| c.name() == name.0 && c.joint == name.1);
         let Some(concealed) = same.max_by(|a, b| share(a).total_cmp(&share(b))) else {
             continue;
         };
@@ -221,14 +219,14 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
             form: concealed.form.clone(),
             share: concealed.expressed_share,
             over_noise: over_noise(case, answer, concealed),
-            counts: concealed.expressed_share.is_none_or(|share| share > LEAST_SHARE),
+            counts: concealed.expressed_share.is_none_or(|share| share >= LEAST_SHARE),
             fate,
             found_as,
             instead: false_names.iter().filter(near).map(|f| name_of(f)).collect(),
         });
     }
     for finding in &false_names {
-        let there = truth.concealed.iter().filter(|c| {
+        let there = truth.of_note().filter(|c| {
             let name = (c.name().to_owned(), c.joint.clone());
             !ordinary(&name) && (c.joint == finding.joint || c.joint.is_none() || finding.joint.is_none())
         });
@@ -276,10 +274,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
                 result.said.push((probability, right));
             }
         }
-        let same = truth
-            .concealed
-            .iter()
-            .filter(|c| c.name() == name.0 && c.joint == name.1);
+        let same = truth.of_note().filter(|c| c.name() == name.0 && c.joint == name.1);
         // Of several of one name, the one that it is nearest to.
         let nearest = same.map(|concealed| sized(truth, concealed, finding)).min_by(|a, b| {
             let first = |list: &Vec<ScoredNumber>| list.first().map_or(f64::INFINITY, |sized| sized.error);

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::answer::Answer;
-use crate::rules::{Key, Name, found, found_or_confusable, is_ordinary};
+use crate::rules::{Key, Name, counted_findings, found, found_or_confusable, is_ordinary};
 use crate::score::Tried;
 
 /// The numbers that the script prints.
@@ -58,7 +58,7 @@ pub fn plain(cases: &[Tried]) -> Plain {
     for case in cases {
         let key = Key::new(&case.truth);
         let empty = Answer::default();
-        let answer = case.answer.as_ref().unwrap_or(&empty);
+        let answer = &counted_findings(&case.truth, case.answer.as_ref().unwrap_or(&empty));
         count.missing += usize::from(case.answer.is_none());
         let (named, sets) = (found(answer), found_or_confusable(answer));
         let ordinary = |name: &Name| is_ordinary(&case.truth, &name.0);

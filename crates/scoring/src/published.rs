@@ -290,6 +290,7 @@ impl Said {
             parameters: values.map(|(key, number)| (key.clone(), number.value.into())).collect(),
             form: None,
             onset: None,
+            minor: false,
             expressed_share: None,
         }
     }

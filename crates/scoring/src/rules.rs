@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::answer::{Answer, DeclaredUnseen};
-use crate::catalogue::{brings, is_dry_friction, neutral};
+use crate::catalogue::{INERTIALS, LINK_INERTIAL, brings, is_dry_friction, neutral};
 use crate::numbers::truth_value;
 use crate::truth::{Injected, Truth};
 
@@ -29,8 +29,7 @@ pub fn same_machine(truth: &Truth, concealed: &Injected) -> Option<Name> {
     let number = |of: &Injected, key: &str| of.parameters.get(key).and_then(serde_json::Value::as_f64);
     // Friction of another kind beside it tells. That the constant sets in later does not, if the level is there by then.
     let beside: Vec<&Injected> = truth
-        .concealed
-        .iter()
+        .of_note()
         .filter(|c| c.joint == concealed.joint && is_dry_friction(c.name()) && c.name() != concealed.name())
         .collect();
     let is_plain = concealed.form.is_none();
@@ -58,7 +57,7 @@ pub struct Key {
     pub known: BTreeSet<Name>,
     /// Injected, and outside the catalogue.
     pub unknown: BTreeSet<Name>,
-    /// Brought by what is concealed.
+    /// Brought by what is concealed, or one of the small things of real joints.
     pub brought: BTreeSet<Name>,
 }
 
@@ -66,7 +65,7 @@ impl Key {
     /// The key to a case.
     pub fn new(truth: &Truth) -> Self {
         let (mut known, mut unknown) = (BTreeSet::new(), BTreeSet::new());
-        for concealed in &truth.concealed {
+        for concealed in truth.of_note() {
             let set = if concealed.is_outside_the_catalogue() {
                 &mut unknown
             } else {
@@ -74,10 +73,23 @@ impl Key {
             };
             set.insert((concealed.name().to_owned(), concealed.joint.clone()));
         }
-        let brought: BTreeSet<Name> = known
+        let small: BTreeSet<Name> = truth
+            .concealed
             .iter()
+            .filter(|concealed| concealed.minor)
+            .flat_map(|concealed| {
+                // The same torque in motion.
+                let also = (concealed.name() == "torque_offset").then_some("friction_asymmetry");
+                let names = also.into_iter().chain([concealed.name()]);
+                names.map(|name| (name.to_owned(), concealed.joint.clone()))
+            })
+            .collect();
+        let mut brought: BTreeSet<Name> = known
+            .iter()
+            .chain(&small)
             .flat_map(|(effect, joint)| brings(effect).iter().map(|with| ((*with).to_owned(), joint.clone())))
             .collect();
+        brought.extend(small);
         let brought = brought.difference(&known).cloned().collect();
         Self {
             known,
@@ -107,6 +119,44 @@ pub fn found_or_confusable(answer: &Answer) -> BTreeSet<Name> {
     let mut set = found(answer);
     set.extend(rivals.map(|rival| (rival.effect.clone(), rival.joint.clone())));
     set
+}
+
+/// The findings of `answer` as they are counted: `inertial_parameters` stands for each wrong link of its joint (of any, on the whole arm)
+/// that is not named beside it. Where the URDF is wrong everywhere such a link is moved in other ways, too, and inertials that differ are
+/// as ordinary as friction; where it is exact, the name is right for a link that was moved in other ways, and false otherwise.
+pub fn counted_findings(truth: &Truth, answer: &Answer) -> Answer {
+    let mut counted = answer.clone();
+    let names = found(answer);
+    let (general, mut findings): (Vec<_>, Vec<_>) = counted
+        .findings
+        .into_iter()
+        .partition(|finding| finding.effect == INERTIALS);
+    let wrong_everywhere = truth.has_a_wrong_urdf();
+    let mut taken: BTreeSet<Name> = BTreeSet::new();
+    for finding in general {
+        let meant = truth.of_note().filter(|concealed| {
+            concealed.name() == LINK_INERTIAL
+                && (wrong_everywhere || concealed.form.is_some())
+                && (finding.joint.is_none() || finding.joint == concealed.joint)
+        });
+        let mut stands = false;
+        for concealed in meant {
+            stands = true;
+            let name = (LINK_INERTIAL.to_owned(), concealed.joint.clone());
+            if !names.contains(&name) && taken.insert(name) {
+                let mut finding = finding.clone();
+                (finding.effect, finding.joint) = (LINK_INERTIAL.to_owned(), concealed.joint.clone());
+                // Its numbers are others.
+                finding.parameters.clear();
+                findings.push(finding);
+            }
+        }
+        if !stands && !wrong_everywhere {
+            findings.push(finding);
+        }
+    }
+    counted.findings = findings;
+    counted
 }
 
 /// Whether a diagnosis says that an effect of this size would not show in these recordings.

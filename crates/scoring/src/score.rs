@@ -11,8 +11,9 @@ use crate::controls::{HeldOut, held_out};
 use crate::experiments::{Again, Experiments, experiments};
 use crate::intervals::Counted;
 use crate::numbers::ScoredNumber;
-use crate::outcome::{FalseName, Fate, Outcome, OutsideOutcome, outcomes};
+use crate::outcome::{CaseOutcome, FalseName, Fate, Outcome, OutsideOutcome, outcomes};
 use crate::plain::{Plain, plain};
+use crate::strict::{Strict, UrdfError, UrdfGroup, strict};
 use crate::summary::{Curve, Errors, ParameterScore, curves, errors, parameter_scores};
 use crate::targets::{Target, targets};
 use crate::truth::{Injected, Truth};
@@ -49,6 +50,10 @@ pub struct Score {
     pub empty: usize,
     /// The figures that were asked for, and whether they are reached.
     pub targets: Vec<Target>,
+    /// The headline: everything asked for, every name that is not true false, sizes within 20 %.
+    pub strict: Strict,
+    /// The same by how wrong the URDF was; groups without a case are left out.
+    pub by_urdf: Vec<UrdfGroup>,
     /// By family: the effects that are not ordinary, and have an expressed share above [`crate::LEAST_SHARE`].
     pub families: BTreeMap<String, Family>,
     /// F1 of each family, averaged over the families concealed.
@@ -156,10 +161,6 @@ pub fn score(cases: &[Tried]) -> Score {
         .filter_map(|case| case.refused_without_cause.clone())
         .collect();
     let families = families(&concealed, &false_names);
-    let mean = |pick: &dyn Fn(&Family) -> Option<f64>| -> Option<f64> {
-        let values: Vec<f64> = families.values().filter_map(pick).collect();
-        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
-    };
     let sizes: Vec<ScoredNumber> = all.iter().flat_map(|case| case.sizes.clone()).collect();
     let special: Vec<&ScoredNumber> = all
         .iter()
@@ -193,9 +194,15 @@ pub fn score(cases: &[Tried]) -> Score {
             .collect(),
         empty: all.iter().filter(|case| case.is_empty).count(),
         targets: Vec::new(),
+        strict: strict(
+            all.iter()
+                .zip(cases)
+                .map(|(outcome, case)| (outcome, case.answer.is_some())),
+        ),
+        by_urdf: by_urdf(cases, &all),
         experiments: experiments(cases),
-        macro_f1: mean(&|family| family.f1),
-        macro_f1_strict: mean(&|family| family.f1_strict),
+        macro_f1: mean(&families, |family| family.f1),
+        macro_f1_strict: mean(&families, |family| family.f1_strict),
         families,
         ordinary: Counted::of(all.iter().flat_map(|case| case.ordinary.iter().copied())),
         ordinary_false: all.iter().map(|case| case.ordinary_false).sum(),
@@ -223,7 +230,7 @@ pub fn score(cases: &[Tried]) -> Score {
         intervals: Counted::of(special.iter().map(|s| s.covered)),
         over_true_terms: errors(
             held.iter()
-                .filter(|case| !case.outside_the_catalogue)
+                .filter(|case| case.has_all_terms())
                 .filter_map(HeldOut::over_true_terms),
         ),
         over_true_terms_by_joint: errors(cases.iter().flat_map(by_joint)),
@@ -242,6 +249,33 @@ pub fn score(cases: &[Tried]) -> Score {
     };
     score.targets = targets(&score);
     score
+}
+
+/// The mean over the families that have a figure.
+fn mean(families: &BTreeMap<String, Family>, pick: impl Fn(&Family) -> Option<f64>) -> Option<f64> {
+    let values: Vec<f64> = families.values().filter_map(pick).collect();
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+/// The cases by how wrong their URDFs are.
+fn by_urdf(cases: &[Tried], all: &[CaseOutcome]) -> Vec<UrdfGroup> {
+    let group = |urdf: UrdfError| {
+        let mine: Vec<(&CaseOutcome, bool)> = all
+            .iter()
+            .zip(cases)
+            .filter(|(_, case)| UrdfError::of(case.truth.urdf_sigma) == urdf)
+            .map(|(outcome, case)| (outcome, case.answer.is_some()))
+            .collect();
+        let concealed: Vec<Outcome> = mine.iter().flat_map(|(case, _)| case.concealed.clone()).collect();
+        let false_names: Vec<FalseName> = mine.iter().flat_map(|(case, _)| case.false_names.clone()).collect();
+        (!mine.is_empty()).then(|| UrdfGroup {
+            urdf,
+            cases: mine.len(),
+            macro_f1: mean(&families(&concealed, &false_names), |family| family.f1),
+            strict: strict(mine.iter().copied()),
+        })
+    };
+    UrdfError::ALL.into_iter().filter_map(group).collect()
 }
 
 fn families(concealed: &[Outcome], false_names: &[FalseName]) -> BTreeMap<String, Family> {
@@ -287,7 +321,8 @@ fn by_joint(case: &Tried) -> Vec<f64> {
     let (Some(answer), Some(oracle)) = (&case.answer, &case.true_terms) else {
         return Vec::new();
     };
-    if case.truth.concealed.iter().any(Injected::is_outside_the_catalogue) {
+    let is_beside = |injected: &Injected| injected.is_outside_the_catalogue() || injected.minor;
+    if case.truth.has_a_wrong_urdf() || case.truth.concealed.iter().any(is_beside) {
         return Vec::new();
     }
     let ratio = |(joint, fit): (&String, &crate::answer::Fit)| -> Option<f64> {

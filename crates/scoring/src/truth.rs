@@ -18,6 +18,9 @@ pub struct Truth {
     pub concealed: Vec<Injected>,
     /// Standard deviation of the noise on each torque (N m or N), base to tip.
     pub torque_noise: Vec<f64>,
+    /// How wrong the inertials of the case's URDF are everywhere, about relative; `None` where nobody said: exact but for what is injected.
+    #[serde(default)]
+    pub urdf_sigma: Option<f64>,
 }
 
 /// One injected fault.
@@ -37,6 +40,9 @@ pub struct Injected {
     /// without it; `None` where nobody said.
     #[serde(default)]
     pub expressed_share: Option<f64>,
+    /// Whether it is one of the small things that every real joint has: neither asked for, nor false when named.
+    #[serde(default)]
+    pub minor: bool,
     /// The catalogue's parameters (SI), by name.
     #[serde(flatten)]
     pub parameters: BTreeMap<String, serde_json::Value>,
@@ -51,12 +57,31 @@ impl Truth {
         let drives = self
             .concealed
             .iter()
-            .filter(|injected| injected.effect == DRIVE_INERTIA);
+            .filter(|injected| injected.effect == DRIVE_INERTIA && !injected.minor);
         if joints > 1 && drives.count() == joints {
             ORDINARY_WITH_DRIVES
         } else {
             ORDINARY
         }
+    }
+
+    /// Whether the URDF is wrong everywhere: inertials that differ from it are ordinary then.
+    pub fn has_a_wrong_urdf(&self) -> bool {
+        self.urdf_sigma.is_some_and(|sigma| sigma > 0.0)
+    }
+
+    /// What is injected and asked for, or ordinary: all but the small things of real joints.
+    pub fn of_note(&self) -> impl Iterator<Item = &Injected> {
+        self.concealed.iter().filter(|injected| !injected.minor)
+    }
+
+    /// Reported over true torque of a joint, where that is one of its small things: what is weighed there is in the recorded torque's unit.
+    pub fn torque_unit(&self, joint: Option<&str>) -> f64 {
+        let on_it = |injected: &&Injected| {
+            injected.minor && injected.name() == "torque_scale" && injected.joint.as_deref() == joint
+        };
+        let factor = |injected: &Injected| injected.parameters.get("factor").and_then(serde_json::Value::as_f64);
+        self.concealed.iter().filter(on_it).filter_map(factor).product()
     }
 }
 

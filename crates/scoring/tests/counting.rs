@@ -235,3 +235,141 @@ fn a_wrong_term_is_none_of_the_true_ones_nor_a_part_of_them() {
         assert_eq!(wrong.wrong.1.as_deref(), Some("a"));
     }
 }
+
+/// A case whose URDF is wrong everywhere by `sigma`, with its answer.
+fn tried(name: &str, concealed: Value, sigma: f64, findings: Value) -> Tried {
+    let answer = answer(findings, json!([]), json!([]));
+    let mut truth = truth(concealed);
+    (truth.case, truth.urdf_sigma) = (name.to_owned(), Some(sigma));
+    Tried {
+        truth,
+        joints: vec!["b".into(), "a".into()],
+        true_terms: None,
+        wrong_term: None,
+        tracking_over_exact: None,
+        tracking_over_exact_without_lag: None,
+        again: None,
+        answer: Some(answer),
+    }
+}
+
+/// Where the URDF is wrong everywhere, inertials that differ are ordinary, and stand for the wrong link among them.
+#[test]
+fn inertials_stand_for_a_wrong_link() {
+    let link = || json!([{"effect": "link_inertial_error", "joint": "a", "relative": 0.3, "expressed_share": 0.1}]);
+    let arm = json!({"effect": "inertial_parameters", "joint": null, "share": 0.2, "probability": 0.9});
+    let on = |joint: &str| json!([finding("inertial_parameters", joint, json!([]))]);
+    for (concealed, sigma, findings, found, false_names) in [
+        (link(), 0.1, on("a"), 1, 0),
+        (link(), 0.1, json!([arm]), 1, 0),
+        (link(), 0.1, on("b"), 0, 0),
+        (json!([]), 0.1, on("b"), 0, 0),
+        // Where it is exact, the name is false; but for a link that was moved in other ways than in mass.
+        (json!([]), 0.0, on("b"), 0, 1),
+        (link(), 0.0, on("a"), 0, 1),
+        (
+            json!([{"effect": "link_inertial_error", "joint": "a", "relative": 0.3, "form": "moved", "expressed_share": 0.1}]),
+            0.0,
+            on("a"),
+            1,
+            0,
+        ),
+    ] {
+        let score = score(&[tried("case_000", concealed, sigma, findings.clone())]);
+        let counts = |score: &Score| (score.strict.right.hits, score.strict.false_names);
+        assert_eq!(counts(&score), (found, false_names), "{sigma} {findings}");
+        assert_eq!((score.plain.found, score.plain.false_in_all()), (found, false_names));
+        assert_eq!(score.false_names.len(), false_names);
+    }
+}
+
+/// The small things of real joints are not asked for, and not false; what is weighed beside a torque constant is in its unit.
+#[test]
+fn minor_effects_are_not_scored() {
+    let small = json!([
+        {"effect": "stribeck_friction", "joint": "a", "coulomb": 0.0, "breakaway": 0.1, "velocity": 0.1, "minor": true},
+        {"effect": "torque_offset", "joint": "b", "offset": 0.1, "minor": true},
+        {"effect": "torque_scale", "joint": "a", "factor": 1.25, "minor": true},
+        {"effect": "quadratic_drag", "joint": "a", "coefficient": 4.0, "expressed_share": 0.1}
+    ]);
+    let sized = |effect: &str, joint: &str, key: &str, value: f64| {
+        let mut finding = finding(effect, joint, json!([]));
+        finding["parameters"][key] = json!({"value": value, "ci95": [0.98 * value, 1.02 * value]});
+        finding
+    };
+    let named = json!([
+        sized("stribeck_friction", "a", "breakaway", 3.0),
+        finding("coulomb_friction", "a", json!([])),
+        finding("friction_asymmetry", "b", json!([])),
+        finding("torque_scale", "a", json!([])),
+        sized("quadratic_drag", "a", "coefficient", 5.0)
+    ]);
+    let scored = score(&[tried("case_000", small.clone(), 0.0, named)]);
+    assert_eq!(
+        (scored.concealed.len(), scored.false_names.len(), scored.ordinary_false),
+        (1, 0, 0)
+    );
+    assert_eq!((scored.strict.macro_f1, scored.macro_f1), (Some(1.0), Some(1.0)));
+    assert_eq!((scored.intervals.hits, scored.intervals.of), (1, 1));
+    assert!(
+        scored.sizes[0].error < 1e-12 && scored.sizes.len() == 1,
+        "{:?}",
+        scored.sizes
+    );
+    let case = tried("case_000", small.clone(), 0.0, json!([]));
+    assert_eq!(
+        true_terms(&case.truth),
+        [("quadratic_drag".to_owned(), Some("a".to_owned()))]
+    );
+    assert!(wrong_term(&case.truth, 0).is_some_and(|wrong| wrong.instead_of.0 == "quadratic_drag"));
+    // A case with nothing else is empty.
+    let three: Vec<Value> = small.as_array().expect("a list")[..3].to_vec();
+    let empty = score(&[tried("case_000", json!(three), 0.0, json!([]))]);
+    assert_eq!((empty.empty, empty.plain.clean), (1, 1));
+}
+
+/// Strictly, a wrong size is no find, what was declared not observable is missed, and each group of URDFs stands by itself.
+#[test]
+fn the_strict_figure_asks_for_sizes_and_is_told_by_urdf() {
+    let drag = || json!([{"effect": "quadratic_drag", "joint": "a", "coefficient": 4.0, "expressed_share": 0.015}]);
+    let named = |value: f64| {
+        let mut finding = finding("quadratic_drag", "a", json!([]));
+        finding["parameters"]["coefficient"] = json!({"value": value, "ci95": [0.9 * value, 1.1 * value]});
+        finding
+    };
+    let score = score(&[
+        tried("case_000", drag(), 0.0, json!([named(4.7)])),
+        tried("case_001", drag(), 0.03, json!([named(4.9)])),
+        tried(
+            "case_002",
+            drag(),
+            0.1,
+            json!([named(4.0), finding("spring", "b", json!([]))]),
+        ),
+        tried("case_003", drag(), 0.3, json!([finding("spring", "a", json!([]))])),
+    ]);
+    let groups: Vec<_> = score
+        .by_urdf
+        .iter()
+        .map(|group| (group.cases, group.strict.macro_f1))
+        .collect();
+    assert_eq!(groups, [(1, Some(1.0)), (2, Some(0.5)), (1, Some(0.0))]);
+    let [exact, some, much] = [0, 1, 2].map(|k| &score.by_urdf[k].strict);
+    assert_eq!(
+        (some.right.hits, some.right.of, some.wrong_size, some.false_names),
+        (1, 2, 1, 1)
+    );
+    assert_eq!(
+        (some.cases_with_a_false_name.hits, some.cases_with_a_false_name.of),
+        (1, 2)
+    );
+    assert_eq!(
+        (exact.intervals.hits, some.intervals.hits, some.intervals.of),
+        (0, 1, 2)
+    );
+    assert_eq!((much.right.of, much.false_names), (1, 1));
+    // 2 × 2 of 4 asked, 2 right and 1 of another size.
+    assert_eq!(score.strict.macro_f1, Some(4.0 / 7.0));
+    assert_eq!(score.by_urdf[1].macro_f1, Some(1.0));
+    assert_eq!(score.targets[0].figure, score.strict.macro_f1);
+}

@@ -191,12 +191,22 @@ pub struct ProveArgs {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
 
+    /// Whether half of the cases resemble real robots: small amounts of every effect on every joint, torque constants that are off,
+    /// friction that differs between recordings, coloured and quantised torques, elastic gearboxes, tools that are drawn but not
+    /// mounted, files with clocks of their own
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, default_value_t = true, default_missing_value = "true", action = clap::ArgAction::Set)]
+    pub lifelike: bool,
+
+    /// How wrong the inertial parameters of all links are in the URDF, relative [default: 0, 0.03, 0.1 and 0.3 in turns]
+    #[arg(long, value_name = "SIGMA", value_parser = parse_urdf_error)]
+    pub urdf_error: Option<f64>,
+
     /// The folder of the proof; after an interruption, the same command continues
     #[arg(long, value_name = "DIR", default_value = "proof")]
     pub out: PathBuf,
 
     /// Use these cases instead: folders case_*, each with a .urdf, train*.csv and held_out*.csv
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["robot", "cases", "seed"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["robot", "cases", "seed", "lifelike", "urdf_error"])]
     pub cases_from: Option<PathBuf>,
 
     /// The folder of the ground truths of --cases-from (case_*.json) [default: truth/ beside the cases]
@@ -246,6 +256,17 @@ pub struct ConcealArgs {
     #[arg(long, value_name = "K", default_value_t = 1, conflicts_with = "effects", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub cases: u32,
 
+    /// Whether half of the cases (with --effects: the case) resemble real robots: small amounts of every effect on every joint, torque constants that are off,
+    /// friction that differs between recordings, coloured and quantised torques, elastic gearboxes, tools that are drawn but not
+    /// mounted, files with clocks of their own
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, default_value_t = false, default_missing_value = "true", action = clap::ArgAction::Set)]
+    pub lifelike: bool,
+
+    /// How wrong the inertial parameters of all links are in the URDF, relative [default: 0, 0.03, 0.1 and 0.3 in turns; with
+    /// --effects 0]
+    #[arg(long, value_name = "SIGMA", value_parser = parse_urdf_error)]
+    pub urdf_error: Option<f64>,
+
     /// The output folder: case_000, … contain the recordings, truth/ the ground truth
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -292,6 +313,13 @@ fn parse_frequency(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(hertz) if (0.1..=1000.0).contains(&hertz) => Ok(hertz),
         _ => Err("give a frequency from 0.1 to 1000 Hz".into()),
+    }
+}
+
+fn parse_urdf_error(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(sigma) if (0.0..=1.0).contains(&sigma) => Ok(sigma),
+        _ => Err("give a number from 0 (exact) to 1".into()),
     }
 }
 

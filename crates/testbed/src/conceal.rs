@@ -72,6 +72,8 @@ fn given(args: &ConcealArgs, file: &Path, robots: &[Robot], truths: &Path) -> an
         lost: args.lost,
         training: usize::from(args.training),
         background_friction: args.friction,
+        lifelike: args.lifelike,
+        urdf_error: args.urdf_error.unwrap_or(0.0),
     };
     refuse_existing(&args.out.join("case_000"))?;
     let concealment = conceal_effects(robot, "case_000", &effects, &settings)
@@ -84,6 +86,8 @@ fn drawn(args: &ConcealArgs, robots: &[Robot], truths: &Path) -> anyhow::Result<
     let campaign = Campaign {
         seed: args.seed.unwrap_or(0),
         cases: args.cases as usize,
+        lifelike: args.lifelike,
+        urdf_error: args.urdf_error,
     };
     let plans = campaign.plans();
     for plan in &plans {

@@ -1,12 +1,11 @@
 //! Draws until the effects of a case show, none beyond bounds, and the position loop is sound.
 
-use rand::Rng;
 use rand::seq::IndexedRandom;
 use rand_chacha::ChaCha8Rng;
 
 use super::Stage;
 use crate::campaign::CasePlan;
-use crate::draw::Scales;
+use crate::draw::{Scales, log_uniform};
 use crate::error::FaultError;
 use crate::expressed_share::{Torques, share};
 use crate::fault::{Fault, Leaves, Size, families, outside};
@@ -20,7 +19,7 @@ const DRAWS: usize = 8;
 /// Above this, over what quantisation alone makes, the torque is an oscillation; with a gap it rattles anyway.
 const OSCILLATION: (f64, f64) = (0.2, 0.5);
 /// The expressed shares that a case may have.
-const SHARES: (f64, f64) = (0.015, 1.2);
+const SHARES: (f64, f64) = (0.01, 1.2);
 
 /// How much of a recording tells sizes (s); shares are those of whole recordings.
 const TRIAL: f64 = 12.0;
@@ -54,6 +53,8 @@ pub(super) fn search(
             }
             names.sort_unstable();
             names.dedup();
+            // Five at once may be more than the loop holds.
+            names.truncate(3);
         }
         let Some(mut effects) = draw_all(stage, plan, &names, &base, random)? else {
             continue;
@@ -129,6 +130,7 @@ fn draw_all(
     let scales = Scales {
         robot: stage.robot,
         hard: plan.hard,
+        lifelike: plan.lifelike,
         spreads: &stage.spreads,
         torques: &base.sorted,
         coulomb: &coulomb,
@@ -163,8 +165,7 @@ fn draw_all(
 
 /// The share that an effect is to have where its size is free.
 fn target(hard: bool, random: &mut ChaCha8Rng) -> f64 {
-    let (least, most): (f64, f64) = if hard { (0.03, 0.35) } else { (0.035, 0.5) };
-    random.random_range(least.ln()..most.ln()).exp()
+    log_uniform(SHARES.0, if hard { 0.35 } else { 0.5 }, random)
 }
 
 /// Brings `effect` near its target share, on one recording and alone; whether it shows there.

@@ -15,7 +15,12 @@ pub(super) const FAULT: Fault = Fault {
         } else {
             link * random.random_range(0.5..1.2)
         };
-        let frequency: f64 = random.random_range(18.0..45.0);
+        // Gearboxes are stiffer than what shows easily: what does not show is drawn again.
+        let frequency: f64 = if at.lifelike {
+            TAU * log_uniform(5.0, 40.0, random)
+        } else {
+            random.random_range(18.0..45.0)
+        };
         let stiffness = rotor.max(if own > 0.0 { link } else { 0.0 }) * frequency * frequency;
         let hardens = at.hard && random.random_bool(0.5);
         let elastic = bare

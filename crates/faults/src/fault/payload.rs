@@ -1,4 +1,4 @@
-//! A mass at the tool that the URDF does not know.
+//! A mass at the tool that the URDF does not know; or, negative, one that the URDF has and the machine has not.
 
 use super::prelude::*;
 
@@ -10,9 +10,16 @@ pub(super) const FAULT: Fault = Fault {
         let mut across = || random.random_range(-0.03..0.03);
         let com = [across(), across(), random.random_range(0.03..0.16)];
         let moment = 0.4 * mass * 0.04 * 0.04;
-        bare.with("mass", mass)
-            .with("com", json!(com))
-            .with("inertia", json!([moment, 0.0, moment, 0.0, 0.0, moment]))
+        // A tool that is drawn and not mounted is a negative payload.
+        let sign = if at.lifelike && random.random_bool(0.5) {
+            -1.0
+        } else {
+            1.0
+        };
+        bare.with("mass", sign * mass).with("com", json!(com)).with(
+            "inertia",
+            json!([moment, 0.0, moment, 0.0, 0.0, moment].map(|moment| sign * moment)),
+        )
     },
     read: |reader| {
         let inertia = if reader.given("inertia") {
@@ -21,12 +28,21 @@ pub(super) const FAULT: Fault = Fault {
             [0.0; 6]
         };
         let [xx, xy, yy, xz, yz, zz] = inertia;
+        let mass = reader.number("mass")?;
+        let sign = if mass < 0.0 { -1.0 } else { 1.0 };
         let payload = Inertia {
-            mass: reader.at_least_zero("mass")?,
+            mass: sign * mass,
             com: Vector3::from(reader.numbers("com")?),
-            tensor: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+            tensor: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) * sign,
         };
-        Ok(vec![What::Body(Body::Payload(payload)).into()])
+        let body = What::Body(Body::Payload(payload));
+        if mass >= 0.0 {
+            return Ok(vec![body.into()]);
+        }
+        if reader.injected.onset.is_some() {
+            return Err(reader.fail("a tool that is not mounted has no onset; leave that line out".into()));
+        }
+        Ok(vec![body.comes_without()])
     },
     #[cfg(test)]
     example: |bare| bare.with("mass", 1.5).with("com", json!([0.01, 0.0, 0.08])),

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::{FAULTS, Fault, Place};
 use crate::error::FaultError;
-use crate::part::{DriveLaw, DryLaw, LinkLaw, Part, Piece, What};
+use crate::part::{DriveLaw, DryLaw, LinkLaw, Part, Piece, There, What};
 use crate::truth::Injected;
 
 /// What `injected` is to a machine of `arm` (its drives' rotor inertias in it); without it (`whole` false), what stays when it is
@@ -20,12 +20,16 @@ pub(crate) fn parts(injected: &Injected, arm: &Arm, whole: bool) -> Result<Vec<P
         return Err(reader.fail(format!("its onset is {onset} s; give a finite time")));
     }
     let pieces = (reader.fault()?.read)(&reader)?.into_iter();
-    let there = pieces.filter(|piece| whole || piece.stays);
-    let part = |Piece { what, stays }| Part {
-        onset: if stays { f64::NEG_INFINITY } else { onset },
+    let is_there = |piece: &Piece| match piece.there {
+        There::With => whole,
+        There::Always => true,
+        There::Without => !whole,
+    };
+    let part = |Piece { what, there }| Part {
+        onset: if there == There::With { onset } else { f64::NEG_INFINITY },
         what,
     };
-    Ok(there.map(part).collect())
+    Ok(pieces.filter(is_there).map(part).collect())
 }
 
 /// One fault in a truth, its joints and numbers looked up.

@@ -2,13 +2,21 @@
 
 use arm::{Arm, DMatrix, Workspace};
 
-use super::TICK;
+use super::{Machine, TICK};
 
 /// The mass matrix is looked at every so many ticks.
 const REFRESH: usize = 4;
 /// Sweeps at most, and the change of a velocity (rad/s or m/s) that ends them.
 const SWEEPS: usize = 50;
 const SETTLED: f64 = 1e-10;
+
+impl Machine<'_> {
+    /// With each joint's dry friction times a factor: one day's.
+    pub(crate) fn with_friction(mut self, factors: &[f64]) -> Self {
+        self.parts.friction = factors.to_vec();
+        self
+    }
+}
 
 /// Friction torques found by projected Gauss-Seidel sweeps (Jourdan, Alart and Jean 1998) on the velocities at the tick's end.
 ///

@@ -12,6 +12,8 @@ pub(super) struct Parts {
     couplings: Vec<(usize, usize, f64, f64)>,
     bodies: Vec<(Body, f64)>,
     pub(super) contacts: Vec<Contact>,
+    /// Factor of each joint's dry friction.
+    pub(super) friction: Vec<f64>,
 }
 
 /// A law on the link's side of a joint.
@@ -50,6 +52,7 @@ impl Parts {
             couplings: Vec::new(),
             bodies: Vec::new(),
             contacts: Vec::new(),
+            friction: vec![1.0; dof],
         };
         for Part { onset, what } in parts {
             match what {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use scoring::{Figure, Score, Target};
+use scoring::{Figure, Score, StrictFamily, Target, UrdfGroup};
 
 use super::experiments;
 use crate::numbers::percent_to_a_tenth as percent;
@@ -10,6 +10,8 @@ use crate::numbers::percent_to_a_tenth as percent;
 /// In a sentence or two.
 pub fn reason(target: &Target, score: &Score) -> String {
     match target.id {
+        Figure::Strict => strict(target, score),
+        Figure::FalseCases => "the section about failures lists every false name.".to_owned(),
         Figure::MacroF1 => families(score),
         Figure::EmptyCases => {
             let empty = score.false_names.iter().filter(|name| name.concealed_there.is_empty());
@@ -59,6 +61,33 @@ fn tally<'a>(names: impl Iterator<Item = &'a str>) -> String {
     } else {
         words.join(", ")
     }
+}
+
+/// What was not found with its size, and what was named falsely: of the group of cases that the figure is of.
+fn strict(target: &Target, score: &Score) -> String {
+    let is_meant = |group: &&UrdfGroup| target.what.ends_with(group.urdf.words());
+    let strict = score
+        .by_urdf
+        .iter()
+        .find(is_meant)
+        .map_or(&score.strict, |group| &group.strict);
+    let worst = strict
+        .families
+        .iter()
+        .filter(|(_, family)| family.f1.is_none_or(|f1| f1 < 0.95));
+    let words: Vec<String> = worst
+        .map(|(name, family)| {
+            let StrictFamily {
+                asked,
+                right,
+                wrong_size,
+                false_names,
+                ..
+            } = family;
+            format!("`{name}` ({right} of {asked} right, {wrong_size} of another size, {false_names} false)")
+        })
+        .collect();
+    format!("{}.", words.join(", "))
 }
 
 fn families(score: &Score) -> String {

@@ -46,10 +46,28 @@ pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Vec<Injected>> {
             for key in ["onset", "form"].iter().chain(own) {
                 table.remove(*key);
             }
+            if effect.is_not_mounted() {
+                // What is checked is the body that is drawn.
+                for key in ["mass", "inertia"] {
+                    if let Some(value) = table.get_mut(key) {
+                        negate(value);
+                    }
+                }
+            }
             effect_file::effect(&source, span.clone(), table, arm)?;
         }
         effect.check(arm).map_err(|error| fail(error.to_string()))?;
         effects.push(effect);
     }
     Ok(effects)
+}
+
+/// A number, or each of a list, times −1; what is neither stays, and is refused as it is.
+fn negate(value: &mut toml::Value) {
+    match value {
+        toml::Value::Float(number) => *number = -*number,
+        toml::Value::Integer(number) => *number = -*number,
+        toml::Value::Array(list) => list.iter_mut().for_each(negate),
+        _ => {}
+    }
 }

@@ -36,6 +36,10 @@ pub enum Cases {
         robots: Vec<Robot>,
         /// As they were given; empty: those that come with testbed.
         named: Vec<String>,
+        /// Whether half of them look like reality.
+        lifelike: bool,
+        /// How wrong their URDFs are; `None`: in turns.
+        urdf_error: Option<f64>,
         /// What each case is to be.
         plans: Vec<CasePlan>,
     },
@@ -71,11 +75,15 @@ impl Cases {
             }
             (None, _) => Self::Drawn {
                 seed: args.seed,
+                lifelike: args.lifelike,
+                urdf_error: args.urdf_error,
                 robots: conceal::robots(&args.robot)?,
                 named: args.robot.clone(),
                 plans: Campaign {
                     seed: args.seed,
                     cases: args.cases,
+                    lifelike: args.lifelike,
+                    urdf_error: args.urdf_error,
                 }
                 .plans(),
             },
@@ -86,10 +94,25 @@ impl Cases {
     pub fn describe(&self) -> String {
         match self {
             Self::Drawn {
-                seed, robots, plans, ..
+                seed,
+                robots,
+                plans,
+                lifelike,
+                urdf_error,
+                ..
             } => {
                 let names: Vec<&str> = robots.iter().map(Robot::name).collect();
-                format!("{} cases drawn from seed {seed} on {}", plans.len(), names.join(", "))
+                let urdfs = urdf_error.map_or_else(
+                    || "URDFs wrong by 0, 3, 10 and 30 %".to_owned(),
+                    |sigma| format!("URDFs wrong by {} %", 100.0 * sigma),
+                );
+                let real = if *lifelike {
+                    "half of them lifelike"
+                } else {
+                    "none lifelike"
+                };
+                let (count, names) = (plans.len(), names.join(", "));
+                format!("{count} cases drawn from seed {seed} on {names}, {real}, {urdfs}")
             }
             Self::Given { .. } => "cases that were given".to_owned(),
         }
@@ -107,10 +130,19 @@ impl Cases {
     /// The command that makes the proof again, without the cases' paths.
     pub fn command(&self) -> String {
         match self {
-            Self::Drawn { seed, plans, named, .. } => {
+            Self::Drawn {
+                seed,
+                plans,
+                named,
+                lifelike,
+                urdf_error,
+                ..
+            } => {
                 let robots: String = named.iter().map(|robot| format!(" --robot {robot}")).collect();
+                let plain = if *lifelike { "" } else { " --lifelike false" };
+                let error = urdf_error.map_or_else(String::new, |sigma| format!(" --urdf-error {sigma}"));
                 format!(
-                    "testbed prove --cases {} --seed {seed}{robots} --out proof/",
+                    "testbed prove --cases {} --seed {seed}{robots}{plain}{error} --out proof/",
                     plans.len()
                 )
             }

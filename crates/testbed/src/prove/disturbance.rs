@@ -116,6 +116,7 @@ pub fn conceal() -> anyhow::Result<Concealment> {
                 parameters: [("factor".to_owned(), factor.into())].into(),
                 form: None,
                 onset: None,
+                minor: false,
                 // All torques scale with all inertias: so much of each vanishes with the error.
                 expressed_share: Some(train.inertia_scale - 1.0),
             }],
@@ -123,6 +124,8 @@ pub fn conceal() -> anyhow::Result<Concealment> {
             torque_noise: vec![0.0; train.arm.dof()],
             encoder_quantum: 0.0,
             period: 1.0 / train.control_rate,
+            urdf_sigma: Some(0.0),
+            lifelike: None,
         },
         urdf: heavy_urdf(&train)?,
         train: vec![recorded(&train)?],

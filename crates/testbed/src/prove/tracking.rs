@@ -13,6 +13,7 @@ pub mod words;
 use std::path::Path;
 
 use anyhow::Context;
+use arm::Arm;
 use faults::{CaseMachine, DURATION, PAUSE, Robot, Truth};
 use scoring::Name;
 use serde::{Deserialize, Serialize};
@@ -165,7 +166,9 @@ impl Case<'_> {
         // As long after the last recording as these are apart.
         let start = (files.train.len() + files.held_out.len()) as f64 * (DURATION + PAUSE);
         let course = Course::new(&task, start);
-        let arm = self.robot.arm();
+        // What its user believes, which the machine need not be.
+        let believed = Arm::from_urdf(self.folder.join(&files.robot)).with_context(|| case.clone())?;
+        let arm = &believed;
         let effects = match self.named {
             Some(text) => EffectFile::parse(text.to_owned(), &self.folder.with_file_name("model.toml"), arm)?.effects,
             None => Vec::new(),
@@ -179,7 +182,8 @@ impl Case<'_> {
             diagnosed.with(&recorded.learn(arm, &effects)?, &course),
             Plan::exact(&machine, &course),
         ];
-        let run = |plan: &Plan, rate| closed_loop::run(&machine, self.robot, &task, &course, plan, rate);
+        let driven = believed.clone().with_rotor_inertias(self.robot.rotor_inertias());
+        let run = |plan: &Plan, rate| closed_loop::run(&machine, &driven, &task, &course, plan, rate);
         let each = |rate| {
             plans
                 .iter()

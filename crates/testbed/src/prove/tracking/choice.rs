@@ -61,7 +61,13 @@ mod tests {
     #[test]
     fn a_dozen_of_different_families_is_chosen_by_the_plan() {
         let robots = crate::conceal::robots(&[]).expect("they come with the program");
-        let plans = Campaign { seed: 3, cases: 200 }.plans();
+        let campaign = |cases: usize| Campaign {
+            seed: 3,
+            cases,
+            lifelike: true,
+            urdf_error: None,
+        };
+        let plans = campaign(200).plans();
         let taken = chosen(&plans, &robots).expect("the task comes with the program");
         assert_eq!(taken.len(), MOST);
         let plan = |number: &usize| &plans[*number];
@@ -75,7 +81,7 @@ mod tests {
         let families: BTreeSet<&String> = taken.iter().flat_map(|number| &plan(number).effects).collect();
         assert!(families.len() >= MOST, "{families:?}");
         assert!(chosen_on(&plans, &robots, "another").is_empty());
-        let few = Campaign { seed: 3, cases: 6 }.plans();
+        let few = campaign(6).plans();
         assert!(chosen_on(&few, &robots, "puma560").len() <= 3);
     }
 }

@@ -1,6 +1,7 @@
 //! The closed loop on a case's machine: computed torque, the same gains whatever the model.
 
-use faults::{CaseMachine, FaultError, Robot, VelocityFilter};
+use arm::Arm;
+use faults::{CaseMachine, FaultError, VelocityFilter};
 use report::statistics;
 use torque::{Command, Controller, RigidBody};
 
@@ -31,23 +32,22 @@ pub enum Rate {
 
 /// Tracks the course on `machine` with the gains of `task` and the feed-forward of `plan`.
 ///
-/// The feedback's mass matrix is that of the URDF with the drives' baseline rotor inertias, as in the loop that the recordings were made in.
+/// The feedback's mass matrix is that of `arm`: the URDF of the case with the drives' baseline rotor inertias.
 ///
 /// # Errors
 /// If the controller does not fit the arm.
 pub fn run(
     machine: &CaseMachine<'_>,
-    robot: &Robot,
+    arm: &Arm,
     task: &Scenario,
     course: &Course,
     plan: &Plan,
     rate: Rate,
 ) -> anyhow::Result<Run> {
     let dof = course.dof;
-    let arm = robot.arm().clone().with_rotor_inertias(robot.rotor_inertias());
     // The feed-forward comes from the plan; the controller's own model is not asked.
     let model = RigidBody::new(arm.clone());
-    let mut controller = Controller::new(&model, arm, task.feedback.clone())?;
+    let mut controller = Controller::new(&model, arm.clone(), task.feedback.clone())?;
     let mut command = Command::new(dof);
     let (mut error, mut error_rate) = (vec![0.0; dof], vec![0.0; dof]);
     let mut cut = vec![0; dof];

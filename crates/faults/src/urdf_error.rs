@@ -1,0 +1,266 @@
+//! URDFs that are not what the machine is: wrong everywhere, as every real one is, or with a tool drawn that is not mounted.
+
+use std::ops::Range;
+
+use arm::{Inertia, Matrix3, Pose, Vector3};
+use nalgebra::{Matrix4, Vector4};
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use crate::error::FaultError;
+use crate::pseudo_inertia::PseudoInertia;
+
+/// How wrong URDFs are whose cases take turns, from exact on.
+pub(crate) const SIGMAS: [f64; 4] = [0.0, 0.03, 0.1, 0.3];
+
+/// `urdf` with the inertial of each link that has mass moved: the pseudo-inertia P becomes A P Aᵀ, A = D e^(σ G) D⁻¹, G of 4 × 4 standard
+/// normals, D = diag(l, l, l, 1), l the link's radius of gyration; always a body's. `sigma` is about the relative error of masses, and
+/// of lengths. All else stays as it was, to the byte.
+///
+/// # Errors
+/// [`FaultError::Setting`] if `sigma` is no error that a URDF could have, or the text cannot be read.
+pub(crate) fn perturbed(urdf: &str, sigma: f64, random: &mut ChaCha8Rng) -> Result<String, FaultError> {
+    if !(0.0..=1.0).contains(&sigma) {
+        return Err(FaultError::Setting(format!(
+            "the URDF's error is {sigma}; give a number from 0 (exact) to 1"
+        )));
+    }
+    if sigma == 0.0 {
+        return Ok(urdf.to_owned());
+    }
+    let mut text = String::with_capacity(urdf.len() + 1000);
+    let mut at = 0;
+    for (place, body) in inertials(urdf)? {
+        if body.mass > 0.0 {
+            text.push_str(&urdf[at..place.start]);
+            text.push_str(&element(&disturbed(&body, sigma, random)));
+            at = place.end;
+        }
+    }
+    text.push_str(&urdf[at..]);
+    Ok(text)
+}
+
+/// A body like `body`, off by about `sigma` in all that it has.
+fn disturbed(body: &Inertia, sigma: f64, random: &mut ChaCha8Rng) -> Inertia {
+    let pseudo = PseudoInertia::of(body);
+    let normals = Matrix4::from_fn(|_, _| -> f64 { StandardNormal.sample(random) });
+    let l = pseudo.radius();
+    let (scale, back) = (Vector4::new(l, l, l, 1.0), Vector4::new(1.0 / l, 1.0 / l, 1.0 / l, 1.0));
+    let map = Matrix4::from_diagonal(&scale) * (normals * sigma).exp() * Matrix4::from_diagonal(&back);
+    pseudo.mapped(&map).body()
+}
+
+/// `urdf` with `tool` (in the frame of link `on`) drawn as a link welded to `on`.
+///
+/// # Errors
+/// [`FaultError::Setting`] if the text has no end.
+pub(crate) fn with_tool(urdf: &str, on: &str, tool: &Inertia) -> Result<String, FaultError> {
+    let end = urdf
+        .rfind("</robot>")
+        .ok_or_else(|| FaultError::Setting("the URDF has no </robot>; give one that ends".into()))?;
+    let name = (1..)
+        .map(|number| format!("tool_{number}"))
+        .find(|name| !urdf.contains(&format!("\"{name}\"")))
+        .unwrap_or_default();
+    let (before, after) = urdf.split_at(end);
+    let inertial = element(tool);
+    let weld =
+        format!("<joint name=\"{name}_weld\" type=\"fixed\"><parent link=\"{on}\"/><child link=\"{name}\"/></joint>");
+    Ok(format!(
+        "{before}  <link name=\"{name}\">{inertial}</link>\n  {weld}\n{after}"
+    ))
+}
+
+/// The `<inertial>` of a body in its link's frame.
+fn element(body: &Inertia) -> String {
+    let (c, i) = (body.com, body.tensor);
+    format!(
+        "<inertial><origin xyz=\"{} {} {}\" rpy=\"0 0 0\"/><mass value=\"{}\"/><inertia ixx=\"{}\" ixy=\"{}\" ixz=\"{}\" iyy=\"{}\" \
+         iyz=\"{}\" izz=\"{}\"/></inertial>",
+        c.x,
+        c.y,
+        c.z,
+        body.mass,
+        i[(0, 0)],
+        i[(0, 1)],
+        i[(0, 2)],
+        i[(1, 1)],
+        i[(1, 2)],
+        i[(2, 2)]
+    )
+}
+
+/// An inertial being read.
+struct Open {
+    begun: usize,
+    xyz: [f64; 3],
+    rpy: [f64; 3],
+    mass: f64,
+    /// ixx ixy ixz iyy iyz izz.
+    tensor: [f64; 6],
+}
+
+/// Where the links' inertials stand in the text, and what each says, in its link's frame.
+fn inertials(urdf: &str) -> Result<Vec<(Range<usize>, Inertia)>, FaultError> {
+    let mut reader = Reader::from_str(urdf);
+    let mut found = Vec::new();
+    let (mut depth, mut in_link) = (0, false);
+    let mut open: Option<Open> = None;
+    loop {
+        let from = reader.buffer_position() as usize;
+        match reader.read_event().map_err(unreadable)? {
+            Event::Start(tag) => {
+                depth += 1;
+                match depth {
+                    2 => in_link = tag.name().as_ref() == b"link",
+                    3 if in_link && tag.name().as_ref() == b"inertial" => open = Some(Open::at(from)),
+                    _ => open.as_mut().map_or(Ok(()), |open| open.read(&tag))?,
+                }
+            }
+            Event::Empty(tag) => open.as_mut().map_or(Ok(()), |open| open.read(&tag))?,
+            Event::End(_) => {
+                if let Some(open) = open.take_if(|_| depth == 3) {
+                    found.push((open.begun..reader.buffer_position() as usize, open.body()));
+                }
+                depth -= 1;
+            }
+            Event::Eof => return Ok(found),
+            _ => {}
+        }
+    }
+}
+
+fn unreadable(reason: impl std::fmt::Display) -> FaultError {
+    FaultError::Setting(format!("the URDF's inertials cannot be read: {reason}"))
+}
+
+impl Open {
+    fn at(begun: usize) -> Self {
+        Self {
+            begun,
+            xyz: [0.0; 3],
+            rpy: [0.0; 3],
+            mass: 0.0,
+            tensor: [0.0; 6],
+        }
+    }
+
+    fn read(&mut self, tag: &BytesStart<'_>) -> Result<(), FaultError> {
+        let text = |name: &str| -> Result<String, FaultError> {
+            let found = tag.try_get_attribute(name).map_err(unreadable)?;
+            let value = found.map(|attribute| attribute.unescape_value().map(std::borrow::Cow::into_owned));
+            Ok(value.transpose().map_err(unreadable)?.unwrap_or_default())
+        };
+        let fill = |text: &str, target: &mut [f64]| -> Result<(), FaultError> {
+            for (target, word) in target.iter_mut().zip(text.split_whitespace()) {
+                *target = word
+                    .parse()
+                    .map_err(|_| unreadable(format!("\"{word}\" is not a number")))?;
+            }
+            Ok(())
+        };
+        match tag.name().as_ref() {
+            b"origin" => {
+                fill(&text("xyz")?, &mut self.xyz)?;
+                fill(&text("rpy")?, &mut self.rpy)
+            }
+            b"mass" => fill(&text("value")?, std::slice::from_mut(&mut self.mass)),
+            b"inertia" => {
+                for (name, target) in ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"].iter().zip(&mut self.tensor) {
+                    fill(&text(name)?, std::slice::from_mut(target))?;
+                }
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn body(&self) -> Inertia {
+        let [xx, xy, xz, yy, yz, zz] = self.tensor;
+        let centred = Inertia {
+            mass: self.mass,
+            com: Vector3::zeros(),
+            tensor: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+        };
+        centred.transformed(&Pose::from_xyz_rpy(self.xyz, self.rpy))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use arm::Arm;
+    use rand::SeedableRng;
+
+    use super::*;
+    use crate::test_robots::{puma, seven_axis};
+
+    fn arm(urdf: String) -> Arm {
+        Arm::from_urdf_text(&urdf, "moved.urdf").expect("it is an arm")
+    }
+
+    /// However wrong, every link is a body: its pseudo-inertia is positive definite; and nothing but inertials has moved.
+    #[test]
+    fn a_wrong_urdf_is_always_physical() {
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        for robot in [puma(), seven_axis()] {
+            for sigma in [0.03, 0.1, 0.3, 1.0] {
+                for _ in 0..20 {
+                    let text = perturbed(robot.urdf(), sigma, &mut random).expect("it can be");
+                    for (_, body) in inertials(&text).expect("it can be read") {
+                        let least = PseudoInertia::of(&body).0.symmetric_eigenvalues().min();
+                        let moments = Matrix3::identity() * (0.5 * body.tensor.trace()) - body.tensor;
+                        let central = moments.symmetric_eigenvalues().min();
+                        assert!(body.mass >= 0.0 && least > -1e-12 && central > -1e-9, "{body:?}");
+                    }
+                    let moved = arm(text);
+                    assert_eq!(moved.dof(), robot.arm().dof());
+                    for (is, was) in moved.joints().iter().zip(robot.arm().joints()) {
+                        assert_eq!((&is.name, is.limits), (&was.name, was.limits));
+                        assert!(was.inertia.mass == 0.0 || is.inertia.mass != was.inertia.mass);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Errors are of the size that was asked for: the mass of a point at the origin of its frame is e^(2 σ N) of what it was.
+    #[test]
+    fn sigma_is_the_size_of_the_error() {
+        let mut random = ChaCha8Rng::seed_from_u64(4);
+        let body = Inertia {
+            mass: 3.0,
+            com: Vector3::new(0.0, 0.0, 0.2),
+            tensor: Matrix3::identity() * 0.02,
+        };
+        let logs: Vec<f64> = (0..2000)
+            .map(|_| (disturbed(&body, 0.03, &mut random).mass / 3.0).ln())
+            .collect();
+        let spread = (logs.iter().map(|log| log * log).sum::<f64>() / 2000.0).sqrt();
+        assert!((0.05..0.1).contains(&spread), "{spread}");
+        let (mut one, mut other) = (ChaCha8Rng::seed_from_u64(1), ChaCha8Rng::seed_from_u64(1));
+        let urdf = puma().urdf().to_owned();
+        assert_eq!(perturbed(&urdf, 0.0, &mut one).expect("it can be"), urdf);
+        let [first, second] = [&mut one, &mut other].map(|random| perturbed(&urdf, 0.1, random).expect("it can be"));
+        assert_eq!(first, second);
+        assert!(perturbed(&urdf, -0.1, &mut one).is_err() && perturbed(&urdf, f64::NAN, &mut one).is_err());
+    }
+
+    #[test]
+    fn a_tool_is_drawn_where_a_payload_would_be() {
+        let robot = seven_axis();
+        let tool = Inertia {
+            mass: 0.7,
+            com: Vector3::new(0.01, 0.0, 0.08),
+            tensor: Matrix3::identity() * 1e-3,
+        };
+        let drawn = arm(with_tool(robot.urdf(), &robot.arm().tool_frame().name, &tool).expect("it can be"));
+        let loaded = robot.arm().clone().with_payload(&tool);
+        let last = robot.arm().dof() - 1;
+        let (drawn, loaded) = (drawn.joints()[last].inertia, loaded.joints()[last].inertia);
+        assert!((drawn.mass - loaded.mass).abs() < 1e-12 && (drawn.com - loaded.com).norm() < 1e-12);
+        assert!((drawn.tensor - loaded.tensor).norm() < 1e-12);
+    }
+}

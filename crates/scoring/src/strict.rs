@@ -1,0 +1,164 @@
+//! The strict figure: everything large enough is asked for, every name that is not true is false, and a size must be right, too.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::catalogue::brings;
+use crate::intervals::Counted;
+use crate::numbers::ScoredNumber;
+use crate::outcome::{CaseOutcome, Fate};
+
+/// A size further from the truth than this, relative, is not found.
+pub const SIZE_WITHIN: f64 = 0.2;
+
+/// Cases, counted strictly: what was declared not observable is asked for, another name of the same machine is false, and a size that
+/// can be compared must be within [`SIZE_WITHIN`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Strict {
+    /// F1 averaged over the families concealed.
+    pub macro_f1: Option<f64>,
+    /// Effects found with their size, of those asked for.
+    pub right: Counted,
+    /// Those named, but with another size.
+    pub wrong_size: usize,
+    /// Names that are not true.
+    pub false_names: usize,
+    /// The same of ordinary effects; no family of theirs is in [`Self::macro_f1`].
+    pub ordinary_false: usize,
+    /// Cases with a false name that is not ordinary, of those answered.
+    pub cases_with_a_false_name: Counted,
+    /// 95 % intervals that hold the truth, of effects that are not ordinary.
+    pub intervals: Counted,
+    /// By family.
+    pub families: BTreeMap<String, StrictFamily>,
+}
+
+/// The effects of one name, counted strictly.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StrictFamily {
+    /// Concealed with an expressed share that asks for them.
+    pub asked: usize,
+    /// Of these found, with the right size.
+    pub right: usize,
+    /// Of these named, but with another size.
+    pub wrong_size: usize,
+    /// Named where they were not.
+    pub false_names: usize,
+    /// 2 right over (asked + right + wrong size + false): as any F1, 2 right over all that is asked for and all that is named.
+    pub f1: Option<f64>,
+}
+
+/// Counts cases, each with whether it was answered.
+pub fn strict<'a>(cases: impl Iterator<Item = (&'a CaseOutcome, bool)>) -> Strict {
+    let mut families: BTreeMap<String, StrictFamily> = BTreeMap::new();
+    let (mut ordinary_false, mut clean, mut held) = (0, Vec::new(), Vec::new());
+    for (case, answered) in cases {
+        ordinary_false += case.ordinary_false;
+        let mut false_names: Vec<&str> = case.false_names.iter().map(|name| name.effect.as_str()).collect();
+        for outcome in &case.concealed {
+            if let Some((name, _)) = &outcome.found_as
+                && !brings(&outcome.effect).contains(&name.as_str())
+            {
+                false_names.push(name);
+            }
+            if !outcome.counts {
+                continue;
+            }
+            let family = families.entry(outcome.effect.clone()).or_default();
+            family.asked += 1;
+            if outcome.fate == Fate::Found {
+                let is_its = |sized: &&ScoredNumber| {
+                    (&sized.effect, &sized.joint, sized.main) == (&outcome.effect, &outcome.joint, true)
+                };
+                // A size that cannot be compared is not held against the name.
+                match case
+                    .sizes
+                    .iter()
+                    .find(is_its)
+                    .is_none_or(|sized| sized.error <= SIZE_WITHIN)
+                {
+                    true => family.right += 1,
+                    false => family.wrong_size += 1,
+                }
+            }
+        }
+        if answered {
+            clean.push(!false_names.is_empty());
+        }
+        for name in false_names {
+            families.entry(name.to_owned()).or_default().false_names += 1;
+        }
+        held.extend(
+            case.sizes
+                .iter()
+                .filter(|sized| !case.is_ordinary(sized))
+                .map(|sized| sized.covered),
+        );
+    }
+    for family in families.values_mut() {
+        let StrictFamily { asked, right, .. } = *family;
+        let all = asked + right + family.wrong_size + family.false_names;
+        family.f1 = (asked > 0).then(|| 2.0 * right as f64 / all as f64);
+    }
+    let scores: Vec<f64> = families.values().filter_map(|family| family.f1).collect();
+    let sum = |of: fn(&StrictFamily) -> usize| families.values().map(of).sum::<usize>();
+    Strict {
+        macro_f1: (!scores.is_empty()).then(|| scores.iter().sum::<f64>() / scores.len() as f64),
+        right: Counted::new(sum(|family| family.right), sum(|family| family.asked)),
+        wrong_size: sum(|family| family.wrong_size),
+        false_names: sum(|family| family.false_names),
+        ordinary_false,
+        cases_with_a_false_name: Counted::of(clean),
+        intervals: Counted::of(held),
+        families,
+    }
+}
+
+/// How wrong a case's URDF is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum UrdfError {
+    /// Exact but for what is concealed.
+    Exact,
+    /// Up to 20 %: of a robot that was measured, or drawn with care.
+    Some,
+    /// More: masses from a CAD drawing without cables and covers.
+    Much,
+}
+
+impl UrdfError {
+    /// All, from exact on.
+    pub const ALL: [Self; 3] = [Self::Exact, Self::Some, Self::Much];
+
+    /// Of a truth that says so much (about relative), or nothing.
+    pub fn of(sigma: Option<f64>) -> Self {
+        match sigma.unwrap_or(0.0) {
+            0.0 => Self::Exact,
+            sigma if sigma < 0.2 => Self::Some,
+            _ => Self::Much,
+        }
+    }
+
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Some => "wrong by 3 to 10 %",
+            Self::Much => "wrong by 30 %",
+        }
+    }
+}
+
+/// Cases whose URDFs are about as wrong.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct UrdfGroup {
+    /// How wrong.
+    pub urdf: UrdfError,
+    /// How many cases.
+    pub cases: usize,
+    /// F1 averaged over the families, not counted strictly.
+    pub macro_f1: Option<f64>,
+    /// What came of them.
+    pub strict: Strict,
+}
