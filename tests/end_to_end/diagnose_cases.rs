@@ -68,10 +68,9 @@ fn a_push_has_its_time() {
 }
 
 #[test]
-fn a_limit_is_found_beside_a_rotor() {
-    let found = check("saturation_and_rotor");
-    is_sized(&found, "torque_saturation", "shoulder", &[("limit", 30.0)], 0.05);
-    is_sized(&found, "rotor_inertia", "elbow", &[("inertia", 0.3)], 0.1);
+fn a_gap_has_its_size() {
+    let found = check("backlash");
+    is_sized(&found, "backlash", "elbow", &[("halfgap", 0.012)], 0.15);
 }
 
 #[test]
