@@ -39,6 +39,52 @@ fn is_sized(diagnosis: &diagnosis::Diagnosis, effect: &str, truth: &[(&str, f64)
     }
 }
 
+/// A counterbalance of the shoulder, which carries half of its weight.
+#[test]
+fn gravity_compensator() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        ordinary(motion, tau);
+        tau[SHOULDER] += 14.0 * (motion.q[SHOULDER] + 1.5).sin();
+    };
+    let diagnosis = check(&concealed, &[("gravity_compensator", "shoulder")]);
+    is_sized(
+        &diagnosis,
+        "gravity_compensator",
+        &[("amplitude", 14.0), ("angle", -1.5)],
+        0.05,
+    );
+}
+
+/// A straight spring that pulls the same way stays a spring.
+#[test]
+fn a_spring_against_the_weight_is_no_gravity_compensator() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        ordinary(motion, tau);
+        tau[SHOULDER] += 9.0 * (motion.q[SHOULDER] + 1.5);
+    };
+    let diagnosis = check(&concealed, &[("spring", "shoulder")]);
+    is_sized(&diagnosis, "spring", &[("stiffness", 9.0)], 0.06);
+}
+
+/// A body at the tool is weight, too, and is none of the shoulder's alone.
+#[test]
+fn a_payload_is_no_gravity_compensator() {
+    let body = arm::Inertia {
+        mass: 1.0,
+        com: arm::Vector3::new(0.05, 0.0, 0.02),
+        tensor: arm::Matrix3::identity() * 2e-3,
+    };
+    let loaded = trio().with_payload(&body);
+    let diagnosis = diagnosed(&trio(), &loaded, &|motion, tau| ordinary(motion, tau), Vec::new());
+    let found = names(&diagnosis);
+    assert!(
+        found.contains(&("payload", "the whole arm")),
+        "{:?}",
+        sentences(&diagnosis)
+    );
+    assert!(found.iter().all(|(effect, _)| *effect != "gravity_compensator"));
+}
+
 /// Recordings that follow each other closely, as a drive that warms up needs: 16 s of every 20.
 fn in_a_row(concealed: impl Fn(f64, &mut Motion, &mut [f64])) -> diagnosis::Diagnosis {
     let arm = trio();

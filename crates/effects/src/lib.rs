@@ -102,8 +102,10 @@ pub mod arm {
 
 /// What acts on a joint by where it stands.
 pub mod joint {
+    mod gravity_compensator;
     mod spring;
 
+    pub use gravity_compensator::GravityCompensator;
     pub use spring::Spring;
 }
 
@@ -150,6 +152,7 @@ pub static CATALOGUE: &[&dyn EffectKind] = &[
     &arm::GravityMisalignment,
     &sensor::EncoderOffset,
     &joint::Spring,
+    &joint::GravityCompensator,
     &arm::ExternalContact,
 ];
 
