@@ -22,10 +22,6 @@ fn renamed(name: &str) -> &str {
 fn check(case: &str) {
     let shared = root().join("../shared/blind");
     let folder = shared.join(case);
-    if !folder.is_dir() {
-        eprintln!("SKIPPED: {} is not there", folder.display());
-        return;
-    }
     let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
     let files = [
         "robot.urdf",
@@ -44,6 +40,12 @@ fn check(case: &str) {
     let found = sandbox.json("d.json");
     let text = std::fs::read_to_string(shared.join(format!("truth/{case}.json"))).expect("the truth is there");
     let truth: Value = serde_json::from_str(&text).expect("it is JSON");
+    compare(case, &truth, &found);
+}
+
+/// Checks a diagnosis of `case` against the truth: what was injected is found, and nothing else; what has no name is refused one on
+/// its joint; no joint is worse for it.
+pub fn compare(case: &str, truth: &Value, found: &Value) {
     let concealed = truth["concealed"].as_array().expect("a list").iter().map(|effect| {
         let name = renamed(effect["effect"].as_str().expect("a name"));
         (
@@ -53,7 +55,7 @@ fn check(case: &str) {
     });
     let (unknown, known): (BTreeSet<_>, BTreeSet<_>) = concealed.partition(|(name, _)| name.ends_with("_unknown"));
     let is_special = |(name, _): &&(String, String)| !ORDINARY.contains(&name.as_str());
-    let list = names(&found);
+    let list = names(found);
     let named: Vec<_> = list.iter().filter(is_special).collect();
     let hidden: Vec<_> = known.iter().filter(is_special).collect();
     assert_eq!(named, hidden, "{case}");
@@ -76,21 +78,25 @@ fn check(case: &str) {
 }
 
 #[test]
+#[ignore = "needs ../shared"]
 fn ordinary_friction_alone_is_left_at_that() {
     check("case_024");
 }
 
 #[test]
+#[ignore = "needs ../shared"]
 fn a_spring_on_the_shoulder_is_found() {
     check("case_011");
 }
 
 #[test]
+#[ignore = "needs ../shared"]
 fn a_force_and_a_turned_base_are_found_together() {
     check("case_014");
 }
 
 #[test]
+#[ignore = "needs ../shared"]
 fn a_dead_band_is_refused_on_its_joint() {
     check("case_015");
 }

@@ -3,6 +3,7 @@
 mod conceal;
 mod diagnose;
 mod diagnose_blind;
+mod diagnose_cases;
 mod diagnose_made;
 mod diagnose_mistakes;
 mod diagnose_next;

@@ -55,6 +55,18 @@ impl Arm {
         self
     }
 
+    /// The arm whose moving links are the bodies `inertias`, base to tip.
+    ///
+    /// # Panics
+    /// If there is not one body a joint.
+    pub fn with_inertias(mut self, inertias: &[Inertia]) -> Self {
+        assert_eq!(inertias.len(), self.dof(), "one body a joint");
+        for (joint, inertia) in self.joints.iter_mut().zip(inertias) {
+            joint.inertia = *inertia;
+        }
+        self
+    }
+
     /// The arm with `body` (in the link's frame) in place of moving link `link` (from 0).
     ///
     /// # Panics

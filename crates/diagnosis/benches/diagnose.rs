@@ -58,6 +58,7 @@ fn bench(bencher: Bencher, seconds: f64) {
             name,
             recording,
             held_out: name == "d",
+            before: false,
         })
         .collect();
     bencher.bench_local(|| {

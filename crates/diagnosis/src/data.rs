@@ -3,5 +3,6 @@
 pub mod known;
 pub mod measure;
 pub mod motion;
+pub mod noise;
 pub mod rigid;
 pub mod signal;

@@ -12,14 +12,17 @@ use crate::data::motion::Input;
 use crate::error::DiagnosisError;
 use crate::findings::dual_sensor;
 use crate::findings::found::findings;
+use crate::findings::identified::identified;
+use crate::findings::inertials::inertials;
 use crate::findings::locate::locate;
 use crate::findings::observability;
-use crate::findings::report::{Finding, RecordingNames, Report, Traces};
+use crate::findings::report::{Finding, JointFit, RecordingNames, Report, Traces};
 use crate::findings::sentences;
 use crate::findings::traces::traces;
 use crate::findings::transients;
 use crate::findings::verdict::{leftover, not_enough, unexplained, verdict};
 use crate::next;
+use crate::regression::background::Stated;
 use crate::search::candidate::Cause;
 use crate::search::hypothesis::{self, Wanted};
 use crate::search::plan;
@@ -30,10 +33,15 @@ use crate::selection::predict::{augmented, errors};
 use crate::thresholds;
 
 /// How to diagnose.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Half-power frequency of the low-pass filter (Hz).
-    pub cutoff: f64,
+    /// Half-power frequency of the low-pass filter (Hz); `None` lets the data decide.
+    pub cutoff: Option<f64>,
+    /// How far the URDF's masses, centres of mass and inertias may be off, as a part of each link's own (0.1: ten per cent);
+    /// `None` lets the recordings decide.
+    pub urdf_accuracy: Option<f64>,
+    /// The relative standard deviation of each joint's torque constant; `None` if nobody knows.
+    pub torque_accuracy: Option<f64>,
     /// Effects that the user has already: they are taken off, and not reported again.
     pub known: Vec<Effect>,
     /// Fit these effects and no others, whatever comes of them: nothing is searched for, no name is earned or lost. `None`
@@ -41,17 +49,6 @@ pub struct Options {
     pub only: Option<Vec<Wanted>>,
     /// Whether to propose the next experiment.
     pub next: bool,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            cutoff: thresholds::CUTOFF,
-            known: Vec::new(),
-            only: None,
-            next: false,
-        }
-    }
 }
 
 /// A diagnosis and what its figures are drawn from.
@@ -81,7 +78,7 @@ pub fn diagnose(
     options: &Options,
     progress: &dyn Fn(&str),
 ) -> Result<Diagnosis, DiagnosisError> {
-    check(arm, inputs, options.cutoff)?;
+    check(arm, inputs, options.cutoff.unwrap_or(thresholds::CUTOFF))?;
     progress("filtering, rigid-body torques");
     let arm_and_known = known::Known::new(arm, &options.known)?;
     let may_be = |cause: Cause, joint: Option<usize>| {
@@ -94,8 +91,13 @@ pub fn diagnose(
             wanted.iter().any(is_wanted)
         })
     };
-    let mut study = Study::new(&arm_and_known, inputs, options.cutoff, &may_be);
+    let stated = Stated {
+        links: options.urdf_accuracy,
+        gain: options.torque_accuracy,
+    };
+    let mut study = Study::new(&arm_and_known, inputs, options.cutoff, stated, &may_be);
     let fitted = study.fitted.clone();
+    let identified = identified(&study);
     let (judged, resampled) = match &options.only {
         Some(wanted) => {
             progress("fitting the requested effects");
@@ -126,6 +128,8 @@ pub fn diagnose(
         let two_sided = dual_sensor::findings(&study, &judged.named, inputs);
         findings.extend(two_sided.into_iter().map(|finding| (finding, None)));
     }
+    let inertials = inertials(&study, &products, held.as_ref(), &judged, &resampled);
+    findings.extend(inertials.findings.into_iter().map(|finding| (finding, None)));
     let left: Vec<Vec<f64>> = (0..arm.dof())
         .into_par_iter()
         .map(|joint| augmented(&study, &judged.named, joint))
@@ -151,7 +155,11 @@ pub fn diagnose(
     let fit: BTreeMap<_, _> = (0..arm.dof())
         .map(|joint| {
             let name = arm.joints()[joint].name.clone();
-            (name, errors(&study, joint, &left[joint]))
+            let errors = JointFit {
+                held_out_nrmse_identified: identified[joint],
+                ..errors(&study, joint, &left[joint])
+            };
+            (name, errors)
         })
         .collect();
     let mut unexplained = unexplained(&study, &judged, &bursts, &left);
@@ -161,6 +169,14 @@ pub fn diagnose(
             .total_cmp(&a.share)
             .then(a.effect.cmp(b.effect))
             .then(a.joint.cmp(&b.joint))
+    });
+    let changed: Option<Vec<String>> = study.motions.changed_at.map(|_| {
+        let sets_in = |(finding, _): &&(Finding, Option<usize>)| finding.since_before;
+        findings
+            .iter()
+            .filter(sets_in)
+            .map(|(finding, _)| sentences::changed(finding))
+            .collect()
     });
     for (finding, _) in &mut findings {
         finding.sentence = sentences::of(finding, &fit);
@@ -175,7 +191,8 @@ pub fn diagnose(
         progress("next experiment");
         let corrects = |(finding, _): &&(Finding, Option<usize>)| finding.corrects;
         let found = findings.iter().filter(corrects).map(|(finding, _)| &finding.as_effect);
-        let effects: Vec<Effect> = options.known.iter().chain(found).cloned().collect();
+        let effects = options.known.iter().chain(found).chain(&inertials.effects);
+        let effects: Vec<Effect> = effects.cloned().collect();
         let robot = (arm, effects.as_slice());
         Some(next::propose(
             &study,
@@ -204,6 +221,8 @@ pub fn diagnose(
         not_enough_data,
         located,
         fit,
+        changed,
+        inertials: inertials.links,
         rollout: BTreeMap::new(),
         next_experiment,
         findings,
@@ -213,6 +232,7 @@ pub fn diagnose(
         .iter()
         .filter(|finding| finding.corrects)
         .map(|finding| finding.as_effect.clone())
+        .chain(inertials.effects)
         .collect();
     Ok(Diagnosis {
         report,

@@ -2,6 +2,8 @@
 
 pub mod dual_sensor;
 pub mod found;
+pub mod identified;
+pub mod inertials;
 pub mod locate;
 pub mod observability;
 pub mod report;

@@ -12,9 +12,7 @@ pub const CORE: f64 = 1.2;
 pub const REVERSAL: f64 = 4.0;
 /// A joint that stays within this part of its range does not move.
 pub const YIELDING: f64 = 0.02;
-/// A joint whose error is below this part of the standard deviation of its torque needs no explanation.
-pub const EXPLAINED: f64 = 0.03;
-/// The part of its torque's standard deviation by which an effect of another joint may increase the error of such a joint ([`EXPLAINED`]).
+/// The part of its torque's standard deviation by which an effect of another joint may increase the error of a joint.
 pub const HARMLESS: f64 = 0.001;
 /// The usual cut-off (Hz).
 pub const CUTOFF: f64 = 12.0;

@@ -4,8 +4,8 @@ mod files;
 
 use nalgebra::Vector3;
 
-use crate::catalogue::Kind;
 use crate::kind::EffectKind;
+use crate::kinds::Kind;
 use crate::spec::{Parameter, Shape, Spec};
 
 /// What a parameter of an effect is.

@@ -60,6 +60,11 @@ pub trait EffectKind: Debug + Sync {
     /// Puts the effect into a machine.
     fn apply(&self, _effect: &Effect, _at: Place, _machine: &mut Machine) {}
 
+    /// A finding in a few words, by its parameters.
+    fn sentence(&self, _effect: &Effect) -> &'static str {
+        self.spec().sentence
+    }
+
     /// The region of state where it acts, in words, by its columns on a kind of joint.
     fn region(&self, _terms: &[Term], _joint: JointKind) -> Option<String> {
         None

@@ -1,34 +1,28 @@
-//! The catalogue of the effects that a rigid model omits: one file per effect, one line in [`CATALOGUE`].
+//! The catalogue of the effects that a rigid model omits: one file per effect, and its lines below (module, type, [`CATALOGUE`]).
 //!
 //! A file holds all that the program knows of an effect, behind the trait [`EffectKind`]: its [`Spec`] (name, parameters,
 //! relations, words), the forms to try, the law of its columns, what physics allows, how its parameters are read from an
 //! estimate, and how it is put into a [`Machine`]. The fit of a diagnosis and the feed-forward of a corrected model come
 //! from the same file. [`spec`] gives what is known of a name.
 
-pub mod arm;
-mod catalogue;
+pub mod background;
 mod compliance;
-pub mod drive;
 mod effect;
 mod error;
 mod estimate;
 mod fitted;
 mod form;
-pub mod friction;
-pub mod joint;
 mod kind;
+mod kinds;
 pub mod laws;
 mod machine;
 mod motion;
 mod quantity;
-pub mod sensor;
 mod spec;
 mod term;
 #[cfg(test)]
 mod test_support;
-pub mod unmodelled;
 
-pub use catalogue::{CATALOGUE, Kind, NAMES, UNMODELLED, spec};
 pub use compliance::Behind;
 pub use effect::{Effect, Value};
 pub use error::EffectError;
@@ -36,8 +30,143 @@ pub use estimate::{Estimate, Systematic};
 pub use fitted::{Fitted, UNIT};
 pub use form::{Form, Grounds, SetsIn, Times, Turn};
 pub use kind::{EffectKind, check};
+pub use kinds::{Kind, NAMES, spec};
 pub use machine::{Circumstance, Contact, Dry, Machine, Place, Scaled, Smooth, Sprung, State, sign};
 pub use motion::{Motion, Rigid, Scales};
 pub use quantity::Quantity;
 pub use spec::{Against, Experiment, InUrdf, ONSET, Parameter, Range, Scope, Shape, Spec, Unseen};
 pub use term::{Carried, Column, Cone, Law, OtherForm, Size, Term};
+
+/// Friction in the drive and its gear.
+pub mod friction {
+    mod asymmetry;
+    mod coulomb;
+    mod drag;
+    mod load_dependent;
+    mod stribeck;
+    mod thermal;
+    mod viscous;
+
+    pub use asymmetry::FrictionAsymmetry;
+    pub use coulomb::CoulombFriction;
+    pub use drag::QuadraticDrag;
+    pub use load_dependent::LoadDependentFriction;
+    pub use stribeck::{StribeckFriction, velocity as stribeck_velocity};
+    pub use thermal::{FASTEST_WARMING, ThermalDrift};
+    pub use viscous::ViscousFriction;
+}
+
+/// What a drive adds to the torque, or does to it.
+pub mod drive {
+    mod backlash;
+    mod coupling;
+    mod delay;
+    mod elasticity;
+    mod ripple;
+    mod rotor_inertia;
+    mod saturation;
+
+    pub use backlash::Backlash;
+    pub use coupling::{FARTHEST_COUPLED, TransmissionCoupling};
+    pub use delay::ActuationDelay;
+    pub use elasticity::JointElasticity;
+    pub use ripple::{TorqueRipple, columns as ripple_columns};
+    pub use rotor_inertia::RotorInertia;
+    pub use saturation::TorqueSaturation;
+}
+
+/// What is wrong with a reading.
+pub mod sensor {
+    mod encoder_offset;
+    mod torque_offset;
+    mod torque_scale;
+
+    pub use encoder_offset::EncoderOffset;
+    pub use torque_offset::TorqueOffset;
+    pub use torque_scale::TorqueScale;
+}
+
+/// What is wrong with the arm's bodies, where it stands, or what pushes it.
+pub mod arm {
+    mod contact;
+    mod inertial_parameters;
+    mod inertial_scale;
+    mod link_error;
+    mod payload;
+    mod tilt;
+
+    pub use contact::{ExternalContact, columns as contact_columns, window as contact_window};
+    pub use inertial_parameters::{InertialParameters, PARAMETER as INERTIAL_PARAMETER};
+    pub use inertial_scale::InertialScale;
+    pub use link_error::LinkInertialError;
+    pub use payload::{Payload, body};
+    pub use tilt::GravityMisalignment;
+}
+
+/// What acts on a joint by where it stands.
+pub mod joint {
+    mod gravity_compensator;
+    mod spring;
+
+    pub use gravity_compensator::GravityCompensator;
+    pub use spring::Spring;
+}
+
+/// Forms without a name: what is none of the catalogue's effects is not to be given to the nearest.
+pub mod unmodelled {
+    mod history;
+    mod other_position;
+    mod other_speed;
+    mod own_position;
+    mod periodic;
+    mod product;
+    mod time;
+
+    pub use history::History;
+    pub use other_position::OtherPosition;
+    pub use other_speed::OtherSpeed;
+    pub use own_position::OwnPosition;
+    pub use periodic::{Periodic, columns as periodic_columns};
+    pub use product::Product;
+    pub use time::Time;
+}
+
+/// The effects that have a name, in the order of the documentation.
+pub static CATALOGUE: &[&dyn EffectKind] = &[
+    &friction::ViscousFriction,
+    &friction::CoulombFriction,
+    &friction::FrictionAsymmetry,
+    &friction::StribeckFriction,
+    &friction::LoadDependentFriction,
+    &friction::ThermalDrift,
+    &friction::QuadraticDrag,
+    &drive::RotorInertia,
+    &sensor::TorqueScale,
+    &sensor::TorqueOffset,
+    &drive::TorqueRipple,
+    &drive::TorqueSaturation,
+    &drive::ActuationDelay,
+    &drive::JointElasticity,
+    &drive::Backlash,
+    &drive::TransmissionCoupling,
+    &arm::Payload,
+    &arm::LinkInertialError,
+    &arm::InertialScale,
+    &arm::InertialParameters,
+    &arm::GravityMisalignment,
+    &sensor::EncoderOffset,
+    &joint::Spring,
+    &joint::GravityCompensator,
+    &arm::ExternalContact,
+];
+
+/// Forms without a name: what is none of the catalogue's effects is not to be given to the nearest.
+pub static UNMODELLED: &[&dyn EffectKind] = &[
+    &unmodelled::OwnPosition,
+    &unmodelled::OtherPosition,
+    &unmodelled::OtherSpeed,
+    &unmodelled::History,
+    &unmodelled::Product,
+    &unmodelled::Periodic,
+    &unmodelled::Time,
+];

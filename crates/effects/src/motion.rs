@@ -52,6 +52,8 @@ pub struct Rigid<'a> {
 /// A stretch of motion on even ticks, joint by joint, with the rigid model along it.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion<'a> {
+    /// The number of the recording that it is of.
+    pub recording: usize,
     /// The time of the first tick (s).
     pub start: f64,
     /// From tick to tick (s).

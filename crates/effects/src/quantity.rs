@@ -34,6 +34,16 @@ pub enum Quantity {
 }
 
 impl Quantity {
+    /// Whether it is in proportion to the recorded torque, so that it is no better known than the torque constants.
+    pub fn is_of_torque(self) -> bool {
+        match self {
+            Self::Torque | Self::Damping | Self::Drag | Self::Inertia | Self::Stiffness | Self::Mass | Self::Force => {
+                true
+            }
+            Self::Position | Self::Speed | Self::Ratio | Self::Angle | Self::Time | Self::Length => false,
+        }
+    }
+
     /// The SI unit at a joint of `kind`; `"1"` for a number without unit.
     pub fn unit(self, kind: JointKind) -> &'static str {
         let either = |turning, sliding| match kind {

@@ -148,6 +148,7 @@ fn along<T>(visit: impl FnOnce(&Motion<'_>) -> T) -> T {
         torque: vec![1.0; 2],
     };
     visit(&Motion {
+        recording: 0,
         start: 0.0,
         period: PERIOD,
         q: &q,

@@ -23,6 +23,7 @@ mod dead_band_unknown;
 mod encoder_offset;
 pub(crate) mod external_contact;
 mod friction_asymmetry;
+mod gravity_compensator;
 mod gravity_misalignment;
 mod history_unknown;
 mod hysteresis_unknown;
@@ -48,7 +49,7 @@ mod transmission_coupling;
 pub(crate) mod viscous_friction;
 
 /// All faults. Draws depend on their order: the ordinary first, then the catalogue's, then those outside it.
-pub(crate) static FAULTS: [Fault; 31] = [
+pub(crate) static FAULTS: [Fault; 32] = [
     viscous_friction::FAULT,
     coulomb_friction::FAULT,
     friction_asymmetry::FAULT,
@@ -71,6 +72,7 @@ pub(crate) static FAULTS: [Fault; 31] = [
     gravity_misalignment::FAULT,
     encoder_offset::FAULT,
     spring::FAULT,
+    gravity_compensator::FAULT,
     external_contact::FAULT,
     cross_coupling_unknown::FAULT,
     time_periodic_unknown::FAULT,
@@ -86,6 +88,8 @@ pub(crate) static FAULTS: [Fault; 31] = [
 pub(crate) struct Fault {
     /// The catalogue's name, or one that ends in `_unknown`.
     pub name: &'static str,
+    /// Whether campaigns draw it. What is not drawn leaves the cases of a seed as they were.
+    pub is_drawn: bool,
     /// On which joints it is drawn, or on the whole arm.
     pub place: Place,
     /// Whether the catalogue has no name for it.
@@ -163,6 +167,7 @@ pub(crate) enum Size {
 impl Fault {
     const ON_A_JOINT: Self = Self {
         name: "",
+        is_drawn: true,
         place: Place::AnyJoint,
         is_outside: false,
         forms: &[],
@@ -224,9 +229,9 @@ pub fn outside() -> Vec<&'static str> {
     names(|fault| fault.is_outside)
 }
 
-/// The catalogue's families that are drawn: all but the first two, plain viscous and Coulomb friction, which are ordinary.
+/// The catalogue's families that are drawn, without the first two: plain viscous and Coulomb friction, which are ordinary.
 pub fn families() -> Vec<&'static str> {
-    catalogue().split_off(2)
+    names(|fault| !fault.is_outside && fault.is_drawn).split_off(2)
 }
 
 /// The parameters, all with defaults, that `effect` has beyond the catalogue's.

@@ -29,7 +29,9 @@ pub fn table(header: impl IntoIterator<Item = String>) -> Table {
 
 /// The text that is printed at the end of a diagnosis; it ends with a newline.
 pub fn diagnosis(report: &Report) -> String {
-    let mut text = wrapped(&words::verdict(report), "");
+    let changed = report.changed.as_ref().map(|list| wrapped(&words::changed(list), ""));
+    let mut text = changed.unwrap_or_default();
+    text += &wrapped(&words::verdict(report), "");
     if !report.findings.is_empty() {
         let _ = writeln!(text, "\n{}\n", findings(report));
         text += &wrapped(&columns(report), "");

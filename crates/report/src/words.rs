@@ -118,6 +118,14 @@ pub fn shows_on(finding: &Finding) -> Option<&str> {
     })
 }
 
+/// What changed since the recordings from before, as a sentence; before everything else.
+pub fn changed(list: &[String]) -> String {
+    match list {
+        [] => "Since the recordings from before, no change was found.".to_owned(),
+        list => format!("Since the recordings from before, this changed: {}.", list.join("; ")),
+    }
+}
+
 /// The verdict in one sentence or two. When most of the mismatch remains unexplained, the first sentence says so.
 pub fn verdict(report: &Report) -> String {
     let effects = count(report.findings.len(), "effect");

@@ -58,6 +58,7 @@ pub fn parameters(effect: &str) -> &'static [&'static str] {
         "rotor_inertia" => &["inertia"],
         "torque_scale" | "inertial_scale" => &["factor"],
         "torque_offset" | "encoder_offset" => &["offset"],
+        "gravity_compensator" => &["amplitude"],
         "torque_ripple" => &["amplitude", "periods"],
         "torque_saturation" => &["limit"],
         "actuation_delay" => &["delay"],

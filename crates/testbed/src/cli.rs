@@ -5,8 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use torque::{LengthScales, TrainingOptions};
 
+mod numbers;
+
 use crate::models::ModelKind;
 use crate::prove::Shard;
+use numbers::{parse_accuracy, parse_frequency, parse_urdf_error};
 
 /// Tracking testbed and model diagnosis for robot arms
 #[derive(Debug, Parser)]
@@ -121,6 +124,21 @@ pub struct DiagnoseArgs {
     /// The training recordings (.csv), to which the effects are fitted
     #[arg(long, required = true, num_args = 1.., value_name = "FILE")]
     pub train: Vec<PathBuf>,
+
+    /// Recordings of the same robot from before something happened (.csv): what the other recordings show and these do not is
+    /// what changed
+    #[arg(long, num_args = 1.., value_name = "FILE")]
+    pub before: Vec<PathBuf>,
+
+    /// How far the URDF's masses, centres of mass and inertias may be off, as a fraction of each link's own (0.1: ten per cent)
+    /// [default: estimated from the recordings]
+    #[arg(long, value_name = "FRACTION", value_parser = parse_accuracy)]
+    pub urdf_accuracy: Option<f64>,
+
+    /// The relative standard deviation of the torque constants (0.05: five per cent), included in every interval
+    /// [default: unknown; sizes are then in the newton metres of the recorded torque]
+    #[arg(long, value_name = "FRACTION", value_parser = parse_accuracy)]
+    pub torque_accuracy: Option<f64>,
 
     /// The held-out recordings (.csv), on which the fit is validated; without one, no finding is validated
     #[arg(long, num_args = 1.., value_name = "FILE")]
@@ -306,20 +324,6 @@ impl DiagnoseArgs {
         };
         let files = [&self.json, &self.report, &self.model, &self.urdf, &self.next];
         files.into_iter().flatten().map(PathBuf::as_path).chain(rerun).collect()
-    }
-}
-
-fn parse_frequency(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(hertz) if (0.1..=1000.0).contains(&hertz) => Ok(hertz),
-        _ => Err("give a frequency from 0.1 to 1000 Hz".into()),
-    }
-}
-
-fn parse_urdf_error(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(sigma) if (0.0..=1.0).contains(&sigma) => Ok(sigma),
-        _ => Err("give a number from 0 (exact) to 1".into()),
     }
 }
 

@@ -1,8 +1,11 @@
 //! Recordings, filtered: positions, their derivatives and torques on a grid fine enough for nonlinear functions of them.
 
+use arm::Arm;
 use recording::RegularRecording;
 
+use crate::data::noise::{band_noise, white_noise};
 use crate::data::signal::{Kernel, outputs};
+use crate::thresholds;
 
 /// The first filter passes this many times more than the second: nonlinear functions are formed between them.
 const WIDER: f64 = 3.0;
@@ -29,6 +32,12 @@ const PERIODS: f64 = 22.0;
 const HIGHEST_CUTOFF: f64 = 40.0;
 /// A joint whose speed is less than so many times its noise holds still.
 const STILL: f64 = 20.0;
+/// Noise may make this part of a joint's torque; if it makes more, the cut-off is lowered …
+const MOST_NOISE: f64 = 0.05;
+/// … but not below this (Hz) …
+const LEAST_CUTOFF: f64 = 4.0;
+/// … nor below so many times the frequency of the motion.
+const LEAST_PERIODS: f64 = 8.0;
 /// Between recordings without a common clock (s).
 const BETWEEN: f64 = 10.0;
 
@@ -41,6 +50,8 @@ pub struct Input<'a> {
     pub recording: &'a RegularRecording,
     /// Not to be fitted.
     pub held_out: bool,
+    /// Made before something happened: what the others show that this one does not is what changed. Such recordings come first.
+    pub before: bool,
 }
 
 /// A stretch of a recording on the fine grid, all signals through the first filter: `[joint][tick]`.
@@ -126,30 +137,50 @@ pub struct Motions {
     pub tempo: Vec<f64>,
     /// Whether one clock runs through all recordings. If not, each begins where the one before it ended.
     pub one_clock: bool,
+    /// When the recordings from before end and the others begin, on the diagnosis' clock (s); `None` if there are none from before.
+    pub changed_at: Option<f64>,
     /// What was left out, in sentences.
     pub remarks: Vec<String>,
 }
 
 impl Motions {
-    /// Filters `inputs` with the second filter at `cutoff` (Hz), more if the motion is quick, or at what the slowest
-    /// recording allows.
-    pub fn new(inputs: &[Input<'_>], cutoff: f64) -> Self {
-        let mut motions = Self::at(inputs, cutoff);
-        if motions.cutoff < cutoff {
+    /// Filters `inputs` with the second filter at `cutoff` (Hz), or at what the slowest recording allows. Without a `cutoff` the
+    /// data decide: the usual one, more if the motion is quick, less if what the positions' noise makes of the torques of `arm`
+    /// would be a large part of them.
+    pub fn new(inputs: &[Input<'_>], cutoff: Option<f64>, arm: &Arm) -> Self {
+        let wanted = cutoff.unwrap_or(thresholds::CUTOFF);
+        let mut motions = Self::at(inputs, wanted);
+        if motions.cutoff < wanted {
             motions.remarks.push(format!(
-                "the lowest sampling rate limits the filter to {:.1} Hz instead of {cutoff:.0} Hz; faster effects are not detectable",
+                "the lowest sampling rate limits the filter to {:.1} Hz instead of {wanted:.0} Hz; faster effects are not detectable",
                 motions.cutoff
             ));
+        }
+        if cutoff.is_some() {
+            return motions;
         }
         let mut moving: Vec<f64> = motions.tempo.iter().copied().filter(|&tempo| tempo > 0.0).collect();
         moving.sort_by(f64::total_cmp);
         let tempo = moving.get(moving.len() / 2).copied().unwrap_or(0.0);
-        let wanted = (PERIODS * tempo).min(HIGHEST_CUTOFF);
-        if wanted > 1.15 * motions.cutoff {
-            Self::at(inputs, wanted)
-        } else {
-            motions
+        let quick = (PERIODS * tempo).min(HIGHEST_CUTOFF);
+        if quick > 1.15 * motions.cutoff {
+            motions = Self::at(inputs, quick);
         }
+        let (share, joint) = motions.noise_share(arm);
+        if share > MOST_NOISE {
+            // The acceleration's white noise grows with the power 5/2 of the cut-off.
+            let quiet = motions.cutoff * (MOST_NOISE / share).powf(0.4);
+            let least = LEAST_CUTOFF.max(LEAST_PERIODS * tempo).min(motions.cutoff);
+            let before = motions.cutoff;
+            motions = Self::at(inputs, quiet.max(least));
+            motions.remarks.push(format!(
+                "filtered at {:.1} Hz: at {before:.0} Hz the noise of the positions alone would make {:.0} % of the torque of {}",
+                motions.cutoff,
+                100.0 * share,
+                arm.joints()[joint].name
+            ));
+        }
+        motions
     }
 
     fn at(inputs: &[Input<'_>], wanted: f64) -> Self {
@@ -160,21 +191,25 @@ impl Motions {
         let cutoff = wanted.min(NARROWEST * slowest);
         let seconds = |held_out: bool| -> f64 {
             let of_role = inputs.iter().filter(|input| input.held_out == held_out);
-            of_role
+            // An empty sum is −0, by which nothing may be divided.
+            0.0 + of_role
                 .map(|input| input.recording.len() as f64 * input.recording.period)
-                .sum()
+                .sum::<f64>()
         };
         let used = |held_out: bool| (MOST_SECONDS / seconds(held_out)).min(1.0);
         let total: f64 = [false, true].map(|role| used(role) * seconds(role)).iter().sum();
         let thin = (total * ROWS * cutoff / MOST_ROWS).max(1.0);
-        let overlap = overlapping(inputs);
+        let has_before = inputs.iter().any(|input| input.before);
+        // Recordings from before are laid on a clock of their own: what changed did so between them and the others.
+        let overlap = if has_before { None } else { overlapping(inputs) };
         let mut motions = Self {
             dof: inputs.first().map_or(0, |input| input.recording.joints.len()),
             chunks: Vec::new(),
             sources: Vec::new(),
             cutoff,
             tempo: Vec::new(),
-            one_clock: overlap.is_none(),
+            one_clock: overlap.is_none() && !has_before,
+            changed_at: None,
             remarks: [(false, "training"), (true, "held-out")]
                 .into_iter()
                 .filter(|&(role, _)| seconds(role) > MOST_SECONDS)
@@ -200,6 +235,9 @@ impl Motions {
             } else {
                 end - recording.time(0)
             };
+            if has_before && !input.before && motions.changed_at.is_none() {
+                motions.changed_at = Some(end - 0.5 * BETWEEN);
+            }
             end += recording.len() as f64 * recording.period + BETWEEN;
             motions.add(index, input, used(input.held_out), thin, shift);
         }
@@ -209,8 +247,14 @@ impl Motions {
 
     fn tempo(&self) -> Vec<f64> {
         let fitted = |chunk: &&Chunk| !self.sources[chunk.recording].held_out;
+        // Through the second filter too: the acceleration's noise between the two is many times the motion's.
         let power = |signal: &dyn Fn(&Chunk) -> &Vec<f64>| -> f64 {
-            self.chunks.iter().filter(fitted).flat_map(signal).map(|v| v * v).sum()
+            let rows = self
+                .chunks
+                .iter()
+                .filter(fitted)
+                .flat_map(|chunk| chunk.filter(signal(chunk)));
+            rows.map(|v| v * v).sum()
         };
         (0..self.dof)
             .map(|joint| {
@@ -221,8 +265,8 @@ impl Motions {
                     .iter()
                     .map(|source| source.velocity_noise[joint])
                     .fold(0.0, f64::max);
-                let ticks: usize = self.chunks.iter().filter(fitted).map(Chunk::ticks).sum();
-                if speed > (STILL * noise).powi(2) * ticks as f64 && speed > 0.0 {
+                let rows: usize = self.chunks.iter().filter(fitted).map(Chunk::rows).sum();
+                if speed > (STILL * noise).powi(2) * rows as f64 && speed > 0.0 {
                     (acceleration / speed).sqrt() / (2.0 * std::f64::consts::PI)
                 } else {
                     0.0
@@ -287,7 +331,11 @@ impl Motions {
             held_out: input.held_out,
             shift,
             torque_noise: recording.tau.iter().map(|tau| smooth * noise(tau)).collect(),
-            acceleration_noise: recording.q.iter().map(|q| second * noise(q)).collect(),
+            acceleration_noise: recording
+                .q
+                .iter()
+                .map(|q| second * noise(q).max(band_noise(q, recording, self.cutoff)))
+                .collect(),
             velocity_noise: recording.q.iter().map(|q| slope * noise(q)).collect(),
         });
     }
@@ -326,26 +374,4 @@ fn overlapping<'a>(inputs: &[Input<'a>]) -> Option<[&'a str; 2]> {
     spans.sort_by(|a, b| a.0.total_cmp(&b.0));
     let pair = spans.windows(2).find(|pair| pair[1].0 < pair[0].1)?;
     Some([pair[0].2, pair[1].2])
-}
-
-/// The strength of a signal's white noise: its third differences have 20 times the variance.
-fn white_noise(signal: &[f64], recording: &RegularRecording) -> f64 {
-    let mut squares = Vec::new();
-    for segment in &recording.segments {
-        let values = &signal[segment.ticks.clone()];
-        let present = &recording.present[segment.ticks.clone()];
-        for (window, present) in values.windows(4).zip(present.windows(4)) {
-            if present.iter().all(|&p| p) {
-                squares.push((window[3] - 3.0 * window[2] + 3.0 * window[1] - window[0]).powi(2) / 20.0);
-            }
-        }
-    }
-    if squares.is_empty() {
-        return 0.0;
-    }
-    // The mean of the lower nine tenths: what jumps (a reversal, a contact) is not noise. A normal variable's
-    // squares up to their 90 % quantile average .6245 of its variance.
-    let keep = (squares.len() * 9 / 10).max(1);
-    squares.sort_by(f64::total_cmp);
-    (squares[..keep].iter().sum::<f64>() / keep as f64 / 0.6245).sqrt()
 }

@@ -27,6 +27,12 @@ pub struct Rigid {
     pub tilt: Vec<[Vec<f64>; 2]>,
     /// The torque of a unit force on the tool along x, y, z of the base.
     pub force: Vec<[Vec<f64>; 3]>,
+    /// The part of τ that comes from the links' inertial parameters being others than the URDF's; empty if they are not.
+    pub background: Vec<Vec<f64>>,
+    /// The arm that it is of.
+    arm: Option<Arm>,
+    /// How far the joints stand beyond their encoders (rad or m).
+    offset: Vec<f64>,
 }
 
 impl Rigid {
@@ -34,6 +40,28 @@ impl Rigid {
     /// of links with the inertial parameters `nominal`.
     pub fn new(arm: &Arm, nominal: &[f64], offset: &[f64], chunk: &Chunk) -> Self {
         Self::with_derivatives(arm, nominal, offset, chunk, true)
+    }
+
+    /// τ of `arm`, for the same joints, is no part of the background: what is more or less is.
+    pub fn set_background(&mut self, arm: &Arm, chunk: &Chunk) {
+        let mut workspace = Workspace::new(arm);
+        let at = |signal: &[Vec<f64>], tick: usize| -> Vec<f64> { signal.iter().map(|joint| joint[tick]).collect() };
+        let mut tau = vec![0.0; arm.dof()];
+        self.background = self.tau.clone();
+        for tick in 0..chunk.ticks() {
+            let mut q = at(&chunk.q, tick);
+            q.iter_mut().zip(&self.offset).for_each(|(q, offset)| *q += offset);
+            arm.inverse_dynamics(
+                &mut workspace,
+                &q,
+                &at(&chunk.qd, tick),
+                &at(&chunk.qdd, tick),
+                &mut tau,
+            );
+            for (joint, tau) in tau.iter().enumerate() {
+                self.background[joint][tick] -= tau;
+            }
+        }
     }
 
     /// The same; without `derivatives` those by position and velocity, which cost most, stay zero.
@@ -51,6 +79,9 @@ impl Rigid {
             mass: square(),
             tilt: (0..n).map(|_| [zeros(), zeros()]).collect(),
             force: (0..n).map(|_| [zeros(), zeros(), zeros()]).collect(),
+            background: Vec::new(),
+            arm: Some(arm.clone()),
+            offset: offset.to_vec(),
         };
         let mut workspace = Workspace::new(arm);
         let tool = arm.tool_frame();
@@ -128,6 +159,43 @@ impl Rigid {
             }
         }
         rigid
+    }
+
+    /// The torque on each joint for a unit of each inertial parameter of each link, on the rows of `chunk`:
+    /// `[joint][10 link + parameter]`, empty for links before the joint.
+    pub fn inertial_columns(&self, chunk: &Chunk) -> Vec<Vec<Vec<f64>>> {
+        let Some(arm) = &self.arm else { return Vec::new() };
+        let (n, ticks) = (arm.dof(), chunk.ticks());
+        let mut workspace = Workspace::new(arm);
+        let mut regressor = DMatrix::zeros(n, PARAMETERS_PER_LINK * n);
+        let mut signals: Vec<Vec<Vec<f64>>> = (0..n)
+            .map(|joint| {
+                let acts = |k: usize| k / PARAMETERS_PER_LINK >= joint;
+                (0..n * PARAMETERS_PER_LINK)
+                    .map(|k| if acts(k) { vec![0.0; ticks] } else { Vec::new() })
+                    .collect()
+            })
+            .collect();
+        let at = |signal: &[Vec<f64>], tick: usize| -> Vec<f64> { signal.iter().map(|joint| joint[tick]).collect() };
+        for tick in 0..ticks {
+            let mut q = at(&chunk.q, tick);
+            q.iter_mut().zip(&self.offset).for_each(|(q, offset)| *q += offset);
+            let (qd, qdd) = (at(&chunk.qd, tick), at(&chunk.qdd, tick));
+            arm.torque_regressor(&mut workspace, &q, &qd, &qdd, &mut regressor);
+            for (joint, columns) in signals.iter_mut().enumerate() {
+                for (k, column) in columns.iter_mut().enumerate().skip(joint * PARAMETERS_PER_LINK) {
+                    column[tick] = regressor[(joint, k)];
+                }
+            }
+        }
+        for column in signals.iter_mut().flatten().filter(|column| !column.is_empty()) {
+            *column = if column.iter().all(|&v| v == 0.0) {
+                vec![0.0; chunk.rows()]
+            } else {
+                chunk.filter(column)
+            };
+        }
+        signals
     }
 }
 

@@ -299,6 +299,7 @@ fn finding(
             ..Place::default()
         },
         sentence: String::new(),
+        since_before: false,
         corrects: false,
         as_effect: effect,
     }

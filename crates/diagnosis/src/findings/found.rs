@@ -16,6 +16,8 @@ use crate::search::study::Study;
 use crate::selection::judge::{Judged, Member};
 use crate::selection::naming::name;
 
+/// An effect that the background could say may predict worse than that by this part.
+const AS_WELL: f64 = 0.1;
 /// Pieces of recordings (s) of which every other is fitted.
 const PIECE: f64 = 2.0;
 
@@ -48,10 +50,14 @@ pub fn useless(study: &Study, products: &Products, held: &Products, judged: &Jud
         .members
         .par_iter()
         .filter_map(|member| {
-            Some((
-                held_out_gain(study, &problem, Some(held), judged, member)?,
-                member.candidate,
-            ))
+            let gain = held_out_gain(study, &problem, Some(held), judged, member)?;
+            // What the background would say in its place predicts as much, for more nats.
+            let allowed = if problem.is_background_too(&study.candidates[member.candidate]) {
+                AS_WELL
+            } else {
+                0.0
+            };
+            Some((gain + allowed, member.candidate))
         })
         .collect();
     let least = gains
@@ -121,6 +127,8 @@ fn finding(
             },
             place: place.clone(),
             sentence: String::new(),
+            since_before: study.motions.changed_at.is_some()
+                && study.terms(member.candidate).iter().any(|term| term.onset().is_some()),
             corrects: true,
             as_effect: named.effect,
         });

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use effects::Effect;
 use serde::Serialize;
 
+pub use crate::findings::inertials::LinkInertials;
 use crate::next::NextExperiment;
 
 /// What was found. Maps are keyed by the URDF joint's name.
@@ -30,6 +31,12 @@ pub struct Report {
     pub located: Vec<Located>,
     /// How well each joint's torque is predicted.
     pub fit: BTreeMap<String, JointFit>,
+    /// What changed since the recordings from before, in sentences; where there are such recordings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub changed: Option<Vec<String>>,
+    /// What the recordings say of the links' inertial parameters, by the joint before the link; empty if the URDF's will do.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub inertials: BTreeMap<String, LinkInertials>,
     /// How the simulated arm follows the recorded one; empty where it was not simulated.
     pub rollout: BTreeMap<String, JointRollout>,
     /// The motion that best distinguishes the remaining alternatives, if one was requested.
@@ -89,6 +96,9 @@ pub struct Finding {
     pub place: Place,
     /// One sentence for a person.
     pub sentence: String,
+    /// Whether it is there since the recordings from before.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub since_before: bool,
     /// Whether it corrects the model of the measured torque; not if it was seen elsewhere (a second encoder, motor currents).
     #[serde(skip)]
     pub corrects: bool,
@@ -214,6 +224,9 @@ pub struct JointFit {
     pub held_out_nrmse_augmented: Option<f64>,
     /// Held-out NRMSE with a correction learned (IJL) from the same recordings.
     pub held_out_nrmse_learned: Option<f64>,
+    /// Held-out NRMSE of full linear identification on the same recordings: least squares on all inertial parameters, viscous
+    /// and Coulomb friction, drive inertia and a constant of every joint.
+    pub held_out_nrmse_identified: Option<f64>,
     /// With the named effects, resting samples only: the distance to what dry friction may hold.
     pub held_out_nrmse_resting: Option<f64>,
     /// Nominal, resting samples only.

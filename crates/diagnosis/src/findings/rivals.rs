@@ -1,8 +1,10 @@
 //! What a finding could be instead: other causes, fitted in its place with all else refitted.
 
-use effects::arm::{InertialScale, LinkInertialError};
+use effects::EffectKind;
+use effects::arm::{GravityMisalignment, InertialParameters, InertialScale, LinkInertialError, Payload};
 use effects::friction::{CoulombFriction, FrictionAsymmetry};
-use effects::sensor::{TorqueOffset, TorqueScale};
+use effects::joint::Spring;
+use effects::sensor::{EncoderOffset, TorqueOffset, TorqueScale};
 use rayon::prelude::*;
 
 use crate::search::candidate::Cause;
@@ -33,9 +35,13 @@ impl Standing {
     /// One half where a rival does as well, rising with the margin; the scale was set on simulated cases of which the
     /// truth was known.
     pub fn probability(&self, evidence: f64) -> f64 {
-        let margin = self.margin.min(evidence).max(0.0);
-        (1.0 - 0.5 * (-margin / MARGIN_SCALE).exp()).min(SUREST)
+        probability(self.margin.min(evidence))
     }
+}
+
+/// The probability of a name that does better than its best rival by a margin (nats).
+pub fn probability(margin: f64) -> f64 {
+    (1.0 - 0.5 * (-margin.max(0.0) / MARGIN_SCALE).exp()).min(SUREST)
 }
 
 /// The margin that halves the doubt e-fold (nats).
@@ -79,6 +85,21 @@ pub fn alias(study: &Study, chosen: &Chosen, member: usize, set: &[usize]) -> Op
             && chosen.fit.coefficient(other.columns[0]) > chosen.fit.coefficient(constant).abs()
     };
     (sets_in && set.iter().any(is_larger_friction)).then_some((Cause::of(&FrictionAsymmetry), finding.joint))
+}
+
+/// Whether an effect may be a part of inertial parameters that differ from the URDF's.
+fn may_be_background(cause: Cause) -> bool {
+    let kinds: [&'static dyn EffectKind; 8] = [
+        &Payload,
+        &LinkInertialError,
+        &InertialScale,
+        &GravityMisalignment,
+        &EncoderOffset,
+        &TorqueScale,
+        &Spring,
+        &TorqueOffset,
+    ];
+    kinds.into_iter().any(|kind| cause.is(kind))
 }
 
 /// Tries everything else in the place of `member`.
@@ -149,6 +170,15 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         })
         .collect();
     results.extend(identical);
+    if may_be_background(finding.cause) {
+        let cause = Cause::of(&InertialParameters);
+        let trials = study.in_the_background(problem.products, &set, chosen);
+        let results_of = |(link, next): (Option<usize>, Chosen)| {
+            (next.fit.loss - chosen.fit.loss, next.score - chosen.score, cause, link)
+        };
+        let best = trials.into_iter().map(results_of).min_by(|a, b| a.1.total_cmp(&b.1));
+        results.extend(best);
+    }
     results.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)).then(a.3.cmp(&b.3)));
     // What is simpler is likelier: the margin counts the costs.
     let margin = results.iter().map(|result| result.1).fold(explained, f64::min);

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use effects::arm::InertialParameters;
+
 use crate::findings::report::{Finding, JointFit};
 
 /// A number with three significant digits, with an exponent only when it is very small or very large.
@@ -19,8 +21,14 @@ fn number(value: f64) -> String {
 
 /// The finding's effect as a noun phrase with its parameters; `quantity` formats a value with its unit (`1`: none).
 pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> String {
-    let pattern = effects::spec(finding.effect).map_or("", |spec| spec.sentence);
-    let mut parts = pattern.split('{');
+    if finding.as_effect.is(&InertialParameters) && finding.joint.is_none() {
+        let relative = finding.parameters.get("relative");
+        return format!(
+            "masses, centres of mass and inertias of most links that differ from the URDF by about {} % of their size",
+            relative.map_or_else(String::new, |relative| quantity(100.0 * relative.value, "1"))
+        );
+    }
+    let mut parts = finding.as_effect.kind().get().sentence(&finding.as_effect).split('{');
     let mut text = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let (key, rest) = part.split_once('}').unwrap_or((part, ""));
@@ -33,6 +41,7 @@ pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> S
         text.push_str(rest);
     }
     match finding.parameters.get("onset") {
+        _ if finding.since_before => format!("{text}, absent in the recordings from before"),
         Some(onset) => format!("{text} from {} on", quantity(onset.value, onset.unit)),
         None => text,
     }
@@ -47,12 +56,23 @@ fn of_torque(ratio: f64) -> String {
     }
 }
 
-/// A finding in one sentence.
-pub fn of(finding: &Finding, fit: &BTreeMap<String, JointFit>) -> String {
-    let what = described(finding, &|value, unit| match unit {
+/// What changed since the recordings from before: the place and the effect, as a noun phrase.
+pub fn changed(finding: &Finding) -> String {
+    let place = finding.joint.as_deref().unwrap_or("the whole arm");
+    format!("{place}: {}", described(finding, &plain))
+}
+
+/// A value with its unit.
+fn plain(value: f64, unit: &str) -> String {
+    match unit {
         "1" => number(value),
         unit => format!("{} {unit}", number(value)),
-    });
+    }
+}
+
+/// A finding in one sentence.
+pub fn of(finding: &Finding, fit: &BTreeMap<String, JointFit>) -> String {
+    let what = described(finding, &plain);
     let at = finding.joint.clone().or_else(|| {
         let largest = finding.share_by_joint.iter().max_by(|a, b| a.1.total_cmp(b.1));
         largest.map(|(joint, _)| joint.clone())

@@ -279,6 +279,7 @@ fn contact(study: &Study, left: &[Vec<f64>], pushes: &[Push]) -> Option<Finding>
             state: None,
         },
         sentence: String::new(),
+        since_before: false,
         corrects: false,
         as_effect: Effect::of(&ExternalContact)
             .with("start", from)

@@ -144,6 +144,7 @@ impl<'a> Prospect<'a> {
         let mut source = study.motions.sources[self.template].clone();
         source.held_out = false;
         let motions = Motions {
+            changed_at: None,
             dof,
             chunks: vec![chunk],
             sources: vec![source],

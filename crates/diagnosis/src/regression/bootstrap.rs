@@ -92,9 +92,10 @@ pub fn resample(study: &mut Study, chosen: &Chosen) -> Resampled {
     let columns = chosen.fit.columns.clone();
     let p = columns.len() + all.len();
     let systems = systems(study, chosen, &columns, &all);
+    let prior = PriorDraws::new(study, p);
     let total = systems
         .iter()
-        .fold((DMatrix::zeros(p, p), DVector::zeros(p)), |(a, b), (c, d)| {
+        .fold((prior.precision.clone(), DVector::zeros(p)), |(a, b), (c, d)| {
             (a + c, b + d)
         });
     let estimate = solve(&total.0, &total.1);
@@ -103,18 +104,14 @@ pub fn resample(study: &mut Study, chosen: &Chosen) -> Resampled {
         .map(|draw| {
             // A generator of its own for each draw, so that threads do not matter (splitmix64).
             let mut state = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(draw as u64 + 1);
-            let (mut a, mut b) = (DMatrix::zeros(p, p), DVector::zeros(p));
+            let (mut a, mut b) = (prior.precision.clone(), DVector::zeros(p));
             for (matrix, right) in &systems {
-                state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-                let mut z = state;
-                z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-                z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-                // Exponential weights: uniform in (0, 1], by the upper 53 bits.
-                let uniform = (((z ^ (z >> 31)) >> 11) + 1) as f64 / (1_u64 << 53) as f64;
-                let weight = -uniform.ln();
+                // Exponential weights.
+                let weight = -uniform(&mut state).ln();
                 a += matrix * weight;
                 b += right * weight;
             }
+            prior.add_draw(&mut state, &mut b);
             solve(&a, &b).as_slice().to_vec()
         })
         .collect();
@@ -123,6 +120,47 @@ pub fn resample(study: &mut Study, chosen: &Chosen) -> Resampled {
         estimate: estimate.as_slice().to_vec(),
         draws,
         sizes: all,
+    }
+}
+
+/// Uniform in (0, 1], by the upper 53 bits (splitmix64).
+fn uniform(state: &mut u64) -> f64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    (((z ^ (z >> 31)) >> 11) + 1) as f64 / (1_u64 << 53) as f64
+}
+
+/// The background's prior in the normal equations. In each draw its mean is drawn from it, as the data are resampled: the
+/// spread of the draws is then that of the posterior, the prior's part included.
+struct PriorDraws {
+    /// K, the background's columns first, zeros beside it.
+    precision: DMatrix<f64>,
+    /// Its Cholesky factor.
+    lower: DMatrix<f64>,
+}
+
+impl PriorDraws {
+    fn new(study: &Study, p: usize) -> Self {
+        let own = study.background().map_or_else(|| DMatrix::zeros(0, 0), |b| b.precision);
+        let mut precision = DMatrix::zeros(p, p);
+        precision.view_mut((0, 0), own.shape()).copy_from(&own);
+        let lower = own.clone().cholesky().map_or(own, nalgebra::Cholesky::unpack);
+        Self { precision, lower }
+    }
+
+    /// Adds K ξ to the right side, ξ ~ N(0, K⁻¹).
+    fn add_draw(&self, state: &mut u64, right: &mut DVector<f64>) {
+        let n = self.lower.nrows();
+        // Box and Muller 1958.
+        let normal = DVector::from_fn(n, |_, _| {
+            (-2.0 * uniform(state).ln()).sqrt() * (std::f64::consts::TAU * uniform(state)).cos()
+        });
+        let drawn = &self.lower * normal;
+        for i in 0..n {
+            right[i] += drawn[i];
+        }
     }
 }
 
@@ -135,6 +173,9 @@ fn systems(
 ) -> Vec<(DMatrix<f64>, DVector<f64>)> {
     let table = &study.table;
     let p = columns.len() + sizes.len();
+    let weights = study
+        .products(|r| study.fitted[r])
+        .evidence_weights(&chosen.fit.weights);
     // The columns of each joint, the derivatives by the sizes last.
     let by_joint: Vec<Vec<Option<Vec<f64>>>> = (0..table.dof())
         .into_par_iter()
@@ -186,7 +227,7 @@ fn systems(
             let (mut a, mut b) = (DMatrix::zeros(p, p), DVector::zeros(p));
             for (joint, list) in by_joint.iter().enumerate() {
                 let this = &table.joints[joint];
-                let weight = chosen.fit.weights[joint];
+                let weight = weights[joint];
                 let acting: Vec<(usize, &Vec<f64>)> = list
                     .iter()
                     .enumerate()

@@ -8,6 +8,7 @@ use crate::data::rigid::Rigid;
 /// A chunk as regressors see it.
 fn along<'a>(chunk: &'a Chunk, rigid: &'a Rigid, scales: &'a Scales) -> Motion<'a> {
     Motion {
+        recording: chunk.recording,
         start: chunk.start,
         period: chunk.period,
         q: &chunk.q,

@@ -1,11 +1,17 @@
 //! Weighted least squares on inner products, all joints together.
 
+use std::sync::{Arc, Mutex};
+
 use nalgebra::{Cholesky, DMatrix, DVector};
 
+use crate::regression::background::Background;
 use crate::regression::table::{Gram, Table};
 
+mod eliminated;
 mod joined;
 mod left_out;
+
+use eliminated::Eliminated;
 
 /// Independent pieces of evidence a second of motion: residuals of a wrong model are correlated over longer than the filter …
 const EVIDENCE_RATE: f64 = 4.0;
@@ -17,6 +23,8 @@ const MOST_EVIDENCE_RATE: f64 = 10.0;
 const RIDGE: f64 = 1e-9;
 /// Weights are found anew as often.
 const REWEIGHTINGS: usize = 3;
+/// Weights that differ by less than this factor are not found anew where a background is to be eliminated for them.
+const SAME_WEIGHT: f64 = 1.25;
 
 /// Pieces of evidence a second of a motion of frequency `tempo` (Hz).
 pub fn evidence_rate(tempo: f64) -> f64 {
@@ -27,7 +35,7 @@ pub fn evidence_rate(tempo: f64) -> f64 {
 #[derive(Clone, Debug)]
 pub struct Products {
     /// One a joint.
-    gram: Vec<Gram>,
+    gram: Arc<Vec<Gram>>,
     /// Moving rows, one a joint.
     pub count: Vec<f64>,
     /// Pieces of evidence, one a joint.
@@ -36,26 +44,34 @@ pub struct Products {
     pub floor: Vec<f64>,
     /// The recordings that it is over.
     recordings: Vec<usize>,
+    /// What every fit has besides the columns that are chosen.
+    background: Option<Arc<Background>>,
+    /// The background eliminated at the weights that were used last.
+    eliminated: Arc<Mutex<Vec<Arc<Eliminated>>>>,
 }
 
 /// A solution.
 #[derive(Clone, Debug)]
 pub struct Fit {
-    /// The columns, in the table's numbers.
+    /// The columns, in the table's numbers, ascending: those of the background, then those chosen.
     pub columns: Vec<usize>,
+    /// How many of them are the background's.
+    pub background: usize,
     /// One coefficient a column.
     pub coefficients: Vec<f64>,
     /// The sum of squares that is left, one a joint.
     pub rss: Vec<f64>,
     /// The weight of each joint's rows: one over its variance.
     pub weights: Vec<f64>,
-    /// Minus the logarithm of the likelihood (nats).
+    /// Minus the logarithm of the likelihood, and what the background costs (nats).
     pub loss: f64,
-    /// The Cholesky factor of the scaled normal matrix.
+    /// The Cholesky factor of the scaled normal matrix of the chosen columns, the background eliminated.
     factor: DMatrix<f64>,
     scale: Vec<f64>,
     /// L⁻¹ of the scaled right side.
     reduced: DVector<f64>,
+    /// The background eliminated at these weights.
+    eliminated: Option<Arc<Eliminated>>,
 }
 
 impl Fit {
@@ -65,6 +81,11 @@ impl Fit {
             .iter()
             .position(|&c| c == column)
             .map_or(0.0, |k| self.coefficients[k])
+    }
+
+    /// The columns that were chosen.
+    pub fn chosen(&self) -> &[usize] {
+        &self.columns[self.background..]
     }
 }
 
@@ -88,14 +109,35 @@ impl Products {
                 .sum()
         };
         Self {
-            gram: (0..table.dof()).map(sum).collect(),
+            gram: Arc::new((0..table.dof()).map(sum).collect()),
             count: (0..table.dof()).map(|joint| over(joint, &|_| 1.0)).collect(),
             evidence: (0..table.dof())
                 .map(|joint| over(joint, &|r| seconds[r] * evidence_rate(tempo[joint])))
                 .collect(),
             floor: floor.to_vec(),
             recordings,
+            background: None,
+            eliminated: Arc::default(),
         }
+    }
+
+    /// The same with another background.
+    pub fn with_background(&self, background: Option<Background>) -> Self {
+        Self {
+            background: background.map(Arc::new),
+            eliminated: Arc::default(),
+            ..self.clone()
+        }
+    }
+
+    /// Whether there is a background.
+    pub fn has_background(&self) -> bool {
+        self.background.is_some()
+    }
+
+    /// Pieces of evidence a row of a joint.
+    fn evidence_per_row(&self, joint: usize) -> f64 {
+        self.evidence[joint] / self.count[joint].max(1.0)
     }
 
     /// The mean square of y on a joint.
@@ -165,14 +207,38 @@ impl Products {
     }
 
     /// Fits `columns`, the joints weighted by what is left on each, beginning with `weights`.
+    ///
+    /// With a background the weights stay as they are: to eliminate it for others costs more than many fits. [`Self::reweighted`]
+    /// does that once something was decided.
     pub fn fit(&self, table: &Table, columns: &[usize], weights: &[f64]) -> Fit {
         let mut weights = weights.to_vec();
         let mut fit = self.solve(table, columns, &weights);
+        if self.background.is_some() {
+            return fit;
+        }
         for _ in 1..REWEIGHTINGS {
             weights = (0..table.dof())
                 .map(|joint| 1.0 / self.variance(joint, fit.rss[joint]))
                 .collect();
             fit = self.solve(table, columns, &weights);
+        }
+        fit
+    }
+
+    /// `fit` with the joints weighted by what it leaves on each.
+    pub fn reweighted(&self, table: &Table, mut fit: Fit) -> Fit {
+        if self.background.is_none() {
+            return fit;
+        }
+        for _ in 1..REWEIGHTINGS {
+            let weights: Vec<f64> = (0..table.dof())
+                .map(|joint| 1.0 / self.variance(joint, fit.rss[joint]))
+                .collect();
+            let is_same = |(a, b): (&f64, &f64)| a.max(*b) < SAME_WEIGHT * a.min(*b);
+            if weights.iter().zip(&fit.weights).all(is_same) {
+                break;
+            }
+            fit = self.solve(table, fit.chosen(), &weights);
         }
         fit
     }
@@ -187,23 +253,25 @@ impl Products {
     /// Fits `columns` with fixed weights.
     pub fn solve(&self, table: &Table, columns: &[usize], weights: &[f64]) -> Fit {
         let p = columns.len();
+        let eliminated = self.eliminated(table, weights);
+        let inner = |a: usize, b: Option<usize>| self.inner(table, weights, eliminated.as_deref(), a, b);
         let mut matrix = DMatrix::zeros(p, p);
         let mut right = DVector::zeros(p);
         for i in 0..p {
             for k in 0..=i {
-                let value = self.product(table, weights, columns[i], Some(columns[k]));
+                let value = inner(columns[i], Some(columns[k]));
                 matrix[(i, k)] = value;
                 matrix[(k, i)] = value;
             }
-            right[i] = self.product(table, weights, columns[i], None);
+            right[i] = inner(columns[i], None);
         }
         let scale: Vec<f64> = (0..p)
             .map(|i| {
-                if matrix[(i, i)] > 0.0 {
-                    matrix[(i, i)].sqrt()
-                } else {
-                    1.0
-                }
+                let diagonal = match &eliminated {
+                    Some(_) => self.own_product(table, weights, columns[i]),
+                    None => matrix[(i, i)],
+                };
+                if diagonal > 0.0 { diagonal.sqrt() } else { 1.0 }
             })
             .collect();
         for i in 0..p {
@@ -219,44 +287,60 @@ impl Products {
         let scaled = factor
             .tr_solve_lower_triangular(&reduced)
             .unwrap_or_else(|| DVector::zeros(p));
-        let coefficients: Vec<f64> = (0..p).map(|i| scaled[i] / scale[i]).collect();
-        let rss = self.rss(table, columns, &coefficients);
+        let mut coefficients: Vec<f64> = (0..p).map(|i| scaled[i] / scale[i]).collect();
+        let mut all = columns.to_vec();
+        let mut cost = 0.0;
+        let mut background = 0;
+        if let (Some(eliminated), Some(prior)) = (&eliminated, &self.background) {
+            let own = eliminated.coefficients(self, table, columns, &coefficients);
+            cost = prior.cost + eliminated.occam + 0.5 * prior.energy(&own);
+            background = own.len();
+            coefficients.splice(0..0, own);
+            all.splice(0..0, prior.columns.iter().copied());
+        }
+        let rss = self.rss(table, &all, &coefficients);
         Fit {
-            columns: columns.to_vec(),
-            loss: self.loss(&rss),
+            columns: all,
+            background,
+            loss: self.loss(&rss) + cost,
             coefficients,
             rss,
             weights: weights.to_vec(),
             factor,
             scale,
             reduced,
+            eliminated,
         }
     }
 
     /// By how much `added` columns would lower the weighted sum of squares of `fit`, at its weights.
     pub fn drop(&self, table: &Table, fit: &Fit, added: &[usize]) -> f64 {
-        let (p, c) = (fit.columns.len(), added.len());
+        let chosen = fit.chosen();
+        let (p, c) = (chosen.len(), added.len());
+        let inner = |a: usize, b: Option<usize>| self.inner(table, &fit.weights, fit.eliminated.as_deref(), a, b);
         let mut cross = DMatrix::zeros(p, c);
         let mut own = DMatrix::zeros(c, c);
         let mut right = DVector::zeros(c);
         let mut size = vec![1.0; c];
         for k in 0..c {
-            let diagonal = self.product(table, &fit.weights, added[k], Some(added[k]));
+            let diagonal = match &fit.eliminated {
+                Some(_) => self.own_product(table, &fit.weights, added[k]),
+                None => inner(added[k], Some(added[k])),
+            };
             if diagonal > 0.0 {
                 size[k] = diagonal.sqrt();
             }
         }
         for k in 0..c {
             for i in 0..p {
-                cross[(i, k)] =
-                    self.product(table, &fit.weights, added[k], Some(fit.columns[i])) / (fit.scale[i] * size[k]);
+                cross[(i, k)] = inner(added[k], Some(chosen[i])) / (fit.scale[i] * size[k]);
             }
             for l in 0..=k {
-                let value = self.product(table, &fit.weights, added[k], Some(added[l])) / (size[k] * size[l]);
+                let value = inner(added[k], Some(added[l])) / (size[k] * size[l]);
                 own[(k, l)] = value;
                 own[(l, k)] = value;
             }
-            right[k] = self.product(table, &fit.weights, added[k], None) / size[k];
+            right[k] = inner(added[k], None) / size[k];
         }
         if p > 0 {
             fit.factor.solve_lower_triangular_mut(&mut cross);
@@ -268,17 +352,24 @@ impl Products {
             own[(k, k)] += 1e-6;
         }
         let factor = cholesky(&own);
-        factor.solve_lower_triangular(&right).map_or(0.0, |z| z.norm_squared())
+        let drop = factor.solve_lower_triangular(&right).map_or(0.0, |z| z.norm_squared());
+        match (&fit.eliminated, added.first()) {
+            (Some(_), Some(&first)) => drop / self.per_row(table, first),
+            _ => drop,
+        }
     }
 
     /// What a column, at a coefficient of one, adds to the weighted sum of squares beside the columns of `fit`.
     pub fn drop_of(&self, table: &Table, fit: &Fit, column: usize) -> f64 {
-        let own = self.product(table, &fit.weights, column, Some(column));
-        let mut cross = DVector::from_fn(fit.columns.len(), |i, _| {
-            self.product(table, &fit.weights, column, Some(fit.columns[i])) / fit.scale[i]
-        });
+        let inner = |b: usize| self.inner(table, &fit.weights, fit.eliminated.as_deref(), column, Some(b));
+        let own = inner(column);
+        let mut cross = DVector::from_fn(fit.chosen().len(), |i, _| inner(fit.chosen()[i]) / fit.scale[i]);
         fit.factor.solve_lower_triangular_mut(&mut cross);
-        (own - cross.norm_squared()).max(0.0)
+        let drop = (own - cross.norm_squared()).max(0.0);
+        match &fit.eliminated {
+            Some(_) => drop / self.per_row(table, column),
+            None => drop,
+        }
     }
 }
 

@@ -2,11 +2,13 @@
 
 use std::ops::Range;
 
+use effects::arm::INERTIAL_PARAMETER;
 use effects::{Behind, Scales, Term};
 use rayon::prelude::*;
 
 use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
+use crate::regression::bodies;
 use crate::regression::columns::{behind, behind_torque, values};
 use crate::thresholds;
 
@@ -90,6 +92,9 @@ impl Table {
                         .zip(&rigid.tau[joint])
                         .map(|(a, b)| a - b)
                         .collect();
+                    if let Some(background) = rigid.background.get(joint) {
+                        difference.iter_mut().zip(background).for_each(|(sum, x)| *sum += x);
+                    }
                     for &(term, coefficient) in carried {
                         let column = values(term, joint, chunk, rigid, scales).unwrap_or_default();
                         for (sum, x) in difference.iter_mut().zip(column) {
@@ -199,6 +204,12 @@ impl Table {
                 known.terms.iter().position(|&other| other == term)
             })
             .collect();
+        let inertial: Vec<Vec<Vec<Vec<f64>>>> = if terms.iter().any(|term| term.is(&INERTIAL_PARAMETER)) {
+            let along = motions.chunks.par_iter().zip(rigid);
+            along.map(|(chunk, rigid)| rigid.inertial_columns(chunk)).collect()
+        } else {
+            Vec::new()
+        };
         for (terms, copies) in terms.chunks(BATCH).zip(copies.chunks(BATCH)) {
             // What lies behind a joint that gives is simulated once, for all joints that feel it.
             let links: Vec<Vec<Behind>> = terms
@@ -220,6 +231,17 @@ impl Table {
                         if let (Some(copy), Some(known)) = (copy, known) {
                             places.push(known.place[joint][copy].map(|place| {
                                 table.x.push(known.joints[joint].x[place].clone());
+                                table.x.len() - 1
+                            }));
+                            continue;
+                        }
+                        if term.is(&INERTIAL_PARAMETER) {
+                            let k = term.of[0] * bodies::PER_LINK + term.of[1];
+                            let column: Vec<f64> =
+                                inertial.iter().flat_map(|chunk| &chunk[joint][k]).copied().collect();
+                            let acts = column.len() == table.y.len() && column.iter().any(|&v| v != 0.0);
+                            places.push(acts.then(|| {
+                                table.x.push(column);
                                 table.x.len() - 1
                             }));
                             continue;

@@ -46,7 +46,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
         let problem = study.problem(&products);
         let allowed: Vec<usize> = (0..study.candidates.len()).collect();
         chosen = problem.choose(chosen.set, &chosen.fit.weights);
-        chosen = problem.forward(chosen, &allowed);
+        chosen = study.grown(chosen, &allowed);
         let mut sets = [before, chosen.set.clone()];
         sets.iter_mut().for_each(|set| set.sort_unstable());
         if sets[0] == sets[1] {
@@ -64,8 +64,10 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
         let allowed: Vec<usize> = (0..study.candidates.len()).collect();
         let before = set.clone();
         chosen = problem.choose(set, &chosen.fit.weights);
-        chosen = problem.forward(problem.prune(chosen), &allowed);
-        chosen = problem.swap(chosen, &allowed, SWAPS);
+        chosen = problem.prune(chosen);
+        chosen = study.grown(chosen, &allowed);
+        let products = study.products(|r| fitted[r]);
+        chosen = study.problem(&products).swap(chosen, &allowed, SWAPS);
         if chosen.set != before {
             chosen = refine(study, chosen, false);
         } else if !again {
@@ -77,7 +79,8 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
         let products = study.products(|r| fitted[r]);
         let allowed: Vec<usize> = (0..study.candidates.len()).collect();
         let before = chosen.set.clone();
-        chosen = study.problem(&products).forward(chosen, &allowed);
+        chosen = study.problem(&products).choose(chosen.set, &chosen.fit.weights);
+        chosen = study.grown(chosen, &allowed);
         if chosen.set == before {
             break;
         }

@@ -19,7 +19,7 @@ const TRIED: usize = 8;
 /// … and of one cause on one joint so many, before others have been.
 const AT_ONCE: usize = 3;
 /// More candidates than this are not taken.
-const MOST: usize = 60;
+pub const MOST: usize = 60;
 
 /// The spread of coefficients that should be one.
 const UNIT_SPREAD: f64 = 0.1;
@@ -96,6 +96,13 @@ impl Problem<'_> {
         Chosen { set, fit, score }
     }
 
+    /// The same choice with the joints weighted by what it leaves on each.
+    pub fn reweighted(&self, chosen: Chosen) -> Chosen {
+        let fit = self.products.reweighted(self.table, chosen.fit);
+        let score = fit.loss + self.cost(&chosen.set) + self.misfit(&chosen.set, &fit);
+        Chosen { fit, score, ..chosen }
+    }
+
     /// What is simulated at its size should come out with a coefficient of one (nats).
     fn misfit(&self, set: &[usize], fit: &Fit) -> f64 {
         set.iter()
@@ -146,7 +153,7 @@ impl Problem<'_> {
     }
 
     /// The best addition to `chosen` among `allowed`, if one pays.
-    fn grow(&self, chosen: &Chosen, allowed: &[usize], refused: &mut Vec<usize>) -> Option<Chosen> {
+    pub fn grow(&self, chosen: &Chosen, allowed: &[usize], refused: &mut Vec<usize>) -> Option<Chosen> {
         let free: Vec<usize> = allowed
             .iter()
             .copied()
@@ -243,10 +250,16 @@ impl Problem<'_> {
                 .any(|&c| self.is_nameless(c) && self.candidates[c].joint == this.joint)
     }
 
+    /// Whether an effect says what the background could say in its place, at a higher price: then it does not predict more, but
+    /// for fewer nats.
+    pub fn is_background_too(&self, candidate: &Candidate) -> bool {
+        self.products.has_background() && candidate.cause.is_certain_in_form()
+    }
+
     /// Whether `candidate` helps to predict what it was not fitted to.
     fn predicts(&self, chosen: &Chosen, candidate: usize) -> bool {
         let candidate = &self.candidates[candidate];
-        if candidate.cause.is_passing() || candidate.cause.is_ordinary() {
+        if candidate.cause.is_passing() || candidate.cause.is_ordinary() || self.is_background_too(candidate) {
             return true;
         }
         let columns = &chosen.fit.columns;
@@ -256,7 +269,10 @@ impl Problem<'_> {
                 .arm_gain(self.table, columns, &candidate.columns, &chosen.fit.weights)
                 > 0.0;
         };
-        let (inside, outside) = self.products.gains(self.table, joint, columns, &candidate.columns);
+        let weights = &chosen.fit.weights;
+        let (inside, outside) = self
+            .products
+            .gains(self.table, joint, columns, &candidate.columns, weights);
         outside
             > if candidate.cause.name().is_none() {
                 PREDICTED * inside
@@ -281,7 +297,7 @@ impl Problem<'_> {
                 .into_iter()
                 .min_by(|a, b| b.0.cmp(&a.0).then(a.1.score.total_cmp(&b.1.score)));
             match best {
-                Some((must, next)) if must || next.score <= chosen.score => chosen = next,
+                Some((must, next)) if must || next.score <= chosen.score => chosen = self.reweighted(next),
                 _ => return chosen,
             }
         }
@@ -292,7 +308,7 @@ impl Problem<'_> {
         let mut refused = Vec::new();
         while chosen.set.len() < MOST {
             match self.grow(&chosen, allowed, &mut refused) {
-                Some(next) => chosen = next,
+                Some(next) => chosen = self.reweighted(next),
                 None => break,
             }
         }

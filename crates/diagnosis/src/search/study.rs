@@ -9,6 +9,7 @@ use crate::data::known::Known;
 use crate::data::measure::{self, mean, noise, scales, seconds, spans};
 use crate::data::motion::{Input, Motions};
 use crate::data::rigid::Rigid;
+use crate::regression::background::{Background, Prior, Stated, Strengths};
 use crate::regression::fit::{Fit, Products};
 use crate::regression::table::{Moving, Table};
 use crate::search::candidate::{Candidate, Cause, MayBe, catalogue};
@@ -16,6 +17,7 @@ use crate::search::problem::Problem;
 use crate::thresholds;
 
 mod about;
+mod strengths;
 
 pub use about::About;
 
@@ -54,13 +56,19 @@ pub struct Study {
     carries: bool,
     /// Which rows are fitted.
     moving: Moving,
+    /// What the model may be off by everywhere.
+    prior: Prior,
+    /// How far, as the evidence has it.
+    pub strengths: Strengths,
+    /// What of them the user states.
+    pub stated: Stated,
 }
 
 impl Study {
-    /// Prepares `inputs` for the arm and effects in `known`, filtered at `cutoff` (Hz), with the candidates that `may_be`.
-    pub fn new(known: &Known, inputs: &[Input<'_>], cutoff: f64, may_be: &MayBe<'_>) -> Self {
+    /// Prepares `inputs` for the arm and effects in `known`, filtered at `cutoff` (Hz) or as the data ask for, with the candidates that `may_be`.
+    pub fn new(known: &Known, inputs: &[Input<'_>], cutoff: Option<f64>, stated: Stated, may_be: &MayBe<'_>) -> Self {
         let arm = &known.arm;
-        let mut motions = Motions::new(inputs, cutoff);
+        let mut motions = Motions::new(inputs, cutoff, arm);
         let measured: Vec<Vec<f64>> = (0..motions.dof)
             .map(|joint| {
                 motions
@@ -104,7 +112,13 @@ impl Study {
             .collect();
         let first = times.first().map_or(0.0, |span| span.0);
         let span = times.last().map_or(1.0, |span| span.1 - first).max(1.0);
-        let mut terms: Vec<Term> = Vec::new();
+        let prior = Prior::new(
+            &nominal,
+            &scales.torque,
+            &scales.speed,
+            &strengths::moved(&motions, &scales),
+        );
+        let mut terms: Vec<Term> = prior.terms().to_vec();
         let mut candidates = Vec::new();
         let mass = |joint: usize| mean(rigid.iter().flat_map(|r| &r.mass[joint][joint]));
         let mut list = catalogue(&Grounds {
@@ -119,6 +133,15 @@ impl Study {
             list.retain(|(cause, ..)| !cause.is_unit());
         }
         list.retain(|(cause, joint, _)| may_be(*cause, *joint));
+        if let Some(at) = motions.changed_at {
+            // Whatever has a name may have come since the recordings from before.
+            let new: Vec<_> = list
+                .iter()
+                .filter(|(cause, ..)| cause.name().is_some() && !cause.is_unit())
+                .map(|(cause, joint, terms)| (*cause, *joint, terms.iter().map(|term| term.since(at)).collect()))
+                .collect();
+            list.extend(new);
+        }
         for (cause, joint, columns) in list {
             let columns = columns
                 .into_iter()
@@ -152,6 +175,9 @@ impl Study {
             measured,
             carries: false,
             moving: Moving::Steadily,
+            strengths: stated.first(arm.dof()),
+            stated,
+            prior,
         }
     }
 
@@ -162,6 +188,16 @@ impl Study {
 
     /// Inner products over the recordings that `chosen` picks.
     pub fn products(&self, chosen: impl Fn(usize) -> bool) -> Products {
+        self.bare_products(chosen).with_background(self.background())
+    }
+
+    /// What every fit has besides the effects, if anything.
+    pub fn background(&self) -> Option<Background> {
+        self.prior.at(&self.strengths)
+    }
+
+    /// The same without background.
+    fn bare_products(&self, chosen: impl Fn(usize) -> bool) -> Products {
         Products::new(&self.table, chosen, &self.seconds, &self.motions.tempo, &self.floor)
     }
 
@@ -189,18 +225,30 @@ impl Study {
     }
 
     fn about(&mut self, fit: &Fit, kept: &[usize], anyway: bool) -> Option<Vec<usize>> {
-        let About { arm, offset, carried } = About::new(self, fit);
+        let About {
+            arm,
+            offset,
+            bare,
+            carried,
+        } = About::new(self, fit);
         // Nothing to carry, and nothing carried by an earlier choice.
-        if carried.is_empty() && !self.carries && !anyway {
+        let carries = !carried.is_empty() || bare.is_some();
+        if !carries && !self.carries && !anyway {
             return None;
         }
-        self.carries = !carried.is_empty();
+        self.carries = carries;
         let nominal = self.arm.inertial_parameters();
         self.rigid = self
             .motions
             .chunks
             .par_iter()
-            .map(|chunk| Rigid::new(&arm, &nominal, &offset, chunk))
+            .map(|chunk| {
+                let mut rigid = Rigid::new(&arm, &nominal, &offset, chunk);
+                if let Some(bare) = &bare {
+                    rigid.set_background(bare, chunk);
+                }
+                rigid
+            })
             .collect();
         let (set, terms) = self.forget_trials(kept);
         self.table = self
@@ -221,6 +269,10 @@ impl Study {
                 terms.len() - 1
             })
         };
+        // The background's columns stay the first.
+        (0..self.prior.terms().len()).for_each(|column| {
+            keep(column);
+        });
         self.force = self.force.map(&mut keep);
         let mut numbers = vec![0; self.candidates.len()];
         let mut kept = Vec::new();

@@ -5,6 +5,7 @@ use effects::sensor::TorqueOffset;
 use torque::Corrected;
 
 use crate::findings::found::useless;
+use crate::findings::report::JointFit;
 use crate::findings::report::Parameter;
 use crate::findings::verdict::structured;
 use crate::regression::bootstrap::{Resampled, resample};
@@ -18,7 +19,7 @@ use crate::selection::predict::{augmented, errors};
 /// joint's held-out error grow, what does not help there, and what might be zero.
 pub fn settled(study: &mut Study, judged: &mut Judged) -> Resampled {
     loop {
-        settle(study, judged);
+        settle(study, judged, false);
         make_possible(study, judged);
         let before = judged.named.set.len();
 
@@ -40,7 +41,7 @@ pub fn settled(study: &mut Study, judged: &mut Judged) -> Resampled {
 
 /// Fits the named effects for the last time, about the arm that they make, whatever comes of them.
 pub fn as_given(study: &mut Study, judged: &mut Judged) -> Resampled {
-    settle(study, judged);
+    settle(study, judged, true);
     resample(study, &judged.named)
 }
 
@@ -58,11 +59,20 @@ fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Judged, set: Vec<usi
 }
 
 /// Forms everything about the arm that the named effects make, and no other, with the rows near reversals, and fits anew.
-fn settle(study: &mut Study, judged: &mut Judged) {
+fn settle(study: &mut Study, judged: &mut Judged, as_given: bool) {
     let kept = study.settle(&judged.named.fit, &judged.candidates());
     let named = judged.named.set.len();
     let products = study.products(|r| study.fitted[r]);
-    refit(study, &study.problem(&products), judged, kept[..named].to_vec());
+    let refitted = study
+        .problem(&products)
+        .choose(kept[..named].to_vec(), &judged.named.fit.weights);
+    judged.named = if as_given {
+        refitted
+    } else {
+        study.with_best_strengths(refitted)
+    };
+    let products = study.products(|r| study.fitted[r]);
+    judged.members = judge::describe(study, &study.problem(&products), &judged.named);
     for (member, &number) in judged.nameless.iter_mut().zip(&kept[named..]) {
         member.candidate = number;
     }
@@ -94,18 +104,30 @@ fn prove(study: &Study, judged: &mut Judged) {
 /// Drops the names on joints that, for all of them, are still predicted worse than by a constant: what is measured there is
 /// something else.
 fn give_up(study: &Study, judged: &mut Judged) {
+    let left: Vec<JointFit> = (0..study.motions.dof)
+        .map(|joint| errors(study, joint, &augmented(study, &judged.named, joint)))
+        .collect();
     let is_hopeless = |joint: usize| {
-        let fit = errors(study, joint, &augmented(study, &judged.named, joint));
+        let fit = &left[joint];
         fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented) > 1.0
     };
-    let hopeless: Vec<bool> = (0..study.motions.dof).map(is_hopeless).collect();
-    let stays = |&candidate: &usize| !study.candidates[candidate].joint.is_some_and(|joint| hopeless[joint]);
+    // Friction that explains a part of the training recordings is there, whatever else is.
+    let stays = |&candidate: &usize| {
+        let candidate = &study.candidates[candidate];
+        let explains = |joint: usize| candidate.cause.is_friction() && left[joint].train_nrmse_augmented < PARTLY;
+        !candidate
+            .joint
+            .is_some_and(|joint| is_hopeless(joint) && !explains(joint))
+    };
     let set: Vec<usize> = judged.named.set.iter().copied().filter(stays).collect();
     if set.len() < judged.named.set.len() {
         let products = study.products(|r| study.fitted[r]);
         refit(study, &study.problem(&products), judged, set);
     }
 }
+
+/// An error (NRMSE) below this says that something of the torque is explained.
+const PARTLY: f64 = 0.8;
 
 /// The weakest of the names whose size might be zero, or is none that physics has.
 fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<usize> {
@@ -170,7 +192,7 @@ fn guard(study: &Study, judged: &mut Judged) {
         let best = judged
             .members
             .iter()
-            .filter(|member| member.shares[joint] > 0.0)
+            .filter(|member| study.candidates[member.candidate].joint.is_some() && member.shares[joint] > 0.0)
             .map(|member| {
                 let next = problem.choose(judged.named.others(member.candidate), &judged.named.fit.weights);
                 (nrmse(&next, joint).1.unwrap_or(f64::INFINITY), next)

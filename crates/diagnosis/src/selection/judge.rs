@@ -37,7 +37,7 @@ const LEAST_OF_MISMATCH: f64 = 0.05;
 /// … and bring this much evidence (nats).
 const LEAST_NAMELESS_EVIDENCE: f64 = 5.0;
 /// On a joint with unnamed structure a name must be so much larger than it.
-const BESIDE_NAMELESS: f64 = 1.5;
+pub const BESIDE_NAMELESS: f64 = 1.5;
 
 /// What varies by less than this part of its mean is nearly constant: an offset, or friction of a joint that never turns back.
 const NEARLY_CONSTANT: f64 = 0.2;
@@ -313,14 +313,12 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
         .min_by(|&a, &b| members[a].evidence.total_cmp(&members[b].evidence))
 }
 
+/// A joint is worse predicted if its error grows by this part.
+const WORSE: f64 = 0.01;
+
 /// Whether an error (NRMSE) grows from `nominal` by more than what another joint's effect may do.
 pub fn harms(nominal: f64, with: f64) -> bool {
-    let harmless = if nominal < thresholds::EXPLAINED {
-        thresholds::HARMLESS
-    } else {
-        1e-9
-    };
-    with > nominal + harmless
+    with > nominal + thresholds::HARMLESS.max(WORSE * nominal)
 }
 
 /// Drops what does not predict recordings it was not fitted to, and what makes a joint's prediction worse than the nominal one.
@@ -335,8 +333,14 @@ fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut chos
             .map(|k| {
                 let mut set = chosen.set.clone();
                 let removed = set.remove(k);
-                let without = rss(&problem.choose(set, &chosen.fit.weights));
-                (removed, held.loss(&without) - held.loss(&with), without)
+                let rest = problem.choose(set, &chosen.fit.weights);
+                let without = rss(&rest);
+                let mut gain = held.loss(&without) - held.loss(&with);
+                // What the background would say in its place predicts as much, for more nats.
+                if problem.is_background_too(&study.candidates[removed]) {
+                    gain += rest.score - chosen.score;
+                }
+                (removed, gain, without)
             })
             .collect();
         let exempt = |candidate: usize| {
@@ -355,7 +359,10 @@ fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut chos
             })?;
             gains
                 .iter()
-                .filter(|(_, _, without)| without[joint] < with[joint])
+                .filter(|(candidate, _, without)| {
+                    // What acts on all joints is judged by the likelihood of all.
+                    study.candidates[*candidate].joint.is_some() && without[joint] < with[joint]
+                })
                 .min_by(|a, b| a.2[joint].total_cmp(&b.2[joint]))
         };
         let Some(&(bad, ..)) = useless.or_else(harmful) else {

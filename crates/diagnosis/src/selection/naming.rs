@@ -80,7 +80,13 @@ impl Estimate for Reader<'_> {
             Systematic::Usual => SYSTEMATIC,
             Systematic::OfForm => OF_FORM,
         };
-        let (value, ci95) = self.resampled.interval_within(systematic, f);
+        // A mass is never known better than the newton metres that it was weighed with.
+        let quantity = self.kind.spec().parameter(key).map(|parameter| parameter.quantity);
+        let accuracy = match (quantity, self.study.stated.gain) {
+            (Some(quantity), Some(accuracy)) if quantity.is_of_torque() => 1.96 * accuracy,
+            _ => 0.0,
+        };
+        let (value, ci95) = self.resampled.interval_within(systematic + accuracy, f);
         let unit = self.unit(key);
         self.parameters.insert(key, Parameter { value, ci95, unit });
         value

@@ -121,6 +121,7 @@ pub fn errors(study: &Study, joint: usize, augmented: &[f64]) -> JointFit {
         held_out_nrmse_nominal: over(&held, &counted, nominal),
         held_out_nrmse_augmented: over(&held, &counted, augmented),
         held_out_nrmse_learned: None,
+        held_out_nrmse_identified: None,
         held_out_nrmse_resting: at_rest(augmented),
         held_out_nrmse_resting_nominal: at_rest(nominal),
         train_nrmse_nominal: over(&train, moving, nominal).unwrap_or(0.0),

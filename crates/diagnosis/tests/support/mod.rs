@@ -162,6 +162,7 @@ pub fn inputs(recordings: &[RegularRecording]) -> Vec<Input<'_>> {
             name,
             recording,
             held_out: name == "c",
+            before: false,
         })
         .collect()
 }

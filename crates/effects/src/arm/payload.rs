@@ -21,7 +21,7 @@ static SPEC: Spec = Spec {
     sentence: "a payload of {mass} at the tool",
     scope: Scope::Arm,
     parameters: &[
-        Parameter::new("mass", Quantity::Mass).within(Range::NotNegative),
+        Parameter::new("mass", Quantity::Mass),
         // Its centre of mass.
         Parameter::new("com", Quantity::Length)
             .of(Shape::List(3, &["com_x", "com_y", "com_z"]))
@@ -116,7 +116,11 @@ impl EffectKind for Payload {
         let mass = fitted.value(0);
         let reach = PAYLOAD_REACH * reach(fitted.arm());
         let first: f64 = (1..4).map(|k| fitted.value(k).powi(2)).sum::<f64>().sqrt();
-        mass > 0.0 && first < mass * reach && mass < MOST_PAYLOAD * moving_mass(fitted.arm())
+        let last = fitted.arm().joints().last().map_or(0.0, |joint| joint.inertia.mass);
+        // A body that the URDF draws and that is not mounted has a negative mass, of which the last link must leave something.
+        let is_there = mass > 0.0 && mass < MOST_PAYLOAD * moving_mass(fitted.arm());
+        let is_missing = mass < 0.0 && -mass < last;
+        (is_there || is_missing) && first < mass.abs() * reach
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
@@ -136,7 +140,8 @@ impl EffectKind for Payload {
         }
         // A tensor that no body has says that the recordings do not show it.
         let tensor = body(&read(estimate.best())).tensor;
-        let possible = places[4].is_some() && tensor.symmetric_eigenvalues().iter().all(|&value| value >= 0.0);
+        let moments = tensor.symmetric_eigenvalues();
+        let possible = places[4].is_some() && moments.iter().all(|&value| value * mass >= 0.0);
         let inertia = if possible {
             [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)].map(|at| tensor[at])
         } else {
@@ -147,13 +152,23 @@ impl EffectKind for Payload {
     }
 
     fn refuse(&self, effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
-        let moments = tensor(effect.list("inertia")).symmetric_eigenvalues();
+        // Of a body that is missing all moments are negative.
+        let sense = effect.number("mass").signum();
+        let moments = sense * tensor(effect.list("inertia")).symmetric_eigenvalues();
         let wrong = moments.min() < -ROUNDING * moments.amax();
         wrong.then_some((
             "inertia's smallest principal moment",
             moments.min(),
             Range::NotNegative.requirement(),
         ))
+    }
+
+    fn sentence(&self, effect: &Effect) -> &'static str {
+        if effect.number("mass") < 0.0 {
+            "the URDF draws a body at the tool that is not mounted: {mass}"
+        } else {
+            SPEC.sentence
+        }
     }
 
     fn apply(&self, effect: &Effect, _: Place, machine: &mut Machine) {

@@ -7,7 +7,7 @@ use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::{Effect, Value};
-use crate::catalogue::{Kind, NAMES};
+use crate::kinds::{Kind, NAMES};
 use crate::spec::{Scope, Shape, Spec};
 
 impl Serialize for Value {

@@ -1,14 +1,20 @@
 //! A constant added to the measured torque.
 
-use super::KNOWN_LOAD;
 use crate::laws::ONE;
 use crate::{
-    Against, Effect, EffectKind, Estimate, Form, Grounds, Machine, Parameter, Place, Quantity, SetsIn, Spec, Term, Turn,
+    Against, Effect, EffectKind, Estimate, Experiment, Form, Grounds, Machine, Parameter, Place, Quantity, SetsIn,
+    Spec, Term, Turn,
 };
 
 /// τ = offset.
 #[derive(Debug)]
 pub struct TorqueOffset;
+
+/// What tells offset and scale of a torque where no motion does.
+pub(super) const KNOWN_LOAD: Experiment = Experiment {
+    rank: 5,
+    text: "read the torque under a known load at rest, once on either side of upright: offset and scale show there",
+};
 
 static SPEC: Spec = Spec {
     name: "torque_offset",

@@ -1,6 +1,6 @@
 //! A torque that is measured a constant factor too large.
 
-use super::KNOWN_LOAD;
+use super::torque_offset::KNOWN_LOAD;
 use crate::laws::RIGID;
 use crate::{
     Against, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity, Range, Scaled,

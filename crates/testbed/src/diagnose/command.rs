@@ -7,6 +7,7 @@ use arm::Arm;
 use diagnosis::{Diagnosis, Input, Options};
 
 use super::effect_file::EffectFile;
+use super::inputs::Role;
 use super::{inputs, next_file, urdf_file};
 use crate::cli::DiagnoseArgs;
 use crate::library::{self, Source};
@@ -36,11 +37,14 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
         .map(|recording| Input {
             name: &recording.name,
             recording: &recording.regular,
-            held_out: recording.held_out,
+            held_out: recording.role == Role::HeldOut,
+            before: recording.role == Role::Before,
         })
         .collect();
     let options = Options {
-        cutoff: args.cutoff.unwrap_or(Options::default().cutoff),
+        cutoff: args.cutoff,
+        urdf_accuracy: args.urdf_accuracy,
+        torque_accuracy: args.torque_accuracy,
         known,
         only,
         next: args.next.is_some(),

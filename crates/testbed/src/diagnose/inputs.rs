@@ -21,8 +21,25 @@ pub struct Prepared {
     pub name: String,
     /// On its clock, joints in the arm's order.
     pub regular: RegularRecording,
-    /// Not to be fitted.
-    pub held_out: bool,
+    /// What it is for.
+    pub role: Role,
+}
+
+/// What a recording is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Fitted; made before something happened.
+    Before,
+    /// Fitted.
+    Train,
+    /// Not fitted: the proof.
+    HeldOut,
+}
+
+impl Role {
+    fn is_fitted(self) -> bool {
+        self != Self::HeldOut
+    }
 }
 
 /// Checks where `args` write to, before anything is read.
@@ -42,7 +59,12 @@ pub fn check_outputs(args: &DiagnoseArgs) -> anyhow::Result<()> {
     for output in &outputs {
         // A model of effects may be read, added to and written in one go.
         let known = args.known.iter().filter(|_| args.model.as_deref() != Some(output));
-        let recordings = args.train.iter().chain(&args.held_out).chain(&args.map);
+        let recordings = args
+            .train
+            .iter()
+            .chain(&args.before)
+            .chain(&args.held_out)
+            .chain(&args.map);
         let inputs = recordings.chain(known).map(PathBuf::as_path).chain([robot]);
         output::check_is_no_input(output, inputs)?;
     }
@@ -127,16 +149,19 @@ fn overlap(a: &RegularRecording, b: &RegularRecording) -> bool {
 pub fn read(args: &DiagnoseArgs, arm: &Arm, progress: &ProgressBar) -> anyhow::Result<Vec<Prepared>> {
     let load = |path| anyhow::Ok((path, ColumnMap::load(path)?));
     let map = args.map.as_deref().map(load).transpose()?;
-    let files: Vec<(&PathBuf, bool)> = args
-        .train
-        .iter()
-        .map(|path| (path, false))
-        .chain(args.held_out.iter().map(|path| (path, true)))
+    let roles = [
+        (&args.before, Role::Before),
+        (&args.train, Role::Train),
+        (&args.held_out, Role::HeldOut),
+    ];
+    let files: Vec<(&PathBuf, Role)> = roles
+        .into_iter()
+        .flat_map(|(paths, role)| paths.iter().map(move |path| (path, role)))
         .collect();
     refuse_twice(&files)?;
     let mut list: Vec<Prepared> = Vec::new();
-    for (path, held_out) in files {
-        let prepared = prepare(path, held_out, map.as_ref(), arm, progress)?;
+    for (path, role) in files {
+        let prepared = prepare(path, role, map.as_ref(), arm, progress)?;
         // The same samples under another name.
         let twin = list.iter().find(|known| {
             let (a, b) = (&known.regular, &prepared.regular);
@@ -149,9 +174,9 @@ pub fn read(args: &DiagnoseArgs, arm: &Arm, progress: &ProgressBar) -> anyhow::R
                 twin.name
             );
         }
-        let source = list
-            .iter()
-            .find(|known| known.held_out != prepared.held_out && overlap(&known.regular, &prepared.regular));
+        let source = list.iter().find(|known| {
+            known.role.is_fitted() != prepared.role.is_fitted() && overlap(&known.regular, &prepared.regular)
+        });
         if let Some(source) = source {
             bail!(
                 "{}: contains a part of {}, sample for sample; a held-out recording must be independent of the training recordings",
@@ -163,7 +188,7 @@ pub fn read(args: &DiagnoseArgs, arm: &Arm, progress: &ProgressBar) -> anyhow::R
     }
     if list
         .iter()
-        .filter(|recording| !recording.held_out)
+        .filter(|recording| recording.role == Role::Train)
         .all(|recording| is_still(&recording.regular))
     {
         bail!(
@@ -174,11 +199,11 @@ pub fn read(args: &DiagnoseArgs, arm: &Arm, progress: &ProgressBar) -> anyhow::R
     Ok(list)
 }
 
-fn refuse_twice(files: &[(&PathBuf, bool)]) -> anyhow::Result<()> {
-    for (k, (path, held_out)) in files.iter().enumerate() {
-        let same = |other: &&(&PathBuf, bool)| output::is_same(path, other.0);
+fn refuse_twice(files: &[(&PathBuf, Role)]) -> anyhow::Result<()> {
+    for (k, (path, role)) in files.iter().enumerate() {
+        let same = |other: &&(&PathBuf, Role)| output::is_same(path, other.0);
         if let Some((_, other)) = files[..k].iter().find(same) {
-            match (other, held_out) {
+            match (other.is_fitted(), role.is_fitted()) {
                 (false, true) | (true, false) => bail!(
                     "{}: is given as a training and as a held-out recording; a held-out recording must be independent",
                     path.display()
@@ -192,7 +217,7 @@ fn refuse_twice(files: &[(&PathBuf, bool)]) -> anyhow::Result<()> {
 
 fn prepare(
     path: &Path,
-    held_out: bool,
+    role: Role,
     map: Option<&(&Path, ColumnMap)>,
     arm: &Arm,
     progress: &ProgressBar,
@@ -240,11 +265,7 @@ fn prepare(
     if let Some(reason) = unusable(&regular, &quality) {
         bail!("{name}: {reason}");
     }
-    Ok(Prepared {
-        name,
-        regular,
-        held_out,
-    })
+    Ok(Prepared { name, regular, role })
 }
 
 /// A drive is not sampled more slowly (Hz).

@@ -1,5 +1,7 @@
 //! Inner products of some columns, and of two sets of recordings together.
 
+use std::sync::Arc;
+
 use super::Products;
 use crate::regression::table::{Gram, Table};
 
@@ -11,7 +13,9 @@ impl Products {
             self.gram[joint].picked(&places)
         };
         Self {
-            gram: (0..self.gram.len()).map(of).collect(),
+            gram: Arc::new((0..self.gram.len()).map(of).collect()),
+            background: None,
+            eliminated: Arc::default(),
             ..self.clone()
         }
     }
@@ -25,7 +29,9 @@ impl Products {
             Gram::sum(grams[0].len(), grams.into_iter()).with_noise(noise)
         };
         Self {
-            gram: (0..self.gram.len()).map(of).collect(),
+            gram: Arc::new((0..self.gram.len()).map(of).collect()),
+            background: None,
+            eliminated: Arc::default(),
             count: self.count.iter().zip(&more.count).map(|(a, b)| a + b).collect(),
             evidence,
             floor,

@@ -10,8 +10,16 @@ const FOLDS: usize = 6;
 
 impl Products {
     /// What `added` columns on top of `columns` bring on `joint` (nats): where they were fitted, and on recordings left out one
-    /// group after the other, or on stretches of the only one.
-    pub fn gains(&self, table: &Table, joint: usize, columns: &[usize], added: &[usize]) -> (f64, f64) {
+    /// group after the other, or on stretches of the only one. `weights` are those of the joints; the background, if there is
+    /// one, comes first in `columns` and keeps its prior.
+    pub fn gains(
+        &self,
+        table: &Table,
+        joint: usize,
+        columns: &[usize],
+        added: &[usize],
+        weights: &[f64],
+    ) -> (f64, f64) {
         let place = |&column: &usize| table.place[joint][column];
         let mut with: Vec<usize> = columns.iter().filter_map(place).collect();
         let without = with.len();
@@ -25,9 +33,12 @@ impl Products {
         if folds.len() < 2 {
             return (0.0, 0.0);
         }
+        let scale = weights[joint] * self.evidence_per_row(joint);
+        let prior = self.prior(|column| table.place[joint][column].is_some(), scale);
         let all = folds.iter().skip(1).fold(folds[0].clone(), |sum, fold| sum + fold);
-        let inside = |p: usize| left(&all, &solution(&all, p));
-        let outside = |p: usize| -> f64 { folds.iter().map(|fold| left(fold, &solution(&(&all - fold), p))).sum() };
+        let inside = |p: usize| left(&all, &solution(&all, p, &prior));
+        let rest = |fold: &DMatrix<f64>, p: usize| solution(&(&all - fold), p, &prior);
+        let outside = |p: usize| -> f64 { folds.iter().map(|fold| left(fold, &rest(fold, p))).sum() };
         let gain = |left: &dyn Fn(usize) -> f64| {
             self.joint_loss(joint, left(without)) - self.joint_loss(joint, left(with.len()))
         };
@@ -53,11 +64,13 @@ impl Products {
         if count < 2 {
             return 0.0;
         }
+        let prior = self.prior(|_| true, 1.0);
+        let weights = self.evidence_weights(weights);
         let outside = |p: usize| -> f64 {
             let mut rss = vec![0.0; joints.len()];
             for fold in 0..count {
                 let mut gram = DMatrix::<f64>::zeros(p + 1, p + 1);
-                for ((mine, folds), weight) in joints.iter().zip(weights) {
+                for ((mine, folds), weight) in joints.iter().zip(&weights) {
                     let at = |k: usize| mine.get(k).copied().unwrap_or(p);
                     for other in (0..folds.len()).filter(|&other| other != fold) {
                         for i in (0..=mine.len()).filter(|&i| i == mine.len() || mine[i] < p) {
@@ -67,7 +80,7 @@ impl Products {
                         }
                     }
                 }
-                let solved = solution(&gram, p);
+                let solved = solution(&gram, p, &prior);
                 for ((mine, folds), rss) in joints.iter().zip(&mut rss) {
                     if let Some(gram) = folds.get(fold) {
                         let own = DVector::from_iterator(
@@ -81,6 +94,18 @@ impl Products {
             self.loss(&rss)
         };
         outside(columns.len()) - outside(all.len())
+    }
+
+    /// The precision of those of the background's columns that `acts` picks, where sums of squares are weighted by `scale`.
+    fn prior(&self, acts: impl Fn(usize) -> bool, scale: f64) -> DMatrix<f64> {
+        let Some(background) = &self.background else {
+            return DMatrix::zeros(0, 0);
+        };
+        let mine: Vec<usize> = (0..background.columns.len())
+            .filter(|&k| acts(background.columns[k]))
+            .collect();
+        let entry = |i: usize, k: usize| background.precision[(mine[i], mine[k])] / scale;
+        DMatrix::from_fn(mine.len(), mine.len(), entry)
     }
 
     /// Inner products of a joint's columns at `places` and, last, of y, over each of some groups of recordings or, if there
@@ -126,11 +151,17 @@ impl Products {
     }
 }
 
-/// The coefficients of the first `p` columns, from inner products of columns and, last, of y.
-fn solution(gram: &DMatrix<f64>, p: usize) -> DVector<f64> {
+/// The coefficients of the first `p` columns, from inner products of columns and, last, of y; `prior` is the precision of the
+/// first of them.
+fn solution(gram: &DMatrix<f64>, p: usize, prior: &DMatrix<f64>) -> DVector<f64> {
     let last = gram.nrows() - 1;
-    let scale: Vec<f64> = (0..p).map(|i| gram[(i, i)].max(0.0).sqrt().max(1e-150)).collect();
-    let matrix = DMatrix::from_fn(p, p, |i, k| gram[(i, k)] / (scale[i] * scale[k]));
+    let known = prior.nrows();
+    let entry = |i: usize, k: usize| {
+        let own = if i < known && k < known { prior[(i, k)] } else { 0.0 };
+        gram[(i, k)] + own
+    };
+    let scale: Vec<f64> = (0..p).map(|i| entry(i, i).max(0.0).sqrt().max(1e-150)).collect();
+    let matrix = DMatrix::from_fn(p, p, |i, k| entry(i, k) / (scale[i] * scale[k]));
     let right = DVector::from_fn(p, |i, _| gram[(i, last)] / scale[i]);
     let factor = cholesky(&matrix);
     let reduced = factor

@@ -82,7 +82,7 @@ impl Problem<'_> {
                 .chain(self.arm_wide(&chosen, allowed))
                 .chain(self.other_masses(&chosen, allowed));
             match trials.min_by(|a, b| a.score.total_cmp(&b.score)) {
-                Some(next) if next.score < chosen.score - 0.5 => chosen = self.prune(next),
+                Some(next) if next.score < chosen.score - 0.5 => chosen = self.prune(self.reweighted(next)),
                 _ => break,
             }
         }

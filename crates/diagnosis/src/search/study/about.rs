@@ -1,9 +1,11 @@
 //! The arm that a fit found: what is not linear in a tilt, an encoder's offset or a payload is small about it.
 
-use arm::{Arm, Vector3};
-use effects::{Carried, Term, arm::body};
+use arm::{Arm, Inertia, Vector3};
+use effects::arm::{INERTIAL_PARAMETER, body};
+use effects::{Carried, Term};
 
 use super::Study;
+use crate::regression::bodies;
 use crate::regression::fit::Fit;
 
 /// An arm with what a fit found in it.
@@ -12,11 +14,30 @@ pub struct About {
     pub arm: Arm,
     /// How far the joints stand beyond their encoders (rad or m).
     pub offset: Vec<f64>,
+    /// The same without what the background changes in the links' inertial parameters; `None` if it changes nothing.
+    pub bare: Option<Arm>,
     /// The terms that are in it, by their coefficients.
     pub carried: Vec<(Term, f64)>,
 }
 
 impl About {
+    /// The arm of `study` with the links' errors of scale that `fit` found, and nothing else.
+    pub fn scaled(study: &Study, fit: &Fit) -> Arm {
+        let mut found = Carried {
+            arm: study.arm.clone(),
+            offset: vec![0.0; study.arm.dof()],
+            payload: [0.0; 10],
+            tilt: [0.0; 2],
+        };
+        for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
+            let term = study.table.terms[column];
+            if let (Some(carry), None) = (term.law.carry, term.onset()) {
+                carry(&term, value, &mut found);
+            }
+        }
+        found.arm
+    }
+
     /// The arm of `study` with what `fit` found.
     pub fn new(study: &Study, fit: &Fit) -> Self {
         let mut found = Carried {
@@ -26,8 +47,12 @@ impl About {
             tilt: [0.0; 2],
         };
         let mut carried = Vec::new();
+        let mut inertial = vec![0.0; bodies::PER_LINK * study.arm.dof()];
         for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
             let term = study.table.terms[column];
+            if term.is(&INERTIAL_PARAMETER) {
+                inertial[term.of[0] * bodies::PER_LINK + term.of[1]] = value;
+            }
             if let (Some(carry), None) = (term.law.carry, term.onset()) {
                 carry(&term, value, &mut found);
                 carried.push((term, value));
@@ -40,12 +65,31 @@ impl About {
             tilt: [x, y],
         } = found;
         let tilt = Vector3::new(x, y, 0.0);
-        if payload[0] != 0.0 {
-            arm = arm.with_payload(&body(&payload));
+        let finish = |mut arm: Arm| {
+            if payload[0] != 0.0 {
+                arm = arm.with_payload(&body(&payload));
+            }
+            if tilt.norm() > 0.0 {
+                arm = arm.with_turned_base(tilt, tilt.norm());
+            }
+            arm
+        };
+        let is_changed = inertial.iter().any(|&value| value != 0.0);
+        let bare = is_changed.then(|| finish(arm.clone()));
+        if is_changed {
+            let nominal = arm.inertial_parameters();
+            let links = nominal.chunks_exact(bodies::PER_LINK);
+            let bodies: Vec<Inertia> = links
+                .zip(inertial.chunks_exact(bodies::PER_LINK))
+                .map(|(nominal, change)| body(&bodies::physical(nominal, change)))
+                .collect();
+            arm = arm.with_inertias(&bodies);
         }
-        if tilt.norm() > 0.0 {
-            arm = arm.with_turned_base(tilt, tilt.norm());
+        Self {
+            arm: finish(arm),
+            offset,
+            bare,
+            carried,
         }
-        Self { arm, offset, carried }
     }
 }

@@ -95,6 +95,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
                 recording: None,
                 state: (row.0 == "coulomb_friction").then(|| "within 0.05 rad/s of a reversal".into()),
             },
+            since_before: false,
             sentence: format!(
                 "{}: {} of {main} {value}; held-out error 0.94 → 0.12.",
                 joint.as_deref().unwrap_or("The whole arm"),
@@ -176,6 +177,8 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
             })
             .collect(),
         fit,
+        changed: None,
+        inertials: BTreeMap::new(),
         rollout: (0..joints)
             .map(|j| {
                 (
@@ -202,6 +205,7 @@ fn fit(traces: &Traces, j: usize, plot: Plot) -> JointFit {
         noise: 0.004 * spread(&train.tau[j]),
         held_out_nrmse_nominal: some(nrmse(held_out, &held_out.residual)),
         held_out_nrmse_augmented: some(nrmse(held_out, &held_out.residual_augmented)),
+        held_out_nrmse_identified: None,
         held_out_nrmse_learned: some(1.6 * nrmse(held_out, &held_out.residual_augmented)),
         held_out_nrmse_resting: (plot == Plot::Rich).then_some(0.21),
         held_out_nrmse_resting_nominal: (plot == Plot::Rich).then_some(0.9),

@@ -40,6 +40,7 @@ impl Recorded {
                 name,
                 recording,
                 held_out: false,
+                before: false,
             })
             .collect();
         // Nothing is fitted: what is wanted is its filtered motion.

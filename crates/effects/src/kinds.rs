@@ -1,4 +1,4 @@
-//! The list of all effects, in the order of the documentation; forms without a name follow.
+//! Kinds of effects: the catalogue's by name and in its order, then forms without a name.
 
 use std::cmp::Ordering;
 use std::hash::{Hash, Hasher};
@@ -6,45 +6,7 @@ use std::sync::LazyLock;
 
 use crate::kind::EffectKind;
 use crate::spec::Spec;
-use crate::{arm, drive, friction, joint, sensor, unmodelled};
-
-/// The effects that have a name. An effect is a file and a line here.
-pub static CATALOGUE: &[&dyn EffectKind] = &[
-    &friction::ViscousFriction,
-    &friction::CoulombFriction,
-    &friction::FrictionAsymmetry,
-    &friction::StribeckFriction,
-    &friction::LoadDependentFriction,
-    &friction::ThermalDrift,
-    &friction::QuadraticDrag,
-    &drive::RotorInertia,
-    &sensor::TorqueScale,
-    &sensor::TorqueOffset,
-    &drive::TorqueRipple,
-    &drive::TorqueSaturation,
-    &drive::ActuationDelay,
-    &drive::JointElasticity,
-    &drive::Backlash,
-    &drive::TransmissionCoupling,
-    &arm::Payload,
-    &arm::LinkInertialError,
-    &arm::InertialScale,
-    &arm::GravityMisalignment,
-    &sensor::EncoderOffset,
-    &joint::Spring,
-    &arm::ExternalContact,
-];
-
-/// Unmodelled forms, which prevent that an effect outside the catalogue is attributed to the most similar one in it.
-pub static UNMODELLED: &[&dyn EffectKind] = &[
-    &unmodelled::OwnPosition,
-    &unmodelled::OtherPosition,
-    &unmodelled::OtherSpeed,
-    &unmodelled::History,
-    &unmodelled::Product,
-    &unmodelled::Periodic,
-    &unmodelled::Time,
-];
+use crate::{CATALOGUE, UNMODELLED};
 
 /// The names of the catalogue, in its order.
 pub static NAMES: LazyLock<Vec<&'static str>> =

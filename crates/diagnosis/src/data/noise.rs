@@ -1,0 +1,132 @@
+//! The noise of recorded signals: white, held for some samples, or stronger just above the motion's band.
+
+use std::f64::consts::TAU;
+
+use arm::{Arm, Workspace};
+use nalgebra::DMatrix;
+use recording::RegularRecording;
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex;
+
+use crate::data::measure;
+use crate::data::motion::{Chunk, Motions, Source};
+
+/// The band, in cut-offs, whose power is noise.
+const BAND: (f64, f64) = (1.7, 3.4);
+/// Bins of a spectrum that a band needs.
+const LEAST_BINS: usize = 16;
+/// A logger holds values for no more samples.
+const LONGEST_HOLD: usize = 20;
+/// Changes of a value that say whether it is held.
+const LEAST_CHANGES: usize = 20;
+
+/// Poses of a stretch at which the mass matrix is formed to judge the noise.
+const POSES: usize = 10;
+
+impl Motions {
+    /// The largest part of a joint's torque that the noise of the positions makes, carried through the mass matrix, and the joint.
+    pub fn noise_share(&self, arm: &Arm) -> (f64, usize) {
+        let mut workspace = Workspace::new(arm);
+        let mut mass = DMatrix::zeros(self.dof, self.dof);
+        let mut largest = DMatrix::<f64>::zeros(self.dof, self.dof);
+        let fitted = |chunk: &&Chunk| !self.sources[chunk.recording].held_out;
+        for chunk in self.chunks.iter().filter(fitted) {
+            for tick in (0..chunk.ticks()).step_by((chunk.ticks() / POSES).max(1)) {
+                let q: Vec<f64> = chunk.q.iter().map(|q| q[tick]).collect();
+                arm.mass_matrix(&mut workspace, &q, &mut mass);
+                largest = largest.zip_map(&mass, |a, b| a.max(b.abs()));
+            }
+        }
+        let torque = measure::deviations(self);
+        let share = |joint: usize| {
+            if torque[joint] <= 0.0 || self.tempo[joint] == 0.0 {
+                return 0.0;
+            }
+            let of = |source: &Source| -> f64 {
+                let parts = (0..self.dof).map(|by| (largest[(joint, by)] * source.acceleration_noise[by]).powi(2));
+                parts.sum::<f64>().sqrt() / torque[joint]
+            };
+            let shares = self.sources.iter().filter(|source| !source.held_out).map(of);
+            shares.fold(0.0, f64::max)
+        };
+        (0..self.dof)
+            .map(|joint| (share(joint), joint))
+            .fold((0.0, 0), |most, next| if next.0 > most.0 { next } else { most })
+    }
+}
+
+/// The strength of a signal's white noise: its third differences have 20 times the variance. A signal that is held for some
+/// samples is taken every so many.
+pub fn white_noise(signal: &[f64], recording: &RegularRecording) -> f64 {
+    let mut squares = Vec::new();
+    for segment in &recording.segments {
+        let values = &signal[segment.ticks.clone()];
+        let present = &recording.present[segment.ticks.clone()];
+        let hold = held_for(values);
+        for k in 3 * hold..values.len() {
+            let at = [k - 3 * hold, k - 2 * hold, k - hold, k];
+            if at.iter().all(|&k| present[k]) {
+                let [a, b, c, d] = at.map(|k| values[k]);
+                squares.push((d - 3.0 * c + 3.0 * b - a).powi(2) / 20.0);
+            }
+        }
+    }
+    if squares.is_empty() {
+        return 0.0;
+    }
+    // The mean of the lower nine tenths: what jumps (a reversal, a contact) is not noise. A normal variable's
+    // squares up to their 90 % quantile average .6245 of its variance.
+    let keep = (squares.len() * 9 / 10).max(1);
+    squares.sort_by(f64::total_cmp);
+    (squares[..keep].iter().sum::<f64>() / keep as f64 / 0.6245).sqrt()
+}
+
+/// For how many samples a logger holds each value; one if it does not. A slow encoder repeats its values too, but not at an
+/// even pace.
+fn held_for(values: &[f64]) -> usize {
+    let changes: Vec<usize> = (1..values.len()).filter(|&k| values[k] != values[k - 1]).collect();
+    let mut steps: Vec<usize> = changes.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if steps.len() < LEAST_CHANGES {
+        return 1;
+    }
+    steps.sort_unstable();
+    let usual = steps[steps.len() / 2];
+    let same = steps.iter().filter(|&&step| step == usual).count();
+    if 2 * same > steps.len() && usual <= LONGEST_HOLD {
+        usual
+    } else {
+        1
+    }
+}
+
+/// The strength of a white noise that has the power of `signal` just above the `cutoff` (Hz): noise that is not white, as that of
+/// uneven stamps, is stronger there than its strength at the highest frequencies says.
+pub fn band_noise(signal: &[f64], recording: &RegularRecording, cutoff: f64) -> f64 {
+    let mut strongest = 0.0_f64;
+    for segment in &recording.segments {
+        let values = &signal[segment.ticks.clone()];
+        let n = values.len();
+        let bin = 1.0 / (n as f64 * recording.period);
+        let (from, to) = ((BAND.0 * cutoff / bin) as usize, (BAND.1 * cutoff / bin) as usize);
+        if to >= n / 2 || to < from + LEAST_BINS {
+            continue;
+        }
+        // Without its line from end to end and under a Hann window, the motion does not leak into the band.
+        let slope = (values[n - 1] - values[0]) / (n - 1) as f64;
+        let mut power = 0.0;
+        let mut spectrum: Vec<Complex<f64>> = (0..n)
+            .map(|k| {
+                let window = 0.5 - 0.5 * (TAU * k as f64 / n as f64).cos();
+                power += window * window;
+                Complex::new(window * (values[k] - values[0] - slope * k as f64), 0.0)
+            })
+            .collect();
+        FftPlanner::new().plan_fft_forward(n).process(&mut spectrum);
+        let mut band: Vec<f64> = spectrum[from..to].iter().map(Complex::norm_sqr).collect();
+        band.sort_by(f64::total_cmp);
+        // The median of an exponential distribution is ln 2 of its mean.
+        let variance = band[band.len() / 2] / (std::f64::consts::LN_2 * power);
+        strongest = strongest.max(variance.sqrt());
+    }
+    strongest
+}

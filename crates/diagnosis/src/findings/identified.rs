@@ -1,0 +1,34 @@
+//! The control that users know: full linear identification, without names.
+
+use effects::drive::RotorInertia;
+use effects::friction::{CoulombFriction, ViscousFriction};
+use effects::sensor::TorqueOffset;
+
+use crate::regression::background::Strengths;
+use crate::search::study::Study;
+use crate::selection::predict::{augmented, errors};
+
+/// A prior so wide that it only makes the normal equations regular: inertial parameters are free to this many times their size.
+const FREE: f64 = 3.0;
+
+/// Of each joint, the held-out error (NRMSE) of least squares on all inertial parameters, viscous and Coulomb friction, the
+/// drives' inertias and a constant of every joint.
+pub fn identified(study: &Study) -> Vec<Option<f64>> {
+    let strengths = Strengths {
+        links: vec![FREE; study.arm.dof()],
+        ..Strengths::none(study.arm.dof())
+    };
+    let products = study.products_at(&strengths);
+    let problem = study.problem(&products);
+    let is_part = |&candidate: &usize| {
+        let cause = study.candidates[candidate].cause;
+        let always = study.terms(candidate).iter().all(|term| term.onset().is_none());
+        let is = |kind: &'static dyn effects::EffectKind| cause.is(kind);
+        always && (is(&ViscousFriction) || is(&CoulombFriction) || is(&RotorInertia) || is(&TorqueOffset))
+    };
+    let set: Vec<usize> = (0..study.candidates.len()).filter(is_part).collect();
+    let chosen = problem.reweighted(problem.choose(set, &products.first_weights()));
+    (0..study.arm.dof())
+        .map(|joint| errors(study, joint, &augmented(study, &chosen, joint)).held_out_nrmse_augmented)
+        .collect()
+}

@@ -1,0 +1,210 @@
+//! What the background changes in the links' inertial parameters: named where that is large, written out as bodies that can be.
+
+use std::collections::BTreeMap;
+
+use arm::Inertia;
+use effects::Effect;
+use effects::arm::{INERTIAL_PARAMETER, InertialParameters, body};
+use serde::Serialize;
+
+use crate::findings::report::{Confusable, Finding, Parameter, Place};
+use crate::findings::rivals::probability;
+use crate::regression::bodies::{PER_LINK, physical};
+use crate::regression::bootstrap::{Resampled, SYSTEMATIC};
+use crate::regression::fit::Products;
+use crate::search::study::{About, Study};
+use crate::selection::judge::{BESIDE_NAMELESS, Judged, LEAST_EVIDENCE, LEAST_SHARE};
+use crate::selection::predict::deviation;
+
+/// A link's strength must be so many times that of most links to be named for itself.
+const APART: f64 = 2.0;
+
+/// What the recordings say of a link's inertial parameters.
+#[derive(Clone, Debug, Serialize)]
+pub struct LinkInertials {
+    /// The URDF's mass (kg).
+    pub nominal_mass: f64,
+    /// Mass, centre of mass (m, in the link's frame), moments of inertia about it (kg m²), with 95 % intervals.
+    pub parameters: BTreeMap<&'static str, Parameter>,
+    /// For each of m, m c (x, y, z) and Ixx … Izz about the link frame's origin, the part of the prior's variance that the
+    /// recordings took away: 1 where they determine it, 0 where only the prior does.
+    pub determined: [f64; PER_LINK],
+    /// Standard deviation of the torque of the change over that of the measured torque, the largest of the joints.
+    pub share: f64,
+}
+
+/// The links that differ from the URDF.
+#[derive(Clone, Debug, Default)]
+pub struct Inertials {
+    /// One finding for most links (joint `None`), or one for each link that stands out.
+    pub findings: Vec<Finding>,
+    /// All links' bodies, as the corrected model takes them; none if no link differs.
+    pub effects: Vec<Effect>,
+    /// By the joint before the link.
+    pub links: BTreeMap<String, LinkInertials>,
+}
+
+const KEYS: [&str; PER_LINK] = [
+    "mass", "com_x", "com_y", "com_z", "ixx", "ixy", "iyy", "ixz", "iyz", "izz",
+];
+const UNITS: [&str; PER_LINK] = [
+    "kg", "m", "m", "m", "kg m²", "kg m²", "kg m²", "kg m²", "kg m²", "kg m²",
+];
+
+fn numbers(body: &Inertia) -> [f64; PER_LINK] {
+    let t = |a: usize, b: usize| body.tensor[(a, b)];
+    let c = body.com;
+    [
+        body.mass,
+        c.x,
+        c.y,
+        c.z,
+        t(0, 0),
+        t(0, 1),
+        t(1, 1),
+        t(0, 2),
+        t(1, 2),
+        t(2, 2),
+    ]
+}
+
+/// What the background of the last fit says of the links' inertial parameters.
+pub fn inertials(
+    study: &Study,
+    products: &Products,
+    held: Option<&Products>,
+    judged: &Judged,
+    resampled: &Resampled,
+) -> Inertials {
+    let strengths = &study.strengths;
+    let dof = study.arm.dof();
+    if strengths.links.iter().all(|&rho| rho == 0.0) {
+        return Inertials::default();
+    }
+    // The links with their errors of scale in them, payload, tilt and all else apart.
+    let nominal: Vec<f64> = About::scaled(study, &judged.named.fit).inertial_parameters();
+    let place = |link: usize, parameter: usize| {
+        let is_it = |&column: &usize| {
+            let term = study.table.terms[column];
+            term.is(&INERTIAL_PARAMETER) && term.of == [link, parameter]
+        };
+        resampled.columns.iter().position(is_it)
+    };
+    let mut list = Inertials::default();
+    let mut shares = vec![vec![0.0; dof]; dof];
+    for link in 0..dof {
+        let places: Vec<Option<usize>> = (0..PER_LINK).map(|parameter| place(link, parameter)).collect();
+        let read = |draw: &[f64]| -> [f64; PER_LINK] {
+            std::array::from_fn(|parameter| places[parameter].map_or(0.0, |place| draw[place]))
+        };
+        let of = &nominal[link * PER_LINK..(link + 1) * PER_LINK];
+        let own = |draw: &[f64]| body(&physical(of, &read(draw)));
+        let estimate = own(&resampled.estimate);
+        let name = study.arm.joints()[link].name.clone();
+        list.effects.push(InertialParameters::effect(name.clone(), &estimate));
+        let columns: Vec<usize> = places.iter().flatten().map(|&place| resampled.columns[place]).collect();
+        let values: Vec<f64> = places
+            .iter()
+            .flatten()
+            .map(|&place| resampled.estimate[place])
+            .collect();
+        for (joint, share) in shares[link].iter_mut().enumerate() {
+            let torque = study.table.torque(joint, &columns, &values);
+            *share = deviation(&torque, &study.training_rows(joint)) / study.scales.torque[joint].max(1e-300);
+        }
+        let prior = study.prior_variances(link);
+        let determined = std::array::from_fn(|parameter| {
+            let Some(place) = places[parameter] else { return 0.0 };
+            let draws = resampled
+                .draws
+                .iter()
+                .map(|draw| draw[place] - resampled.estimate[place]);
+            let variance = draws.map(|d| d * d).sum::<f64>() / resampled.draws.len() as f64;
+            (1.0 - variance / prior[parameter].max(1e-300)).clamp(0.0, 1.0)
+        });
+        let parameters = (0..PER_LINK)
+            .map(|k| {
+                let (value, ci95) = resampled.interval_within(SYSTEMATIC, |draw| numbers(&own(draw))[k]);
+                let unit = UNITS[k];
+                (KEYS[k], Parameter { value, ci95, unit })
+            })
+            .collect();
+        let share = shares[link].iter().copied().fold(0.0, f64::max);
+        let nominal_mass = study.arm.joints()[link].inertia.mass;
+        let link = LinkInertials {
+            nominal_mass,
+            parameters,
+            determined,
+            share,
+        };
+        list.links.insert(name, link);
+    }
+    let (evidence, outside) = study.evidence_of_inertials(products, held, &judged.named);
+    if evidence < LEAST_EVIDENCE || outside.is_some_and(|outside| outside <= 0.0) {
+        return list;
+    }
+    let common = strengths.common();
+    let together: Vec<f64> = (0..dof)
+        .map(|joint| {
+            let columns = resampled.columns.iter().copied();
+            let (columns, values): (Vec<usize>, Vec<f64>) = columns
+                .zip(&resampled.estimate)
+                .filter(|(column, _)| study.table.terms[*column].is(&INERTIAL_PARAMETER))
+                .unzip();
+            let torque = study.table.torque(joint, &columns, &values);
+            deviation(&torque, &study.training_rows(joint)) / study.scales.torque[joint].max(1e-300)
+        })
+        .collect();
+    let by_joint = |shares: &[f64]| -> BTreeMap<String, f64> {
+        let named = (0..dof).filter(|&joint| shares[joint] > 1e-4);
+        named
+            .map(|joint| (study.arm.joints()[joint].name.clone(), shares[joint]))
+            .collect()
+    };
+    let largest = |shares: &[f64]| shares.iter().copied().fold(0.0, f64::max);
+    let mut add = |joint: Option<usize>, shares: &[f64], parameters: BTreeMap<&'static str, Parameter>| {
+        // Beside structure without a name they may be a part of that.
+        let stands_out = |joint: usize| {
+            let unnamed = judged.nameless.iter().map(|member| member.shares[joint]);
+            shares[joint] >= LEAST_SHARE.max(BESIDE_NAMELESS * unnamed.fold(0.0, f64::max))
+        };
+        if !(0..dof).any(stands_out) {
+            return;
+        }
+        list.findings.push(Finding {
+            effect: "inertial_parameters",
+            joint: joint.map(|joint| study.arm.joints()[joint].name.clone()),
+            other: None,
+            parameters,
+            probability: probability(evidence),
+            share: largest(shares),
+            share_by_joint: by_joint(shares),
+            held_out_gain: None,
+            confusable_with: Vec::<Confusable>::new(),
+            place: Place::default(),
+            sentence: String::new(),
+            since_before: false,
+            corrects: false,
+            as_effect: list.effects[joint.unwrap_or(0)].clone(),
+        });
+    };
+    for link in (0..dof).filter(|&link| strengths.links[link] > APART * common) {
+        let name = &study.arm.joints()[link].name;
+        let parameters = list
+            .links
+            .get(name)
+            .map(|link| link.parameters.clone())
+            .unwrap_or_default();
+        add(Some(link), &shares[link], parameters);
+    }
+    if common > 0.0 {
+        let (low, high) = strengths.around_common();
+        let relative = Parameter {
+            value: common,
+            ci95: [low, high],
+            unit: "1",
+        };
+        add(None, &together, BTreeMap::from([("relative", relative)]));
+    }
+    list
+}

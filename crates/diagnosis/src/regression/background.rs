@@ -1,0 +1,282 @@
+//! The background of every fit: what a URDF, a friction curve and a torque constant may be off by everywhere, under a prior.
+//!
+//! Inertial parameters: δπ_k ~ N(0, ρ² H_k⁻¹) about the URDF's values, H_k\[a, b\] = tr(P_k⁻¹ B_a P_k⁻¹ B_b) with P_k the link's
+//! pseudo-inertia and B_a = ∂P/∂π_a. It is the second-order form of the entropic divergence of Lee, Wensing and Park (2020):
+//! free of coordinates and units, so that ρ = 0.1 reads "ten per cent of each link's own mass, size and shape".
+
+use nalgebra::{Cholesky, DMatrix};
+
+use effects::Term;
+use effects::arm::INERTIAL_PARAMETER;
+use effects::background::{FRICTION_CURVE, GAIN as GAIN_LAW, OWN_FRICTION};
+
+use crate::regression::bodies::{PER_LINK, precision};
+
+/// At strength one, friction differs from Coulomb and viscous, and from recording to recording, by this part of a joint's torque.
+const FRICTION: f64 = 0.015;
+/// At strength one, torque constants are off by this part.
+const GAIN: f64 = 0.05;
+
+/// The evidence that a part of the background must bring (nats).
+const A_PART: f64 = 4.0;
+/// The evidence that a link with a strength of its own must bring (nats).
+const A_LINK: f64 = 8.0;
+/// A URDF is seldom off by more than this part everywhere.
+const USUAL: f64 = 0.3;
+/// Strengths that are tried.
+const RHOS: [f64; 7] = [0.0, 0.01, 0.03, 0.1, 0.2, 0.4, 1.0];
+const FRICTIONS: [f64; 3] = [0.0, 1.0, 3.0];
+const GAINS: [f64; 2] = [0.0, 1.0];
+
+/// How far the parts of the background may be from what the model says; zero switches a part off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strengths {
+    /// ρ of each link's inertial parameters.
+    pub links: Vec<f64>,
+    /// Of the form of each joint's friction, in units of its prior.
+    pub friction: f64,
+    /// Of the torque constants, in units of their prior.
+    pub gain: f64,
+}
+
+impl Strengths {
+    /// The model as it is.
+    pub fn none(links: usize) -> Self {
+        Self {
+            links: vec![0.0; links],
+            friction: 0.0,
+            gain: 0.0,
+        }
+    }
+
+    /// The evidence that they must bring (nats).
+    fn cost(&self) -> f64 {
+        let part = |strength: f64| if strength > 0.0 { A_PART } else { 0.0 };
+        let common = self.common();
+        let apart = self.links.iter().filter(|&&rho| rho != common).count();
+        let unlikely = 0.5 * (common / USUAL).powi(2);
+        part(self.friction) + part(self.gain) + part(common) + unlikely + A_LINK * apart as f64
+    }
+
+    /// The strengths tried next to that of most links, below and above it.
+    pub fn around_common(&self) -> (f64, f64) {
+        let common = self.common();
+        let below = RHOS.into_iter().filter(|&rho| rho < common).fold(0.0, f64::max);
+        let above = RHOS
+            .into_iter()
+            .filter(|&rho| rho > common)
+            .fold(f64::INFINITY, f64::min);
+        (below, if above.is_finite() { above } else { 2.0 * common })
+    }
+
+    /// ρ of most links.
+    pub fn common(&self) -> f64 {
+        self.links.iter().copied().fold(f64::INFINITY, f64::min).min(1e3)
+    }
+
+    /// Those that differ from these in what holds for all links or joints.
+    pub fn neighbours(&self) -> Vec<Self> {
+        let mut list = Vec::new();
+        let mut add = |next: Self| {
+            if next != *self && !list.contains(&next) {
+                list.push(next);
+            }
+        };
+        for rho in RHOS {
+            add(Self {
+                links: vec![rho; self.links.len()],
+                ..self.clone()
+            });
+        }
+        for friction in FRICTIONS {
+            add(Self {
+                friction,
+                ..self.clone()
+            });
+        }
+        for gain in GAINS {
+            add(Self { gain, ..self.clone() });
+        }
+        list
+    }
+
+    /// Those that differ from these in one link.
+    pub fn with_other_links(&self) -> Vec<Self> {
+        let mut list = Vec::new();
+        let mut add = |next: Self| {
+            if next != *self && !list.contains(&next) {
+                list.push(next);
+            }
+        };
+        for link in 0..self.links.len() {
+            for rho in [self.common(), 0.1, 0.3, 1.0] {
+                let mut next = self.clone();
+                next.links[link] = rho;
+                if rho >= self.common() {
+                    add(next);
+                }
+            }
+        }
+        list
+    }
+
+    /// These with less of one part.
+    pub fn weaker(&self) -> Vec<Self> {
+        let mut list = Vec::new();
+        let largest = self.links.iter().copied().fold(0.0, f64::max);
+        for rho in RHOS.into_iter().filter(|&rho| rho < largest) {
+            list.push(Self {
+                links: self.links.iter().map(|&own| own.min(rho)).collect(),
+                ..self.clone()
+            });
+        }
+        for friction in FRICTIONS.into_iter().filter(|&friction| friction < self.friction) {
+            list.push(Self {
+                friction,
+                ..self.clone()
+            });
+        }
+        for gain in GAINS.into_iter().filter(|&gain| gain < self.gain) {
+            list.push(Self { gain, ..self.clone() });
+        }
+        list
+    }
+
+    /// Whether the model is taken as it is.
+    pub fn is_none(&self) -> bool {
+        self.friction == 0.0 && self.gain == 0.0 && self.links.iter().all(|&rho| rho == 0.0)
+    }
+}
+
+/// Strengths that the user states, so that the evidence does not choose them.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Stated {
+    /// ρ of all links.
+    pub links: Option<f64>,
+    /// The standard deviation of the torque constants.
+    pub gain: Option<f64>,
+}
+
+impl Stated {
+    /// The strengths to begin with.
+    pub fn first(self, links: usize) -> Strengths {
+        Strengths {
+            links: vec![self.links.unwrap_or(0.0); links],
+            friction: 0.0,
+            gain: self.gain.map_or(0.0, |gain| gain / GAIN),
+        }
+    }
+
+    /// Whether strengths are as stated.
+    pub fn allows(self, strengths: &Strengths) -> bool {
+        let first = self.first(strengths.links.len());
+        (self.links.is_none() || strengths.links == first.links)
+            && (self.gain.is_none() || strengths.gain == first.gain)
+    }
+}
+
+/// The prior of the background at strength one: the first columns of a table.
+#[derive(Clone, Debug, Default)]
+pub struct Prior {
+    /// What each column is.
+    terms: Vec<Term>,
+    /// H of each link.
+    links: Vec<DMatrix<f64>>,
+    /// The standard deviation of each column's coefficient that is not an inertial parameter, at strength one.
+    deviations: Vec<f64>,
+}
+
+/// The background at some strengths: its columns and their precision.
+#[derive(Clone, Debug)]
+pub struct Background {
+    /// Columns of the table, ascending.
+    pub columns: Vec<usize>,
+    /// K, the precision of their coefficients about zero.
+    pub precision: DMatrix<f64>,
+    /// ln det K.
+    pub log_det: f64,
+    /// The evidence that its strengths must bring (nats).
+    pub cost: f64,
+}
+
+impl Prior {
+    /// The prior of an arm with the inertial `parameters` (ten a link), whose joints measure torques of the standard deviations
+    /// `torque` (N m or N) at speeds up to `speed` (rad/s or m/s); `moved` are the recordings to be fitted that move each joint.
+    pub fn new(parameters: &[f64], torque: &[f64], speed: &[f64], moved: &[Vec<usize>]) -> Self {
+        let mut prior = Self::default();
+        for (link, values) in parameters.chunks_exact(PER_LINK).enumerate() {
+            prior.links.push(precision(values));
+            for parameter in 0..PER_LINK {
+                prior.push(Term::about(&INERTIAL_PARAMETER, link).of(parameter), 0.0);
+            }
+        }
+        for (joint, recordings) in moved.iter().enumerate() {
+            let level = FRICTION * torque[joint];
+            if level <= 0.0 || speed[joint] <= 0.0 {
+                continue;
+            }
+            let speed = speed[joint];
+            prior.push(Term::on(&FRICTION_CURVE, joint), level);
+            prior.push(Term::on(&FRICTION_CURVE, joint).form(1), level / (speed * speed));
+            if recordings.len() > 1 {
+                for &recording in recordings {
+                    for (form, deviation) in [(0, level), (1, level / speed)] {
+                        let term = Term::on(&OWN_FRICTION, joint).of(recording).form(form);
+                        prior.push(term, deviation);
+                    }
+                }
+            }
+            prior.push(Term::on(&GAIN_LAW, joint), GAIN);
+        }
+        prior
+    }
+
+    fn push(&mut self, term: Term, deviation: f64) {
+        self.terms.push(term);
+        self.deviations.push(deviation);
+    }
+
+    /// The terms of its columns, in the table's order.
+    pub fn terms(&self) -> &[Term] {
+        &self.terms
+    }
+
+    /// The variances of a link's ten inertial parameters at strength `rho`.
+    pub fn variances(&self, link: usize, rho: f64) -> [f64; PER_LINK] {
+        let inverse = self.links[link].clone().try_inverse();
+        std::array::from_fn(|k| inverse.as_ref().map_or(0.0, |inverse| rho * rho * inverse[(k, k)]))
+    }
+
+    /// The background at `strengths`; `None` if they are all zero.
+    pub fn at(&self, strengths: &Strengths) -> Option<Background> {
+        if strengths.is_none() {
+            return None;
+        }
+        let strength = |column: usize| match self.terms[column] {
+            term if term.is(&INERTIAL_PARAMETER) => strengths.links[term.of[0]],
+            term if term.is(&GAIN_LAW) => strengths.gain,
+            _ => strengths.friction,
+        };
+        let columns: Vec<usize> = (0..self.terms.len()).filter(|&column| strength(column) > 0.0).collect();
+        let entry = |&a: &usize, &b: &usize| {
+            let (one, other) = (self.terms[a], self.terms[b]);
+            let are_inertial = one.is(&INERTIAL_PARAMETER) && other.is(&INERTIAL_PARAMETER);
+            if are_inertial && one.of[0] == other.of[0] {
+                self.links[one.of[0]][(one.of[1], other.of[1])] / strengths.links[one.of[0]].powi(2)
+            } else if a == b {
+                (strength(a) * self.deviations[a]).powi(-2)
+            } else {
+                0.0
+            }
+        };
+        let precision = DMatrix::from_fn(columns.len(), columns.len(), |i, k| entry(&columns[i], &columns[k]));
+        let factor = Cholesky::new(precision.clone())?;
+        let log_det = 2.0 * factor.l_dirty().diagonal().iter().map(|d| d.ln()).sum::<f64>();
+        Some(Background {
+            columns,
+            precision,
+            log_det,
+            cost: strengths.cost(),
+        })
+    }
+}

@@ -1,0 +1,143 @@
+//! Bodies by their ten inertial parameters: pseudo-inertias, the metric between them, and which bodies can be.
+
+use nalgebra::{Cholesky, DMatrix, Matrix3, Matrix4, SymmetricEigen};
+
+/// A body that is a point in the URDF may have about this radius of gyration (m).
+const LEAST_RADIUS: f64 = 0.05;
+/// A link without mass in the URDF may have about this (kg).
+const LEAST_MASS: f64 = 0.05;
+/// Parameters of a link: m, m c (3), Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the link frame's origin.
+pub const PER_LINK: usize = 10;
+/// The pseudo-inertia \[Σ, m c; (m c)ᵀ, m\] of ten inertial parameters, Σ = ½ tr(I) 1 − I.
+pub fn pseudo_inertia(parameters: &[f64]) -> Matrix4<f64> {
+    let [m, hx, hy, hz, xx, xy, yy, xz, yz, zz] = *parameters else {
+        return Matrix4::zeros();
+    };
+    let half = 0.5 * (xx + yy + zz);
+    Matrix4::new(
+        half - xx,
+        -xy,
+        -xz,
+        hx, //
+        -xy,
+        half - yy,
+        -yz,
+        hy, //
+        -xz,
+        -yz,
+        half - zz,
+        hz, //
+        hx,
+        hy,
+        hz,
+        m,
+    )
+}
+
+/// The ten inertial parameters of a pseudo-inertia.
+fn parameters_of(pseudo: &Matrix4<f64>) -> [f64; PER_LINK] {
+    let second = pseudo.fixed_view::<3, 3>(0, 0);
+    let tensor = Matrix3::identity() * second.trace() - second;
+    let (x, y, z) = (pseudo[(0, 3)], pseudo[(1, 3)], pseudo[(2, 3)]);
+    let i = |a: usize, b: usize| tensor[(a, b)];
+    [
+        pseudo[(3, 3)],
+        x,
+        y,
+        z,
+        i(0, 0),
+        i(0, 1),
+        i(1, 1),
+        i(0, 2),
+        i(1, 2),
+        i(2, 2),
+    ]
+}
+
+/// In no direction is less left of a body than this part.
+const LEAST_LEFT: f64 = 0.02;
+
+/// The body nearest to `nominal` + `change` (ten inertial parameters each) that can be: its pseudo-inertia, seen from the
+/// nominal one, has no eigenvalue below a fiftieth.
+pub fn physical(nominal: &[f64], change: &[f64]) -> [f64; PER_LINK] {
+    let Some(factor) = Cholesky::new(floored(nominal)) else {
+        return std::array::from_fn(|k| nominal[k] + change[k]);
+    };
+    let sum: Vec<f64> = nominal.iter().zip(change).map(|(a, b)| a + b).collect();
+    let lower = factor.l();
+    let Some(inverse) = lower.try_inverse() else {
+        return std::array::from_fn(|k| sum[k]);
+    };
+    let mut eigen = SymmetricEigen::new(inverse * pseudo_inertia(&sum) * inverse.transpose());
+    if eigen.eigenvalues.min() >= LEAST_LEFT {
+        return std::array::from_fn(|k| sum[k]);
+    }
+    eigen.eigenvalues.apply(|value| *value = value.max(LEAST_LEFT));
+    parameters_of(&(lower * eigen.recompose() * lower.transpose()))
+}
+
+/// H of a link (10 × 10) at its inertial `parameters`.
+pub fn precision(parameters: &[f64]) -> DMatrix<f64> {
+    let inverse = floored(parameters).try_inverse().unwrap_or_else(Matrix4::identity);
+    let directions: Vec<Matrix4<f64>> = (0..PER_LINK)
+        .map(|k| {
+            let mut unit = [0.0; PER_LINK];
+            unit[k] = 1.0;
+            inverse * pseudo_inertia(&unit)
+        })
+        .collect();
+    DMatrix::from_fn(PER_LINK, PER_LINK, |a, b| (directions[a] * directions[b]).trace())
+}
+
+/// The pseudo-inertia of a body, made larger where it is too small to have an inverse.
+fn floored(parameters: &[f64]) -> Matrix4<f64> {
+    let pseudo = pseudo_inertia(parameters);
+    let mass = pseudo[(3, 3)].max(LEAST_MASS);
+    let com = pseudo.fixed_view::<3, 1>(0, 3) / mass;
+    let about_com: Matrix3<f64> = pseudo.fixed_view::<3, 3>(0, 0) - mass * com * com.transpose();
+    let mut eigen = SymmetricEigen::new(about_com);
+    eigen
+        .eigenvalues
+        .apply(|value| *value = value.max(mass * LEAST_RADIUS * LEAST_RADIUS));
+    let second = eigen.recompose() + mass * com * com.transpose();
+    let mut floored = Matrix4::zeros();
+    floored.fixed_view_mut::<3, 3>(0, 0).copy_from(&second);
+    floored.fixed_view_mut::<3, 1>(0, 3).copy_from(&(mass * com));
+    floored
+        .fixed_view_mut::<1, 3>(3, 0)
+        .copy_from(&(mass * com.transpose()));
+    floored[(3, 3)] = mass;
+    floored
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ten per cent of a body, in whatever frame: the metric's length of δπ = 0.1 π is 0.1 √4, as tr(1) = 4.
+    #[test]
+    fn the_metric_knows_no_units() {
+        for (mass, com, size) in [(2.0, [0.1, 0.0, 0.3], 0.2), (40.0, [1.0, -0.5, 0.0], 0.4)] {
+            let c: nalgebra::Vector3<f64> = com.into();
+            let second = Matrix3::identity() * (mass * size * size) + mass * c * c.transpose();
+            let tensor = Matrix3::identity() * second.trace() - second;
+            let parameters = [
+                mass,
+                mass * c.x,
+                mass * c.y,
+                mass * c.z,
+                tensor[(0, 0)],
+                tensor[(0, 1)],
+                tensor[(1, 1)],
+                tensor[(0, 2)],
+                tensor[(1, 2)],
+                tensor[(2, 2)],
+            ];
+            let metric = precision(&parameters);
+            let step = nalgebra::DVector::from_iterator(PER_LINK, parameters.iter().map(|p| 0.1 * p));
+            let length = (step.transpose() * &metric * &step)[(0, 0)].sqrt();
+            assert!((length - 0.2).abs() < 1e-9, "{length}");
+            assert!(Cholesky::new(metric).is_some());
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! The background eliminated from the normal equations at fixed weights: what is left of them are the chosen columns alone.
+//!
+//! With A = BᵀWB + K = LLᵀ for the background's columns B, their precision K and W the weights of the evidence, a product of two
+//! columns becomes xᵀWx' − (L⁻¹BᵀWx)ᵀ(L⁻¹BᵀWx'), and the background costs ½ (ln det A − ln det K) + ½ δᵀKδ.
+
+use std::sync::{Arc, OnceLock, PoisonError};
+
+use nalgebra::{Cholesky, DMatrix};
+
+use super::Products;
+use crate::regression::background::Background;
+use crate::regression::table::Table;
+
+/// Of so many weights the elimination is kept.
+const KEPT: usize = 12;
+
+/// The background eliminated at some weights.
+#[derive(Debug)]
+pub struct Eliminated {
+    /// Of the joints' rows: one over their variance.
+    weights: Vec<f64>,
+    /// The same where rows count as evidence.
+    scaled: Vec<f64>,
+    /// The rows of L.
+    lower: Vec<Vec<f64>>,
+    /// L⁻¹ BᵀW y.
+    with_y: Vec<f64>,
+    /// L⁻¹ BᵀW x of each of the table's columns that was asked for.
+    with_columns: Vec<OnceLock<Vec<f64>>>,
+    /// ½ (ln det A − ln det K) (nats).
+    pub occam: f64,
+}
+
+impl Background {
+    /// ½ of this is what coefficients cost (nats): δᵀKδ.
+    pub fn energy(&self, coefficients: &[f64]) -> f64 {
+        let p = coefficients.len();
+        let row = |i: usize| (0..p).map(|k| self.precision[(i, k)] * coefficients[k]).sum::<f64>();
+        (0..p).map(|i| coefficients[i] * row(i)).sum()
+    }
+}
+
+impl Eliminated {
+    fn new(products: &Products, table: &Table, background: &Background, weights: &[f64]) -> Self {
+        let scaled = products.evidence_weights(weights);
+        let columns = &background.columns;
+        let p = columns.len();
+        let mut matrix = DMatrix::zeros(p, p);
+        for i in 0..p {
+            for k in 0..=i {
+                matrix[(i, k)] =
+                    products.product(table, &scaled, columns[i], Some(columns[k])) + background.precision[(i, k)];
+                matrix[(k, i)] = matrix[(i, k)];
+            }
+        }
+        // K is positive definite, and BᵀWB is not negative but for rounding.
+        let factor = Cholesky::new(matrix).map_or_else(|| DMatrix::identity(p, p), Cholesky::unpack);
+        let log_det = 2.0 * factor.diagonal().iter().map(|d| d.ln()).sum::<f64>();
+        let lower = (0..p).map(|i| (0..=i).map(|k| factor[(i, k)]).collect()).collect();
+        let mut eliminated = Self {
+            weights: weights.to_vec(),
+            scaled,
+            lower,
+            with_y: Vec::new(),
+            with_columns: (0..table.terms.len()).map(|_| OnceLock::new()).collect(),
+            occam: 0.5 * (log_det - background.log_det),
+        };
+        let right = columns
+            .iter()
+            .map(|&column| products.product(table, &eliminated.scaled, column, None))
+            .collect();
+        eliminated.with_y = eliminated.forward(right);
+        eliminated
+    }
+
+    /// L⁻¹ of a right side.
+    fn forward(&self, mut right: Vec<f64>) -> Vec<f64> {
+        for (i, row) in self.lower.iter().enumerate() {
+            let (before, rest) = right.split_at_mut(i);
+            rest[0] = (rest[0] - dot(row, before)) / row[i];
+        }
+        right
+    }
+
+    fn with_column(&self, products: &Products, table: &Table, background: &Background, column: usize) -> &[f64] {
+        self.with_columns[column].get_or_init(|| {
+            let product = |&own: &usize| products.product(table, &self.scaled, column, Some(own));
+            self.forward(background.columns.iter().map(product).collect())
+        })
+    }
+
+    /// The background's coefficients beside `values` of the chosen `columns`.
+    pub fn coefficients(&self, products: &Products, table: &Table, columns: &[usize], values: &[f64]) -> Vec<f64> {
+        let mut solution = self.with_y.clone();
+        if let Some(background) = products.background.as_deref() {
+            for (&column, &value) in columns.iter().zip(values) {
+                let with = self.with_column(products, table, background, column);
+                solution.iter_mut().zip(with).for_each(|(sum, x)| *sum -= value * x);
+            }
+        }
+        // L⁻ᵀ, row by row from the last.
+        for i in (0..solution.len()).rev() {
+            let row = &self.lower[i];
+            solution[i] /= row[i];
+            let value = solution[i];
+            solution[..i].iter_mut().zip(row).for_each(|(sum, x)| *sum -= value * x);
+        }
+        solution
+    }
+}
+
+/// The inner product, of as many values as the second has.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 4];
+    let (x, y) = (a[..b.len()].chunks_exact(4), b.chunks_exact(4));
+    let rest: f64 = x.remainder().iter().zip(y.remainder()).map(|(x, y)| x * y).sum();
+    for (x, y) in x.zip(y) {
+        for lane in 0..4 {
+            sums[lane] += x[lane] * y[lane];
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
+}
+
+impl Products {
+    /// The background eliminated at `weights`; `None` if there is none.
+    pub(super) fn eliminated(&self, table: &Table, weights: &[f64]) -> Option<Arc<Eliminated>> {
+        let background = self.background.as_deref()?;
+        let known = |list: &[Arc<Eliminated>]| {
+            let is_same =
+                |one: &&Arc<Eliminated>| one.weights == weights && one.with_columns.len() == table.terms.len();
+            list.iter().find(is_same).cloned()
+        };
+        if let Some(known) = known(&self.eliminated.lock().unwrap_or_else(PoisonError::into_inner)) {
+            return Some(known);
+        }
+        let new = Arc::new(Eliminated::new(self, table, background, weights));
+        let mut list = self.eliminated.lock().unwrap_or_else(PoisonError::into_inner);
+        if list.len() == KEPT {
+            list.remove(0);
+        }
+        list.push(Arc::clone(&new));
+        Some(new)
+    }
+
+    /// The product of two columns at `weights`, or with y (`None`); what the background explains of it taken off.
+    pub(super) fn inner(
+        &self,
+        table: &Table,
+        weights: &[f64],
+        eliminated: Option<&Eliminated>,
+        a: usize,
+        b: Option<usize>,
+    ) -> f64 {
+        let (Some(eliminated), Some(background)) = (eliminated, self.background.as_deref()) else {
+            return self.product(table, weights, a, b);
+        };
+        let full = self.product(table, &eliminated.scaled, a, b);
+        let x = eliminated.with_column(self, table, background, a);
+        match b {
+            Some(b) => full - dot(x, eliminated.with_column(self, table, background, b)),
+            None => full - dot(x, &eliminated.with_y),
+        }
+    }
+
+    /// The weighted square of a column, rows counted as evidence, with what the background explains of it.
+    pub(super) fn own_product(&self, table: &Table, weights: &[f64], column: usize) -> f64 {
+        self.product(table, &self.evidence_weights(weights), column, Some(column))
+    }
+
+    /// The joints' `weights` where rows count as evidence beside a background's prior; without one they are as they were.
+    pub fn evidence_weights(&self, weights: &[f64]) -> Vec<f64> {
+        let scale = |joint: usize| self.background.as_ref().map_or(1.0, |_| self.evidence_per_row(joint));
+        (0..weights.len()).map(|joint| weights[joint] * scale(joint)).collect()
+    }
+
+    /// What a weighted sum of squares of `column`, in which rows count as evidence, is where every row counts one.
+    pub(super) fn per_row(&self, table: &Table, column: usize) -> f64 {
+        match table.terms[column].joint() {
+            Some(joint) => self.evidence_per_row(joint),
+            None => {
+                let moved = (0..self.count.len()).filter(|&joint| self.count[joint] > 0.0);
+                let (sum, count) = moved.fold((0.0, 0.0), |(sum, count), joint| {
+                    (sum + self.evidence_per_row(joint), count + 1.0)
+                });
+                sum / f64::max(count, 1.0)
+            }
+        }
+        .max(1e-12)
+    }
+}

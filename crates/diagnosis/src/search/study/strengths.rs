@@ -1,0 +1,201 @@
+//! How strong the background of every fit is: chosen together with the effects, by what the score gains.
+
+use effects::Scales;
+use rayon::prelude::*;
+
+use super::Study;
+use crate::data::motion::{Chunk, Motions};
+use crate::regression::background::Strengths;
+use crate::regression::bodies::PER_LINK;
+use crate::regression::fit::{Fit, Products};
+use crate::search::problem::{Chosen, MOST};
+
+/// So many effects may stand together in the place of a part of the background.
+const IN_PLACE: usize = 3;
+
+/// Of each joint the recordings to be fitted that move it.
+pub fn moved(motions: &Motions, scales: &Scales) -> Vec<Vec<usize>> {
+    let of = |joint: usize| {
+        let moves = |chunk: &&Chunk| {
+            let fitted = !motions.sources[chunk.recording].held_out;
+            fitted && chunk.qd[joint].iter().any(|qd| qd.abs() > MOVED * scales.rest[joint])
+        };
+        let mut list: Vec<usize> = motions
+            .chunks
+            .iter()
+            .filter(moves)
+            .map(|chunk| chunk.recording)
+            .collect();
+        list.dedup();
+        list
+    };
+    (0..motions.dof).map(of).collect()
+}
+
+/// A recording moves a joint that in it is so many times faster than at rest.
+const MOVED: f64 = 4.0;
+
+impl Study {
+    /// The prior variances of a link's ten inertial parameters, at the strength that the evidence gave it.
+    pub fn prior_variances(&self, link: usize) -> [f64; PER_LINK] {
+        self.prior.variances(link, self.strengths.links[link])
+    }
+
+    /// What the score of `chosen`, and the likelihood of the held-out recordings, lose if the links have the URDF's inertial
+    /// parameters (nats).
+    pub fn evidence_of_inertials(
+        &self,
+        products: &Products,
+        held: Option<&Products>,
+        chosen: &Chosen,
+    ) -> (f64, Option<f64>) {
+        let strengths = Strengths {
+            links: vec![0.0; self.arm.dof()],
+            ..self.strengths.clone()
+        };
+        let products = products.with_background(self.prior.at(&strengths));
+        let problem = self.problem(&products);
+        let without = problem.reweighted(problem.choose(chosen.set.clone(), &chosen.fit.weights));
+        let outside = held.map(|held| {
+            let loss = |fit: &Fit| held.loss(&held.rss(&self.table, &fit.columns, &fit.coefficients));
+            loss(&without.fit) - loss(&chosen.fit)
+        });
+        (without.score - chosen.score, outside)
+    }
+
+    /// The strengths, stronger somewhere than the present ones, at which a background without `set`'s other members does best:
+    /// the rivals of an effect that may be a part of what is wrong everywhere. Each with the link, and its fit.
+    pub fn in_the_background(&self, products: &Products, set: &[usize], near: &Chosen) -> Vec<(Option<usize>, Chosen)> {
+        let common = self.strengths.common();
+        let stronger = |strengths: &Strengths| {
+            let pairs = strengths.links.iter().zip(&self.strengths.links);
+            strengths.friction == self.strengths.friction
+                && strengths.gain == self.strengths.gain
+                && pairs.clone().all(|(new, old)| new >= old)
+                && pairs.clone().any(|(new, old)| new > old)
+        };
+        let all = self
+            .strengths
+            .neighbours()
+            .into_iter()
+            .chain(self.strengths.with_other_links());
+        let trials: Vec<Strengths> = all.filter(stronger).filter(|trial| self.stated.allows(trial)).collect();
+        trials
+            .into_par_iter()
+            .map(|strengths| {
+                let link = (0..strengths.links.len())
+                    .find(|&link| strengths.common() == common && strengths.links[link] > self.strengths.links[link]);
+                let products = products.with_background(self.prior.at(&strengths));
+                (link, self.problem(&products).choose(set.to_vec(), &near.fit.weights))
+            })
+            .collect()
+    }
+
+    /// Inner products over the recordings to be fitted, with a background of other strengths.
+    pub fn products_at(&self, strengths: &Strengths) -> Products {
+        let bare = self.bare_products(|r| self.fitted[r]);
+        bare.with_background(self.prior.at(strengths))
+    }
+
+    /// `chosen` with more of the candidates `allowed`, and with the strengths of the background that the evidence asks for: in
+    /// turns, whichever brings more. What then does not pay is taken out.
+    pub fn grown(&mut self, mut chosen: Chosen, allowed: &[usize]) -> Chosen {
+        let bare = self.bare_products(|r| self.fitted[r]);
+        let mut products = bare.with_background(self.background());
+        let mut refused = Vec::new();
+        loop {
+            let problem = self.problem(&products);
+            let grown = problem.grow(&chosen, allowed, &mut refused);
+            let mut stronger = self.strengthened(&bare, &chosen, self.strengths.neighbours());
+            if grown.is_none() && stronger.is_none() {
+                stronger = self.strengthened(&bare, &chosen, self.strengths.with_other_links());
+            }
+            match (grown, stronger) {
+                (Some(next), None) => chosen = problem.reweighted(next),
+                (Some(next), Some((_, other))) if next.score <= other.score => chosen = problem.reweighted(next),
+                (_, Some((strengths, other))) => {
+                    products = bare.with_background(self.prior.at(&strengths));
+                    self.strengths = strengths;
+                    refused.clear();
+                    chosen = other;
+                }
+                // An effect that the background takes as a part of itself does not pay beside it, but beside less of it.
+                (None, None) => match self.exchanged(&bare, &chosen, allowed) {
+                    Some((strengths, next)) => {
+                        products = bare.with_background(self.prior.at(&strengths));
+                        self.strengths = strengths;
+                        refused.clear();
+                        chosen = self.problem(&products).reweighted(next);
+                    }
+                    None => break,
+                },
+            }
+            if chosen.set.len() > MOST {
+                break;
+            }
+        }
+        self.problem(&products).prune(chosen)
+    }
+
+    /// `chosen` with less of the background and a few more of the candidates `allowed`, if that is better.
+    fn exchanged(&self, bare: &Products, chosen: &Chosen, allowed: &[usize]) -> Option<(Strengths, Chosen)> {
+        let weaker = self.strengths.weaker().into_iter();
+        let trials = weaker
+            .filter(|strengths| self.stated.allows(strengths))
+            .filter_map(|strengths| {
+                let products = bare.with_background(self.prior.at(&strengths));
+                let problem = self.problem(&products);
+                let mut next = problem.reweighted(problem.choose(chosen.set.clone(), &chosen.fit.weights));
+                let mut refused = Vec::new();
+                for _ in 0..IN_PLACE {
+                    if next.score < chosen.score - 1e-6 {
+                        return Some((strengths, next));
+                    }
+                    next = problem.reweighted(problem.grow(&next, allowed, &mut refused)?);
+                }
+                (next.score < chosen.score - 1e-6).then_some((strengths, next))
+            });
+        trials.min_by(|a, b| a.1.score.total_cmp(&b.1.score))
+    }
+
+    /// `chosen` with the strengths of the background that the evidence asks for.
+    pub fn with_best_strengths(&mut self, mut chosen: Chosen) -> Chosen {
+        let bare = self.bare_products(|r| self.fitted[r]);
+        loop {
+            let next = [Strengths::neighbours, Strengths::with_other_links]
+                .into_iter()
+                .find_map(|others| self.strengthened(&bare, &chosen, others(&self.strengths)));
+            match next {
+                Some((strengths, next)) => (self.strengths, chosen) = (strengths, next),
+                None => return chosen,
+            }
+        }
+    }
+
+    /// The best of the strengths `others`, with what is `chosen` fitted with them, if they are better.
+    fn strengthened(&self, bare: &Products, chosen: &Chosen, others: Vec<Strengths>) -> Option<(Strengths, Chosen)> {
+        let trials: Vec<(Strengths, Chosen)> = others
+            .into_par_iter()
+            .filter(|strengths| self.stated.allows(strengths))
+            .map(|strengths| {
+                let products = bare.with_background(self.prior.at(&strengths));
+                let problem = self.problem(&products);
+                let next = problem.choose(chosen.set.clone(), &chosen.fit.weights);
+                // Without any background the weights may be far off.
+                let next = if self.strengths.is_none() {
+                    problem.reweighted(next)
+                } else {
+                    next
+                };
+                (strengths, next)
+            })
+            .collect();
+        let (strengths, next) = trials.into_iter().min_by(|a, b| a.1.score.total_cmp(&b.1.score))?;
+        if next.score >= chosen.score - 1e-6 {
+            return None;
+        }
+        let products = bare.with_background(self.prior.at(&strengths));
+        let next = self.problem(&products).reweighted(next);
+        Some((strengths, next))
+    }
+}

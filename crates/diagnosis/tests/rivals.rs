@@ -1,0 +1,203 @@
+//! Effects against their nearest rivals: each is found where it is, and not named where the rival is.
+
+mod support;
+
+use arm::{Matrix6xX, Workspace};
+use diagnosis::{Options, diagnose};
+use recording::RegularRecording;
+use support::{Concealed, ELBOW, Motion, SHOULDER, diagnosed, inputs, ordinary, recorded, regular, sentences, trio};
+
+/// What was found beside ordinary friction of the expected sizes: effects and joints.
+fn names(diagnosis: &diagnosis::Diagnosis) -> Vec<(&str, &str)> {
+    let plain = ["viscous_friction", "coulomb_friction"];
+    let findings = diagnosis.report.findings.iter();
+    findings
+        .filter(|finding| !plain.contains(&finding.effect))
+        .map(|finding| (finding.effect, finding.joint.as_deref().unwrap_or("the whole arm")))
+        .collect()
+}
+
+/// What is found of `concealed` must be these names, and nothing may stay unexplained; the diagnosis.
+fn check(concealed: Concealed<'_>, expected: &[(&str, &str)]) -> diagnosis::Diagnosis {
+    let diagnosis = diagnosed(&trio(), &trio(), concealed, Vec::new());
+    let unexplained = &diagnosis.report.unexplained;
+    assert_eq!(names(&diagnosis), expected, "{:?}", sentences(&diagnosis));
+    assert!(unexplained.is_empty(), "{unexplained:#?}");
+    diagnosis
+}
+
+/// Checks that a parameter of the finding of `effect` is within a part `tolerance` of the truth.
+fn is_sized(diagnosis: &diagnosis::Diagnosis, effect: &str, truth: &[(&str, f64)], tolerance: f64) {
+    let mut findings = diagnosis.report.findings.iter();
+    let finding = findings.find(|finding| finding.effect == effect).expect("it is found");
+    for (key, truth) in truth {
+        let found = &finding.parameters[key];
+        assert!(
+            (found.value / truth - 1.0).abs() < tolerance,
+            "{key}: {found:?} instead of {truth}"
+        );
+    }
+}
+
+/// A counterbalance of the shoulder, which carries half of its weight.
+#[test]
+fn gravity_compensator() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        ordinary(motion, tau);
+        tau[SHOULDER] += 14.0 * (motion.q[SHOULDER] + 1.5).sin();
+    };
+    let diagnosis = check(&concealed, &[("gravity_compensator", "shoulder")]);
+    is_sized(
+        &diagnosis,
+        "gravity_compensator",
+        &[("amplitude", 14.0), ("angle", -1.5)],
+        0.05,
+    );
+}
+
+/// A straight spring that pulls the same way stays a spring.
+#[test]
+fn a_spring_against_the_weight_is_no_gravity_compensator() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        ordinary(motion, tau);
+        tau[SHOULDER] += 9.0 * (motion.q[SHOULDER] + 1.5);
+    };
+    let diagnosis = check(&concealed, &[("spring", "shoulder")]);
+    is_sized(&diagnosis, "spring", &[("stiffness", 9.0)], 0.06);
+}
+
+/// A body at the tool is weight, too, and is none of the shoulder's alone.
+#[test]
+fn a_payload_is_no_gravity_compensator() {
+    let body = arm::Inertia {
+        mass: 1.0,
+        com: arm::Vector3::new(0.05, 0.0, 0.02),
+        tensor: arm::Matrix3::identity() * 2e-3,
+    };
+    let loaded = trio().with_payload(&body);
+    let diagnosis = diagnosed(&trio(), &loaded, &|motion, tau| ordinary(motion, tau), Vec::new());
+    let found = names(&diagnosis);
+    assert!(
+        found.contains(&("payload", "the whole arm")),
+        "{:?}",
+        sentences(&diagnosis)
+    );
+    assert!(found.iter().all(|(effect, _)| *effect != "gravity_compensator"));
+}
+
+/// Recordings that follow each other closely, as a drive that warms up needs: 16 s of every 20.
+fn in_a_row(concealed: impl Fn(f64, &mut Motion, &mut [f64])) -> diagnosis::Diagnosis {
+    let arm = trio();
+    let one = |variant: usize| -> RegularRecording {
+        let begins = 20.0 * variant as f64;
+        let at = |motion: &mut Motion, tau: &mut [f64]| concealed(begins + motion.time, motion, tau);
+        let mut recording = recorded(&arm, variant, 16.0, &at);
+        for time in &mut recording.time {
+            *time -= support::start(variant) - begins;
+        }
+        regular(&recording)
+    };
+    let recordings: Vec<RegularRecording> = (0..4).map(one).collect();
+    diagnose(&arm, &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed")
+}
+
+#[test]
+fn thermal_drift() {
+    let diagnosis = in_a_row(|time, motion, tau| {
+        ordinary(motion, tau);
+        tau[SHOULDER] += 2.0 * (1.0 + 1.2 * (-time / 25.0).exp()) * motion.qd[SHOULDER].signum();
+    });
+    assert_eq!(
+        names(&diagnosis),
+        [("thermal_drift", "shoulder")],
+        "{:?}",
+        sentences(&diagnosis)
+    );
+    // With the ordinary 0.6 N m beneath.
+    is_sized(
+        &diagnosis,
+        "thermal_drift",
+        &[("coulomb", 2.6), ("amplitude", 2.4 / 2.6), ("time_constant", 25.0)],
+        0.15,
+    );
+}
+
+/// Dry friction that is as large when warm is no warming of a drive.
+#[test]
+fn dry_friction_that_stays_is_no_thermal_drift() {
+    let diagnosis = in_a_row(|_, motion, tau| {
+        ordinary(motion, tau);
+        tau[SHOULDER] += 3.0 * motion.qd[SHOULDER].signum();
+    });
+    assert!(names(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
+}
+
+/// What is recorded is commanded. Where the drive gives no more, a position loop asks for far more than the motion needs.
+#[test]
+fn torque_saturation() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        ordinary(motion, tau);
+        let missing = tau[SHOULDER] + 30.0;
+        if missing < 0.0 {
+            tau[SHOULDER] = -30.0 + 20.0 * missing;
+        }
+    };
+    let diagnosis = check(&concealed, &[("torque_saturation", "shoulder")]);
+    is_sized(&diagnosis, "torque_saturation", &[("limit", 30.0)], 0.05);
+}
+
+/// A torque that is reported too large is so at all sizes: no limit.
+#[test]
+fn a_scale_is_no_torque_saturation() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        ordinary(motion, tau);
+        tau[SHOULDER] *= 1.3;
+    };
+    check(&concealed, &[("torque_scale", "shoulder")]);
+}
+
+/// A spring between drive and link gives way without a gap. (A gap needs a simulated drive: `tests/cases/backlash` has one.)
+#[test]
+fn a_spring_in_the_drive_is_no_backlash() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        motion.q[ELBOW] += tau[ELBOW] / 250.0;
+        ordinary(motion, tau);
+    };
+    check(&concealed, &[("joint_elasticity", "elbow")]);
+}
+
+/// From 6 s to 7.5 s in the first recording, a force of 5, 2 and 8 N on the tool.
+#[test]
+fn external_contact() {
+    let arm = trio();
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        if (6.0..7.5).contains(&motion.clock) {
+            let mut jacobian = Matrix6xX::zeros(3);
+            arm.jacobian(&mut Workspace::new(&arm), &motion.q, &arm.tool_frame(), &mut jacobian);
+            for (joint, tau) in tau.iter_mut().enumerate() {
+                let velocity = jacobian.fixed_view::<3, 1>(3, joint);
+                *tau -= velocity.dot(&arm::Vector3::new(5.0, 2.0, 8.0));
+            }
+        }
+        ordinary(motion, tau);
+    };
+    let diagnosis = check(&concealed, &[("external_contact", "the whole arm")]);
+    is_sized(
+        &diagnosis,
+        "external_contact",
+        &[("start", 6.0), ("duration", 1.5), ("force_x", 5.0), ("force_z", 8.0)],
+        0.1,
+    );
+}
+
+/// A constant that sets in on one joint is no force on the tool, which all joints would feel.
+#[test]
+fn a_torque_offset_that_sets_in_is_no_external_contact() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        ordinary(motion, tau);
+        if motion.clock >= 1006.0 {
+            tau[ELBOW] += 1.5;
+        }
+    };
+    check(&concealed, &[("torque_offset", "elbow")]);
+}

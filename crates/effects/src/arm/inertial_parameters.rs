@@ -1,0 +1,118 @@
+//! Links whose mass, centre of mass and moments of inertia are not the URDF's.
+
+use ::arm::{Inertia, Matrix3};
+
+use crate::{Effect, EffectKind, Form, Grounds, InUrdf, Law, Machine, Parameter, Place, Quantity, Range, Shape, Spec};
+
+/// The inertial parameters of the link that the joint carries are these.
+#[derive(Debug)]
+pub struct InertialParameters;
+
+static SPEC: Spec = Spec {
+    name: "inertial_parameters",
+    title: "inertial parameters",
+    meaning: "masses, centres of mass and moments of inertia that differ from the URDF's in no particular way",
+    told_by: "a link weighed and balanced on an edge, or a motion that loads it in other poses",
+    formula: "another mass, centre of mass and tensor of the link behind the joint",
+    sentence: "link mass of {mass} with its centre of mass at ({com_x}, {com_y}, {com_z})",
+    parameters: &[
+        Parameter::new("mass", Quantity::Mass).within(Range::Positive),
+        Parameter::new("com", Quantity::Length)
+            .of(Shape::List(3, &["com_x", "com_y", "com_z"]))
+            .remarked("m, in the link's frame"),
+        Parameter::new("inertia", Quantity::Inertia)
+            .of(Shape::List(6, &[]))
+            .remarked("kg m²: Ixx Ixy Iyy Ixz Iyz Izz about the centre of mass, along the link's axes"),
+    ],
+    main: &["mass"],
+    is_certain_in_form: true,
+    is_wrong_mass: true,
+    is_behind_the_drive: true,
+    in_urdf: InUrdf::Inertials,
+    ..Spec::EMPTY
+};
+
+/// The torque for a unit of one of the ten inertial parameters (`of[1]`) of a link (`of[0]`). Its columns are formed for all
+/// links at once, from the regressor.
+pub static PARAMETER: Law = Law {
+    name: "inertial parameter",
+    needs_model: true,
+    ..Law::PLAIN
+};
+
+/// A moment of inertia may be negative by this share of the largest, for rounding.
+const ROUNDING: f64 = 1e-6;
+
+impl InertialParameters {
+    /// The effect that gives the link behind `joint` this body, in the link's frame.
+    pub fn effect(joint: impl Into<String>, body: &Inertia) -> Effect {
+        let tensor = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)].map(|at| body.tensor[at]);
+        let com = [body.com.x, body.com.y, body.com.z];
+        let effect = Effect::of(&Self).on(joint).with("mass", body.mass);
+        effect.with("com", com).with("inertia", tensor)
+    }
+
+    /// The body that an effect gives its link.
+    pub fn body(effect: &Effect) -> Inertia {
+        let [xx, xy, yy, xz, yz, zz] = effect.list("inertia");
+        Inertia {
+            mass: effect.number("mass"),
+            com: effect.vector("com"),
+            tensor: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+        }
+    }
+}
+
+impl EffectKind for InertialParameters {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    /// None: they are in the background of every fit, and named where that is large.
+    fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
+        Vec::new()
+    }
+
+    fn refuse(&self, effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
+        // The pseudo-inertia's block about the centre of mass, ½ tr(I) 1 − I, holds the body's second moments.
+        let tensor = Self::body(effect).tensor;
+        let second = Matrix3::identity() * (0.5 * tensor.trace()) - tensor;
+        let moments = second.symmetric_eigenvalues();
+        let wrong = moments.min() < -ROUNDING * moments.amax();
+        wrong.then_some((
+            "inertia's smallest second moment of mass",
+            moments.min(),
+            Range::NotNegative.requirement(),
+        ))
+    }
+
+    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        let mut bodies: Vec<Inertia> = machine.arm.joints().iter().map(|joint| joint.inertia).collect();
+        bodies[at.joint] = Self::body(effect);
+        machine.change_arm(|arm| arm.with_inertias(&bodies));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A body written as an effect is the same body again; one that cannot be is refused.
+    #[test]
+    fn a_body_is_an_effect_and_back() {
+        let body = Inertia {
+            mass: 2.0,
+            com: ::arm::Vector3::new(0.1, 0.0, -0.2),
+            tensor: Matrix3::from_diagonal(&::arm::Vector3::new(0.02, 0.03, 0.04)),
+        };
+        let effect = InertialParameters::effect("a", &body);
+        assert_eq!(InertialParameters::body(&effect), body);
+        assert!(InertialParameters.refuse(&effect).is_none());
+        let thin = Inertia {
+            tensor: Matrix3::from_diagonal(&::arm::Vector3::new(0.02, 0.03, 0.09)),
+            ..body
+        };
+        let effect = InertialParameters::effect("a", &thin);
+        assert!(InertialParameters.refuse(&effect).is_some(), "no body has such moments");
+    }
+}

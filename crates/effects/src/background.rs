@@ -1,0 +1,49 @@
+//! Laws of what a model is off by everywhere: no effects of their own, but columns under a prior in every fit.
+
+use crate::motion::Motion;
+use crate::term::{Law, Term};
+
+/// Below this part of its largest speed a joint's friction bends.
+const SLOW: f64 = 0.1;
+
+/// Friction of the recording `of[1]` alone: sgn q̇ (form 0) or q̇ (form 1) in it, nothing in the others.
+pub static OWN_FRICTION: Law = Law {
+    name: "own friction",
+    column: |term, joint, motion| {
+        if term.of[1] != motion.recording {
+            Some(vec![0.0; motion.ticks()])
+        } else if term.form == 0 {
+            motion.map(|k| motion.sign(joint, k))
+        } else {
+            Some(motion.qd[joint].clone())
+        }
+    },
+    ..Law::PLAIN
+};
+
+/// What friction curves add to Coulomb and viscous: e^(−|q̇| / a tenth of the largest speed) sgn q̇ (form 0), q̇ |q̇| (form 1).
+pub static FRICTION_CURVE: Law = Law {
+    name: "friction curve",
+    column: friction_curve,
+    ..Law::PLAIN
+};
+
+fn friction_curve(term: &Term, joint: usize, motion: &Motion<'_>) -> Option<Vec<f64>> {
+    let slow = (SLOW * motion.scales.speed[joint]).max(motion.scales.rest[joint]);
+    let qd = &motion.qd[joint];
+    motion.map(|k| {
+        if term.form == 0 {
+            (-(qd[k] / slow).abs()).exp() * motion.sign(joint, k)
+        } else {
+            qd[k] * qd[k].abs()
+        }
+    })
+}
+
+/// The rigid torque of a joint, times what its torque constant is off by.
+pub static GAIN: Law = Law {
+    name: "gain",
+    column: |_, joint, motion| Some(motion.rigid.tau[joint].clone()),
+    needs_model: true,
+    ..Law::PLAIN
+};

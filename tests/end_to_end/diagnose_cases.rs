@@ -1,0 +1,81 @@
+//! `testbed diagnose` on the cases that come with the repository (`tests/cases`): what the truth says is found, and nothing else.
+
+use serde_json::Value;
+
+use crate::diagnose_blind::compare;
+use crate::support::{Sandbox, root};
+
+/// Diagnoses a case, and checks it against its truth; the diagnosis.
+fn check(case: &str) -> Value {
+    let folder = root().join("tests/cases");
+    let path = |name: String| folder.join(name).to_string_lossy().into_owned();
+    let robot = path("arm.urdf".to_owned());
+    let [train, held_out, truth] =
+        ["train_1.csv", "held_out.csv", "truth.json"].map(|name| path(format!("{case}/{name}")));
+    let sandbox = Sandbox::new();
+    let inputs = [
+        "diagnose",
+        "--robot",
+        &robot,
+        "--train",
+        &train,
+        "--held-out",
+        &held_out,
+    ];
+    sandbox.succeed(&[&inputs[..], &["--torques-only", "--json", "d.json"]].concat());
+    let found = sandbox.json("d.json");
+    let text = std::fs::read_to_string(truth).expect("the truth is there");
+    compare(case, &serde_json::from_str(&text).expect("it is JSON"), &found);
+    found
+}
+
+/// Checks that parameters are within a part `tolerance` of the truth.
+fn is_sized(found: &Value, effect: &str, truth: &[(&str, f64)], tolerance: f64) {
+    let mut findings = found["findings"].as_array().expect("a list").iter();
+    let finding = findings
+        .find(|finding| finding["effect"] == effect)
+        .expect("it is there");
+    for (key, truth) in truth {
+        let value = finding["parameters"][key]["value"].as_f64().expect("a number");
+        assert!(
+            (value / truth - 1.0).abs() < tolerance,
+            "{key}: {value} instead of {truth}"
+        );
+    }
+}
+
+#[test]
+fn ordinary_friction_is_all_that_there_is() {
+    let found = check("friction");
+    assert_eq!(found["findings"].as_array().map(Vec::len), Some(6));
+}
+
+#[test]
+fn a_spring_and_a_payload_are_found_together() {
+    let found = check("spring_and_payload");
+    is_sized(&found, "spring", &[("stiffness", 6.0)], 0.1);
+    is_sized(&found, "payload", &[("mass", 1.0)], 0.1);
+}
+
+#[test]
+fn a_push_has_its_time() {
+    let found = check("contact");
+    is_sized(&found, "external_contact", &[("start", 12.0), ("duration", 1.5)], 0.1);
+}
+
+#[test]
+fn a_gap_has_its_size() {
+    let found = check("backlash");
+    is_sized(&found, "backlash", &[("halfgap", 0.012)], 0.15);
+}
+
+#[test]
+fn friction_that_fades_is_warming() {
+    let found = check("warming");
+    is_sized(&found, "thermal_drift", &[("coulomb", 2.0), ("amplitude", 1.5)], 0.2);
+}
+
+#[test]
+fn what_is_outside_the_catalogue_gets_no_name() {
+    check("outside_the_catalogue");
+}
