@@ -11,7 +11,7 @@ pub struct Behind {
 }
 
 impl Behind {
-    /// The link of joint `at`, as [`sprung`] or [`gap`] says that it moves.
+    /// The link of joint `at`, as `sprung` or `gap` says that it moves.
     pub fn new(at: usize, ticks: Vec<[f64; 3]>) -> Self {
         Self { at, ticks }
     }

@@ -41,7 +41,7 @@ pub struct Truth {
     pub lifelike: Option<Lifelike>,
 }
 
-/// What real recordings have and nobody asks for; small effects of every joint are in [`Truth::concealed`], as [`Injected::minor`].
+/// What real recordings have and nobody asks for; small effects of every joint are in [`Truth::concealed`], as `minor`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Lifelike {
     /// Factor of all friction, `[recording][joint]`, training first, then what is held out.

@@ -45,7 +45,7 @@ impl Corrected {
     /// `arm` with `effects`.
     ///
     /// # Errors
-    /// [`TorqueError::UnknownJoint`] or [`TorqueError::Parameter`], naming effect, joint and value.
+    /// [`TorqueError`], naming effect, joint and value.
     pub fn new(arm: &Arm, effects: &[Effect]) -> Result<Self, TorqueError> {
         let mut machine = Machine::new(arm, effects)?;
         let rotors = std::mem::take(&mut machine.rotors);
