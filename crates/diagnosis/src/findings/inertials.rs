@@ -13,8 +13,9 @@ use crate::regression::bodies::{PER_LINK, physical};
 use crate::regression::bootstrap::{Resampled, SYSTEMATIC};
 use crate::regression::fit::Products;
 use crate::search::study::{About, Study};
+use crate::selection::final_fit::PARTLY;
 use crate::selection::judge::{BESIDE_NAMELESS, Judged, LEAST_EVIDENCE, LEAST_SHARE};
-use crate::selection::predict::deviation;
+use crate::selection::predict::{augmented, deviation, errors};
 
 /// A link's strength must be so many times that of most links to be named for itself.
 const APART: f64 = 2.0;
@@ -162,11 +163,15 @@ pub fn inertials(
             .collect()
     };
     let largest = |shares: &[f64]| shares.iter().copied().fold(0.0, f64::max);
+    // Where hardly anything is explained, the background only takes away from a model that does not fit.
+    let explained: Vec<bool> = (0..dof)
+        .map(|joint| errors(study, joint, &augmented(study, &judged.named, joint)).train_nrmse_augmented < PARTLY)
+        .collect();
     let mut add = |joint: Option<usize>, shares: &[f64], parameters: BTreeMap<&'static str, Parameter>| {
         // Beside structure without a name they may be a part of that.
         let stands_out = |joint: usize| {
             let unnamed = judged.nameless.iter().map(|member| member.shares[joint]);
-            shares[joint] >= LEAST_SHARE.max(BESIDE_NAMELESS * unnamed.fold(0.0, f64::max))
+            explained[joint] && shares[joint] >= LEAST_SHARE.max(BESIDE_NAMELESS * unnamed.fold(0.0, f64::max))
         };
         if !(0..dof).any(stands_out) {
             return;

@@ -127,7 +127,7 @@ fn give_up(study: &Study, judged: &mut Judged) {
 }
 
 /// An error (NRMSE) below this says that something of the torque is explained.
-const PARTLY: f64 = 0.8;
+pub const PARTLY: f64 = 0.8;
 
 /// The weakest of the names whose size might be zero, or is none that physics has.
 fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<usize> {
