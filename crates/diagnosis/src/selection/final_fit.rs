@@ -5,8 +5,7 @@ use effects::sensor::TorqueOffset;
 use torque::Corrected;
 
 use crate::findings::found::useless;
-use crate::findings::report::JointFit;
-use crate::findings::report::Parameter;
+use crate::findings::report::{JointFit, Parameter};
 use crate::findings::verdict::structured;
 use crate::regression::bootstrap::{Resampled, resample};
 use crate::search::problem::{Chosen, Problem};

@@ -87,9 +87,7 @@ impl EffectKind for InertialParameters {
     }
 
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        let mut bodies: Vec<Inertia> = machine.arm.joints().iter().map(|joint| joint.inertia).collect();
-        bodies[at.joint] = Self::body(effect);
-        machine.change_arm(|arm| arm.with_inertias(&bodies));
+        machine.change_arm(|arm| arm.with_link_inertia(at.joint, Self::body(effect)));
     }
 }
 
