@@ -85,9 +85,13 @@ fn real_recordings_are_read_and_measured() {
     let folder = shared("recordings");
     for path in csv_files(&folder) {
         let (recording, regular, warnings) = load(&path);
-        assert!(regular.has_clock, "{}", path.display());
-        let rate = (1.0 / regular.period).round();
-        assert!((1.0 / regular.period - rate).abs() < 0.01 * rate, "{}", path.display());
+        // The Panda's stamps are 0.7 to 8.8 ms apart: no clock, so its rows keep the times that they were given.
+        let is_panda = path.parent().is_some_and(|folder| folder.ends_with("panda"));
+        assert_eq!(regular.has_clock, !is_panda, "{}", path.display());
+        if regular.has_clock {
+            let rate = (1.0 / regular.period).round();
+            assert!((1.0 / regular.period - rate).abs() < 0.01 * rate, "{}", path.display());
+        }
         let quality = Quality::of(&recording, &regular);
         assert!(quality.joints.iter().any(|joint| joint.moves), "{}", path.display());
         println!(
