@@ -31,6 +31,7 @@ use crate::selection::final_fit;
 use crate::selection::judge;
 use crate::selection::predict::{augmented, errors};
 use crate::thresholds;
+use crate::trace::Decision;
 
 /// How to diagnose.
 #[derive(Clone, Debug, Default)]
@@ -64,6 +65,8 @@ pub struct Diagnosis {
     pub next: Option<Reference>,
     /// Remarks on the use of the recordings, in sentences.
     pub remarks: Vec<String>,
+    /// What was tried, taken and dropped on the way, in order.
+    pub trace: Vec<Decision>,
 }
 
 /// Diagnoses where and why `inputs` differ from `arm`. `progress` receives the current step.
@@ -240,6 +243,7 @@ pub fn diagnose(
         effects,
         next,
         remarks: std::mem::take(&mut study.motions.remarks),
+        trace: study.trace.take(),
     })
 }
 

@@ -10,6 +10,7 @@ mod regression;
 mod search;
 mod selection;
 mod thresholds;
+mod trace;
 
 pub use data::motion::Input;
 pub use diagnose::{Diagnosis, Options, diagnose};
@@ -19,3 +20,4 @@ pub use findings::sentences::described;
 pub use next::{JointLimits, NextExperiment, NotSeparated, Obstacle, Separation, Shows};
 pub use search::hypothesis::Wanted;
 pub use selection::predict::LEAST_ROWS;
+pub use trace::{Action, Decision};

@@ -3,7 +3,7 @@
 mod support;
 
 use arm::{Arm, Vector3};
-use diagnosis::Verdict;
+use diagnosis::{Diagnosis, Verdict};
 use support::{Concealed, ELBOW, Motion, SHOULDER, diagnosed, motion, ordinary, sentences, trio};
 
 /// What is found beside plain friction must be `effect` on `joint`, with parameters within a part `tolerance` of the truth.
@@ -58,10 +58,55 @@ fn check(
             "errors are over the measured torque"
         );
     }
+    exports_what_it_reports(&diagnosis, &again);
     for (joint, fit) in &report.fit {
         let (nominal, augmented) = (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented);
         assert!(augmented < nominal, "{joint}: {nominal:?} → {augmented:?}");
     }
+}
+
+/// The exported effects, taken as known, leave the error that was reported for them: exported laws are the fitted ones. What
+/// depends on the past of the motion is simulated, not taken off.
+fn exports_what_it_reports(diagnosis: &Diagnosis, again: &Diagnosis) {
+    if diagnosis.effects.iter().any(|effect| effect.spec().is_simulated) {
+        return;
+    }
+    for (joint, fit) in &diagnosis.report.fit {
+        let exported = again.report.fit[joint].held_out_nrmse_nominal.expect("it is moved");
+        let reported = fit.held_out_nrmse_augmented.expect("it is moved");
+        assert!(
+            (exported - reported).abs() < SAME_ERROR.max(0.1 * reported),
+            "{joint}: {exported} with the exported effects, {reported} reported"
+        );
+    }
+}
+
+/// Two errors (NRMSE) are the same when they differ by less: filtering and linearisation do that much.
+const SAME_ERROR: f64 = 0.001;
+
+/// With a torque scale, friction and whatever else acts on the joint are told in true newton metres, which the scale then
+/// multiplies.
+#[test]
+fn a_torque_scale_multiplies_the_friction_beside_it() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        ordinary(motion, tau);
+        tau[ELBOW] += 1.2 * motion.qd[ELBOW] * motion.qd[ELBOW].abs() + 1.5 * motion.qd[ELBOW].signum();
+        tau[ELBOW] *= 1.3;
+    };
+    let diagnosis = diagnosed(&trio(), &trio(), &concealed, Vec::new());
+    let parameter = |effect: &str, name: &str| {
+        let is_wanted = |f: &&diagnosis::Finding| f.effect == effect && f.joint.as_deref() == Some("elbow");
+        let finding = diagnosis.report.findings.iter().find(is_wanted);
+        finding
+            .unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)))
+            .parameters[name]
+            .value
+    };
+    assert!((parameter("torque_scale", "factor") / 1.3 - 1.0).abs() < 0.02);
+    assert!((parameter("coulomb_friction", "level") / 2.1 - 1.0).abs() < 0.05);
+    assert!((parameter("quadratic_drag", "coefficient") / 1.2 - 1.0).abs() < 0.05);
+    let again = diagnosed(&trio(), &trio(), &concealed, diagnosis.effects.clone());
+    exports_what_it_reports(&diagnosis, &again);
 }
 
 /// An effect that adds a torque to one joint.

@@ -177,6 +177,10 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "OUT")]
     pub urdf: Option<PathBuf>,
 
+    /// Write what was tried, taken and dropped, by which rule and with which gain (nats), to this file (.csv)
+    #[arg(long, value_name = "OUT")]
+    pub trace: Option<PathBuf>,
+
     /// Propose the motion that best distinguishes the remaining alternatives, and write it to this file as a scenario (.toml)
     #[arg(long, value_name = "OUT", conflicts_with = "only")]
     pub next: Option<PathBuf>,
@@ -322,7 +326,14 @@ impl DiagnoseArgs {
             Some(Rerun::Save(None)) => Some(Path::new("diagnosis.rrd")),
             _ => None,
         };
-        let files = [&self.json, &self.report, &self.model, &self.urdf, &self.next];
+        let files = [
+            &self.json,
+            &self.report,
+            &self.model,
+            &self.urdf,
+            &self.trace,
+            &self.next,
+        ];
         files.into_iter().flatten().map(PathBuf::as_path).chain(rerun).collect()
     }
 }

@@ -6,6 +6,7 @@ mod inputs;
 mod next_file;
 #[cfg(feature = "viewer")]
 mod rerun;
+mod trace_file;
 pub mod urdf_file;
 
 pub use command::run;

@@ -4,6 +4,8 @@
 //! pseudo-inertia and B_a = ∂P/∂π_a. It is the second-order form of the entropic divergence of Lee, Wensing and Park (2020):
 //! free of coordinates and units, so that ρ = 0.1 reads "ten per cent of each link's own mass, size and shape".
 
+use std::fmt;
+
 use nalgebra::{Cholesky, DMatrix};
 
 use effects::Term;
@@ -25,6 +27,8 @@ const A_LINK: f64 = 8.0;
 const USUAL: f64 = 0.3;
 /// Strengths that are tried.
 const RHOS: [f64; 7] = [0.0, 0.01, 0.03, 0.1, 0.2, 0.4, 1.0];
+/// The factor between strengths that are tried in the end.
+const FINER: f64 = 1.4;
 const FRICTIONS: [f64; 3] = [0.0, 1.0, 3.0];
 const GAINS: [f64; 2] = [0.0, 1.0];
 
@@ -37,6 +41,19 @@ pub struct Strengths {
     pub friction: f64,
     /// Of the torque constants, in units of their prior.
     pub gain: f64,
+}
+
+impl fmt::Display for Strengths {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let links: Vec<String> = self.links.iter().map(f64::to_string).collect();
+        write!(
+            f,
+            "links {}; friction {}; torque constants {}",
+            links.join(" "),
+            self.friction,
+            self.gain
+        )
+    }
 }
 
 impl Strengths {
@@ -118,6 +135,18 @@ impl Strengths {
             }
         }
         list
+    }
+
+    /// These with all links a finer step weaker or stronger than the grid's.
+    pub fn finer(&self) -> Vec<Self> {
+        let scaled = |factor: f64| Self {
+            links: self.links.iter().map(|rho| rho * factor).collect(),
+            ..self.clone()
+        };
+        if self.links.iter().all(|&rho| rho == 0.0) {
+            return Vec::new();
+        }
+        vec![scaled(1.0 / FINER), scaled(FINER)]
     }
 
     /// These with less of one part.

@@ -1,6 +1,7 @@
 //! Intervals by resampling: blocks of time weighted at random again and again, each time fitted anew (Rubin 1981, The
 //! Bayesian bootstrap). No block is ever left out, so that what acts once, like a push, keeps its rows.
 
+use effects::laws::RIGID;
 use effects::{Size, Term};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -9,6 +10,9 @@ use crate::search::problem::Chosen;
 use crate::search::refine::{sizes, varied};
 use crate::search::study::Study;
 
+/// A strength of the prior is a mean over all links and directions; in a single one the URDF may be wrong by so many times as
+/// much: its centres of mass more than its moments of inertia, one link more than another.
+const UNEVEN: f64 = 2.0;
 /// Resamplings.
 const DRAWS: usize = 120;
 /// The shortest block (s): longer than what residuals remember.
@@ -27,6 +31,8 @@ pub struct Resampled {
     pub estimate: Vec<f64>,
     /// The same for each draw.
     pub draws: Vec<Vec<f64>>,
+    /// The draws as they would be if the background's strength held in every direction alike.
+    even: Vec<Vec<f64>>,
     /// Which candidate and which of its sizes the corrections are of, in order.
     pub sizes: Vec<(usize, Size)>,
 }
@@ -51,6 +57,15 @@ impl Resampled {
         let spread = (at(0.75) - at(0.25)) / (2.0 * 0.6745);
         let half = INFLATION * 1.96 * spread + systematic * value.abs();
         (value, [value - half, value + half])
+    }
+
+    /// The same with intervals for a background whose strength holds in every direction alike: for what must be told from
+    /// nothing, not for what is reported.
+    pub fn evenly(&self) -> Self {
+        Self {
+            draws: self.even.clone(),
+            ..self.clone()
+        }
     }
 
     /// Where a column's coefficient stands.
@@ -90,6 +105,7 @@ pub fn resample(study: &mut Study, chosen: &Chosen) -> Resampled {
     }
     study.extend(missing);
     let columns = chosen.fit.columns.clone();
+    let scaled = scaled(study, chosen);
     let p = columns.len() + all.len();
     let systems = systems(study, chosen, &columns, &all);
     let prior = PriorDraws::new(study, p);
@@ -98,8 +114,8 @@ pub fn resample(study: &mut Study, chosen: &Chosen) -> Resampled {
         .fold((prior.precision.clone(), DVector::zeros(p)), |(a, b), (c, d)| {
             (a + c, b + d)
         });
-    let estimate = solve(&total.0, &total.1);
-    let draws: Vec<Vec<f64>> = (0..DRAWS)
+    let estimate = in_true_torque(solve(&total.0, &total.1), &scaled);
+    let (draws, even): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (0..DRAWS)
         .into_par_iter()
         .map(|draw| {
             // A generator of its own for each draw, so that threads do not matter (splitmix64).
@@ -111,16 +127,51 @@ pub fn resample(study: &mut Study, chosen: &Chosen) -> Resampled {
                 a += matrix * weight;
                 b += right * weight;
             }
-            prior.add_draw(&mut state, &mut b);
-            solve(&a, &b).as_slice().to_vec()
+            let mean = prior.draw(&mut state, p);
+            let solved = solve_both(&a, &b, &mean);
+            let with = |times: f64| in_true_torque(&solved[0] + &solved[1] * times, &scaled);
+            (with(UNEVEN), with(1.0))
         })
-        .collect();
+        .unzip();
     Resampled {
         columns,
-        estimate: estimate.as_slice().to_vec(),
+        estimate,
         draws,
+        even,
         sizes: all,
     }
+}
+
+/// Where a column stands whose torque is measured through a torque scale, and where that scale's column stands.
+type ScaledBy = (usize, usize);
+
+/// The columns of `chosen` that a torque scale of their joint multiplies. The scale's own column is the rigid torque alone, so
+/// that what else acts on the joint is fitted in measured newton metres. What is carried in the arm is rigid torque already.
+fn scaled(study: &Study, chosen: &Chosen) -> Vec<ScaledBy> {
+    let columns = &chosen.fit.columns;
+    let term = |k: usize| study.table.terms[columns[k]];
+    let is_scale = |&k: &usize| term(k).is(&RIGID) && term(k).onset().is_none();
+    let scales = (chosen.fit.background..columns.len()).filter(is_scale);
+    let of = |scale: usize| {
+        let is_scaled = move |&k: &usize| {
+            let (this, law) = (term(k), term(k).law);
+            k >= chosen.fit.background
+                && this.joint() == term(scale).joint()
+                && !this.always().is(&RIGID)
+                && law.carry.is_none()
+        };
+        (0..columns.len()).filter(is_scaled).map(move |k| (k, scale))
+    };
+    scales.flat_map(of).collect()
+}
+
+/// A solution with every coefficient in true newton metres: measured = factor × true.
+fn in_true_torque(solution: DVector<f64>, scaled: &[ScaledBy]) -> Vec<f64> {
+    let mut values = solution.as_slice().to_vec();
+    for &(at, scale) in scaled {
+        values[at] /= 1.0 + solution[scale];
+    }
+    values
 }
 
 /// Uniform in (0, 1], by the upper 53 bits (splitmix64).
@@ -132,8 +183,8 @@ fn uniform(state: &mut u64) -> f64 {
     (((z ^ (z >> 31)) >> 11) + 1) as f64 / (1_u64 << 53) as f64
 }
 
-/// The background's prior in the normal equations. In each draw its mean is drawn from it, as the data are resampled: the
-/// spread of the draws is then that of the posterior, the prior's part included.
+/// The background's prior in the normal equations. In each draw its mean is drawn about zero, as the data are resampled, so
+/// that the spread of the draws has the prior's part. The mean is drawn [`UNEVEN`] times as far as the prior says.
 struct PriorDraws {
     /// K, the background's columns first, zeros beside it.
     precision: DMatrix<f64>,
@@ -150,17 +201,16 @@ impl PriorDraws {
         Self { precision, lower }
     }
 
-    /// Adds K ξ to the right side, ξ ~ N(0, K⁻¹).
-    fn add_draw(&self, state: &mut u64, right: &mut DVector<f64>) {
+    /// K ξ for the right side of `p` columns, ξ ~ N(0, K⁻¹).
+    fn draw(&self, state: &mut u64, p: usize) -> DVector<f64> {
         let n = self.lower.nrows();
         // Box and Muller 1958.
         let normal = DVector::from_fn(n, |_, _| {
             (-2.0 * uniform(state).ln()).sqrt() * (std::f64::consts::TAU * uniform(state)).cos()
         });
-        let drawn = &self.lower * normal;
-        for i in 0..n {
-            right[i] += drawn[i];
-        }
+        let mut right = DVector::zeros(p);
+        right.rows_mut(0, n).copy_from(&(&self.lower * normal));
+        right
     }
 }
 
@@ -255,6 +305,12 @@ fn systems(
 
 /// Least squares of scaled columns with a ridge far below them.
 fn solve(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
+    let [solution, _] = solve_both(a, b, b);
+    solution
+}
+
+/// The same for two right sides.
+fn solve_both(a: &DMatrix<f64>, b: &DVector<f64>, c: &DVector<f64>) -> [DVector<f64>; 2] {
     let p = b.len();
     let scale: Vec<f64> = (0..p)
         .map(|i| if a[(i, i)] > 0.0 { a[(i, i)].sqrt() } else { 1.0 })
@@ -263,10 +319,10 @@ fn solve(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
     for i in 0..p {
         matrix[(i, i)] += 1e-8;
     }
-    let right = DVector::from_fn(p, |i, _| b[i] / scale[i]);
+    let right = DMatrix::from_fn(p, 2, |i, side| [b, c][side][i] / scale[i]);
     let solution = match matrix.clone().cholesky() {
         Some(factor) => factor.solve(&right),
-        None => matrix.lu().solve(&right).unwrap_or_else(|| DVector::zeros(p)),
+        None => matrix.lu().solve(&right).unwrap_or_else(|| DMatrix::zeros(p, 2)),
     };
-    DVector::from_fn(p, |i, _| solution[i] / scale[i])
+    [0, 1].map(|side| DVector::from_fn(p, |i, _| solution[(i, side)] / scale[i]))
 }

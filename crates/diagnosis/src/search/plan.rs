@@ -40,7 +40,9 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
                 cause.name().is_some() && !sets_in && !cause.is(&TorqueRipple) && !cause.is(&ExternalContact)
             })
             .collect();
-        chosen = study.problem(&products).choose(named, &chosen.fit.weights);
+        let next = study.problem(&products).choose(named, &chosen.fit.weights);
+        study.note("looked for anew in this round", &chosen, &next);
+        chosen = next;
         study.suggest(&chosen);
         let products = study.products(|r| fitted[r]);
         let problem = study.problem(&products);
@@ -64,10 +66,13 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
         let allowed: Vec<usize> = (0..study.candidates.len()).collect();
         let before = set.clone();
         chosen = problem.choose(set, &chosen.fit.weights);
-        chosen = problem.prune(chosen);
-        chosen = study.grown(chosen, &allowed);
+        let pruned = problem.prune(chosen.clone());
+        study.note("does not pay its price", &chosen, &pruned);
+        chosen = study.grown(pruned, &allowed);
         let products = study.products(|r| fitted[r]);
-        chosen = study.problem(&products).swap(chosen, &allowed, SWAPS);
+        let swapped = study.problem(&products).swap(chosen.clone(), &allowed, SWAPS);
+        study.note("explains more in its place", &chosen, &swapped);
+        chosen = swapped;
         if chosen.set != before {
             chosen = refine(study, chosen, false);
         } else if !again {

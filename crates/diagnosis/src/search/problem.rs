@@ -52,6 +52,18 @@ impl Chosen {
     }
 }
 
+/// What growing a choice step by step has to remember.
+#[derive(Clone, Debug, Default)]
+pub struct Growth {
+    /// What does not predict.
+    pub refused: Vec<usize>,
+    /// What was fitted and not taken: candidate, score with it, reason.
+    pub tried: Vec<(usize, f64, &'static str)>,
+}
+
+/// The rule that drops what physics does not allow.
+pub const IMPOSSIBLE: &str = "its parameters are not physical";
+
 /// What the search needs to know.
 #[derive(Clone, Copy)]
 pub struct Problem<'a> {
@@ -152,13 +164,13 @@ impl Problem<'_> {
         gain - cost
     }
 
-    /// The best addition to `chosen` among `allowed`, if one pays.
-    pub fn grow(&self, chosen: &Chosen, allowed: &[usize], refused: &mut Vec<usize>) -> Option<Chosen> {
+    /// The best addition to `chosen` among `allowed`, if one pays. What `growth` refused before is not tried again.
+    pub fn grow(&self, chosen: &Chosen, allowed: &[usize], growth: &mut Growth) -> Option<Chosen> {
         let free: Vec<usize> = allowed
             .iter()
             .copied()
             .filter(|&c| {
-                !refused.contains(&c)
+                !growth.refused.contains(&c)
                     && !chosen.set.contains(&c)
                     && !chosen.set.iter().any(|&other| self.exclude(c, other))
             })
@@ -188,7 +200,10 @@ impl Problem<'_> {
                 if self.predicts(chosen, candidate) {
                     batch.push(candidate);
                 } else {
-                    refused.push(candidate);
+                    growth.refused.push(candidate);
+                    growth
+                        .tried
+                        .push((candidate, chosen.score, "does not predict what it was not fitted to"));
                 }
                 if batch.len() == TRIED {
                     break;
@@ -205,11 +220,20 @@ impl Problem<'_> {
                 .into_iter()
                 .filter(|next| {
                     let added = next.set[next.set.len() - 1];
-                    self.is_possible(added, &next.fit) && next.score < chosen.score
+                    let (possible, pays) = (self.is_possible(added, &next.fit), next.score < chosen.score);
+                    let rule = match (possible, pays) {
+                        (false, _) => IMPOSSIBLE,
+                        (true, false) => "does not pay its price",
+                        (true, true) => "another gains more",
+                    };
+                    growth.tried.push((added, next.score, rule));
+                    possible && pays
                 })
                 .min_by(|a, b| a.score.total_cmp(&b.score));
-            if best.is_some() {
-                return best;
+            if let Some(best) = best {
+                let taken = best.set.last();
+                growth.tried.retain(|(candidate, ..)| Some(candidate) != taken);
+                return Some(best);
             }
         }
         None
@@ -305,9 +329,9 @@ impl Problem<'_> {
 
     /// Adds what pays, from `allowed`, then takes out what no longer does.
     pub fn forward(&self, mut chosen: Chosen, allowed: &[usize]) -> Chosen {
-        let mut refused = Vec::new();
+        let mut growth = Growth::default();
         while chosen.set.len() < MOST {
-            match self.grow(&chosen, allowed, &mut refused) {
+            match self.grow(&chosen, allowed, &mut growth) {
                 Some(next) => chosen = self.reweighted(next),
                 None => break,
             }

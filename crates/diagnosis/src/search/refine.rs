@@ -123,9 +123,13 @@ fn nudged(term: &Term, kind: usize, step: f64) -> Option<Term> {
 
 /// Finds the sizes of what is in `chosen`, coarsely first if they were not refined before, and takes out what then does not pay.
 pub fn refine(study: &mut Study, chosen: Chosen, again: bool) -> Chosen {
+    let before = chosen.clone();
     let chosen = resize(study, chosen, again);
+    study.note("a better size or form", &before, &chosen);
     let products = study.products(|r| study.fitted[r]);
-    study.problem(&products).prune(chosen)
+    let pruned = study.problem(&products).prune(chosen.clone());
+    study.note("does not pay its price", &chosen, &pruned);
+    pruned
 }
 
 /// Finds the sizes of what is in `chosen`, all of which stays, in its order.

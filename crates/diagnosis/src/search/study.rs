@@ -15,6 +15,7 @@ use crate::regression::table::{Moving, Table};
 use crate::search::candidate::{Candidate, Cause, MayBe, catalogue};
 use crate::search::problem::Problem;
 use crate::thresholds;
+use crate::trace::Trace;
 
 mod about;
 mod strengths;
@@ -62,6 +63,8 @@ pub struct Study {
     pub strengths: Strengths,
     /// What of them the user states.
     pub stated: Stated,
+    /// What was decided so far.
+    pub trace: Trace,
 }
 
 impl Study {
@@ -178,6 +181,7 @@ impl Study {
             strengths: stated.first(arm.dof()),
             stated,
             prior,
+            trace: Trace::default(),
         }
     }
 

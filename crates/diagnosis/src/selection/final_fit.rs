@@ -8,7 +8,7 @@ use crate::findings::found::useless;
 use crate::findings::report::{JointFit, Parameter};
 use crate::findings::verdict::structured;
 use crate::regression::bootstrap::{Resampled, resample};
-use crate::search::problem::{Chosen, Problem};
+use crate::search::problem::{Chosen, IMPOSSIBLE, Problem};
 use crate::search::study::Study;
 use crate::selection::judge::{self, Judged};
 use crate::selection::naming::{Named, name};
@@ -32,7 +32,12 @@ pub fn settled(study: &mut Study, judged: &mut Judged) -> Resampled {
         }
         let resampled = resample(study, &judged.named);
         match unclear(study, judged, &resampled) {
-            Some(unclear) => drop_name(study, judged, unclear),
+            Some(unclear) => drop_name(
+                study,
+                judged,
+                unclear,
+                "its interval holds no effect, or nothing physical",
+            ),
             None => return resampled,
         }
     }
@@ -45,15 +50,23 @@ pub fn as_given(study: &mut Study, judged: &mut Judged) -> Resampled {
 }
 
 /// Takes one name out, or puts what it is a form of in its place, and fits the others anew.
-fn drop_name(study: &Study, judged: &mut Judged, candidate: usize) {
+fn drop_name(study: &Study, judged: &mut Judged, candidate: usize, rule: &'static str) {
     let products = study.products(|r| study.fitted[r]);
     let problem = study.problem(&products);
-    judged.named = problem.without(&judged.named, candidate);
+    let next = problem.without(&judged.named, candidate);
+    study.note(rule, &judged.named, &next);
+    judged.named = next;
     judged.members = judge::describe(study, &problem, &judged.named);
 }
 
 fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Judged, set: Vec<usize>) {
-    judged.named = problem.choose(set, &judged.named.fit.weights);
+    let next = problem.choose(set, &judged.named.fit.weights);
+    study.note(
+        "its joint is still predicted worse than by a constant",
+        &judged.named,
+        &next,
+    );
+    judged.named = next;
     judged.members = judge::describe(study, problem, &judged.named);
 }
 
@@ -83,7 +96,7 @@ fn make_possible(study: &Study, judged: &mut Judged) {
     let problem = study.problem(&products);
     let impossible = |named: &Chosen| named.set.iter().copied().find(|&c| !problem.is_possible(c, &named.fit));
     while let Some(candidate) = impossible(&judged.named) {
-        drop_name(study, judged, candidate);
+        drop_name(study, judged, candidate, IMPOSSIBLE);
     }
 }
 
@@ -96,7 +109,7 @@ fn prove(study: &Study, judged: &mut Judged) {
     let products = study.products(|r| fitted[r]);
     let held = study.products(|r| !fitted[r]);
     while let Some(useless) = useless(study, &products, &held, judged) {
-        drop_name(study, judged, useless);
+        drop_name(study, judged, useless, "predicts held-out recordings no better with it");
     }
 }
 
@@ -130,6 +143,7 @@ pub const PARTLY: f64 = 0.8;
 
 /// The weakest of the names whose size might be zero, or is none that physics has.
 fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<usize> {
+    let resampled = &resampled.evenly();
     let is_unclear = |member: &&judge::Member| {
         let named = name(study, resampled, member.candidate);
         // With its sizes corrected it may be no physics any more: a level below zero.
@@ -198,6 +212,7 @@ fn guard(study: &Study, judged: &mut Judged) {
             })
             .min_by(|a, b| a.0.total_cmp(&b.0));
         let Some((_, next)) = best else { break };
+        study.note(judge::HARMS, &judged.named, &next);
         judged.members = judge::describe(study, &problem, &next);
         judged.named = next;
     }

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::regression::fit::Products;
 use crate::search::physics::is_at_its_size;
-use crate::search::problem::{Chosen, Problem};
+use crate::search::problem::{Chosen, IMPOSSIBLE, Problem};
 use crate::search::study::Study;
 use crate::thresholds;
 
@@ -91,16 +91,26 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
         chosen.set.iter().copied().find(is_off)
     };
     while let Some(off) = off(&chosen) {
-        chosen = problem.without(&chosen, off);
+        let next = problem.without(&chosen, off);
+        study.note(
+            "its torque is not that of the size at which it was simulated",
+            &chosen,
+            &next,
+        );
+        chosen = next;
     }
     let mut members;
     if let Some(held) = held {
-        chosen = predicting(study, &problem, held, chosen);
+        let next = predicting(study, &problem, held, chosen.clone());
+        study.note("does not predict held-out recordings", &chosen, &next);
+        chosen = next;
     }
     loop {
         members = describe(study, &problem, &chosen);
         let Some(weak) = weakest(study, &members) else { break };
-        chosen = problem.without(&chosen, members[weak].candidate);
+        let next = problem.without(&chosen, members[weak].candidate);
+        study.note("too small, or too little evidence, for a name", &chosen, &next);
+        chosen = next;
     }
     let (nameless, named): (Vec<Member>, Vec<Member>) = members
         .into_iter()
@@ -118,15 +128,18 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
             .collect();
         let mut allowed = simple;
         allowed.retain(|&c| candidates[c].cause.is_ordinary() || !left.contains(&candidates[c].joint));
-        kept = problem.forward(kept, &allowed);
+        let next = problem.forward(kept.clone(), &allowed);
+        study.note("stands in for what has no name", &kept, &next);
+        kept = next;
     }
     if let Some(held) = held {
         kept = out_of_sample(study, &problem, held, kept);
     }
     // Without the nameless and the refused the rest may have become impossible.
     while let Some(&bad) = kept.set.iter().find(|&&c| !problem.is_possible(c, &kept.fit)) {
-        let set = kept.others(bad);
-        kept = problem.choose(set, &kept.fit.weights);
+        let next = problem.choose(kept.others(bad), &kept.fit.weights);
+        study.note(IMPOSSIBLE, &kept, &next);
+        kept = next;
     }
     let members = describe(study, &problem, &kept);
     let nameless = beside(study, &problem, &kept, &nameless);
@@ -313,6 +326,9 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
         .min_by(|&a, &b| members[a].evidence.total_cmp(&members[b].evidence))
 }
 
+/// The rule that drops what makes a joint's held-out error larger than the nominal model's.
+pub const HARMS: &str = "a joint's held-out error becomes larger than the nominal model's";
+
 /// A joint is worse predicted if its error grows by this part.
 const WORSE: f64 = 0.01;
 
@@ -365,10 +381,13 @@ fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut chos
                 })
                 .min_by(|a, b| a.2[joint].total_cmp(&b.2[joint]))
         };
-        let Some(&(bad, ..)) = useless.or_else(harmful) else {
-            return chosen;
+        let (rule, bad) = match (useless, harmful()) {
+            (Some(&(bad, ..)), _) => ("held-out recordings are likelier without it", bad),
+            (None, Some(&(bad, ..))) => (HARMS, bad),
+            (None, None) => return chosen,
         };
-        let set = chosen.others(bad);
-        chosen = problem.choose(set, &chosen.fit.weights);
+        let next = problem.choose(chosen.others(bad), &chosen.fit.weights);
+        study.note(rule, &chosen, &next);
+        chosen = next;
     }
 }

@@ -8,7 +8,7 @@ use diagnosis::{Diagnosis, Input, Options};
 
 use super::effect_file::EffectFile;
 use super::inputs::Role;
-use super::{inputs, next_file, urdf_file};
+use super::{inputs, next_file, trace_file, urdf_file};
 use crate::cli::DiagnoseArgs;
 use crate::library::{self, Source};
 use crate::output;
@@ -119,6 +119,9 @@ fn write<'a>(
             (Some(motion), Some(next)) => next_file::write(path, &args.robot, urdf_path, next, motion)?,
             _ => removed = next_file::remove_earlier(path)?.then_some(path.as_path()),
         }
+    }
+    if let Some(path) = &args.trace {
+        trace_file::write(path, &diagnosis.trace)?;
     }
     if let Some(path) = &args.report {
         output::write_text(path, &report::page(&diagnosis.report, &diagnosis.traces, arm))?;

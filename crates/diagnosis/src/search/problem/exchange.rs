@@ -3,7 +3,7 @@
 use effects::arm::ExternalContact;
 use rayon::prelude::*;
 
-use super::{Chosen, Problem};
+use super::{Chosen, Growth, Problem};
 
 impl Problem<'_> {
     /// `chosen` with one cause that acts on the whole arm, without what that then explains: on several joints at once other
@@ -74,7 +74,7 @@ impl Problem<'_> {
                             joint == out.joint || joint.is_none() || out.joint.is_none()
                         })
                         .collect();
-                    self.grow(&without, &others, &mut Vec::new())
+                    self.grow(&without, &others, &mut Growth::default())
                 })
                 .collect();
             let trials = trials

@@ -8,7 +8,7 @@ use crate::data::motion::{Chunk, Motions};
 use crate::regression::background::Strengths;
 use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::{Fit, Products};
-use crate::search::problem::{Chosen, MOST};
+use crate::search::problem::{Chosen, Growth, MOST};
 
 /// So many effects may stand together in the place of a part of the background.
 const IN_PLACE: usize = 3;
@@ -102,39 +102,48 @@ impl Study {
     pub fn grown(&mut self, mut chosen: Chosen, allowed: &[usize]) -> Chosen {
         let bare = self.bare_products(|r| self.fitted[r]);
         let mut products = bare.with_background(self.background());
-        let mut refused = Vec::new();
+        let mut growth = Growth::default();
         loop {
             let problem = self.problem(&products);
-            let grown = problem.grow(&chosen, allowed, &mut refused);
+            let grown = problem.grow(&chosen, allowed, &mut growth);
+            self.note_tried(&chosen, &std::mem::take(&mut growth.tried));
             let mut stronger = self.strengthened(&bare, &chosen, self.strengths.neighbours());
             if grown.is_none() && stronger.is_none() {
                 stronger = self.strengthened(&bare, &chosen, self.strengths.with_other_links());
             }
-            match (grown, stronger) {
-                (Some(next), None) => chosen = problem.reweighted(next),
-                (Some(next), Some((_, other))) if next.score <= other.score => chosen = problem.reweighted(next),
-                (_, Some((strengths, other))) => {
-                    products = bare.with_background(self.prior.at(&strengths));
-                    self.strengths = strengths;
-                    refused.clear();
-                    chosen = other;
+            let (rule, strengths, next) = match (grown, stronger) {
+                (Some(next), None) => ("largest gain", None, problem.reweighted(next)),
+                (Some(next), Some((_, other))) if next.score <= other.score => {
+                    ("largest gain", None, problem.reweighted(next))
                 }
+                (_, Some((strengths, other))) => ("more evidence for this background", Some(strengths), other),
                 // An effect that the background takes as a part of itself does not pay beside it, but beside less of it.
                 (None, None) => match self.exchanged(&bare, &chosen, allowed) {
                     Some((strengths, next)) => {
-                        products = bare.with_background(self.prior.at(&strengths));
-                        self.strengths = strengths;
-                        refused.clear();
-                        chosen = self.problem(&products).reweighted(next);
+                        let products = bare.with_background(self.prior.at(&strengths));
+                        let next = self.problem(&products).reweighted(next);
+                        ("effects in the place of the background", Some(strengths), next)
                     }
                     None => break,
                 },
+            };
+            if let Some(strengths) = strengths {
+                products = bare.with_background(self.prior.at(&strengths));
+                self.strengths = strengths;
+                growth.refused.clear();
+                self.note_strengths(rule, &chosen, &next);
+                chosen = next;
+            } else {
+                self.note(rule, &chosen, &next);
+                chosen = next;
             }
             if chosen.set.len() > MOST {
                 break;
             }
         }
-        self.problem(&products).prune(chosen)
+        let pruned = self.problem(&products).prune(chosen.clone());
+        self.note("does not pay its price", &chosen, &pruned);
+        pruned
     }
 
     /// `chosen` with less of the background and a few more of the candidates `allowed`, if that is better.
@@ -146,12 +155,12 @@ impl Study {
                 let products = bare.with_background(self.prior.at(&strengths));
                 let problem = self.problem(&products);
                 let mut next = problem.reweighted(problem.choose(chosen.set.clone(), &chosen.fit.weights));
-                let mut refused = Vec::new();
+                let mut growth = Growth::default();
                 for _ in 0..IN_PLACE {
                     if next.score < chosen.score - 1e-6 {
                         return Some((strengths, next));
                     }
-                    next = problem.reweighted(problem.grow(&next, allowed, &mut refused)?);
+                    next = problem.reweighted(problem.grow(&next, allowed, &mut growth)?);
                 }
                 (next.score < chosen.score - 1e-6).then_some((strengths, next))
             });
@@ -162,11 +171,15 @@ impl Study {
     pub fn with_best_strengths(&mut self, mut chosen: Chosen) -> Chosen {
         let bare = self.bare_products(|r| self.fitted[r]);
         loop {
-            let next = [Strengths::neighbours, Strengths::with_other_links]
+            let next = [Strengths::neighbours, Strengths::with_other_links, Strengths::finer]
                 .into_iter()
                 .find_map(|others| self.strengthened(&bare, &chosen, others(&self.strengths)));
             match next {
-                Some((strengths, next)) => (self.strengths, chosen) = (strengths, next),
+                Some((strengths, next)) => {
+                    self.strengths = strengths;
+                    self.note_strengths("more evidence for this background", &chosen, &next);
+                    chosen = next;
+                }
                 None => return chosen,
             }
         }
