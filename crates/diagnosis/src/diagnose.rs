@@ -29,7 +29,7 @@ use crate::search::plan;
 use crate::search::study::Study;
 use crate::selection::final_fit;
 use crate::selection::judge;
-use crate::selection::predict::{augmented, errors};
+use crate::selection::predict::{augmented, errors, exported};
 use crate::thresholds;
 use crate::trace::Decision;
 
@@ -158,8 +158,10 @@ pub fn diagnose(
     let fit: BTreeMap<_, _> = (0..arm.dof())
         .map(|joint| {
             let name = arm.joints()[joint].name.clone();
+            let of_exported = errors(&study, joint, &exported(&study, &judged.named, joint));
             let errors = JointFit {
                 held_out_nrmse_identified: identified[joint],
+                held_out_nrmse_exported: of_exported.held_out_nrmse_augmented,
                 ..errors(&study, joint, &left[joint])
             };
             (name, errors)

@@ -73,7 +73,7 @@ fn exports_what_it_reports(diagnosis: &Diagnosis, again: &Diagnosis) {
     }
     for (joint, fit) in &diagnosis.report.fit {
         let exported = again.report.fit[joint].held_out_nrmse_nominal.expect("it is moved");
-        let reported = fit.held_out_nrmse_augmented.expect("it is moved");
+        let reported = fit.held_out_nrmse_exported.expect("it is moved");
         assert!(
             (exported - reported).abs() < SAME_ERROR.max(0.4 * reported),
             "{joint}: {exported} with the exported effects, {reported} reported"

@@ -224,6 +224,9 @@ pub struct JointFit {
     pub held_out_nrmse_augmented: Option<f64>,
     /// Held-out NRMSE with a correction learned (IJL) from the same recordings.
     pub held_out_nrmse_learned: Option<f64>,
+    /// Held-out NRMSE of what the corrected model holds: the links' inertial parameters and the named effects. With the named
+    /// effects the background's friction and torque constants act too, which are in no file.
+    pub held_out_nrmse_exported: Option<f64>,
     /// Held-out NRMSE of full linear identification on the same recordings: least squares on all inertial parameters, viscous
     /// and Coulomb friction, drive inertia and a constant of every joint.
     pub held_out_nrmse_identified: Option<f64>,

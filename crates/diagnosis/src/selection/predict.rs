@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use effects::background::{FRICTION_CURVE, GAIN, OWN_FRICTION};
 use effects::{Cone, Term};
 
 use crate::findings::report::JointFit;
@@ -13,18 +14,35 @@ pub const LEAST_ROWS: usize = 10;
 /// The lag of the residual's autocorrelation (s): beyond the filter's memory.
 const LAG: f64 = 0.1;
 
-/// What the model with named effects leaves on all rows of one joint. At rest dry friction may hold any torque within
-/// its cone: the error is the distance to it.
+/// What the model with named effects and the background leaves on all rows of one joint. At rest dry friction may hold any torque
+/// within its cone: the error is the distance to it.
 pub fn augmented(study: &Study, named: &Chosen, joint: usize) -> Vec<f64> {
+    residual(study, named, joint, |_| true)
+}
+
+/// What the model that is exported leaves: the links' inertial parameters and the named effects, without the background's
+/// friction and torque constants, which no file holds.
+pub fn exported(study: &Study, named: &Chosen, joint: usize) -> Vec<f64> {
+    let is_exported = |term: &Term| [&OWN_FRICTION, &FRICTION_CURVE, &GAIN].iter().all(|law| !term.is(law));
+    residual(study, named, joint, is_exported)
+}
+
+fn residual(study: &Study, named: &Chosen, joint: usize, counts: impl Fn(&Term) -> bool) -> Vec<f64> {
     let table = &study.table;
     let fit = &named.fit;
-    let model = table.torque(joint, &fit.columns, &fit.coefficients);
+    let (columns, coefficients): (Vec<usize>, Vec<f64>) = fit
+        .columns
+        .iter()
+        .zip(&fit.coefficients)
+        .filter(|&(&column, _)| counts(&table.terms[column]))
+        .unzip();
+    let model = table.torque(joint, &columns, &coefficients);
     let mut residual: Vec<f64> = table.joints[joint].y.iter().zip(&model).map(|(y, m)| y - m).collect();
     let dry: Vec<(usize, f64)> = fit
         .columns
         .iter()
         .zip(&fit.coefficients)
-        .filter(|&(&column, _)| is_dry(table.terms[column], joint))
+        .filter(|&(&column, _)| is_dry(table.terms[column], joint) && counts(&table.terms[column]))
         .map(|(&column, &value)| (column, value))
         .collect();
     if dry.is_empty() {
@@ -121,6 +139,7 @@ pub fn errors(study: &Study, joint: usize, augmented: &[f64]) -> JointFit {
         held_out_nrmse_nominal: over(&held, &counted, nominal),
         held_out_nrmse_augmented: over(&held, &counted, augmented),
         held_out_nrmse_learned: None,
+        held_out_nrmse_exported: None,
         held_out_nrmse_identified: None,
         held_out_nrmse_resting: at_rest(augmented),
         held_out_nrmse_resting_nominal: at_rest(nominal),

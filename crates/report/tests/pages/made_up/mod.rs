@@ -205,6 +205,7 @@ fn fit(traces: &Traces, j: usize, plot: Plot) -> JointFit {
         noise: 0.004 * spread(&train.tau[j]),
         held_out_nrmse_nominal: some(nrmse(held_out, &held_out.residual)),
         held_out_nrmse_augmented: some(nrmse(held_out, &held_out.residual_augmented)),
+        held_out_nrmse_exported: None,
         held_out_nrmse_identified: None,
         held_out_nrmse_learned: some(1.6 * nrmse(held_out, &held_out.residual_augmented)),
         held_out_nrmse_resting: (plot == Plot::Rich).then_some(0.21),
