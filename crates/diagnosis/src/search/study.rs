@@ -128,6 +128,7 @@ impl Study {
             mass: &(0..motions.dof).map(mass).collect::<Vec<f64>>(),
             largest: &measure::largest(&motions),
             needed: &measure::needed(&motions, &rigid),
+            inertial: &measure::inertial(&motions, &rigid, &scales.torque),
         });
         if motions.cutoff < thresholds::LEAST_FOR_DYNAMICS {
             list.retain(|(cause, ..)| !cause.is_unit());

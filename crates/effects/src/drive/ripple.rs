@@ -44,6 +44,9 @@ pub fn columns(joint: usize, periods: f64) -> Vec<Term> {
         .to_vec()
 }
 
+/// A motor before a gear turns at least so many times in a turn of the joint, and its poles and teeth repeat more often still.
+const LEAST_GEARED: f64 = 8.0;
+
 impl EffectKind for TorqueRipple {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -70,6 +73,13 @@ impl EffectKind for TorqueRipple {
         let effect = Effect::of(&Self).on(estimate.joint_name());
         let effect = effect.with("amplitude", amplitude).with("periods", periods);
         Some(effect.with("phase", phase))
+    }
+
+    /// What turns with the joint itself repeats a whole number of times in a turn; only a motor before a gear need not.
+    fn is_certain(&self, effect: &Effect, interval: &dyn Fn(&str) -> Option<[f64; 2]>) -> bool {
+        let whole = effect.number("periods").round();
+        let holds = |[low, high]: [f64; 2]| whole >= 1.0 && (low..=high).contains(&whole);
+        interval("periods").is_none_or(|own| own[1] >= LEAST_GEARED || holds(own))
     }
 
     /// A joint has as many ripples as it has parts that turn at other ratios.

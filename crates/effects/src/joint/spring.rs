@@ -44,6 +44,10 @@ const ALL_FALLS: f64 = 0.1;
 /// The points of a curve.
 const POINTS: usize = 12;
 
+/// A spring rests within the joint's range, or no further beyond the recorded one than this multiple of its length: what rests
+/// elsewhere is a constant torque that varies a little.
+const BEYOND: f64 = 1.0;
+
 fn columns(joint: usize, powers: &[usize]) -> Vec<Term> {
     let powers = powers.iter().map(|&power| Term::on(&POSITION, joint).form(power));
     std::iter::once(Term::on(&ONE, joint)).chain(powers).collect()
@@ -76,7 +80,7 @@ impl EffectKind for Spring {
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        stiffens(fitted)
+        stiffens(fitted) && rests_in_reach(fitted)
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
@@ -88,21 +92,8 @@ impl EffectKind for Spring {
             .map(|(k, term)| (term.always(), estimate.place(k)))
             .collect();
         let torque = |draw: &[f64], q: f64| -> f64 {
-            shape
-                .iter()
-                .map(|&(term, place)| {
-                    let value = place.map_or(0.0, |place| draw[place]);
-                    if term.is(&ONE) {
-                        value
-                    } else if term.is(&POSITION) {
-                        value * q.powi(power(&term))
-                    } else if term.is(&TENT) {
-                        value * tent(q, term.sizes[0], term.sizes[1])
-                    } else {
-                        0.0
-                    }
-                })
-                .sum()
+            let drawn = |&(term, place): &(Term, Option<usize>)| (term, place.map_or(0.0, |place| draw[place]));
+            torque(&shape.iter().map(drawn).collect::<Vec<_>>(), q)
         };
         let slope = |draw: &[f64]| (torque(draw, high) - torque(draw, low)) / (high - low);
         let stiffness = estimate.note("stiffness", slope);
@@ -199,6 +190,51 @@ fn stiffens(fitted: &dyn Fitted) -> bool {
         .filter(|&k| slope(low + (high - low) * f64::from(k) / f64::from(steps)) > 0.0)
         .count();
     rising >= 17
+}
+
+/// Whether the angle without torque, by the straight line between the ends of the recorded range, can be reached.
+fn rests_in_reach(fitted: &dyn Fitted) -> bool {
+    let terms: Vec<(Term, f64)> = (0..fitted.len())
+        .map(|k| (fitted.term(k).always(), fitted.value(k)))
+        .collect();
+    let is_straight = |(term, _): &(Term, f64)| term.is(&POSITION) && power(term) == 1;
+    let (low, high) = match terms.iter().position(is_straight).and_then(|k| fitted.column(k)) {
+        // Before its onset a column is zero.
+        Some(x) => range(x.iter().copied().filter(|&q| q != 0.0)),
+        None => range(terms.iter().filter(|(term, _)| term.is(&TENT)).map(|(term, _)| term.sizes[0])),
+    };
+    let rising = torque(&terms, high) - torque(&terms, low);
+    if !(high > low && rising != 0.0) {
+        return false;
+    }
+    let middle = 0.5 * (low + high);
+    let rest = middle - torque(&terms, middle) * (high - low) / rising;
+    let limits = terms.first().map(|(term, _)| fitted.arm().joints()[term.of[0]].limits);
+    let (lower, upper) = limits.map_or((low, high), |limits| (limits.lower, limits.upper));
+    let margin = BEYOND * (high - low);
+    let own = low - margin..=high + margin;
+    own.contains(&rest) || (lower.is_finite() && upper.is_finite() && (lower..=upper).contains(&rest))
+}
+
+/// The least and the largest of some numbers.
+fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+}
+
+/// The torque of a spring's terms with their coefficients at an angle (N m or N).
+fn torque(terms: &[(Term, f64)], q: f64) -> f64 {
+    let one = |&(term, value): &(Term, f64)| {
+        if term.is(&ONE) {
+            value
+        } else if term.is(&POSITION) {
+            value * q.powi(power(&term))
+        } else if term.is(&TENT) {
+            value * tent(q, term.sizes[0], term.sizes[1])
+        } else {
+            0.0
+        }
+    };
+    terms.iter().map(one).sum()
 }
 
 #[cfg(test)]
