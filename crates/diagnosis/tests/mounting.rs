@@ -26,13 +26,26 @@ fn mounted(degrees: f64) -> Diagnosis {
 fn a_base_on_a_slope_a_wall_or_the_ceiling_is_found() {
     for degrees in [12.0, 30.0, 45.0, 90.0, 180.0] {
         let diagnosis = mounted(degrees);
-        assert_eq!(named(&diagnosis), [("gravity_misalignment", None)], "{degrees}: {:?}", sentences(&diagnosis));
-        let found = diagnosis.report.findings.iter().find(|finding| finding.effect == "gravity_misalignment");
+        assert_eq!(
+            named(&diagnosis),
+            [("gravity_misalignment", None)],
+            "{degrees}: {:?}",
+            sentences(&diagnosis)
+        );
+        let found = diagnosis
+            .report
+            .findings
+            .iter()
+            .find(|finding| finding.effect == "gravity_misalignment");
         let angle = found.expect("it is found").parameters["angle"];
         let [low, high] = angle.ci95.map(f64::to_degrees);
         assert!((low..=high).contains(&degrees), "{degrees}: {low} to {high}");
         assert!(high - low < 0.05 * degrees + 0.5, "{degrees}: {low} to {high}");
-        assert!(diagnosis.report.unexplained.is_empty(), "{degrees}: {:?}", diagnosis.report.unexplained);
+        assert!(
+            diagnosis.report.unexplained.is_empty(),
+            "{degrees}: {:?}",
+            diagnosis.report.unexplained
+        );
     }
 }
 
@@ -43,7 +56,12 @@ fn what_is_known_of_a_wall_is_not_found_again() {
     let known = mounted(90.0).effects;
     let again = diagnosed(&trio(), &robot, &ordinary, known);
     assert!(named(&again).is_empty(), "{:?}", sentences(&again));
-    let worst = again.report.fit.values().filter_map(|fit| fit.held_out_nrmse_nominal).fold(0.0, f64::max);
+    let worst = again
+        .report
+        .fit
+        .values()
+        .filter_map(|fit| fit.held_out_nrmse_nominal)
+        .fold(0.0, f64::max);
     assert!(worst < 0.02, "{worst}");
 }
 
@@ -70,7 +88,17 @@ fn channels_without_torque_are_left_out() {
     let diagnosis = diagnose(&trio(), &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed");
     assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
     let remarks = diagnosis.remarks.join("\n");
-    assert!(remarks.contains("elbow: the torque channel shows one and the same value"), "{remarks}");
-    let friction = |joint: &str| diagnosis.report.findings.iter().filter(|finding| finding.joint.as_deref() == Some(joint)).count();
+    assert!(
+        remarks.contains("elbow: the torque channel shows one and the same value"),
+        "{remarks}"
+    );
+    let friction = |joint: &str| {
+        diagnosis
+            .report
+            .findings
+            .iter()
+            .filter(|finding| finding.joint.as_deref() == Some(joint))
+            .count()
+    };
     assert_eq!([friction("turn"), friction("shoulder"), friction("elbow")], [2, 2, 0]);
 }

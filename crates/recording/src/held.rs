@@ -42,7 +42,13 @@ pub fn without_held(recording: &Recording) -> Option<(Recording, Warning)> {
 
 /// First row and length of each stretch of rows with the same positions, velocities and torques.
 fn runs(recording: &Recording) -> Vec<(usize, usize)> {
-    let signals = || recording.q.iter().chain(&recording.tau).chain(recording.qd.iter().flatten());
+    let signals = || {
+        recording
+            .q
+            .iter()
+            .chain(&recording.tau)
+            .chain(recording.qd.iter().flatten())
+    };
     let repeats = |row: usize| {
         recording.breaks.binary_search(&row).is_err() && signals().all(|signal| signal[row] == signal[row - 1])
     };
@@ -60,9 +66,8 @@ fn runs(recording: &Recording) -> Vec<(usize, usize)> {
 fn picked(recording: &Recording, rows: &[usize]) -> Recording {
     let pick = |signal: &Vec<f64>| -> Vec<f64> { rows.iter().map(|&row| signal[row]).collect() };
     let all = |signals: &Vec<Vec<f64>>| -> Vec<Vec<f64>> { signals.iter().map(pick).collect() };
-    let some = |signals: &PartialSignal| -> PartialSignal {
-        signals.iter().map(|signal| signal.as_ref().map(pick)).collect()
-    };
+    let some =
+        |signals: &PartialSignal| -> PartialSignal { signals.iter().map(|signal| signal.as_ref().map(pick)).collect() };
     Recording {
         joints: recording.joints.clone(),
         time: pick(&recording.time),
@@ -79,7 +84,11 @@ fn picked(recording: &Recording, rows: &[usize]) -> Recording {
             .iter()
             .map(|(name, values)| (name.clone(), pick(values)))
             .collect(),
-        breaks: recording.breaks.iter().map(|&at| rows.partition_point(|&row| row < at)).collect(),
+        breaks: recording
+            .breaks
+            .iter()
+            .map(|&at| rows.partition_point(|&row| row < at))
+            .collect(),
         warnings: recording.warnings.clone(),
     }
 }
@@ -126,7 +135,8 @@ mod tests {
 
     #[test]
     fn a_sample_that_comes_again_is_another() {
-        let (thinned, _) = without_held(&written(|sample| if sample == 100 { 40 } else { 4 })).expect("samples are held");
+        let (thinned, _) =
+            without_held(&written(|sample| if sample == 100 { 40 } else { 4 })).expect("samples are held");
         assert_eq!(thinned.len(), 509);
     }
 }

@@ -93,7 +93,9 @@ fn idle(inputs: &[Input<'_>], joint: usize) -> Option<f64> {
     for input in fitted() {
         for tick in ticks(input).filter(|&tick| speed(input, tick) > least) {
             // −0 is 0.
-            *counts.entry((input.recording.tau[joint][tick] + 0.0).to_bits()).or_default() += 1;
+            *counts
+                .entry((input.recording.tau[joint][tick] + 0.0).to_bits())
+                .or_default() += 1;
             all += 1;
         }
     }
@@ -157,13 +159,24 @@ fn rows(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Ro
         let needed = filtered(&rigid.tau[joint]);
         rows.needed.extend(&needed);
         let plain = [needed, of(qd, sign), filtered(qd), vec![1.0; moving.len()]];
-        rows.plain.iter_mut().zip(plain).for_each(|(column, values)| column.extend(values));
-        let mut more = vec![filtered(q), of(q, f64::sin), of(q, f64::cos), filtered(&chunk.qdd[joint])];
+        rows.plain
+            .iter_mut()
+            .zip(plain)
+            .for_each(|(column, values)| column.extend(values));
+        let mut more = vec![
+            filtered(q),
+            of(q, f64::sin),
+            of(q, f64::cos),
+            filtered(&chunk.qdd[joint]),
+        ];
         more.extend(rigid.links[joint].iter().skip(joint).map(|column| filtered(column)));
         more.extend(rigid.gravity[joint].iter().map(|column| filtered(column)));
         more.extend(rigid.payload[joint].iter().take(4).map(|column| filtered(column)));
         rows.more.resize(more.len(), Vec::new());
-        rows.more.iter_mut().zip(more).for_each(|(column, values)| column.extend(values));
+        rows.more
+            .iter_mut()
+            .zip(more)
+            .for_each(|(column, values)| column.extend(values));
     }
     rows
 }
@@ -173,7 +186,11 @@ fn left(columns: &[&Vec<f64>], y: &[f64]) -> f64 {
     let n = columns.len();
     let scaled: Vec<f64> = columns
         .iter()
-        .map(|column| 1.0 / mean(column.iter().map(|v| v * v).collect::<Vec<_>>().iter()).sqrt().max(1e-12))
+        .map(|column| {
+            1.0 / mean(column.iter().map(|v| v * v).collect::<Vec<_>>().iter())
+                .sqrt()
+                .max(1e-12)
+        })
         .collect();
     let x = |row: usize| DVector::from_fn(n, |k, _| scaled[k] * columns[k][row]);
     let length = y.len().div_ceil(FOLDS);

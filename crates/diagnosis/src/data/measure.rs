@@ -54,14 +54,22 @@ pub fn inertial(motions: &Motions, rigid: &[Rigid], torque: &[f64]) -> Vec<f64> 
         let fitted = chunks.filter(|(chunk, _)| is_fitted(motions, chunk));
         fitted
             .flat_map(|(chunk, rigid)| {
-                let at = |tick: usize| (0..motions.dof).map(|by| rigid.mass[joint][by][tick] * chunk.qdd[by][tick]).sum();
+                let at = |tick: usize| {
+                    (0..motions.dof)
+                        .map(|by| rigid.mass[joint][by][tick] * chunk.qdd[by][tick])
+                        .sum()
+                };
                 chunk.filter(&(0..chunk.ticks()).map(at).collect::<Vec<f64>>())
             })
             .collect()
     };
     let share = |joint: usize| {
         let values = needed(joint);
-        if torque[joint] > 0.0 { deviation(&|| values.iter()) / torque[joint] } else { 0.0 }
+        if torque[joint] > 0.0 {
+            deviation(&|| values.iter()) / torque[joint]
+        } else {
+            0.0
+        }
     };
     (0..motions.dof).map(share).collect()
 }

@@ -38,9 +38,16 @@ impl Fitted for InFit<'_> {
     }
 
     fn residual(&self) -> Vec<f64> {
-        let Some(joint) = self.candidate.joint else { return Vec::new() };
+        let Some(joint) = self.candidate.joint else {
+            return Vec::new();
+        };
         let model = self.table.torque(joint, &self.fit.columns, &self.fit.coefficients);
-        self.table.joints[joint].y.iter().zip(&model).map(|(y, model)| y - model).collect()
+        self.table.joints[joint]
+            .y
+            .iter()
+            .zip(&model)
+            .map(|(y, model)| y - model)
+            .collect()
     }
 
     fn moving(&self) -> &[bool] {

@@ -72,14 +72,17 @@ impl Study {
         let Some(window) = terms.first().and_then(contact_window) else {
             return true;
         };
-        self.contact_share(&[window]).is_none_or(|(_, share)| share <= thresholds::MOST_OF_A_RECORDING)
+        self.contact_share(&[window])
+            .is_none_or(|(_, share)| share <= thresholds::MOST_OF_A_RECORDING)
     }
 
     /// The recording of which contacts in these windows (s) cover the largest part, and that part.
     pub fn contact_share(&self, windows: &[[f64; 2]]) -> Option<(usize, f64)> {
         let shares = measure::spans(&self.motions).into_iter().map(|spans| {
             let covered = |&(from, to): &(f64, f64)| -> f64 {
-                let inside = windows.iter().map(|&[start, end]| (end.min(to) - start.max(from)).max(0.0));
+                let inside = windows
+                    .iter()
+                    .map(|&[start, end]| (end.min(to) - start.max(from)).max(0.0));
                 inside.sum()
             };
             let length: f64 = spans.iter().map(|(from, to)| to - from).sum();

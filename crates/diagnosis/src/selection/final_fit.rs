@@ -139,7 +139,9 @@ fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<usiz
             let interval = |key: &str| named.parameters.get(key).map(|parameter| parameter.ci95);
             !named.effect.kind().get().is_certain(&named.effect, &interval)
         };
-        if named.iter().any(|named| is_impossible(named) || is_contradicted(named)) || is_part_of_the_rest(study, judged, member) {
+        if named.iter().any(|named| is_impossible(named) || is_contradicted(named))
+            || is_part_of_the_rest(study, judged, member)
+        {
             return true;
         }
         named.first().is_some_and(|named| {

@@ -151,7 +151,9 @@ fn lasting(study: &Study, chosen: &Chosen) -> Option<usize> {
     let is_there = |[from, to]: [f64; 2]| study.motions.recording_at(0.5 * (from + to)) == Some(recording);
     let there = windows.iter().filter(|(_, window)| is_there(*window));
     let length = |[from, to]: [f64; 2]| to - from;
-    there.max_by(|a, b| length(a.1).total_cmp(&length(b.1))).map(|(c, _)| *c)
+    there
+        .max_by(|a, b| length(a.1).total_cmp(&length(b.1)))
+        .map(|(c, _)| *c)
 }
 
 /// The nameless that are still there beside what was `kept`, as large as they are beside it.

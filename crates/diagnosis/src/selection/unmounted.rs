@@ -71,7 +71,9 @@ fn instead(study: &Study, chosen: &Chosen, body: usize) -> Option<(Strengths, Ch
         .filter(|strengths| study.stated.allows(strengths))
         .map(|strengths| (fit(&strengths, &with), strengths));
     let ((next, _), strengths) = fitted
-        .filter(|((next, is_possible), _)| *is_possible && next.fit.coefficient(study.candidates[body].columns[0]) < 0.0)
+        .filter(|((next, is_possible), _)| {
+            *is_possible && next.fit.coefficient(study.candidates[body].columns[0]) < 0.0
+        })
         .min_by(|a, b| a.0.0.score.total_cmp(&b.0.0.score))?;
     if next.score - chosen.score > allowance(explained) {
         return None;

@@ -67,8 +67,16 @@ fn turn(usual: &Vector3<f64>, seen: &Vector3<f64>) -> (f64, Vector3<f64>) {
     let angle = axis.norm().atan2(seen.dot(usual));
     // On the ceiling any horizontal axis will do.
     let least = 1e-9 * usual.norm_squared();
-    let axis = if axis.norm() > least { axis } else { usual.cross(&Vector3::x()) };
-    let axis = if axis.norm() > least { axis } else { usual.cross(&Vector3::y()) };
+    let axis = if axis.norm() > least {
+        axis
+    } else {
+        usual.cross(&Vector3::x())
+    };
+    let axis = if axis.norm() > least {
+        axis
+    } else {
+        usual.cross(&Vector3::y())
+    };
     (angle, axis / axis.norm().max(f64::MIN_POSITIVE))
 }
 
@@ -98,7 +106,11 @@ fn read_gravity(estimate: &mut dyn Estimate) -> Option<Effect> {
     };
     let x = estimate.note("axis_x", |draw| axis(draw).x);
     let y = estimate.note("axis_y", |draw| axis(draw).y);
-    Some(Effect::of(&GravityMisalignment).with("angle", angle).with("axis", [x, y, about.z]))
+    Some(
+        Effect::of(&GravityMisalignment)
+            .with("angle", angle)
+            .with("axis", [x, y, about.z]),
+    )
 }
 
 impl EffectKind for GravityMisalignment {

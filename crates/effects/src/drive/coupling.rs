@@ -1,7 +1,7 @@
 //! A drive that two joints turn.
 
 use crate::{
-    Against, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Spec, State, Term,
+    Against, Effect, EffectKind, Estimate, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Spec, State, Term,
     Turn, sign,
 };
 
@@ -60,9 +60,6 @@ pub static PAIR_SIGN: Law = Law {
     ..Law::PLAIN
 };
 
-/// A part of a coupling's torque against the sense of the others is no larger than this share of them.
-const AGAINST: f64 = 0.3;
-
 /// The other of two joints; `None` to a third.
 fn partner(term: &Term, joint: usize) -> Option<usize> {
     let [a, b] = term.of;
@@ -100,30 +97,15 @@ impl EffectKind for TransmissionCoupling {
         forms
     }
 
-    /// A drive that both joints turn has friction and inertia: all of its torques have the sense in which it turns with them.
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        let of = |law: &'static Law| (0..fitted.len()).find(|&k| std::ptr::eq(fitted.term(k).law, law));
-        let value = |law: &'static Law| of(law).map_or(0.0, |k| fitted.value(k));
-        let size = |law: &'static Law| {
-            let column = of(law).and_then(|k| fitted.column(k)).unwrap_or_default();
-            let power: f64 = column.iter().zip(fitted.moving()).filter(|(_, moving)| **moving).map(|(x, _)| x * x).sum();
-            value(law).abs() * power.sqrt()
-        };
-        let (viscous, dry, inertia) = (size(&PAIR_VELOCITY), size(&PAIR_SIGN), size(&PAIR_ACCELERATION));
-        let sense = match of(&PAIR_SIGN) {
-            Some(k) => fitted.term(k).sizes[0],
-            None => value(&PAIR_VELOCITY).signum(),
-        };
-        let friction = viscous.hypot(dry);
-        value(&PAIR_SIGN) >= 0.0
-            && (sense * value(&PAIR_VELOCITY) >= 0.0 || viscous < AGAINST * dry)
-            && (sense * value(&PAIR_ACCELERATION) >= 0.0 || inertia < AGAINST * friction)
-    }
-
-    /// Its friction must be there beyond doubt, and its inertia may not be against that.
+    /// Its friction must be there beyond doubt, and its inertia may not be against that: a drive that both joints turn has both,
+    /// in the sense in which it turns with them. (On the way to what explains more, a search may pass through others.)
     fn is_certain(&self, effect: &Effect, interval: &dyn Fn(&str) -> Option<[f64; 2]>) -> bool {
         let is_clear = |key: &str| interval(key).is_some_and(|[low, high]| low > 0.0 || high < 0.0);
-        let sense = if is_clear("coulomb") { effect.number("sense") } else { effect.number("viscous").signum() };
+        let sense = if is_clear("coulomb") {
+            effect.number("sense")
+        } else {
+            effect.number("viscous").signum()
+        };
         let is_against = |[low, high]: [f64; 2]| (sense * low).max(sense * high) < 0.0;
         (is_clear("viscous") || is_clear("coulomb")) && !interval("inertia").is_some_and(is_against)
     }
@@ -177,5 +159,27 @@ mod tests {
             &effect,
             &[(term(&PAIR_VELOCITY), 2.0), (dry, 0.5), (term(&PAIR_ACCELERATION), 3.0)],
         );
+    }
+
+    #[test]
+    fn a_drive_has_friction_and_no_negative_inertia() {
+        let is_certain = |viscous: [f64; 2], inertia: [f64; 2]| {
+            let middle = |[low, high]: [f64; 2]| 0.5 * (low + high);
+            let effect = Effect::of(&TransmissionCoupling).on("b").with_other("a");
+            let effect = effect.with("viscous", middle(viscous)).with("inertia", middle(inertia));
+            let interval = |key: &str| match key {
+                "viscous" => Some(viscous),
+                "inertia" => Some(inertia),
+                _ => None,
+            };
+            TransmissionCoupling.is_certain(&effect, &interval)
+        };
+        assert!(is_certain([1.0, 2.0], [0.1, 0.2]));
+        assert!(is_certain([1.0, 2.0], [-0.1, 0.2]));
+        // A drive that turns with the difference of the two.
+        assert!(is_certain([-2.0, -1.0], [-0.2, -0.1]));
+        assert!(!is_certain([-0.73, 1.17], [-1.3, -1.1]));
+        assert!(!is_certain([-0.73, 1.17], [0.1, 0.2]));
+        assert!(!is_certain([1.0, 2.0], [-1.3, -1.1]));
     }
 }

@@ -105,6 +105,18 @@ mod tests {
     use crate::test_support::agree;
 
     #[test]
+    fn a_slow_ripple_repeats_with_the_joint_itself() {
+        let is_certain = |periods: f64, half: f64| {
+            let effect = Effect::of(&TorqueRipple).on("a").with("periods", periods);
+            TorqueRipple.is_certain(&effect, &|_| Some([periods - half, periods + half]))
+        };
+        assert!(is_certain(4.05, 0.1));
+        assert!(!is_certain(4.27, 0.1));
+        assert!(!is_certain(0.2, 0.3));
+        assert!(is_certain(33.4, 0.1));
+    }
+
+    #[test]
     fn its_columns_are_its_torque() {
         let effect = Effect::of(&TorqueRipple).on("a").with("amplitude", 0.5);
         let effect = effect.with("periods", 6.0).with("phase", 0.1);

@@ -201,7 +201,12 @@ fn rests_in_reach(fitted: &dyn Fitted) -> bool {
     let (low, high) = match terms.iter().position(is_straight).and_then(|k| fitted.column(k)) {
         // Before its onset a column is zero.
         Some(x) => range(x.iter().copied().filter(|&q| q != 0.0)),
-        None => range(terms.iter().filter(|(term, _)| term.is(&TENT)).map(|(term, _)| term.sizes[0])),
+        None => range(
+            terms
+                .iter()
+                .filter(|(term, _)| term.is(&TENT))
+                .map(|(term, _)| term.sizes[0]),
+        ),
     };
     let rising = torque(&terms, high) - torque(&terms, low);
     if !(high > low && rising != 0.0) {
@@ -218,7 +223,9 @@ fn rests_in_reach(fitted: &dyn Fitted) -> bool {
 
 /// The least and the largest of some numbers.
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    })
 }
 
 /// The torque of a spring's terms with their coefficients at an angle (N m or N).
@@ -247,6 +254,60 @@ mod tests {
         let effect = Effect::of(&Spring).on("a").with("stiffness", 10.0).with("rest", 0.2);
         let columns = columns(0, &[1]);
         agree(&effect, &[(columns[0], -2.0), (columns[1], 10.0)]);
+    }
+
+    /// A straight spring on a joint that was recorded from −0.5 to 0.5 rad.
+    struct Straight {
+        arm: ::arm::Arm,
+        values: [f64; 2],
+        columns: [Vec<f64>; 2],
+    }
+
+    impl Fitted for Straight {
+        fn len(&self) -> usize {
+            2
+        }
+        fn term(&self, k: usize) -> Term {
+            columns(0, &[1])[k]
+        }
+        fn value(&self, k: usize) -> f64 {
+            self.values[k]
+        }
+        fn column(&self, k: usize) -> Option<&[f64]> {
+            Some(&self.columns[k])
+        }
+        fn residual(&self) -> Vec<f64> {
+            vec![0.0; 3]
+        }
+        fn moving(&self) -> &[bool] {
+            &[true; 3]
+        }
+        fn is_trial(&self) -> bool {
+            false
+        }
+        fn arm(&self) -> &::arm::Arm {
+            &self.arm
+        }
+    }
+
+    #[test]
+    fn a_spring_rests_where_the_joint_may_be() {
+        let is_possible = |limit: &str, rest: f64| {
+            let kind = if limit.is_empty() { "continuous" } else { "revolute" };
+            let urdf = format!(
+                r#"<robot name="one"><link name="base"/><joint name="a" type="{kind}"><parent link="base"/><child link="l"/>
+<axis xyz="0 0 1"/>{limit}</joint><link name="l"><inertial><mass value="1"/>
+<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link></robot>"#
+            );
+            Spring.is_possible(&Straight {
+                arm: ::arm::Arm::from_urdf_text(&urdf, "one.urdf").expect("it is an arm"),
+                values: [-2.0 * rest, 2.0],
+                columns: [vec![1.0; 3], vec![-0.5, 0.1, 0.5]],
+            })
+        };
+        let limits = r#"<limit lower="-3" upper="3" effort="9" velocity="9"/>"#;
+        assert!(is_possible(limits, 0.2) && is_possible(limits, 2.9) && is_possible("", 1.4));
+        assert!(!is_possible(limits, -11.8) && !is_possible(limits, 14.1) && !is_possible("", 1.6));
     }
 
     #[test]
