@@ -19,7 +19,7 @@ fn named(diagnosis: &Diagnosis) -> Vec<(&str, Option<&str>)> {
 /// The diagnosis of the trio's arm on a base turned by an angle (°) about an axis.
 fn mounted(degrees: f64) -> Diagnosis {
     let robot = trio().with_turned_base(Vector3::new(0.6, 0.8, 0.0), degrees.to_radians());
-    diagnosed(&trio(), &robot, &ordinary, Vec::new())
+    diagnosed(&trio(), &robot, &|motion, tau| ordinary(motion, tau), Vec::new())
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn a_base_on_a_slope_a_wall_or_the_ceiling_is_found() {
 fn what_is_known_of_a_wall_is_not_found_again() {
     let robot = trio().with_turned_base(Vector3::new(0.6, 0.8, 0.0), 90.0_f64.to_radians());
     let known = mounted(90.0).effects;
-    let again = diagnosed(&trio(), &robot, &ordinary, known);
+    let again = diagnosed(&trio(), &robot, &|motion, tau| ordinary(motion, tau), known);
     assert!(named(&again).is_empty(), "{:?}", sentences(&again));
     let worst = again
         .report

@@ -64,7 +64,7 @@ impl Why {
 /// The joints whose channels hold no torque, and why; `scales` say how fast the joints are and how their channels vary.
 pub fn without_torque(inputs: &[Input<'_>], motions: &Motions, rigid: &[Rigid], scales: &Scales) -> Vec<(usize, Why)> {
     let dead = measure::dead(motions, rigid, &scales.torque);
-    (0..motions.dof)
+    let list: Vec<(usize, Why)> = (0..motions.dof)
         .filter_map(|joint| {
             let why = if dead.contains(&joint) {
                 Some(Why::Dead)
@@ -75,7 +75,11 @@ pub fn without_torque(inputs: &[Input<'_>], motions: &Motions, rigid: &[Rigid], 
             };
             Some((joint, why?))
         })
-        .collect()
+        .collect();
+    // Where nothing explains any joint, it is not a channel that is wrong.
+    let is_all = list.len() == motions.dof;
+    let stays = |(_, why): &(usize, Why)| is_all && matches!(why, Why::Unrelated(_));
+    list.into_iter().filter(|one| !stays(one)).collect()
 }
 
 /// The part of the samples in motion that hold the commonest value, if that is most of them.

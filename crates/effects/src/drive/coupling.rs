@@ -100,14 +100,12 @@ impl EffectKind for TransmissionCoupling {
     /// Its friction must be there beyond doubt, and its inertia may not be against that: a drive that both joints turn has both,
     /// in the sense in which it turns with them. (On the way to what explains more, a search may pass through others.)
     fn is_certain(&self, effect: &Effect, interval: &dyn Fn(&str) -> Option<[f64; 2]>) -> bool {
-        let is_clear = |key: &str| interval(key).is_some_and(|[low, high]| low > 0.0 || high < 0.0);
-        let sense = if is_clear("coulomb") {
-            effect.number("sense")
-        } else {
-            effect.number("viscous").signum()
-        };
+        let sense = effect.number("viscous").signum();
+        let is_clear = |[low, high]: [f64; 2]| (sense * low).min(sense * high) > 0.0;
         let is_against = |[low, high]: [f64; 2]| (sense * low).max(sense * high) < 0.0;
-        (is_clear("viscous") || is_clear("coulomb")) && !interval("inertia").is_some_and(is_against)
+        // A dry part, where there is one, says in which sense the drive turns with both.
+        let dry_agrees = interval("coulomb").is_none() || sense == effect.number("sense").signum();
+        interval("viscous").is_some_and(is_clear) && dry_agrees && !interval("inertia").is_some_and(is_against)
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
