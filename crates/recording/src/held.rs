@@ -129,7 +129,7 @@ mod tests {
     #[test]
     fn a_robot_that_rests_is_not_held() {
         assert!(without_held(&written(|_| 1)).is_none());
-        let rests = |sample: usize| if sample % 50 == 0 { 100 } else { 1 };
+        let rests = |sample: usize| if sample.is_multiple_of(50) { 100 } else { 1 };
         assert!(without_held(&written(rests)).is_none());
     }
 
