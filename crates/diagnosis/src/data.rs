@@ -1,5 +1,6 @@
 //! Phase 1, data: recordings filtered and differentiated alike, the rigid model along them, scales and noise.
 
+pub mod channels;
 pub mod known;
 pub mod measure;
 pub mod motion;

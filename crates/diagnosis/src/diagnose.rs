@@ -30,6 +30,7 @@ use crate::search::study::Study;
 use crate::selection::final_fit;
 use crate::selection::judge;
 use crate::selection::predict::{augmented, errors, exported};
+use crate::selection::unmounted::unmounted;
 use crate::thresholds;
 use crate::trace::Decision;
 
@@ -116,6 +117,7 @@ pub fn diagnose(
             let mut judged = judge::judge(&study, &products, held.as_ref(), chosen);
             progress("final fit and intervals");
             let resampled = final_fit::settled(&mut study, &mut judged);
+            let resampled = unmounted(&mut study, &mut judged).unwrap_or(resampled);
             (judged, resampled)
         }
     };

@@ -4,3 +4,4 @@ pub mod final_fit;
 pub mod judge;
 pub mod naming;
 pub mod predict;
+pub mod unmounted;

@@ -23,6 +23,9 @@ pub trait Fitted {
     /// Its k-th column on the rows of its joint; `None` if it has none there, or is of the whole arm.
     fn column(&self, k: usize) -> Option<&[f64]>;
 
+    /// What the fit leaves on the rows of its joint (N m or N); nothing of the whole arm.
+    fn residual(&self) -> Vec<f64>;
+
     /// Which rows of its joint are in motion.
     fn moving(&self) -> &[bool];
 

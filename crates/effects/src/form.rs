@@ -17,6 +17,8 @@ pub struct Grounds<'a> {
     pub largest: &'a [f64],
     /// The torque that the model says each joint needs, but for the largest tenth of a per cent (N m or N).
     pub needed: &'a [f64],
+    /// The standard deviation of the torque that accelerations need of each joint, over that of the measured one.
+    pub inertial: &'a [f64],
 }
 
 impl Grounds<'_> {

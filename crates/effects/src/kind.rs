@@ -42,6 +42,11 @@ pub trait EffectKind: Debug + Sync {
         true
     }
 
+    /// Whether the 95 % intervals of its parameters, by their keys, leave an effect that can be.
+    fn is_certain(&self, _effect: &Effect, _interval: &dyn Fn(&str) -> Option<[f64; 2]>) -> bool {
+        true
+    }
+
     /// The effect with its parameters, each noted with its interval; `None` if it cannot be read, or has no name.
     fn read(&self, _estimate: &mut dyn Estimate) -> Option<Effect> {
         None

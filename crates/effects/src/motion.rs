@@ -45,6 +45,8 @@ pub struct Rigid<'a> {
     pub mass: &'a [Vec<Vec<f64>>],
     /// ∂τ/∂(turn of the base about its x, y axis).
     pub tilt: &'a [[Vec<f64>; 2]],
+    /// The torque of a gravity of 1 m/s² along x, y, z of the base.
+    pub gravity: &'a [[Vec<f64>; 3]],
     /// The torque of a unit force on the tool along x, y, z of the base.
     pub force: &'a [[Vec<f64>; 3]],
 }

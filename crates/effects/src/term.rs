@@ -45,6 +45,8 @@ pub struct Carried {
     pub payload: [f64; 10],
     /// The turn of the base about x and y (rad).
     pub tilt: [f64; 2],
+    /// What gravity, seen from the base, is beyond the model's (m/s²).
+    pub gravity: [f64; 3],
 }
 
 /// What makes a term's column on a joint of a motion.

@@ -136,6 +136,17 @@ fn along<T>(visit: impl FnOnce(&Motion<'_>) -> T) -> T {
     let tilt: Vec<[Vec<f64>; 2]> = (0..2)
         .map(|joint| [tilts[0][joint].clone(), tilts[1][joint].clone()])
         .collect();
+    let weightless = |tick: usize| torque(&arm.clone().with_gravity(Vector3::zeros()), state(tick));
+    let along = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| {
+        let pulled = arm.clone().with_gravity(axis);
+        signals(|tick| {
+            let (with, without) = (torque(&pulled, state(tick)), weightless(tick));
+            [0, 1].map(|joint| with[joint] - without[joint])
+        })
+    });
+    let gravity: Vec<[Vec<f64>; 3]> = (0..2)
+        .map(|joint| [0, 1, 2].map(|axis: usize| along[axis][joint].clone()))
+        .collect();
     let ones = || vec![1.0; TICKS];
     let force: Vec<[Vec<f64>; 3]> = (0..2).map(|_| [ones(), ones(), ones()]).collect();
     let (by_position, by_velocity, mass) = (moved(0), moved(1), moved(2));
@@ -163,6 +174,7 @@ fn along<T>(visit: impl FnOnce(&Motion<'_>) -> T) -> T {
             by_velocity: &by_velocity,
             mass: &mass,
             tilt: &tilt,
+            gravity: &gravity,
             force: &force,
         },
         scales: &scales,

@@ -11,6 +11,7 @@ mod csv_read;
 mod csv_write;
 mod error;
 mod header;
+mod held;
 mod interpolate;
 mod quality;
 mod regular;

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::clock::{self, Clock};
+use crate::held::without_held;
 use crate::interpolate::between;
 use crate::{PartialSignal, Quantity, Recording, RecordingError, Signal, Warning, spikes};
 
@@ -104,7 +105,7 @@ struct Stretch {
 impl Recording {
     /// The recording on the regular clock that its drive sampled on, and what was found on the way.
     ///
-    /// Each row goes to its tick, wherever its stamp lies; up to five missing ticks are interpolated
+    /// Of a sample that is written several times the first row is taken (see [`Warning::Held`]). Each row goes to its tick, wherever its stamp lies; up to five missing ticks are interpolated
     /// (and marked in [`RegularRecording::present`]), longer gaps part the segments; single-sample spikes
     /// are interpolated. Stamps without a regular clock are taken at their word, and the rows resampled.
     ///
@@ -112,6 +113,16 @@ impl Recording {
     /// [`RecordingError::TooShort`] below two samples, [`RecordingError::Time`] if stamps do not increase,
     /// [`RecordingError::Period`] if they are less than 5 µs apart.
     pub fn regular(&self) -> Result<(RegularRecording, Vec<Warning>), RecordingError> {
+        if let Some((thinned, warning)) = without_held(self) {
+            let (regular, mut warnings) = thinned.on_its_clock()?;
+            warnings.insert(0, warning);
+            return Ok((regular, warnings));
+        }
+        self.on_its_clock()
+    }
+
+    /// The same for rows that are samples.
+    fn on_its_clock(&self) -> Result<(RegularRecording, Vec<Warning>), RecordingError> {
         let rows = self.len();
         if rows < 2 {
             return Err(RecordingError::TooShort { rows, needed: 2 });

@@ -69,6 +69,15 @@ pub enum Warning {
         /// The time that one is the mean over (s).
         span: f64,
     },
+    /// Each sample was written several times: the rows that repeat it were left out.
+    Held {
+        /// Rows read.
+        rows: usize,
+        /// Samples among them.
+        samples: usize,
+        /// The number of rows for which most samples are held.
+        held: usize,
+    },
     /// The time starts anew: several runs in one file.
     ClockRestart {
         /// The line of the new run's first row.
@@ -160,6 +169,11 @@ impl fmt::Display for Warning {
                 f,
                 "{rows} rows exceed the limit of rows in memory; they are replaced by {kept} means over {:.3} ms",
                 span * 1e3
+            ),
+            Self::Held { rows, samples, held } => write!(
+                f,
+                "each sample stands in {held} rows: of {rows} rows {samples} are used, each sample once (record at the rate at \
+                 which the drive samples)"
             ),
             Self::ClockRestart {
                 line,

@@ -46,6 +46,34 @@ pub fn needed(motions: &Motions, rigid: &[Rigid]) -> Vec<f64> {
     (0..motions.dof).map(needed).collect()
 }
 
+/// The standard deviation of the torque that accelerations need of each joint in the recordings to be fitted, through both
+/// filters, over that of the measured torque; zero without one.
+pub fn inertial(motions: &Motions, rigid: &[Rigid], torque: &[f64]) -> Vec<f64> {
+    let needed = |joint: usize| -> Vec<f64> {
+        let chunks = motions.chunks.iter().zip(rigid);
+        let fitted = chunks.filter(|(chunk, _)| is_fitted(motions, chunk));
+        fitted
+            .flat_map(|(chunk, rigid)| {
+                let at = |tick: usize| {
+                    (0..motions.dof)
+                        .map(|by| rigid.mass[joint][by][tick] * chunk.qdd[by][tick])
+                        .sum()
+                };
+                chunk.filter(&(0..chunk.ticks()).map(at).collect::<Vec<f64>>())
+            })
+            .collect()
+    };
+    let share = |joint: usize| {
+        let values = needed(joint);
+        if torque[joint] > 0.0 {
+            deviation(&|| values.iter()) / torque[joint]
+        } else {
+            0.0
+        }
+    };
+    (0..motions.dof).map(share).collect()
+}
+
 /// The standard deviation of each joint's measured torque in the recordings to be fitted (N m or N).
 pub fn deviations(motions: &Motions) -> Vec<f64> {
     let chunks = || motions.chunks.iter().filter(|chunk| is_fitted(motions, chunk));

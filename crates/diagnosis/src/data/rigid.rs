@@ -25,6 +25,8 @@ pub struct Rigid {
     pub mass: Vec<Vec<Vec<f64>>>,
     /// ∂τ/∂(turn of the base about its x, y axis).
     pub tilt: Vec<[Vec<f64>; 2]>,
+    /// The torque of a gravity of 1 m/s² along x, y, z of the base.
+    pub gravity: Vec<[Vec<f64>; 3]>,
     /// The torque of a unit force on the tool along x, y, z of the base.
     pub force: Vec<[Vec<f64>; 3]>,
     /// The part of τ that comes from the links' inertial parameters being others than the URDF's; empty if they are not.
@@ -78,6 +80,7 @@ impl Rigid {
             by_velocity: square(),
             mass: square(),
             tilt: (0..n).map(|_| [zeros(), zeros()]).collect(),
+            gravity: (0..n).map(|_| [zeros(), zeros(), zeros()]).collect(),
             force: (0..n).map(|_| [zeros(), zeros(), zeros()]).collect(),
             background: Vec::new(),
             arm: Some(arm.clone()),
@@ -86,8 +89,10 @@ impl Rigid {
         let mut workspace = Workspace::new(arm);
         let tool = arm.tool_frame();
         let gravity = *arm.gravity();
+        let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let along = axes.map(|axis| arm.clone().with_gravity(axis));
         // Turning the base by a small angle about x turns gravity by its opposite, seen from the base.
-        let turned = [Vector3::x(), Vector3::y()].map(|axis| arm.clone().with_gravity(-axis.cross(&gravity)));
+        let turned = [Vector3::x(), Vector3::y()].map(|axis| -axis.cross(&gravity));
         let (mut q, mut qd, mut qdd) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
         let (mut tau, mut plus, mut minus) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
         let still = vec![0.0; n];
@@ -143,10 +148,17 @@ impl Rigid {
                     rigid.mass[joint][by][tick] = mass[(joint, by)];
                 }
             }
-            for (axis, turned) in turned.iter().enumerate() {
-                turned.inverse_dynamics(&mut workspace, &q, &still, &still, &mut plus);
+            for (axis, along) in along.iter().enumerate() {
+                along.inverse_dynamics(&mut workspace, &q, &still, &still, &mut plus);
                 for joint in 0..n {
-                    rigid.tilt[joint][axis][tick] = plus[joint];
+                    rigid.gravity[joint][axis][tick] = plus[joint];
+                }
+            }
+            // The torque is linear in gravity.
+            for joint in 0..n {
+                let [x, y, z] = [0, 1, 2].map(|axis: usize| rigid.gravity[joint][axis][tick]);
+                for (axis, turned) in turned.iter().enumerate() {
+                    rigid.tilt[joint][axis][tick] = turned.x * x + turned.y * y + turned.z * z;
                 }
             }
             arm.forward_kinematics(&mut workspace, &q);

@@ -23,6 +23,7 @@ fn along<'a>(chunk: &'a Chunk, rigid: &'a Rigid, scales: &'a Scales) -> Motion<'
             by_velocity: &rigid.by_velocity,
             mass: &rigid.mass,
             tilt: &rigid.tilt,
+            gravity: &rigid.gravity,
             force: &rigid.force,
         },
         scales,

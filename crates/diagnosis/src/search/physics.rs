@@ -37,6 +37,19 @@ impl Fitted for InFit<'_> {
         Some(&self.table.joints[joint].x[place])
     }
 
+    fn residual(&self) -> Vec<f64> {
+        let Some(joint) = self.candidate.joint else {
+            return Vec::new();
+        };
+        let model = self.table.torque(joint, &self.fit.columns, &self.fit.coefficients);
+        self.table.joints[joint]
+            .y
+            .iter()
+            .zip(&model)
+            .map(|(y, model)| y - model)
+            .collect()
+    }
+
     fn moving(&self) -> &[bool] {
         let joint = self.candidate.joint.map(|joint| &self.table.joints[joint]);
         joint.map_or(&[], |joint| &joint.moving)

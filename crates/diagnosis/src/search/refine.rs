@@ -148,7 +148,8 @@ pub fn resize(study: &mut Study, mut chosen: Chosen, again: bool) -> Chosen {
             let mass = candidate.joint.map_or(0.0, |joint| {
                 mean(study.rigid.iter().flat_map(|rigid| &rigid.mass[joint][joint]))
             });
-            let list = variants(&terms, round, mass);
+            let mut list = variants(&terms, round, mass);
+            list.retain(|terms| study.is_brief(terms));
             for &term in list.iter().flatten() {
                 if !study.table.terms.contains(&term) && !missing.contains(&term) {
                     missing.push(term);

@@ -7,6 +7,7 @@ use crate::data::motion::Motions;
 use crate::regression::fit::Fit;
 use crate::regression::table::Table;
 use crate::search::study::Study;
+use crate::thresholds;
 
 mod onsets;
 mod waves;
@@ -75,7 +76,8 @@ pub fn contacts(
             sums[k + 1] = sum;
         }
         let step = (times[rows.end - 1] - times[rows.start]) / (rows.len() - 1) as f64;
-        for duration in DURATIONS {
+        let most = thresholds::MOST_OF_A_RECORDING * step * rows.len() as f64;
+        for duration in DURATIONS.into_iter().filter(|&duration| duration <= most) {
             let length = ((duration / step).round() as usize).max(3);
             let hop = (length / 5).max(1);
             let mut from = 0;
@@ -123,9 +125,9 @@ pub fn ripples(
 ) -> Vec<f64> {
     let range = scales.range[joint].max(1e-6);
     let samples = samples(table, motions, joint, residual, fitted);
-    // The highest frequency that the filter passes at half the usual speed.
+    // What the filter passes at the usual speed.
     let usual = 0.4 * scales.speed[joint];
-    let most_periods = (2.0 * std::f64::consts::PI * 1.5 * motions.cutoff / usual).min(400.0);
+    let most_periods = (2.0 * std::f64::consts::PI * motions.cutoff / usual).min(400.0);
     let step = 1.5 / range;
     let least = 16.0 / range;
     let at = |samples: &[Sample], periods: f64| {

@@ -5,6 +5,7 @@ use effects::arm::contact_columns;
 use effects::{Grounds, Scales, Term};
 use rayon::prelude::*;
 
+use crate::data::channels;
 use crate::data::known::Known;
 use crate::data::measure::{self, mean, noise, scales, seconds, spans};
 use crate::data::motion::{Input, Motions};
@@ -81,7 +82,7 @@ impl Study {
                     .collect()
             })
             .collect();
-        let mut torque = measure::deviations(&motions);
+        let torque = measure::deviations(&motions);
         known.take_off(&mut motions);
         let offset = vec![0.0; arm.dof()];
         let nominal = arm.inertial_parameters();
@@ -90,15 +91,11 @@ impl Study {
             .par_iter()
             .map(|chunk| Rigid::new(arm, &nominal, &offset, chunk))
             .collect();
-        for joint in measure::dead(&motions, &rigid, &torque) {
-            torque[joint] = 0.0;
-            let name = &arm.joints()[joint].name;
-            let remark = format!(
-                "{name}: the measured torque is almost constant while the model's varies; the joint is not diagnosed"
-            );
-            motions.remarks.push(remark);
+        let mut scales = scales(&motions, torque);
+        for (joint, why) in channels::without_torque(inputs, &motions, &rigid, &scales) {
+            scales.torque[joint] = 0.0;
+            motions.remarks.push(why.remark(&arm.joints()[joint].name));
         }
-        let scales = scales(&motions, torque);
         let fitted: Vec<bool> = motions.sources.iter().map(|source| !source.held_out).collect();
         let seconds = seconds(&motions);
         let noise = noise(&motions, &rigid, &fitted);
@@ -131,6 +128,7 @@ impl Study {
             mass: &(0..motions.dof).map(mass).collect::<Vec<f64>>(),
             largest: &measure::largest(&motions),
             needed: &measure::needed(&motions, &rigid),
+            inertial: &measure::inertial(&motions, &rigid, &scales.torque),
         });
         if motions.cutoff < thresholds::LEAST_FOR_DYNAMICS {
             list.retain(|(cause, ..)| !cause.is_unit());

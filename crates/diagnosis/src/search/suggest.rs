@@ -1,15 +1,17 @@
 //! Candidates that the residual of a choice suggests: contacts, ripples, sinusoids in time, onsets.
 
-use effects::arm::{ExternalContact, contact_columns};
+use effects::arm::{ExternalContact, contact_columns, contact_window};
 use effects::drive::{TorqueRipple, ripple_columns};
 use effects::unmodelled::{Periodic, periodic_columns};
 use effects::{EffectKind, Term};
 use rayon::prelude::*;
 
+use crate::data::measure;
 use crate::search::candidate::Cause;
 use crate::search::problem::Chosen;
 use crate::search::scan;
 use crate::search::study::Study;
+use crate::thresholds;
 
 impl Study {
     /// Adds what the residual of `chosen` suggests.
@@ -63,5 +65,29 @@ impl Study {
         for (cause, joint, terms) in new {
             self.add(cause, joint, terms);
         }
+    }
+
+    /// Whether terms are no contact, or one that is short beside its recording.
+    pub fn is_brief(&self, terms: &[Term]) -> bool {
+        let Some(window) = terms.first().and_then(contact_window) else {
+            return true;
+        };
+        self.contact_share(&[window])
+            .is_none_or(|(_, share)| share <= thresholds::MOST_OF_A_RECORDING)
+    }
+
+    /// The recording of which contacts in these windows (s) cover the largest part, and that part.
+    pub fn contact_share(&self, windows: &[[f64; 2]]) -> Option<(usize, f64)> {
+        let shares = measure::spans(&self.motions).into_iter().map(|spans| {
+            let covered = |&(from, to): &(f64, f64)| -> f64 {
+                let inside = windows
+                    .iter()
+                    .map(|&[start, end]| (end.min(to) - start.max(from)).max(0.0));
+                inside.sum()
+            };
+            let length: f64 = spans.iter().map(|(from, to)| to - from).sum();
+            spans.iter().map(covered).sum::<f64>() / length.max(f64::MIN_POSITIVE)
+        });
+        shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))
     }
 }

@@ -148,7 +148,14 @@ fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<usiz
         let named = name(study, resampled, member.candidate);
         // With its sizes corrected it may be no physics any more: a level below zero.
         let is_impossible = |named: &Named| Corrected::new(&study.arm, std::slice::from_ref(&named.effect)).is_err();
-        if named.iter().any(is_impossible) || is_part_of_the_rest(study, judged, member) {
+        // Its own rows contradict it.
+        let is_contradicted = |named: &Named| {
+            let interval = |key: &str| named.parameters.get(key).map(|parameter| parameter.ci95);
+            !named.effect.kind().get().is_certain(&named.effect, &interval)
+        };
+        if named.iter().any(|named| is_impossible(named) || is_contradicted(named))
+            || is_part_of_the_rest(study, judged, member)
+        {
             return true;
         }
         named.first().is_some_and(|named| {

@@ -1,6 +1,6 @@
 //! Which of the chosen candidates deserve their name.
 
-use effects::arm::ExternalContact;
+use effects::arm::{ExternalContact, contact_window};
 use effects::drive::{ActuationDelay, Backlash, JointElasticity, RotorInertia};
 use effects::friction::LoadDependentFriction;
 use effects::sensor::TorqueScale;
@@ -99,6 +99,9 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
         );
         chosen = next;
     }
+    while let Some(long) = lasting(study, &chosen) {
+        chosen = problem.without(&chosen, long);
+    }
     let mut members;
     if let Some(held) = held {
         let next = predicting(study, &problem, held, chosen.clone());
@@ -148,6 +151,22 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
         members,
         nameless,
     }
+}
+
+/// The longest contact in a recording that contacts cover too much of: together they stand for something else.
+fn lasting(study: &Study, chosen: &Chosen) -> Option<usize> {
+    let window = |&c: &usize| Some((c, contact_window(&study.terms(c).first().copied()?)?));
+    let windows: Vec<(usize, [f64; 2])> = chosen.set.iter().filter_map(window).collect();
+    let (recording, share) = study.contact_share(&windows.iter().map(|(_, window)| *window).collect::<Vec<_>>())?;
+    if share <= thresholds::MOST_OF_A_RECORDING {
+        return None;
+    }
+    let is_there = |[from, to]: [f64; 2]| study.motions.recording_at(0.5 * (from + to)) == Some(recording);
+    let there = windows.iter().filter(|(_, window)| is_there(*window));
+    let length = |[from, to]: [f64; 2]| to - from;
+    there
+        .max_by(|a, b| length(a.1).total_cmp(&length(b.1)))
+        .map(|(c, _)| *c)
 }
 
 /// The nameless that are still there beside what was `kept`, as large as they are beside it.
@@ -212,6 +231,8 @@ pub fn describe(study: &Study, problem: &Problem<'_>, chosen: &Chosen) -> Vec<Me
         .map(|k| {
             let candidate = chosen.set[k];
             let without = problem.without(chosen, candidate);
+            let beyond = (0..study.motions.dof).map(|j| ((without.fit.rss[j]-chosen.fit.rss[j]).max(0.0)/problem.products.count[j].max(1.0)).sqrt()/study.scales.torque[j].max(1e-300)).fold(0.0, f64::max);
+            if study.candidates[candidate].cause.plain().is_some() { eprintln!("BEYOND {} {:?} {:.4} share {:.4} ev {:.0}", study.candidates[candidate].cause.spec().name, study.candidates[candidate].joint, beyond, shares(study, chosen, candidate).iter().fold(0.0f64,|a,b|a.max(*b)), without.score-chosen.score); }
             Member {
                 candidate,
                 shares: shares(study, chosen, candidate),

@@ -163,6 +163,11 @@ impl EffectKind for Payload {
         ))
     }
 
+    /// Bodies on the tool add up: one that is known and one that was found on top of it. The same one twice is a slip.
+    fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
+        a == b
+    }
+
     fn sentence(&self, effect: &Effect) -> &'static str {
         if effect.number("mass") < 0.0 {
             "the URDF draws a body at the tool that is not mounted: {mass}"

@@ -1,5 +1,7 @@
 //! A base that does not stand level.
 
+use ::arm::{Arm, Vector3};
+
 use crate::{
     Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range,
     Scope, Shape, Spec, Term,
@@ -42,20 +44,100 @@ pub static TILT: Law = Law {
     ..Law::PLAIN
 };
 
+/// The torque of gravity along an axis of the base: the torque is linear in gravity, so that these three columns reach a base
+/// on a wall or a ceiling, from which no step about the upright base leads there.
+pub static GRAVITY: Law = Law {
+    name: "gravity",
+    column: |term, joint, motion| Some(motion.rigid.gravity[joint][term.of[0]].clone()),
+    needs_model: true,
+    carry: Some(|term, value, carried| carried.gravity[term.of[0]] += value),
+    ..Law::PLAIN
+};
+
+/// Small turns are steps about the base as it is, up to this angle (rad) …
+const MOST_TURNED: f64 = 0.4;
+/// … and gravity that points elsewhere is found by its three columns from this angle on (rad).
+const LEAST_TURNED: f64 = 0.3;
+/// Gravity is as large on a wall as on the floor; its columns say so up to this factor, beside masses that are not the URDF's.
+const AS_LARGE: f64 = 1.3;
+
+/// The angle (rad) and the axis by which a base is turned in which gravity is `seen`, not `usual`.
+fn turn(usual: &Vector3<f64>, seen: &Vector3<f64>) -> (f64, Vector3<f64>) {
+    let axis = seen.cross(usual);
+    let angle = axis.norm().atan2(seen.dot(usual));
+    // On the ceiling any horizontal axis will do.
+    let least = 1e-9 * usual.norm_squared();
+    let axis = if axis.norm() > least {
+        axis
+    } else {
+        usual.cross(&Vector3::x())
+    };
+    let axis = if axis.norm() > least {
+        axis
+    } else {
+        usual.cross(&Vector3::y())
+    };
+    (angle, axis / axis.norm().max(f64::MIN_POSITIVE))
+}
+
+/// The angle (rad) of the turn about a unit `axis`, from 0 to 2 π.
+fn angle_about(axis: &Vector3<f64>, usual: &Vector3<f64>, seen: &Vector3<f64>) -> f64 {
+    let angle = axis.dot(&seen.cross(usual)).atan2(seen.dot(usual));
+    angle.rem_euclid(std::f64::consts::TAU)
+}
+
+/// Gravity as an arm sees it that has `beyond` (m/s²) besides its own.
+fn seen(arm: &Arm, beyond: [f64; 3]) -> Vector3<f64> {
+    arm.gravity() + Vector3::from(beyond)
+}
+
+/// The effect of three coefficients of [`GRAVITY`].
+fn read_gravity(estimate: &mut dyn Estimate) -> Option<Effect> {
+    let places = [estimate.place(0)?, estimate.place(1)?, estimate.place(2)?];
+    let arm = estimate.arm().clone();
+    let gravity = |draw: &[f64]| seen(&arm, places.map(|place| draw[place]));
+    let usual = *arm.gravity();
+    let (_, about) = turn(&usual, &gravity(estimate.best()));
+    let angle = estimate.note("angle", |draw| angle_about(&about, &usual, &gravity(draw)));
+    let axis = |draw: &[f64]| {
+        let (_, axis) = turn(&usual, &gravity(draw));
+        // Near the ceiling the axis of a draw may point the other way.
+        axis * axis.dot(&about).signum()
+    };
+    let x = estimate.note("axis_x", |draw| axis(draw).x);
+    let y = estimate.note("axis_y", |draw| axis(draw).y);
+    Some(
+        Effect::of(&GravityMisalignment)
+            .with("angle", angle)
+            .with("axis", [x, y, about.z]),
+    )
+}
+
 impl EffectKind for GravityMisalignment {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
+    /// Small turns, and gravity along any other direction.
     fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
-        vec![Form::of_arm(vec![Term::about(&TILT, 0), Term::about(&TILT, 1)])]
+        let of = |law: &'static Law, count: usize| Form::of_arm((0..count).map(|k| Term::about(law, k)).collect());
+        vec![of(&TILT, 2), of(&GRAVITY, 3)]
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        fitted.value(0).hypot(fitted.value(1)) < 0.4
+        if fitted.len() == 2 {
+            return fitted.value(0).hypot(fitted.value(1)) < MOST_TURNED;
+        }
+        let usual = fitted.arm().gravity();
+        let seen = seen(fitted.arm(), [0, 1, 2].map(|axis| fitted.value(axis)));
+        let factor = seen.norm() / usual.norm().max(f64::MIN_POSITIVE);
+        (1.0 / AS_LARGE..AS_LARGE).contains(&factor) && turn(usual, &seen).0 > LEAST_TURNED
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+        if estimate.terms().len() == 3 {
+            return read_gravity(estimate);
+        }
         let (a, b) = (estimate.place(0)?, estimate.place(1)?);
         let angle = estimate.note("angle", |draw| draw[a].hypot(draw[b]));
         let x = estimate.note("axis_x", |draw| draw[a] / draw[a].hypot(draw[b]));
@@ -89,5 +171,23 @@ mod tests {
             &effect,
             &[(Term::about(&TILT, 0), 0.6e-6), (Term::about(&TILT, 1), 0.8e-6)],
         );
+    }
+
+    /// At any angle: on a slope, on a wall, on the ceiling.
+    #[test]
+    fn its_columns_of_gravity_are_its_torque() {
+        for angle in [0.5, std::f64::consts::FRAC_PI_2, std::f64::consts::PI] {
+            let axis = Vector3::new(0.6, 0.8, 0.0);
+            let usual = Vector3::new(0.0, 0.0, -9.81);
+            let effect = Effect::of(&GravityMisalignment).with("angle", angle);
+            let effect = effect.with("axis", [axis.x, axis.y, axis.z]);
+            let turned = nalgebra::Rotation3::from_scaled_axis(-angle * axis) * usual;
+            let beyond = turned - usual;
+            let columns = [0, 1, 2].map(|k| (Term::about(&GRAVITY, k), beyond[k]));
+            agree(&effect, &columns);
+            let (found, about) = turn(&usual, &turned);
+            assert!((found - angle).abs() < 1e-6, "{found}");
+            assert!(angle > 3.0 || (about - axis).norm() < 1e-9, "{about}");
+        }
     }
 }

@@ -97,6 +97,17 @@ impl EffectKind for TransmissionCoupling {
         forms
     }
 
+    /// Its friction must be there beyond doubt, and its inertia may not be against that: a drive that both joints turn has both,
+    /// in the sense in which it turns with them. (On the way to what explains more, a search may pass through others.)
+    fn is_certain(&self, effect: &Effect, interval: &dyn Fn(&str) -> Option<[f64; 2]>) -> bool {
+        let sense = effect.number("viscous").signum();
+        let is_clear = |[low, high]: [f64; 2]| (sense * low).min(sense * high) > 0.0;
+        let is_against = |[low, high]: [f64; 2]| (sense * low).max(sense * high) < 0.0;
+        // A dry part, where there is one, says in which sense the drive turns with both.
+        let dry_agrees = interval("coulomb").is_none() || sense == effect.number("sense").signum();
+        interval("viscous").is_some_and(is_clear) && dry_agrees && !interval("inertia").is_some_and(is_against)
+    }
+
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let other = estimate.arm().joints()[estimate.other()?].name.clone();
         let dry = estimate.terms().into_iter().find(|term| term.is(&PAIR_SIGN));
@@ -146,5 +157,27 @@ mod tests {
             &effect,
             &[(term(&PAIR_VELOCITY), 2.0), (dry, 0.5), (term(&PAIR_ACCELERATION), 3.0)],
         );
+    }
+
+    #[test]
+    fn a_drive_has_friction_and_no_negative_inertia() {
+        let is_certain = |viscous: [f64; 2], inertia: [f64; 2]| {
+            let middle = |[low, high]: [f64; 2]| 0.5 * (low + high);
+            let effect = Effect::of(&TransmissionCoupling).on("b").with_other("a");
+            let effect = effect.with("viscous", middle(viscous)).with("inertia", middle(inertia));
+            let interval = |key: &str| match key {
+                "viscous" => Some(viscous),
+                "inertia" => Some(inertia),
+                _ => None,
+            };
+            TransmissionCoupling.is_certain(&effect, &interval)
+        };
+        assert!(is_certain([1.0, 2.0], [0.1, 0.2]));
+        assert!(is_certain([1.0, 2.0], [-0.1, 0.2]));
+        // A drive that turns with the difference of the two.
+        assert!(is_certain([-2.0, -1.0], [-0.2, -0.1]));
+        assert!(!is_certain([-0.73, 1.17], [-1.3, -1.1]));
+        assert!(!is_certain([-0.73, 1.17], [0.1, 0.2]));
+        assert!(!is_certain([1.0, 2.0], [-1.3, -1.1]));
     }
 }

@@ -47,6 +47,10 @@ pub static LATE: Law = Law {
 /// The longest delay of a drive (s): no position loop bears more.
 const LONGEST_DELAY: f64 = 0.03;
 
+/// A delay shows where torques change quickly: accelerations must need this part of the joint's torque. Of weight and friction,
+/// which change slowly or at reversals, a late torque and one that depends on the velocity are alike.
+const LEAST_INERTIAL: f64 = 0.05;
+
 impl EffectKind for ActuationDelay {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -59,7 +63,8 @@ impl EffectKind for ActuationDelay {
                 Form::on(Turn::Late, joint, terms)
             })
         };
-        grounds.moving().flat_map(forms).collect()
+        let accelerates = |&joint: &usize| grounds.inertial[joint] >= LEAST_INERTIAL;
+        grounds.moving().filter(accelerates).flat_map(forms).collect()
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {

@@ -44,6 +44,9 @@ pub fn columns(joint: usize, periods: f64) -> Vec<Term> {
         .to_vec()
 }
 
+/// A motor before a gear turns at least so many times in a turn of the joint, and its poles and teeth repeat more often still.
+const LEAST_GEARED: f64 = 8.0;
+
 impl EffectKind for TorqueRipple {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -72,6 +75,13 @@ impl EffectKind for TorqueRipple {
         Some(effect.with("phase", phase))
     }
 
+    /// What turns with the joint itself repeats a whole number of times in a turn; only a motor before a gear need not.
+    fn is_certain(&self, effect: &Effect, interval: &dyn Fn(&str) -> Option<[f64; 2]>) -> bool {
+        let whole = effect.number("periods").round();
+        let holds = |[low, high]: [f64; 2]| whole >= 1.0 && (low..=high).contains(&whole);
+        interval("periods").is_none_or(|own| own[1] >= LEAST_GEARED || holds(own))
+    }
+
     /// A joint has as many ripples as it has parts that turn at other ratios.
     fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
         a.number("periods") == b.number("periods")
@@ -93,6 +103,18 @@ fn around(angle: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::test_support::agree;
+
+    #[test]
+    fn a_slow_ripple_repeats_with_the_joint_itself() {
+        let is_certain = |periods: f64, half: f64| {
+            let effect = Effect::of(&TorqueRipple).on("a").with("periods", periods);
+            TorqueRipple.is_certain(&effect, &|_| Some([periods - half, periods + half]))
+        };
+        assert!(is_certain(4.05, 0.1));
+        assert!(!is_certain(4.27, 0.1));
+        assert!(!is_certain(0.2, 0.3));
+        assert!(is_certain(33.4, 0.1));
+    }
 
     #[test]
     fn its_columns_are_its_torque() {

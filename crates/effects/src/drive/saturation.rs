@@ -45,6 +45,9 @@ pub static EXCESS: Law = Law {
 
 /// A limit cuts off all that is beyond it. Its column is made of the measured torque, which may stand for a scale.
 const CUT_OFF: std::ops::RangeInclusive<f64> = 0.8..=1.25;
+/// Of what a limit would cut off, on the rows beyond it, the model with the limit leaves no more than this part: otherwise the
+/// motion there shows that the drive gave more.
+const MOST_LEFT: f64 = 0.5;
 /// The largest part of the moving rows that a torque limit may clip.
 const MOST_CLIPPED: f64 = 0.45;
 /// A torque limit is at least this part of what the motion needs, by a model that may be wrong.
@@ -76,7 +79,7 @@ impl EffectKind for TorqueSaturation {
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
         // A drive spends no more than part of its time at its limit.
-        CUT_OFF.contains(&fitted.value(0)) && acting(fitted) < MOST_CLIPPED
+        CUT_OFF.contains(&fitted.value(0)) && acting(fitted) < MOST_CLIPPED && cuts(fitted)
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
@@ -94,6 +97,19 @@ impl EffectKind for TorqueSaturation {
         let unit = Quantity::Torque.unit(joint);
         Some(format!("where more than {limit:.3} {unit} are commanded"))
     }
+}
+
+/// Whether what the limit cuts off is what the model without it leaves, on the rows where it does.
+fn cuts(fitted: &dyn Fitted) -> bool {
+    let Some(x) = fitted.column(0) else { return true };
+    let (mut with, mut without) = (0.0, 0.0);
+    for ((x, left), moving) in x.iter().zip(fitted.residual()).zip(fitted.moving()) {
+        if *moving && *x != 0.0 {
+            with += left * left;
+            without += (left + fitted.value(0) * x).powi(2);
+        }
+    }
+    with <= MOST_LEFT * without
 }
 
 /// The part of the moving rows on which the first column is not zero.

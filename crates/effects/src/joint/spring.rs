@@ -44,6 +44,10 @@ const ALL_FALLS: f64 = 0.1;
 /// The points of a curve.
 const POINTS: usize = 12;
 
+/// A spring rests within the joint's range, or no further beyond the recorded one than this multiple of its length: what rests
+/// elsewhere is a constant torque that varies a little.
+const BEYOND: f64 = 1.0;
+
 fn columns(joint: usize, powers: &[usize]) -> Vec<Term> {
     let powers = powers.iter().map(|&power| Term::on(&POSITION, joint).form(power));
     std::iter::once(Term::on(&ONE, joint)).chain(powers).collect()
@@ -76,7 +80,7 @@ impl EffectKind for Spring {
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        stiffens(fitted)
+        stiffens(fitted) && rests_in_reach(fitted)
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
@@ -88,21 +92,8 @@ impl EffectKind for Spring {
             .map(|(k, term)| (term.always(), estimate.place(k)))
             .collect();
         let torque = |draw: &[f64], q: f64| -> f64 {
-            shape
-                .iter()
-                .map(|&(term, place)| {
-                    let value = place.map_or(0.0, |place| draw[place]);
-                    if term.is(&ONE) {
-                        value
-                    } else if term.is(&POSITION) {
-                        value * q.powi(power(&term))
-                    } else if term.is(&TENT) {
-                        value * tent(q, term.sizes[0], term.sizes[1])
-                    } else {
-                        0.0
-                    }
-                })
-                .sum()
+            let drawn = |&(term, place): &(Term, Option<usize>)| (term, place.map_or(0.0, |place| draw[place]));
+            torque(&shape.iter().map(drawn).collect::<Vec<_>>(), q)
         };
         let slope = |draw: &[f64]| (torque(draw, high) - torque(draw, low)) / (high - low);
         let stiffness = estimate.note("stiffness", slope);
@@ -201,6 +192,58 @@ fn stiffens(fitted: &dyn Fitted) -> bool {
     rising >= 17
 }
 
+/// Whether the angle without torque, by the straight line between the ends of the recorded range, can be reached.
+fn rests_in_reach(fitted: &dyn Fitted) -> bool {
+    let terms: Vec<(Term, f64)> = (0..fitted.len())
+        .map(|k| (fitted.term(k).always(), fitted.value(k)))
+        .collect();
+    let is_straight = |(term, _): &(Term, f64)| term.is(&POSITION) && power(term) == 1;
+    let (low, high) = match terms.iter().position(is_straight).and_then(|k| fitted.column(k)) {
+        // Before its onset a column is zero.
+        Some(x) => range(x.iter().copied().filter(|&q| q != 0.0)),
+        None => range(
+            terms
+                .iter()
+                .filter(|(term, _)| term.is(&TENT))
+                .map(|(term, _)| term.sizes[0]),
+        ),
+    };
+    let rising = torque(&terms, high) - torque(&terms, low);
+    if !(high > low && rising != 0.0) {
+        return false;
+    }
+    let middle = 0.5 * (low + high);
+    let rest = middle - torque(&terms, middle) * (high - low) / rising;
+    let limits = terms.first().map(|(term, _)| fitted.arm().joints()[term.of[0]].limits);
+    let (lower, upper) = limits.map_or((low, high), |limits| (limits.lower, limits.upper));
+    let margin = BEYOND * (high - low);
+    let own = low - margin..=high + margin;
+    own.contains(&rest) || (lower.is_finite() && upper.is_finite() && (lower..=upper).contains(&rest))
+}
+
+/// The least and the largest of some numbers.
+fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    })
+}
+
+/// The torque of a spring's terms with their coefficients at an angle (N m or N).
+fn torque(terms: &[(Term, f64)], q: f64) -> f64 {
+    let one = |&(term, value): &(Term, f64)| {
+        if term.is(&ONE) {
+            value
+        } else if term.is(&POSITION) {
+            value * q.powi(power(&term))
+        } else if term.is(&TENT) {
+            value * tent(q, term.sizes[0], term.sizes[1])
+        } else {
+            0.0
+        }
+    };
+    terms.iter().map(one).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -211,6 +254,60 @@ mod tests {
         let effect = Effect::of(&Spring).on("a").with("stiffness", 10.0).with("rest", 0.2);
         let columns = columns(0, &[1]);
         agree(&effect, &[(columns[0], -2.0), (columns[1], 10.0)]);
+    }
+
+    /// A straight spring on a joint that was recorded from −0.5 to 0.5 rad.
+    struct Straight {
+        arm: ::arm::Arm,
+        values: [f64; 2],
+        columns: [Vec<f64>; 2],
+    }
+
+    impl Fitted for Straight {
+        fn len(&self) -> usize {
+            2
+        }
+        fn term(&self, k: usize) -> Term {
+            columns(0, &[1])[k]
+        }
+        fn value(&self, k: usize) -> f64 {
+            self.values[k]
+        }
+        fn column(&self, k: usize) -> Option<&[f64]> {
+            Some(&self.columns[k])
+        }
+        fn residual(&self) -> Vec<f64> {
+            vec![0.0; 3]
+        }
+        fn moving(&self) -> &[bool] {
+            &[true; 3]
+        }
+        fn is_trial(&self) -> bool {
+            false
+        }
+        fn arm(&self) -> &::arm::Arm {
+            &self.arm
+        }
+    }
+
+    #[test]
+    fn a_spring_rests_where_the_joint_may_be() {
+        let is_possible = |limit: &str, rest: f64| {
+            let kind = if limit.is_empty() { "continuous" } else { "revolute" };
+            let urdf = format!(
+                r#"<robot name="one"><link name="base"/><joint name="a" type="{kind}"><parent link="base"/><child link="l"/>
+<axis xyz="0 0 1"/>{limit}</joint><link name="l"><inertial><mass value="1"/>
+<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link></robot>"#
+            );
+            Spring.is_possible(&Straight {
+                arm: ::arm::Arm::from_urdf_text(&urdf, "one.urdf").expect("it is an arm"),
+                values: [-2.0 * rest, 2.0],
+                columns: [vec![1.0; 3], vec![-0.5, 0.1, 0.5]],
+            })
+        };
+        let limits = r#"<limit lower="-3" upper="3" effort="9" velocity="9"/>"#;
+        assert!(is_possible(limits, 0.2) && is_possible(limits, 2.9) && is_possible("", 1.4));
+        assert!(!is_possible(limits, -11.8) && !is_possible(limits, 14.1) && !is_possible("", 1.6));
     }
 
     #[test]

@@ -28,6 +28,7 @@ impl About {
             offset: vec![0.0; study.arm.dof()],
             payload: [0.0; 10],
             tilt: [0.0; 2],
+            gravity: [0.0; 3],
         };
         for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
             let term = study.table.terms[column];
@@ -45,6 +46,7 @@ impl About {
             offset: vec![0.0; study.arm.dof()],
             payload: [0.0; 10],
             tilt: [0.0; 2],
+            gravity: [0.0; 3],
         };
         let mut carried = Vec::new();
         let mut inertial = vec![0.0; bodies::PER_LINK * study.arm.dof()];
@@ -63,11 +65,16 @@ impl About {
             offset,
             payload,
             tilt: [x, y],
+            gravity,
         } = found;
         let tilt = Vector3::new(x, y, 0.0);
         let finish = |mut arm: Arm| {
             if payload[0] != 0.0 {
                 arm = arm.with_payload(&body(&payload));
+            }
+            if gravity != [0.0; 3] {
+                let turned = arm.gravity() + Vector3::from(gravity);
+                arm = arm.with_gravity(turned);
             }
             if tilt.norm() > 0.0 {
                 arm = arm.with_turned_base(tilt, tilt.norm());

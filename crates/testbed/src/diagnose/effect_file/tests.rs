@@ -209,6 +209,13 @@ fn an_effect_said_twice_is_refused_with_both_places() {
     assert!(parse(&twice[..2]).is_ok());
     assert!(parse(&[ripple("10.0"), ripple("20.0")]).is_ok());
     assert!(parse(&[ripple("10.0"), ripple("10.0")]).is_err());
+    let payload = |mass: &str| format!("[[effects]]\neffect = \"payload\"\nmass = {mass}\ncom = [0.0, 0.0, 0.1]\n");
+    // A body that is known and one that was found on top of it.
+    assert_eq!(
+        parse(&[payload("1.0"), payload("-0.3")]).map(|file| file.effects.len()),
+        Ok(2)
+    );
+    assert!(parse(&[payload("1.0"), payload("1.0")]).is_err());
     let found = parse(&[friction("joint1", "1e308")]).expect_err("it is refused");
     assert!(
         found.contains("k.toml:5: coefficient is 1e308") && found.len() < 200,

@@ -1,0 +1,236 @@
+//! Torque channels that hold no torque: dead ones, idle ones, other quantities and other signals.
+
+use std::collections::HashMap;
+
+use effects::{Scales, sign};
+use nalgebra::{DMatrix, DVector};
+
+use crate::data::measure::{self, mean};
+use crate::data::motion::{Input, Motions};
+use crate::data::rigid::Rigid;
+
+/// A channel that holds one and the same value in so large a part of the samples in motion reports no measured torque: those
+/// of the worst drives, at rest in their dry friction, are in noise.
+const IDLE: f64 = 0.6;
+/// A joint moves where it is faster than this part of its largest speeds.
+const MOVES: f64 = 0.1;
+/// Samples on either side of which positions are compared.
+const STEP: usize = 5;
+/// A torque that is so small a part of what the model needs to hold and move the arm is in another unit, or is not the drive's.
+const FAR_TOO_SMALL: f64 = 0.05;
+/// A channel of which models of all kinds leave this part (NRMSE) on stretches that they were not fitted to holds another signal.
+const UNRELATED: f64 = 0.97;
+/// Stretches that are left out in turn.
+const FOLDS: usize = 5;
+/// With fewer moving rows nothing is said.
+const LEAST_ROWS: usize = 200;
+/// A ridge on columns of unit power, against columns that hang together.
+const RIDGE: f64 = 1e-4;
+
+/// Why a channel holds no torque.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Why {
+    /// It is almost constant while the model's torque varies.
+    Dead,
+    /// It shows one value in this part of the samples in motion.
+    Idle(f64),
+    /// Its root mean square is this part of the model's.
+    FarTooSmall(f64),
+    /// Neither the model nor friction, position, weight or masses of any size explain more than this part of its power.
+    Unrelated(f64),
+}
+
+impl Why {
+    /// The remark on the joint `name`.
+    pub fn remark(self, name: &str) -> String {
+        let what = match self {
+            Self::Dead => "the measured torque is almost constant while the model's varies".to_owned(),
+            Self::Idle(part) => format!(
+                "the torque channel shows one and the same value in {:.0} % of the samples in which the joint moves; it is no measured torque",
+                100.0 * part
+            ),
+            Self::FarTooSmall(part) => format!(
+                "the torque channel is {part:.4} times what the model needs to hold and move the joint; it is no torque in SI units (a current, a percentage?)"
+            ),
+            Self::Unrelated(part) => format!(
+                "neither masses nor friction of any size explain more than {:.0} % of the torque channel's power; it is no torque of this joint",
+                100.0 * part
+            ),
+        };
+        format!("{name}: {what}; the joint is not diagnosed")
+    }
+}
+
+/// The joints whose channels hold no torque, and why; `scales` say how fast the joints are and how their channels vary.
+pub fn without_torque(inputs: &[Input<'_>], motions: &Motions, rigid: &[Rigid], scales: &Scales) -> Vec<(usize, Why)> {
+    let dead = measure::dead(motions, rigid, &scales.torque);
+    let list: Vec<(usize, Why)> = (0..motions.dof)
+        .filter_map(|joint| {
+            let why = if dead.contains(&joint) {
+                Some(Why::Dead)
+            } else {
+                idle(inputs, joint)
+                    .map(Why::Idle)
+                    .or_else(|| of_another_kind(motions, rigid, scales, joint))
+            };
+            Some((joint, why?))
+        })
+        .collect();
+    // Where nothing explains any joint, it is not a channel that is wrong.
+    let is_all = list.len() == motions.dof;
+    let stays = |(_, why): &(usize, Why)| is_all && matches!(why, Why::Unrelated(_));
+    list.into_iter().filter(|one| !stays(one)).collect()
+}
+
+/// The part of the samples in motion that hold the commonest value, if that is most of them.
+fn idle(inputs: &[Input<'_>], joint: usize) -> Option<f64> {
+    let speed = |input: &Input<'_>, tick: usize| {
+        let q = &input.recording.q[joint];
+        (q[tick + STEP] - q[tick - STEP]).abs() / input.recording.period
+    };
+    let ticks = |input: &Input<'_>| STEP..input.recording.len().saturating_sub(STEP);
+    let fitted = || inputs.iter().filter(|input| !input.held_out);
+    let largest = fitted().flat_map(|input| ticks(input).map(move |tick| speed(input, tick)));
+    let least = MOVES * largest.fold(0.0, f64::max);
+    let mut counts: HashMap<u64, usize> = HashMap::new();
+    let mut all = 0;
+    for input in fitted() {
+        for tick in ticks(input).filter(|&tick| speed(input, tick) > least) {
+            // −0 is 0.
+            *counts
+                .entry((input.recording.tau[joint][tick] + 0.0).to_bits())
+                .or_default() += 1;
+            all += 1;
+        }
+    }
+    let commonest = counts.values().copied().max().unwrap_or(0);
+    let part = commonest as f64 / f64::from(u32::try_from(all).unwrap_or(u32::MAX)).max(1.0);
+    (all >= LEAST_ROWS && part > IDLE).then_some(part)
+}
+
+/// Moving rows of a joint in the recordings to be fitted.
+struct Rows {
+    /// Measured (N m or N).
+    torque: Vec<f64>,
+    /// What the model as it is needs (N m or N).
+    needed: Vec<f64>,
+    /// Columns that friction, a constant and the model alone would have.
+    plain: Vec<Vec<f64>>,
+    /// Those of positions, weight and masses of any size besides.
+    more: Vec<Vec<f64>>,
+}
+
+/// Why the channel is not the joint's torque, if it is not, by what the model and regressions say of it.
+fn of_another_kind(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Option<Why> {
+    let rows = rows(motions, rigid, scales, joint);
+    if rows.torque.len() < LEAST_ROWS {
+        return None;
+    }
+    let power = |signal: &[f64]| mean(signal.iter().map(|value| value * value).collect::<Vec<_>>().iter());
+    let size = (power(&rows.torque) / power(&rows.needed).max(f64::MIN_POSITIVE)).sqrt();
+    if size < FAR_TOO_SMALL {
+        return Some(Why::FarTooSmall(size));
+    }
+    let all: Vec<&Vec<f64>> = rows.plain.iter().chain(&rows.more).collect();
+    let plain: Vec<&Vec<f64>> = rows.plain.iter().collect();
+    let left = left(&plain, &rows.torque).min(left(&all, &rows.torque));
+    (left > UNRELATED).then(|| Why::Unrelated((1.0 - left * left).max(0.0)))
+}
+
+fn rows(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Rows {
+    let mut rows = Rows {
+        torque: Vec::new(),
+        needed: Vec::new(),
+        plain: vec![Vec::new(); 4],
+        more: Vec::new(),
+    };
+    for (chunk, rigid) in motions.chunks.iter().zip(rigid) {
+        if motions.sources[chunk.recording].held_out {
+            continue;
+        }
+        let moving: Vec<usize> = (0..chunk.rows())
+            .filter(|&row| chunk.qd[joint][chunk.tick_of(row)].abs() > scales.rest[joint])
+            .collect();
+        let filtered = |signal: &[f64]| -> Vec<f64> {
+            let values = chunk.filter(signal);
+            moving.iter().map(|&row| values[row]).collect()
+        };
+        let (q, qd) = (&chunk.q[joint], &chunk.qd[joint]);
+        let of = |signal: &[f64], f: fn(f64) -> f64| -> Vec<f64> {
+            filtered(&signal.iter().map(|&value| f(value)).collect::<Vec<f64>>())
+        };
+        rows.torque.extend(filtered(&chunk.tau[joint]));
+        let needed = filtered(&rigid.tau[joint]);
+        rows.needed.extend(&needed);
+        let plain = [needed, of(qd, sign), filtered(qd), vec![1.0; moving.len()]];
+        rows.plain
+            .iter_mut()
+            .zip(plain)
+            .for_each(|(column, values)| column.extend(values));
+        let mut more = vec![
+            filtered(q),
+            of(q, f64::sin),
+            of(q, f64::cos),
+            filtered(&chunk.qdd[joint]),
+        ];
+        more.extend(rigid.links[joint].iter().skip(joint).map(|column| filtered(column)));
+        more.extend(rigid.gravity[joint].iter().map(|column| filtered(column)));
+        more.extend(rigid.payload[joint].iter().take(4).map(|column| filtered(column)));
+        rows.more.resize(more.len(), Vec::new());
+        rows.more
+            .iter_mut()
+            .zip(more)
+            .for_each(|(column, values)| column.extend(values));
+    }
+    rows
+}
+
+/// What columns leave (NRMSE) of `y` on stretches left out one after the other, each less the mean of the rest.
+fn left(columns: &[&Vec<f64>], y: &[f64]) -> f64 {
+    let n = columns.len();
+    let scaled: Vec<f64> = columns
+        .iter()
+        .map(|column| {
+            1.0 / mean(column.iter().map(|v| v * v).collect::<Vec<_>>().iter())
+                .sqrt()
+                .max(1e-12)
+        })
+        .collect();
+    let x = |row: usize| DVector::from_fn(n, |k, _| scaled[k] * columns[k][row]);
+    let length = y.len().div_ceil(FOLDS);
+    let folds: Vec<std::ops::Range<usize>> = (0..FOLDS)
+        .map(|fold| (fold * length).min(y.len())..((fold + 1) * length).min(y.len()))
+        .collect();
+    let sums: Vec<(DMatrix<f64>, DVector<f64>, f64)> = folds
+        .iter()
+        .map(|fold| {
+            let (mut gram, mut right, mut sum) = (DMatrix::zeros(n, n), DVector::zeros(n), 0.0);
+            for row in fold.clone() {
+                let x = x(row);
+                gram.ger(1.0, &x, &x, 1.0);
+                right.axpy(y[row], &x, 1.0);
+                sum += y[row];
+            }
+            (gram, right, sum)
+        })
+        .collect();
+    let (mut with, mut without) = (0.0, 0.0);
+    for (k, fold) in folds.iter().enumerate() {
+        let rest = (0..FOLDS).filter(|&other| other != k);
+        let rows = (y.len() - fold.len()).max(1) as f64;
+        let (mut gram, mut right, mut sum) = (DMatrix::identity(n, n) * (RIDGE * rows), DVector::zeros(n), 0.0);
+        for other in rest {
+            gram += &sums[other].0;
+            right += &sums[other].1;
+            sum += sums[other].2;
+        }
+        let Some(solution) = gram.cholesky().map(|factor| factor.solve(&right)) else {
+            return 0.0;
+        };
+        for row in fold.clone() {
+            with += (y[row] - solution.dot(&x(row))).powi(2);
+            without += (y[row] - sum / rows).powi(2);
+        }
+    }
+    if without > 0.0 { (with / without).sqrt() } else { 0.0 }
+}

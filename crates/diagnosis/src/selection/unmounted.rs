@@ -1,0 +1,90 @@
+//! A tool that the URDF draws and that is not mounted: what the background says of the last link, by its name.
+//!
+//! Whatever differs of the last link may be a body on the tool: the ten columns are the same. A general change of all links'
+//! inertial parameters costs fewer nats than ten coefficients, so that the search leaves a missing tool to the background. Where
+//! that one body alone does nearly all that the background does for all links, it is what is wrong.
+
+use effects::arm::Payload;
+
+use crate::findings::rivals::allowance;
+use crate::regression::background::Strengths;
+use crate::regression::bodies::PER_LINK;
+use crate::regression::bootstrap::{Resampled, resample};
+use crate::search::problem::Chosen;
+use crate::search::study::Study;
+use crate::selection::judge::{self, Judged};
+use crate::selection::naming::name;
+
+/// The part of what the background of all links explains (nats) that one missing body must explain alone.
+const NEARLY_ALL: f64 = 0.7;
+
+/// Names a body that is missing at the tool, if the background stands for one; the new resamplings. Other payloads stay what
+/// they are: a part of the background, or named by the search.
+pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
+    let is_payload = |c: usize| study.candidates[c].cause.is(&Payload);
+    if study.strengths.links.last().is_none_or(|&rho| rho == 0.0) || judged.named.set.iter().any(|&c| is_payload(c)) {
+        return None;
+    }
+    let whole = |&c: &usize| is_payload(c) && study.candidates[c].columns.len() == PER_LINK;
+    let always = |&c: &usize| study.terms(c).iter().all(|term| term.onset().is_none());
+    let body = (0..study.candidates.len()).filter(whole).find(always)?;
+    let (strengths, next) = instead(study, &judged.named, body)?;
+    let before = std::mem::replace(&mut study.strengths, strengths);
+    let resampled = resample(study, &next);
+    let is_missing = name(study, &resampled.evenly(), body)
+        .first()
+        .and_then(|named| named.parameters.get("mass"))
+        .is_some_and(|mass| mass.ci95[1] < 0.0);
+    if !is_missing {
+        study.strengths = before;
+        return None;
+    }
+    let products = study.products(|r| study.fitted[r]);
+    judged.members = judge::describe(study, &study.problem(&products), &next);
+    study.note_strengths("one missing body does nearly all that the background does", &judged.named, &next);
+    judged.named = next;
+    Some(resampled)
+}
+
+/// What is `chosen` with a missing `body` and less of the background, if the body does nearly all of what that does and both
+/// predict held-out recordings nearly as well.
+fn instead(study: &Study, chosen: &Chosen, body: usize) -> Option<(Strengths, Chosen)> {
+    let with = [chosen.set.as_slice(), &[body]].concat();
+    let fit = |strengths: &Strengths, set: &[usize]| {
+        let products = study.products_at(strengths);
+        let problem = study.problem(&products);
+        let next = problem.reweighted(problem.choose(set.to_vec(), &chosen.fit.weights));
+        let is_possible = !set.contains(&body) || problem.is_possible(body, &next.fit);
+        (next, is_possible)
+    };
+    let exact = Strengths {
+        links: vec![0.0; study.arm.dof()],
+        ..study.strengths.clone()
+    };
+    let (bare, _) = fit(&exact, &chosen.set);
+    let (alone, _) = fit(&exact, &with);
+    let explained = bare.score - chosen.score;
+    if bare.score - alone.score < NEARLY_ALL * explained {
+        return None;
+    }
+    let weaker = study.strengths.weaker().into_iter();
+    let fitted = weaker
+        .filter(|strengths| study.stated.allows(strengths))
+        .map(|strengths| (fit(&strengths, &with), strengths));
+    let ((next, _), strengths) = fitted
+        .filter(|((next, is_possible), _)| {
+            *is_possible && next.fit.coefficient(study.candidates[body].columns[0]) < 0.0
+        })
+        .min_by(|a, b| a.0.0.score.total_cmp(&b.0.0.score))?;
+    if next.score - chosen.score > allowance(explained) {
+        return None;
+    }
+    if study.fitted.contains(&false) {
+        let held = study.products(|r| !study.fitted[r]);
+        let loss = |chosen: &Chosen| held.loss(&held.rss(&study.table, &chosen.fit.columns, &chosen.fit.coefficients));
+        if loss(&next) - loss(chosen) > allowance(loss(&bare) - loss(chosen)) {
+            return None;
+        }
+    }
+    Some((strengths, next))
+}

@@ -1,0 +1,104 @@
+//! A base on a slope, on a wall, on the ceiling; a body that the URDF draws and that is not mounted; what is no torque.
+
+mod support;
+
+use arm::Vector3;
+use diagnosis::{Diagnosis, Options, diagnose};
+use support::{Motion, diagnosed, inputs, ordinary, recorded, regular, sentences, trio};
+
+/// What is named beside the friction that every joint has.
+fn named(diagnosis: &Diagnosis) -> Vec<(&str, Option<&str>)> {
+    let plain = ["viscous_friction", "coulomb_friction"];
+    let findings = diagnosis.report.findings.iter();
+    findings
+        .filter(|finding| !plain.contains(&finding.effect))
+        .map(|finding| (finding.effect, finding.joint.as_deref()))
+        .collect()
+}
+
+/// The diagnosis of the trio's arm on a base turned by an angle (°) about an axis.
+fn mounted(degrees: f64) -> Diagnosis {
+    let robot = trio().with_turned_base(Vector3::new(0.6, 0.8, 0.0), degrees.to_radians());
+    diagnosed(&trio(), &robot, &|motion, tau| ordinary(motion, tau), Vec::new())
+}
+
+#[test]
+fn a_base_on_a_slope_a_wall_or_the_ceiling_is_found() {
+    for degrees in [12.0, 30.0, 45.0, 90.0, 180.0] {
+        let diagnosis = mounted(degrees);
+        assert_eq!(
+            named(&diagnosis),
+            [("gravity_misalignment", None)],
+            "{degrees}: {:?}",
+            sentences(&diagnosis)
+        );
+        let found = diagnosis
+            .report
+            .findings
+            .iter()
+            .find(|finding| finding.effect == "gravity_misalignment");
+        let angle = found.expect("it is found").parameters["angle"];
+        let [low, high] = angle.ci95.map(f64::to_degrees);
+        assert!((low..=high).contains(&degrees), "{degrees}: {low} to {high}");
+        assert!(high - low < 0.05 * degrees + 0.5, "{degrees}: {low} to {high}");
+        assert!(
+            diagnosis.report.unexplained.is_empty(),
+            "{degrees}: {:?}",
+            diagnosis.report.unexplained
+        );
+    }
+}
+
+/// The corrected model is as good as the report says of the fit: gravity is as large on the wall.
+#[test]
+fn what_is_known_of_a_wall_is_not_found_again() {
+    let robot = trio().with_turned_base(Vector3::new(0.6, 0.8, 0.0), 90.0_f64.to_radians());
+    let known = mounted(90.0).effects;
+    let again = diagnosed(&trio(), &robot, &|motion, tau| ordinary(motion, tau), known);
+    assert!(named(&again).is_empty(), "{:?}", sentences(&again));
+    let worst = again
+        .report
+        .fit
+        .values()
+        .filter_map(|fit| fit.held_out_nrmse_nominal)
+        .fold(0.0, f64::max);
+    assert!(worst < 0.02, "{worst}");
+}
+
+/// A channel that shows zero most of the time, as one that shows another quantity, costs the other joints nothing.
+#[test]
+fn channels_without_torque_are_left_out() {
+    let robot = trio();
+    let concealed = |motion: &Motion, tau: &mut [f64]| {
+        ordinary(motion, tau);
+        tau[2] = 0.0;
+    };
+    let recordings: Vec<_> = [16.0, 16.0, 10.0]
+        .into_iter()
+        .enumerate()
+        .map(|(variant, seconds)| {
+            let mut recording = recorded(&robot, variant, seconds, &|motion, tau| concealed(motion, tau));
+            // Now and then something else is written.
+            for (k, tau) in recording.tau[2].iter_mut().enumerate() {
+                *tau = if k % 97 < 15 { 0.3 * (k as f64).sin() } else { 0.0 };
+            }
+            regular(&recording)
+        })
+        .collect();
+    let diagnosis = diagnose(&trio(), &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed");
+    assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
+    let remarks = diagnosis.remarks.join("\n");
+    assert!(
+        remarks.contains("elbow: the torque channel shows one and the same value"),
+        "{remarks}"
+    );
+    let friction = |joint: &str| {
+        diagnosis
+            .report
+            .findings
+            .iter()
+            .filter(|finding| finding.joint.as_deref() == Some(joint))
+            .count()
+    };
+    assert_eq!([friction("turn"), friction("shoulder"), friction("elbow")], [2, 2, 0]);
+}

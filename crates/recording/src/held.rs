@@ -1,0 +1,142 @@
+//! Rows that repeat the sample before: a logger that is faster than what it logs.
+
+use crate::{PartialSignal, Recording, Warning};
+
+/// Rows that repeat others make a pattern only in so many samples.
+const LEAST_RUNS: usize = 20;
+/// So large a part of all samples is held for the same number of rows.
+const ALIKE: f64 = 0.8;
+
+/// The recording with each sample once, and a warning, if each was written several times; `None` if rows are samples.
+///
+/// Positions of held samples stand still and jump, so that no derivative of them means anything.
+pub fn without_held(recording: &Recording) -> Option<(Recording, Warning)> {
+    let runs = runs(recording);
+    let mut lengths: Vec<usize> = runs.iter().map(|&(_, length)| length).collect();
+    if lengths.len() < LEAST_RUNS {
+        return None;
+    }
+    let middle = lengths.len() / 2;
+    let held = *lengths.select_nth_unstable(middle).1;
+    // A logger's clock drifts against the other: now and then a sample is held for one row more or less. What does not
+    // change for longer is the same value sampled again.
+    let is_alike = |length: &&usize| {
+        let rest = **length % held;
+        rest <= 1 || rest + 1 >= held
+    };
+    if held < 2 || (lengths.iter().filter(is_alike).count() as f64) < ALIKE * lengths.len() as f64 {
+        return None;
+    }
+    let samples = |length: usize| ((length as f64 / held as f64).round() as usize).max(1);
+    let rows: Vec<usize> = runs
+        .iter()
+        .flat_map(|&(first, length)| (0..samples(length)).map(move |sample| first + (sample * held).min(length - 1)))
+        .collect();
+    let warning = Warning::Held {
+        rows: recording.len(),
+        samples: rows.len(),
+        held,
+    };
+    Some((picked(recording, &rows), warning))
+}
+
+/// First row and length of each stretch of rows with the same positions, velocities and torques.
+fn runs(recording: &Recording) -> Vec<(usize, usize)> {
+    let signals = || {
+        recording
+            .q
+            .iter()
+            .chain(&recording.tau)
+            .chain(recording.qd.iter().flatten())
+    };
+    let repeats = |row: usize| {
+        recording.breaks.binary_search(&row).is_err() && signals().all(|signal| signal[row] == signal[row - 1])
+    };
+    let mut runs: Vec<(usize, usize)> = Vec::new();
+    for row in 0..recording.len() {
+        match runs.last_mut() {
+            Some((_, length)) if repeats(row) => *length += 1,
+            _ => runs.push((row, 1)),
+        }
+    }
+    runs
+}
+
+/// The recording's rows `rows` alone.
+fn picked(recording: &Recording, rows: &[usize]) -> Recording {
+    let pick = |signal: &Vec<f64>| -> Vec<f64> { rows.iter().map(|&row| signal[row]).collect() };
+    let all = |signals: &Vec<Vec<f64>>| -> Vec<Vec<f64>> { signals.iter().map(pick).collect() };
+    let some =
+        |signals: &PartialSignal| -> PartialSignal { signals.iter().map(|signal| signal.as_ref().map(pick)).collect() };
+    Recording {
+        joints: recording.joints.clone(),
+        time: pick(&recording.time),
+        q: all(&recording.q),
+        qd: recording.qd.as_ref().map(all),
+        qdd: recording.qdd.as_ref().map(all),
+        tau: all(&recording.tau),
+        q_secondary: some(&recording.q_secondary),
+        tau_current: some(&recording.tau_current),
+        current: some(&recording.current),
+        temperature: some(&recording.temperature),
+        others: recording
+            .others
+            .iter()
+            .map(|(name, values)| (name.clone(), pick(values)))
+            .collect(),
+        breaks: recording
+            .breaks
+            .iter()
+            .map(|&at| rows.partition_point(|&row| row < at))
+            .collect(),
+        warnings: recording.warnings.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 500 samples of a swing, each written as many times as `times` says.
+    fn written(times: impl Fn(usize) -> usize) -> Recording {
+        let samples: Vec<usize> = (0..500).flat_map(|sample| vec![sample; times(sample)]).collect();
+        Recording {
+            joints: vec!["a".into()],
+            time: (0..samples.len()).map(|row| row as f64 * 0.0025).collect(),
+            q: vec![samples.iter().map(|&k| (0.02 * k as f64).sin()).collect()],
+            tau: vec![samples.iter().map(|&k| (0.03 * k as f64).cos()).collect()],
+            ..Recording::default()
+        }
+    }
+
+    #[test]
+    fn each_sample_is_left_once() {
+        let recording = written(|sample| [4, 4, 4, 5, 4, 3][sample % 6]);
+        let (thinned, warning) = without_held(&recording).expect("samples are held");
+        assert_eq!(thinned.q[0].len(), 500);
+        assert!(thinned.q[0].windows(2).all(|pair| pair[0] != pair[1]));
+        let expected = Warning::Held {
+            rows: recording.len(),
+            samples: 500,
+            held: 4,
+        };
+        assert_eq!(warning, expected);
+        let (regular, warnings) = recording.regular().expect("it has a clock");
+        assert!(warnings.contains(&expected), "{warnings:?}");
+        assert!((regular.period - 0.01).abs() < 1e-4, "{}", regular.period);
+    }
+
+    #[test]
+    fn a_robot_that_rests_is_not_held() {
+        assert!(without_held(&written(|_| 1)).is_none());
+        let rests = |sample: usize| if sample.is_multiple_of(50) { 100 } else { 1 };
+        assert!(without_held(&written(rests)).is_none());
+    }
+
+    #[test]
+    fn a_sample_that_comes_again_is_another() {
+        let (thinned, _) =
+            without_held(&written(|sample| if sample == 100 { 40 } else { 4 })).expect("samples are held");
+        assert_eq!(thinned.len(), 509);
+    }
+}
