@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::model::JointKind;
+use crate::pose::Pose;
 
 /// How an arm is chosen among the joints of a robot. By default it is the robot's only chain of moving joints, where
 /// grippers and mimicking joints are fixed.
@@ -27,6 +28,8 @@ pub struct FixedJoint {
     pub kind: JointKind,
     /// Where it is fixed (rad or m).
     pub position: f64,
+    /// The pose of its child link in its parent link.
+    pub parent_from_child: Pose,
     /// Why.
     pub reason: FixedBecause,
     /// Whether the arm carries it, so that its position matters to the arm's dynamics.

@@ -5,11 +5,16 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use torque::{LengthScales, TrainingOptions};
 
+mod chain;
 mod numbers;
+mod rerun;
 
 use crate::models::ModelKind;
 use crate::prove::Shard;
+pub use chain::ChainArgs;
 use numbers::{parse_accuracy, parse_frequency, parse_urdf_error};
+pub use rerun::Rerun;
+use rerun::parse_rerun;
 
 /// Tracking testbed and model diagnosis for robot arms
 #[derive(Debug, Parser)]
@@ -75,6 +80,9 @@ pub struct RunArgs {
     /// The random seed, for the noise of the scenario's sensors
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
+
+    #[command(flatten)]
+    pub chain: ChainArgs,
 }
 
 #[derive(Debug, Args)]
@@ -105,6 +113,9 @@ pub struct InspectArgs {
     /// Write the complete result to this file as JSON
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub chain: ChainArgs,
 }
 
 /// The catalogue's effects, one a line.
@@ -193,6 +204,9 @@ pub struct DiagnoseArgs {
     /// The half-power frequency of the low-pass filter (Hz)
     #[arg(long, value_name = "HZ", value_parser = parse_frequency)]
     pub cutoff: Option<f64>,
+
+    #[command(flatten)]
+    pub chain: ChainArgs,
 }
 
 #[derive(Debug, Args)]
@@ -254,6 +268,9 @@ pub struct ProveArgs {
     /// The number of concurrent processes, which does not change the result [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,
+
+    #[command(flatten)]
+    pub chain: ChainArgs,
 }
 
 #[derive(Debug, Args)]
@@ -312,6 +329,9 @@ pub struct ConcealArgs {
     /// The number of threads, which does not change the result [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,
+
+    #[command(flatten)]
+    pub chain: ChainArgs,
 }
 
 impl DiagnoseArgs {
@@ -347,48 +367,5 @@ impl LengthScalesArg {
             lengths,
             ..TrainingOptions::default()
         }
-    }
-}
-
-/// Where Rerun shows a run.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Rerun {
-    /// Nowhere.
-    Off,
-    /// Into a file: this one, or `run.rrd` in the run's folder.
-    Save(Option<PathBuf>),
-    /// In a viewer started for it.
-    Spawn,
-    /// In a viewer that listens, by default on this machine.
-    Connect(Option<String>),
-}
-
-fn parse_rerun(text: &str) -> Result<Rerun, String> {
-    let (word, value) = match text.split_once('=') {
-        Some((word, value)) => (word, Some(value)),
-        None => (text, None),
-    };
-    match (word, value) {
-        (_, Some("")) => Err("nothing follows the \"=\"".into()),
-        ("off", None) => Ok(Rerun::Off),
-        ("spawn", None) => Ok(Rerun::Spawn),
-        ("save", file) => Ok(Rerun::Save(file.map(PathBuf::from))),
-        ("connect", url) => Ok(Rerun::Connect(url.map(str::to_owned))),
-        _ => Err("give off, save, save=FILE, spawn, connect or connect=URL".into()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rerun_targets_parse() {
-        assert_eq!(parse_rerun("off"), Ok(Rerun::Off));
-        assert_eq!(parse_rerun("save=a=b.rrd"), Ok(Rerun::Save(Some("a=b.rrd".into()))));
-        assert_eq!(parse_rerun("connect"), Ok(Rerun::Connect(None)));
-        assert!(parse_rerun("save=").is_err());
-        assert!(parse_rerun("show").is_err());
-        assert!(parse_rerun("off=1").is_err());
     }
 }

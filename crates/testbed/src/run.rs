@@ -71,7 +71,7 @@ struct Percentiles {
 /// # Errors
 /// One that says what was being done, what was found and how to mend it.
 pub fn run(args: &RunArgs) -> anyhow::Result<()> {
-    let scenario = Scenario::load(&args.scenario)?;
+    let scenario = Scenario::load_chain(&args.scenario, &args.chain)?;
     let kind = args.model.unwrap_or(scenario.model);
     let sources = if kind.learns() {
         args.train.as_ref().unwrap_or(&scenario.training).clone()
@@ -87,7 +87,7 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
     }
     let out = args.out.as_deref();
     check_outputs(args, &scenario, &sources)?;
-    let samples = training::training_samples(&scenario, &sources, args.seed)?;
+    let samples = training::training_samples(&scenario, &sources, &args.chain, args.seed)?;
     notes(args, kind, &scenario, &samples);
 
     let options = args.length_scales.training_options();

@@ -8,6 +8,7 @@ use super::Reader;
 use crate::chain::{ChainOptions, FixedBecause, FixedJoint};
 use crate::error::ArmError;
 use crate::model::JointKind;
+use crate::pose::Pose;
 
 /// What the name of a gripper's joint contains.
 const GRIPPER_WORDS: [&str; 5] = ["gripper", "finger", "knuckle", "jaw", "thumb"];
@@ -157,11 +158,17 @@ impl<'a> Reader<'a> {
                 name: joint.name.clone(),
                 kind: kind(joint),
                 position,
+                parent_from_child: Pose::identity(),
                 reason,
                 is_carried: carried.is_some_and(|path| path.iter().any(|joint| names(&moving, joint))),
             });
         }
         self.follow(&mut chain);
+        for fixed in &mut chain.fixed {
+            if let Some(joint) = self.robot.joints.iter().find(|joint| joint.name == fixed.name) {
+                fixed.parent_from_child = self.fixed_pose(joint, fixed.position)?;
+            }
+        }
         Ok(chain)
     }
 

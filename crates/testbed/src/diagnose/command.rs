@@ -1,16 +1,16 @@
 //! The command itself: files in, diagnosis, files out.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::Context;
 use arm::Arm;
 use diagnosis::{Diagnosis, Input, Options};
 
 use super::effect_file::EffectFile;
-use super::inputs::Role;
+use super::inputs::{Files, Role};
 use super::{inputs, next_file, urdf_file};
 use crate::cli::DiagnoseArgs;
-use crate::library::{self, Source};
+use crate::library::{self, RobotFile};
 use crate::output;
 
 /// Diagnoses where and why the recordings that `args` name differ from the robot's model.
@@ -27,11 +27,13 @@ pub fn run(args: &DiagnoseArgs) -> anyhow::Result<()> {
 }
 
 fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
-    let (arm, urdf_path) = load_robot(&args.robot)?;
+    let robot = library::named_robot(&args.robot)?;
+    let files = Files::open(args)?;
+    let arm = load_arm(args, &robot, files.joints())?;
     let known = inputs::known(args, &arm)?;
     let only = inputs::only(args, &arm)?;
     let spinner = output::spinner("reading");
-    let recordings = inputs::read(args, &arm, &spinner)?;
+    let recordings = inputs::read(files, &arm, &spinner)?;
     let list: Vec<Input<'_>> = recordings
         .iter()
         .map(|recording| Input {
@@ -66,7 +68,7 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
     }
     // The known effects are a part of the model that the findings correct.
     let effects = [options.known.as_slice(), &diagnosis.effects].concat();
-    let removed = write(args, &arm, &urdf_path, &diagnosis, effects)?;
+    let removed = write(args, &arm, &robot, &diagnosis, effects)?;
     output::print(&report::terminal::diagnosis(&diagnosis.report))?;
     let is_written = |path: &&Path| args.next.as_deref() != Some(*path) || diagnosis.next.is_some();
     for path in args.outputs().into_iter().filter(is_written) {
@@ -81,30 +83,26 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn load_robot(robot: &str) -> anyhow::Result<(Arm, PathBuf)> {
-    let here = Source {
-        name: String::new(),
-        path: "".into(),
-        text: String::new(),
-    };
-    let (arm, path) = library::load_arm(robot, &here).with_context(|| format!("--robot {robot}"))?;
+fn load_arm(args: &DiagnoseArgs, robot: &RobotFile, recorded: &[String]) -> anyhow::Result<Arm> {
+    let arm = robot
+        .arm(&args.chain.options(recorded))
+        .with_context(|| format!("--robot {}", args.robot))?;
     for warning in arm.warnings() {
-        eprintln!("note: {}: {warning}", path.display());
+        eprintln!("note: {}: {warning}", robot.path.display());
     }
-    Ok((arm, path))
+    Ok(arm)
 }
 
 /// Writes the requested files; returns the path of an earlier proposal that was removed without a new one.
 fn write<'a>(
     args: &'a DiagnoseArgs,
     arm: &Arm,
-    urdf_path: &Path,
+    robot: &RobotFile,
     diagnosis: &Diagnosis,
     effects: Vec<effects::Effect>,
 ) -> anyhow::Result<Option<&'a Path>> {
     if let Some(path) = &args.urdf {
-        let text = library::urdf_text(&args.robot, urdf_path)?;
-        output::write_text(path, &urdf_file::corrected_urdf(&text, arm, &effects)?)?;
+        output::write_text(path, &urdf_file::corrected_urdf(&robot.text, arm, &effects)?)?;
     }
     if let Some(path) = &args.model {
         let file = EffectFile {
@@ -116,7 +114,7 @@ fn write<'a>(
     let mut removed = None;
     if let Some(path) = &args.next {
         match (&diagnosis.next, &diagnosis.report.next_experiment) {
-            (Some(motion), Some(next)) => next_file::write(path, &args.robot, urdf_path, next, motion)?,
+            (Some(motion), Some(next)) => next_file::write(path, &args.robot, &robot.path, arm, next, motion)?,
             _ => removed = next_file::remove_earlier(path)?.then_some(path.as_path()),
         }
     }
@@ -126,7 +124,7 @@ fn write<'a>(
     if let Some(path) = &args.json {
         output::write_json(path, &diagnosis.report)?;
     }
-    show(args, arm, urdf_path, diagnosis)?;
+    show(args, arm, &robot.path, diagnosis)?;
     Ok(removed)
 }
 

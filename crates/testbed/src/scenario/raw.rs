@@ -1,5 +1,6 @@
 //! A scenario as it is written: TOML, nothing checked but its shape.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use anyhow::anyhow;
@@ -21,6 +22,8 @@ pub enum PerJoint {
 pub struct RawScenario {
     pub title: Option<String>,
     pub robot: Spanned<String>,
+    #[serde(default)]
+    pub chain: RawChain,
     pub duration: Spanned<f64>,
     #[serde(default)]
     pub model: RawModel,
@@ -33,6 +36,15 @@ pub struct RawScenario {
     pub plant: RawPlant,
     #[serde(default)]
     pub sensors: RawSensors,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawChain {
+    pub base: Option<String>,
+    pub tip: Option<String>,
+    #[serde(default)]
+    pub lock: BTreeMap<String, f64>,
 }
 
 #[derive(Debug, Default, Deserialize)]
