@@ -1,6 +1,6 @@
 //! Rigid transformations between frames.
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 /// The pose of frame b in frame a, written `a_from_b`: p_a = R p_b + t.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +32,13 @@ impl Pose {
     pub fn xyz_rpy(&self) -> ([f64; 3], [f64; 3]) {
         let (roll, pitch, yaw) = Rotation3::from_matrix_unchecked(self.rotation).euler_angles();
         (self.translation.into(), [roll, pitch, yaw])
+    }
+
+    /// The rotation as a unit quaternion: w, x, y, z.
+    pub fn quaternion(&self) -> [f64; 4] {
+        let rotation = Rotation3::from_matrix_unchecked(self.rotation);
+        let quaternion = UnitQuaternion::from_rotation_matrix(&rotation);
+        [quaternion.w, quaternion.i, quaternion.j, quaternion.k]
     }
 
     /// `a_from_c` from `a_from_b` (self) and `b_from_c`.
@@ -69,6 +76,12 @@ mod tests {
             let again = Pose::from_xyz_rpy(xyz, rpy);
             assert!((pose.rotation - again.rotation).norm() < 1e-7, "{rpy:?}");
             assert_eq!(pose.translation, again.translation);
+            let [w, x, y, z] = pose.quaternion();
+            let turned = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z));
+            assert!(
+                (pose.rotation - turned.to_rotation_matrix().matrix()).norm() < 1e-12,
+                "{rpy:?}"
+            );
         }
     }
 }

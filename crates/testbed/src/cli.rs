@@ -29,6 +29,9 @@ pub struct Cli {
     pub command: Option<Command>,
     #[command(flatten)]
     pub run: Option<RunArgs>,
+    // Not within RunArgs: clap takes an optional struct with a struct in it as never given.
+    #[command(flatten)]
+    pub chain: ChainArgs,
 }
 
 #[derive(Debug, Subcommand)]
@@ -80,9 +83,6 @@ pub struct RunArgs {
     /// The random seed, for the noise of the scenario's sensors
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
-
-    #[command(flatten)]
-    pub chain: ChainArgs,
 }
 
 #[derive(Debug, Args)]
@@ -187,6 +187,15 @@ pub struct DiagnoseArgs {
     /// Write the URDF to this file, with those effects of the corrected model that a URDF can represent
     #[arg(long, value_name = "OUT")]
     pub urdf: Option<PathBuf>,
+
+    /// Write the corrected model to this file as MJCF (.xml), for MuJoCo, with those effects that MJCF can represent
+    #[arg(long, value_name = "OUT")]
+    pub mjcf: Option<PathBuf>,
+
+    /// Whether friction in the URDF (<dynamics>) is known friction, which the recordings are not to explain again. In most URDFs
+    /// it is a placeholder
+    #[arg(long, value_enum, default_value = "diagnosed")]
+    pub urdf_friction: UrdfFriction,
 
     /// Propose the motion that best distinguishes the remaining alternatives, and write it to this file as a scenario (.toml)
     #[arg(long, value_name = "OUT", conflicts_with = "only")]
@@ -342,9 +351,27 @@ impl DiagnoseArgs {
             Some(Rerun::Save(None)) => Some(Path::new("diagnosis.rrd")),
             _ => None,
         };
-        let files = [&self.json, &self.report, &self.model, &self.urdf, &self.next];
+        let files = [
+            &self.json,
+            &self.report,
+            &self.model,
+            &self.urdf,
+            &self.mjcf,
+            &self.next,
+        ];
         files.into_iter().flatten().map(PathBuf::as_path).chain(rerun).collect()
     }
+}
+
+/// Which friction in a URDF is known friction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum UrdfFriction {
+    /// That which testbed diagnose wrote (--urdf)
+    Diagnosed,
+    /// All
+    Known,
+    /// None
+    Ignored,
 }
 
 /// How many length scales a regression has.

@@ -189,6 +189,9 @@ impl<'a> Files<'a> {
 /// If one cannot be read, does not fit the arm, holds no motion or no torque, or is both fitted and held out.
 pub fn read(files: Files<'_>, arm: &Arm, progress: &ProgressBar) -> anyhow::Result<Vec<Prepared>> {
     let Files { map, files, mut first } = files;
+    let choosing = files
+        .first()
+        .map_or_else(String::new, |(path, _)| path.display().to_string());
     let mut list: Vec<Prepared> = Vec::new();
     for (path, role) in files {
         progress.set_message(format!("reading {}", path.display()));
@@ -196,14 +199,10 @@ pub fn read(files: Files<'_>, arm: &Arm, progress: &ProgressBar) -> anyhow::Resu
             Some(first) => first,
             None => Recording::read_csv_with(path, map.as_ref().map(|(_, map)| map))?,
         };
-        let prepared = prepare(
-            recording,
-            path,
-            role,
-            map.as_ref().map(|(path, _)| *path),
-            arm,
-            progress,
-        )?;
+        let name = path.display().to_string();
+        let map = map.as_ref().map(|(path, _)| *path);
+        let order = order(&recording, arm, &name, &choosing, map)?;
+        let prepared = prepare(recording, name, &order, role, arm, progress)?;
         // The same samples under another name.
         let twin = list.iter().find(|known| {
             let (a, b) = (&known.regular, &prepared.regular);
@@ -259,14 +258,12 @@ fn refuse_twice(files: &[(&PathBuf, Role)]) -> anyhow::Result<()> {
 
 fn prepare(
     recording: Recording,
-    path: &Path,
+    name: String,
+    order: &[usize],
     role: Role,
-    map: Option<&Path>,
     arm: &Arm,
     progress: &ProgressBar,
 ) -> anyhow::Result<Prepared> {
-    let name = path.display().to_string();
-    let order = order(&recording, arm, &name, map)?;
     let (regular, warnings) = recording.regular().with_context(|| name.clone())?;
     let quality = Quality::of(&recording, &regular);
     let misfits = model_check::check(arm, &regular, &quality);
@@ -302,7 +299,7 @@ fn prepare(
     if let Some(misfit) = misfits.iter().find(|misfit| misfit.spoils) {
         bail!("{name}: {}", misfit.text);
     }
-    let regular = reordered(regular, &order);
+    let regular = reordered(regular, order);
     if let Some(reason) = unusable(&regular, &quality) {
         bail!("{name}: {reason}");
     }

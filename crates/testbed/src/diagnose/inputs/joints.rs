@@ -3,14 +3,21 @@
 use std::path::Path;
 
 use anyhow::bail;
-use arm::Arm;
+use arm::{Arm, FixedBecause, FixedJoint};
 use recording::{Recording, RegularRecording, Signal, nearest};
 
 /// Where each joint of the arm is in the recording. Columns of joints that are fixed in the arm are left out.
 ///
 /// # Errors
-/// If the recording lacks a joint of the arm, or has one that the robot does not have.
-pub(super) fn order(recording: &Recording, arm: &Arm, name: &str, map: Option<&Path>) -> anyhow::Result<Vec<usize>> {
+/// If the recording lacks a joint of the arm, or has one that the robot does not have, or that was fixed because the
+/// recording `first`, which chose the arm, lacks it.
+pub(super) fn order(
+    recording: &Recording,
+    arm: &Arm,
+    name: &str,
+    first: &str,
+    map: Option<&Path>,
+) -> anyhow::Result<Vec<usize>> {
     let known: Vec<String> = arm.joints().iter().map(|joint| joint.name.clone()).collect();
     let quoted = |names: &[String]| {
         names
@@ -19,6 +26,17 @@ pub(super) fn order(recording: &Recording, arm: &Arm, name: &str, map: Option<&P
             .collect::<Vec<_>>()
             .join(", ")
     };
+    let lost = arm
+        .fixed_joints()
+        .iter()
+        .find(|fixed| fixed.reason == FixedBecause::NotRecorded && recording.joints.contains(&fixed.name));
+    if let Some(FixedJoint { name: joint, .. }) = lost {
+        bail!(
+            "{first}: has no column q_{joint} for \"{joint}\" of {}, and {name} has one; record all joints of the arm in every \
+             recording, or fix a joint that did not move: --lock {joint}=VALUE",
+            arm.name()
+        );
+    }
     let is_fixed = |joint: &str| arm.fixed_joints().iter().any(|fixed| fixed.name == joint);
     let foreign: Vec<String> = recording
         .joints
@@ -61,8 +79,10 @@ pub(super) fn order(recording: &Recording, arm: &Arm, name: &str, map: Option<&P
         );
     }
     if let Some(joint) = foreign.first() {
+        let fixed: Vec<String> = arm.fixed_joints().iter().map(|joint| joint.name.clone()).collect();
+        let hint = nearest(joint, &fixed).map_or_else(String::new, |near| format!(" (is q_{near} meant?)"));
         bail!(
-            "{name}: column q_{joint}: {} is not a joint of {}, which has {}; leave the column out with a column map (--map), or give the URDF of the robot that was recorded",
+            "{name}: column q_{joint}: {} is not a joint of {}, which has {}{hint}; leave the column out with a column map (--map), or give the URDF of the robot that was recorded",
             quoted(&foreign),
             arm.name(),
             quoted(&known)
