@@ -289,10 +289,10 @@ pub struct ConcealArgs {
     pub robot: Vec<String>,
 
     /// The effects to inject (.toml, as written by diagnose --model; an effect may have an onset and a form), with their values
-    #[arg(long, value_name = "FILE", required_unless_present = "seed")]
+    #[arg(long, value_name = "FILE")]
     pub effects: Option<PathBuf>,
 
-    /// The seed of all random choices; with --effects, of motions and noise only
+    /// The seed of all random choices; with --effects, of motions and noise only. One of the two is needed
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
 

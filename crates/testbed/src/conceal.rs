@@ -25,6 +25,10 @@ pub fn run(args: &ConcealArgs) -> anyhow::Result<()> {
 }
 
 fn conceal(args: &ConcealArgs) -> anyhow::Result<()> {
+    ensure!(
+        args.effects.is_some() || args.seed.is_some(),
+        "nothing says what to conceal; give --seed N to draw cases, or --effects FILE with the effects to inject"
+    );
     let robots = robots(&args.robot, &args.chain)?;
     let truths = args.out.join("truth");
     match &args.effects {

@@ -81,7 +81,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     if kind.learns() && sources.is_empty() {
         bail!(
             "the model \"{}\" is trained, but the scenario names nothing to train on; give --train taskA,taskB,… or \
-             [training] scenarios = […]",
+             [training] scenarios = […], or take a model that needs no training: --model rigid-body",
             kind.flag()
         );
     }

@@ -104,15 +104,18 @@ impl Model<'_> {
             &[("gravity", gravity), ("integrator", "implicitfast".into())],
         )?;
         open(&mut xml, "worldbody", &[])?;
-        open(&mut xml, "body", &[("name", self.arm.base_link().to_owned())])?;
+        // MuJoCo's own name of what stands still.
+        let has_base = self.arm.base_link() != "world";
+        if has_base {
+            open(&mut xml, "body", &[("name", self.arm.base_link().to_owned())])?;
+        }
         self.sites(&mut xml, None)?;
         for (j, joint) in self.arm.joints().iter().enumerate() {
             self.body(&mut xml, j, joint)?;
         }
-        for _ in self.arm.joints() {
+        for _ in 0..self.arm.dof() + usize::from(has_base) {
             close(&mut xml, "body")?;
         }
-        close(&mut xml, "body")?;
         close(&mut xml, "worldbody")?;
         open(&mut xml, "actuator", &[])?;
         for joint in self.arm.joints() {
