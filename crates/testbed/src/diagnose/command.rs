@@ -8,7 +8,7 @@ use diagnosis::{Diagnosis, Input, Options};
 
 use super::effect_file::EffectFile;
 use super::inputs::{Files, Role};
-use super::urdf_friction::known_friction;
+use super::urdf_friction::{known_friction, summed};
 use super::{inputs, mjcf_file, next_file, urdf_file};
 use crate::cli::DiagnoseArgs;
 use crate::library::{self, RobotFile};
@@ -73,7 +73,7 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
         eprintln!("note: simulation: {remark}");
     }
     // The known effects are a part of the model that the findings correct.
-    let effects = [options.known.as_slice(), &diagnosis.effects].concat();
+    let effects = summed(&options.known, &diagnosis.effects);
     let written = write(args, &arm, &robot, &diagnosis, effects)?;
     output::print(&report::terminal::diagnosis(&diagnosis.report))?;
     let is_written = |path: &&Path| args.next.as_deref() != Some(*path) || diagnosis.next.is_some();

@@ -68,6 +68,24 @@ pub fn known_friction(
     Ok((effects, remark))
 }
 
+/// The known effects and those found beside them: friction that is found on top of known friction of the same kind is one
+/// effect with both.
+pub fn summed(known: &[Effect], found: &[Effect]) -> Vec<Effect> {
+    let mut sum = known.to_vec();
+    for effect in found {
+        let adds_up = matches!(effect.spec().in_urdf, InUrdf::Damping | InUrdf::Friction);
+        let is_same = |other: &&mut Effect| {
+            let key = |effect: &Effect| (effect.kind(), effect.joint().map(str::to_owned), effect.onset());
+            adds_up && key(other) == key(effect)
+        };
+        match (sum.iter_mut().find(is_same), effect.spec().main) {
+            (Some(known), [main]) => *known = known.clone().with(main, known.number(main) + effect.number(main)),
+            _ => sum.push(effect.clone()),
+        }
+    }
+    sum
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -104,11 +122,14 @@ mod tests {
         let (known, remark) = known_friction(&file, &arm, UrdfFriction::Diagnosed, &[]).expect("it reads");
         assert_eq!(known, found);
         assert!(remark.expect("it says so").contains("of a is not used"));
-        // The next finding comes on top of it.
-        let more = [known, vec![Effect::of(&CoulombFriction).on("b").with("level", 0.25)]].concat();
+        // The next findings come on top of it, as one effect of each kind.
+        let level = Effect::of(&CoulombFriction).on("b").with("level", 0.25);
+        let other = Effect::of(&ViscousFriction).on("a").with("coefficient", 4.0);
+        let more = summed(&known, &[level, found[0].clone(), other]);
+        assert_eq!(more.len(), 3);
         let (_, arm) = robot(&corrected_urdf(&file.text, &arm, &more).expect("it is written").text);
         let joint = &arm.joints()[1];
-        assert_eq!((joint.damping, joint.friction), (1.5, 0.25));
+        assert_eq!((joint.damping, joint.friction), (3.0, 0.25));
         // What --known says of a joint's damping takes the place of the file's.
         let (known, _) = known_friction(&file, &arm, UrdfFriction::Diagnosed, &found).expect("it reads");
         assert!(known.iter().all(|effect| effect.is(&CoulombFriction)), "{known:?}");
