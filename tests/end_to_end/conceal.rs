@@ -158,3 +158,12 @@ fn what_cannot_be_concealed_is_refused_with_its_line() {
     assert!(error.contains("did you mean \"puma560\""), "{error}");
     assert!(sandbox.list("cases").is_empty());
 }
+
+#[test]
+fn without_effects_or_seed_both_are_offered() {
+    let message = Sandbox::new().refuse(&["conceal", "--out", "made"]);
+    assert!(
+        message.contains("--seed N") && message.contains("--effects FILE"),
+        "{message}"
+    );
+}

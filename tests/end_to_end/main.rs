@@ -14,6 +14,7 @@ mod prove;
 mod prove_paper;
 mod prove_published;
 mod refusals;
+mod robots;
 mod runs;
 mod support;
 mod tidy;

@@ -179,6 +179,44 @@ fn a_loop_that_is_unstable_says_so() {
     assert!(sandbox.list("runs").is_empty(), "something was left behind");
 }
 
+/// An arm that moves next to no inertia: no gains make up for it.
+#[test]
+fn a_loop_that_is_unstable_for_want_of_inertia_says_so() {
+    let sandbox = Sandbox::new();
+    let urdf = r#"<robot name="r"><link name="b"/>
+<link name="a"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+<link name="tip"><inertial><origin xyz="0 0 0.1"/><mass value="1e-9"/><inertia ixx="1e-10" ixy="0" ixz="0" iyy="1e-10" iyz="0" izz="1e-10"/></inertial></link>
+<joint name="j1" type="continuous"><parent link="b"/><child link="a"/><axis xyz="0 0 1"/></joint>
+<joint name="j2" type="continuous"><parent link="a"/><child link="tip"/><axis xyz="1 0 0"/></joint></robot>"#;
+    sandbox.write("r.urdf", urdf);
+    let scenario = GOOD
+        .replace("puma560", "r.urdf")
+        .replace("[0.5, 0.5, 0.5, 0.5, 0.5, 0.5]", "0.5")
+        .replace("kp = 100", "feedback = \"gains\"\nkp = 100\nkd = 20");
+    sandbox.write("r.toml", &scenario);
+    let message = sandbox.refuse(&["--scenario", "r.toml", "--model", "true", "--rerun", "off"]);
+    says(
+        &message,
+        &[
+            "unstable",
+            "joint \"j2\" moves no more than",
+            "<inertial>",
+            "plant.rotor_inertia",
+        ],
+    );
+    assert!(!message.contains("lower the gains"), "{message}");
+}
+
+#[test]
+fn a_scenario_that_lacks_a_key_says_what_to_add() {
+    let message = refusal("duration = 0.2\n", "");
+    says(&message, &["bad.toml", "duration", "duration = 10.0"]);
+    let sandbox = Sandbox::new();
+    sandbox.write("bad.toml", GOOD);
+    let message = sandbox.refuse(&["--scenario", "bad.toml", "--rerun", "off"]);
+    says(&message, &["--train", "--model rigid-body"]);
+}
+
 #[test]
 fn a_run_of_no_or_endless_steps_is_refused() {
     says(

@@ -7,6 +7,7 @@
 //! A link's frame is its URDF frame, at its joint. Poses are written `a_from_b`. Spatial
 //! quantities put the angular part first.
 
+mod chain;
 mod energy;
 mod error;
 mod forward_dynamics;
@@ -21,6 +22,7 @@ mod variants;
 mod visual;
 mod workspace;
 
+pub use chain::{ChainOptions, FixedBecause, FixedJoint};
 pub use error::ArmError;
 pub use inverse_dynamics::{FEATURES, NewtonEulerFeatures};
 pub use model::{Arm, Frame, Inertia, Joint, JointKind, Limits, STANDARD_GRAVITY};

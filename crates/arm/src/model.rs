@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::chain::FixedJoint;
 use crate::pose::{Pose, cross_matrix};
 use crate::visual::Visual;
 
@@ -173,6 +174,9 @@ pub struct Arm {
     pub(crate) base_link: String,
     pub(crate) joints: Vec<Joint>,
     pub(crate) frames: Vec<Frame>,
+    /// Which of the frames is the tool; `None` is the last link itself.
+    pub(crate) tool: Option<usize>,
+    pub(crate) fixed_joints: Vec<FixedJoint>,
     pub(crate) visuals: Vec<Visual>,
     pub(crate) gravity: Vector3<f64>,
     pub(crate) warnings: Vec<String>,
@@ -184,7 +188,7 @@ impl Arm {
         &self.name
     }
 
-    /// The URDF's root link.
+    /// The link that stands still: the URDF's root link, or the base that was chosen.
     pub fn base_link(&self) -> &str {
         &self.base_link
     }
@@ -204,15 +208,22 @@ impl Arm {
         &self.frames
     }
 
-    /// The frame at the end of the arm: the last one fixed to the last link, or else that link itself.
+    /// The joints of the robot that could move, and are fixed in this arm or no part of it.
+    pub fn fixed_joints(&self) -> &[FixedJoint] {
+        &self.fixed_joints
+    }
+
+    /// The frame at the end of the arm: the tip, if one was asked for, else the last one that the URDF fixes to the last
+    /// link, or that link itself.
     pub fn tool_frame(&self) -> Frame {
         let last = self.dof() - 1;
-        let fixed_to_last = self.frames.iter().rfind(|f| f.link == Some(last));
-        fixed_to_last.cloned().unwrap_or_else(|| Frame {
-            name: self.joints[last].link_name.clone(),
-            link: Some(last),
-            link_from_frame: Pose::identity(),
-        })
+        self.tool
+            .map(|tool| self.frames[tool].clone())
+            .unwrap_or_else(|| Frame {
+                name: self.joints[last].link_name.clone(),
+                link: Some(last),
+                link_from_frame: Pose::identity(),
+            })
     }
 
     /// What the URDF shows of the arm.

@@ -1,6 +1,6 @@
 //! Rigid transformations between frames.
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 /// The pose of frame b in frame a, written `a_from_b`: p_a = R p_b + t.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +28,19 @@ impl Pose {
         }
     }
 
+    /// The xyz (m) and the fixed-axis roll, pitch, yaw (rad) of which [`Self::from_xyz_rpy`] makes this pose.
+    pub fn xyz_rpy(&self) -> ([f64; 3], [f64; 3]) {
+        let (roll, pitch, yaw) = Rotation3::from_matrix_unchecked(self.rotation).euler_angles();
+        (self.translation.into(), [roll, pitch, yaw])
+    }
+
+    /// The rotation as a unit quaternion: w, x, y, z.
+    pub fn quaternion(&self) -> [f64; 4] {
+        let rotation = Rotation3::from_matrix_unchecked(self.rotation);
+        let quaternion = UnitQuaternion::from_rotation_matrix(&rotation);
+        [quaternion.w, quaternion.i, quaternion.j, quaternion.k]
+    }
+
     /// `a_from_c` from `a_from_b` (self) and `b_from_c`.
     pub fn compose(&self, b_from_c: &Pose) -> Pose {
         Pose {
@@ -45,4 +58,30 @@ impl Pose {
 /// The matrix of v × (·).
 pub(crate) fn cross_matrix(v: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn poses_go_round() {
+        for rpy in [
+            [0.1, -0.2, 3.0],
+            [0.0, std::f64::consts::FRAC_PI_2, 0.4],
+            [-3.0, 1.5, 0.0],
+        ] {
+            let pose = Pose::from_xyz_rpy([1.0, 2.0, 3.0], rpy);
+            let (xyz, rpy) = pose.xyz_rpy();
+            let again = Pose::from_xyz_rpy(xyz, rpy);
+            assert!((pose.rotation - again.rotation).norm() < 1e-7, "{rpy:?}");
+            assert_eq!(pose.translation, again.translation);
+            let [w, x, y, z] = pose.quaternion();
+            let turned = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z));
+            assert!(
+                (pose.rotation - turned.to_rotation_matrix().matrix()).norm() < 1e-12,
+                "{rpy:?}"
+            );
+        }
+    }
 }

@@ -1,26 +1,30 @@
 //! Reading an [`Arm`] from a URDF.
 
 mod checks;
+mod choose;
 mod syntax;
 
 use std::path::Path;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
+use self::choose::Chain;
+use crate::chain::{self, ChainOptions};
 use crate::error::ArmError;
 use crate::model::{Arm, Frame, Inertia, Joint, JointKind, Limits, STANDARD_GRAVITY};
 use crate::pose::{Pose, cross_matrix};
 use crate::visual::{Geometry, Visual};
 
 impl Arm {
-    /// Reads a serial arm of revolute and prismatic joints from the URDF file at `path`.
+    /// Reads a serial arm of revolute and prismatic joints from the URDF file at `path`, with the default
+    /// [`ChainOptions`].
     ///
     /// Links behind fixed joints are merged into the link that carries them. Gravity is 9.81 m/s²
     /// down the root link's z axis.
     ///
     /// # Errors
-    /// [`ArmError`] with the line and the element, if the file cannot be read, is not a URDF, has
-    /// floating, planar, mimicking or branching joints or loops, or has inertias no body can have.
+    /// [`ArmError`] with the line and the element, if the file cannot be read, is not a URDF, has more than one chain of
+    /// moving joints, floating or planar joints in it, or loops, or has inertias no body can have.
     pub fn from_urdf(path: impl AsRef<Path>) -> Result<Self, ArmError> {
         let path = path.as_ref();
         let text = std::fs::read_to_string(path).map_err(|source| ArmError::Read {
@@ -35,15 +39,25 @@ impl Arm {
     /// # Errors
     /// As [`Self::from_urdf`].
     pub fn from_urdf_text(text: &str, path: impl AsRef<Path>) -> Result<Self, ArmError> {
+        Self::from_urdf_chain(text, path, &ChainOptions::default())
+    }
+
+    /// As [`Self::from_urdf_text`], with the joints that `options` choose. Links behind joints that are fixed for that are
+    /// merged like those behind the URDF's fixed joints; a note in [`Self::warnings`] says which they are. With a base of
+    /// its own, gravity has the direction that it has at that link.
+    ///
+    /// # Errors
+    /// As [`Self::from_urdf`], or if the URDF does not have what `options` name.
+    pub fn from_urdf_chain(text: &str, path: impl AsRef<Path>, options: &ChainOptions) -> Result<Self, ArmError> {
         let path = path.as_ref();
-        syntax::refuse_xacro(text, path)?;
-        let robot = urdf_rs::read_from_string(text).map_err(|error| syntax::explain(text, path, &error))?;
+        let text = syntax::Text::of(text, path)?;
+        let robot = urdf_rs::read_from_string(&text.blanked).map_err(|error| text.explain(path, &error))?;
         Reader {
             path,
-            text,
+            text: &text.blanked,
             robot: &robot,
         }
-        .read()
+        .read(options)
     }
 }
 
@@ -53,54 +67,60 @@ struct Reader<'a> {
     robot: &'a urdf_rs::Robot,
 }
 
+/// A link behind fixed joints.
+struct WeldedFrame {
+    name: String,
+    pose: Pose,
+    /// Whether all joints to it are fixed in the URDF itself.
+    is_rigid: bool,
+}
+
 /// Links welded together, as one body in the frame of the link that was met first.
 struct Body<'a> {
     inertia: Inertia,
-    frames: Vec<(String, Pose)>,
+    frames: Vec<WeldedFrame>,
     visuals: Vec<(Pose, &'a urdf_rs::Visual)>,
     /// The moving joints that start here, with the pose of their parent link.
     moving: Vec<(Pose, &'a urdf_rs::Joint)>,
 }
 
 impl<'a> Reader<'a> {
-    fn read(&self) -> Result<Arm, ArmError> {
+    fn read(&self, options: &ChainOptions) -> Result<Arm, ArmError> {
         let root = self.check_tree()?;
+        let chain = self.choose(root, options)?;
         let mut arm = Arm {
             name: self.robot.name.clone(),
-            base_link: root.to_owned(),
+            base_link: chain.base.to_owned(),
             joints: Vec::new(),
             frames: Vec::new(),
+            tool: None,
+            fixed_joints: Vec::new(),
             visuals: Vec::new(),
-            gravity: Vector3::new(0.0, 0.0, -STANDARD_GRAVITY),
-            warnings: Vec::new(),
+            gravity: self.gravity(root, &chain)?,
+            warnings: chain::note(&chain.fixed).into_iter().collect(),
         };
-        let mut body = self.weld(root)?;
+        let mut body = self.weld(chain.base, &chain)?;
         loop {
             let link = arm.joints.len().checked_sub(1);
-            for (name, link_from_frame) in body.frames.drain(..) {
+            arm.tool = None;
+            for frame in body.frames.drain(..) {
+                let is_tool = chain.tip.map_or(frame.is_rigid, |tip| frame.name == tip);
+                if is_tool {
+                    arm.tool = Some(arm.frames.len());
+                }
                 arm.frames.push(Frame {
-                    name,
+                    name: frame.name,
                     link,
-                    link_from_frame,
+                    link_from_frame: frame.pose,
                 });
             }
             for (pose, visual) in body.visuals.drain(..) {
                 arm.visuals.push(visual_of(link, &pose, visual));
             }
-            if let [_, (_, second), ..] = body.moving[..] {
-                return Err(self.joint_error(
-                    second,
-                    format!(
-                        "a second moving joint starts from the same body as \"{}\"",
-                        body.moving[0].1.name
-                    ),
-                    "testbed models serial arms: remove one branch, or make its joints fixed",
-                ));
-            }
             let Some((link_from_parent, urdf_joint)) = body.moving.pop() else {
                 break;
             };
-            body = self.weld(&urdf_joint.child.link)?;
+            body = self.weld(&urdf_joint.child.link, &chain)?;
             arm.joints
                 .push(self.joint(&link_from_parent, urdf_joint, body.inertia)?);
             self.check_tensor(&mut arm)?;
@@ -112,49 +132,50 @@ impl<'a> Reader<'a> {
             ));
         }
         self.check_masses(&arm)?;
+        arm.fixed_joints = chain.fixed;
         Ok(arm)
     }
 
+    /// Gravity in the frame of the chain's base: 9.81 m/s² down the root's z axis.
+    fn gravity(&self, root: &str, chain: &Chain<'_>) -> Result<Vector3<f64>, ArmError> {
+        let mut root_from_base = Pose::identity();
+        for joint in self.path(chain.base, root).unwrap_or_default() {
+            let position = chain.position(&joint.name).unwrap_or(0.0);
+            root_from_base = root_from_base.compose(&self.fixed_pose(joint, position)?);
+        }
+        let down = Vector3::new(0.0, 0.0, -STANDARD_GRAVITY);
+        Ok(root_from_base.rotation.transpose() * down)
+    }
+
     /// The body that `first` and everything behind its fixed joints form, in `first`'s frame.
-    fn weld(&self, first: &'a str) -> Result<Body<'a>, ArmError> {
+    fn weld(&self, first: &'a str, chain: &Chain<'_>) -> Result<Body<'a>, ArmError> {
         let mut body = Body {
             inertia: Inertia::zero(),
             frames: Vec::new(),
             visuals: Vec::new(),
             moving: Vec::new(),
         };
-        let mut waiting = vec![(Pose::identity(), first)];
-        while let Some((body_from_link, name)) = waiting.pop() {
+        let mut waiting = vec![(Pose::identity(), first, true)];
+        while let Some((body_from_link, name, is_rigid)) = waiting.pop() {
             let link = self.robot.links.iter().find(|link| link.name == name);
             let Some(link) = link else { continue };
             body.inertia = body.inertia.merged(&self.inertia(link)?.transformed(&body_from_link));
             if name != first {
-                body.frames.push((name.to_owned(), body_from_link));
+                body.frames.push(WeldedFrame {
+                    name: name.to_owned(),
+                    pose: body_from_link,
+                    is_rigid,
+                });
             }
             body.visuals
                 .extend(link.visual.iter().map(|visual| (body_from_link, visual)));
             for joint in self.robot.joints.iter().filter(|joint| joint.parent.link == name) {
-                if joint.mimic.is_some() {
-                    return Err(self.joint_error(
-                        joint,
-                        "mimics another joint".into(),
-                        "make it fixed, or give it a position of its own",
-                    ));
-                }
-                match joint.joint_type {
-                    urdf_rs::JointType::Fixed => {
-                        let origin = self.finite_pose(joint)?;
-                        waiting.push((body_from_link.compose(&origin), &joint.child.link));
-                    }
-                    urdf_rs::JointType::Revolute | urdf_rs::JointType::Continuous | urdf_rs::JointType::Prismatic => {
-                        body.moving.push((body_from_link, joint));
-                    }
-                    urdf_rs::JointType::Floating | urdf_rs::JointType::Planar | urdf_rs::JointType::Spherical => {
-                        return Err(self.joint_error(
-                            joint,
-                            format!("is {:?}", joint.joint_type).to_lowercase(),
-                            "testbed models fixed, revolute, continuous and prismatic joints only",
-                        ));
+                match chain.position(&joint.name) {
+                    None => body.moving.push((body_from_link, joint)),
+                    Some(position) => {
+                        let origin = self.fixed_pose(joint, position)?;
+                        let is_rigid = is_rigid && joint.joint_type == urdf_rs::JointType::Fixed;
+                        waiting.push((body_from_link.compose(&origin), &joint.child.link, is_rigid));
                     }
                 }
             }
@@ -162,17 +183,38 @@ impl<'a> Reader<'a> {
         Ok(body)
     }
 
+    /// The pose of a joint's child in its parent, where the joint stands at `position` (rad or m).
+    fn fixed_pose(&self, joint: &urdf_rs::Joint, position: f64) -> Result<Pose, ArmError> {
+        let origin = self.finite_pose(joint)?;
+        if position == 0.0 {
+            return Ok(origin);
+        }
+        let axis = self.axis(joint)?;
+        Ok(origin.compose(&match choose::kind(joint) {
+            JointKind::Revolute => Pose {
+                rotation: *Rotation3::from_axis_angle(&Unit::new_unchecked(axis), position).matrix(),
+                translation: Vector3::zeros(),
+            },
+            JointKind::Prismatic => Pose {
+                rotation: Matrix3::identity(),
+                translation: axis * position,
+            },
+        }))
+    }
+
+    /// The unit vector along a joint's axis.
+    fn axis(&self, joint: &urdf_rs::Joint) -> Result<Vector3<f64>, ArmError> {
+        let axis = Vector3::from(*joint.axis.xyz);
+        if axis.norm().is_finite() && axis.norm() > 1e-9 {
+            return Ok(axis.normalize());
+        }
+        let reason = format!("has the axis {:?}", *joint.axis.xyz);
+        Err(self.joint_error(joint, reason, "give it a direction"))
+    }
+
     fn joint(&self, link_from_parent: &Pose, urdf: &urdf_rs::Joint, inertia: Inertia) -> Result<Joint, ArmError> {
         let parent_from_joint = link_from_parent.compose(&self.finite_pose(urdf)?);
-        let axis = Vector3::from(*urdf.axis.xyz);
-        if !(axis.norm().is_finite() && axis.norm() > 1e-9) {
-            return Err(self.joint_error(
-                urdf,
-                format!("has the axis {:?}", *urdf.axis.xyz),
-                "give it a direction",
-            ));
-        }
-        let axis = axis.normalize();
+        let axis = self.axis(urdf)?;
         let limit = &urdf.limit;
         for (what, value) in [
             ("lower", limit.lower),
@@ -190,10 +232,6 @@ impl<'a> Reader<'a> {
         }
         // A limit that is left out reads as 0.
         let or_none = |limit: f64| if limit > 0.0 { limit } else { f64::INFINITY };
-        let kind = match urdf.joint_type {
-            urdf_rs::JointType::Prismatic => JointKind::Prismatic,
-            _ => JointKind::Revolute,
-        };
         let unbounded = urdf.joint_type == urdf_rs::JointType::Continuous || (limit.lower == 0.0 && limit.upper == 0.0);
         if limit.lower > limit.upper && !unbounded {
             return Err(self.joint_error(
@@ -211,7 +249,7 @@ impl<'a> Reader<'a> {
         Ok(Joint {
             name: urdf.name.clone(),
             link_name: urdf.child.link.clone(),
-            kind,
+            kind: choose::kind(urdf),
             parent_from_joint,
             axis,
             limits: Limits {
@@ -288,7 +326,7 @@ impl<'a> Reader<'a> {
     fn error(&self, tag: &str, name: &str, reason: String, remedy: &str) -> ArmError {
         ArmError::Model {
             path: self.path.to_owned(),
-            line: line_of(self.text, tag, name),
+            line: syntax::line_of(self.text, tag, name),
             element: format!("{tag} \"{name}\""),
             reason,
             remedy: remedy.to_owned(),
@@ -316,20 +354,4 @@ fn visual_of(link: Option<usize>, link_from_parent: &Pose, visual: &urdf_rs::Vis
         geometry,
         colour: colour.map(|colour| *colour.rgba),
     }
-}
-
-/// The line (from 1) of the element `<tag … name="name"`, or that of the last such tag, or 1.
-fn line_of(text: &str, tag: &str, name: &str) -> usize {
-    let open = format!("<{tag}");
-    let mut line = 1;
-    for (start, _) in text.match_indices(&open) {
-        let element = text[start..].split('>').next().unwrap_or_default();
-        if [format!("name=\"{name}\""), format!("name='{name}'")]
-            .iter()
-            .any(|n| element.contains(n.as_str()))
-        {
-            line = text[..start].matches('\n').count() + 1;
-        }
-    }
-    line
 }

@@ -66,16 +66,13 @@ fn what_is_no_serial_arm_is_refused_by_name() {
     ]);
     let message = refusal(&branch);
     assert!(
-        message.contains("joint \"right\"") && message.contains("\"left\""),
+        message.contains("2 chains") && message.contains("--tip a") && message.contains("--tip c"),
         "{message}"
     );
 
+    // A robot of nothing but joints that mimic others has none that moves.
     let mimic = two("revolute").replace("</joint>", "<mimic joint=\"x\"/></joint>");
-    assert!(
-        refusal(&mimic).contains("joint \"hinge\": mimics"),
-        "{}",
-        refusal(&mimic)
-    );
+    assert!(refusal(&mimic).contains("no joint moves"), "{}", refusal(&mimic));
 
     let closed = robot(&[
         link("b", ""),
@@ -120,6 +117,55 @@ fn what_is_no_serial_arm_is_refused_by_name() {
         message.contains("robot.urdf:3: value=\"two\" is not a number"),
         "{message}"
     );
+}
+
+#[test]
+fn comments_and_empty_textures_are_not_read() {
+    let text = robot(&[
+        "<!-- <xacro:include filename=\"${file}\"/> é\n -->".into(),
+        link(
+            "b",
+            "<visual><geometry><sphere radius=\"1\"/></geometry><material name=\"m\"><texture /></material></visual>",
+        ),
+        link(
+            "a",
+            &format!(
+                "{LINK}<visual><geometry><sphere radius=\"1\"/></geometry><material name=\"m\"><texture>\n<!-- a --></texture></material></visual>"
+            ),
+        ),
+        joint("j", "revolute", "b", "a"),
+    ]);
+    let arm = Arm::from_urdf_text(&text, "robot.urdf").expect("it loads");
+    assert_eq!((arm.dof(), arm.visuals().len()), (1, 2));
+    // The lines of what comes later are still right.
+    let message = refusal(&text.replace("value=\"2\"", "value=\"-2\""));
+    assert!(message.contains("robot.urdf:4: link \"a\""), "{message}");
+}
+
+#[test]
+fn what_does_not_parse_has_its_line() {
+    let text = robot(&[
+        link("b", ""),
+        link("a", LINK),
+        joint("j", "revolute", "b", "a").replace("<parent link=\"b\"/>", "<parent/>"),
+    ]);
+    let message = refusal(&text);
+    assert!(
+        message.starts_with("robot.urdf:4: <joint name=\"j\" type=\"revolute\">: ") && message.contains("link"),
+        "{message}"
+    );
+    let message = refusal("<robot name=\"r\">\n<link name=\"a\">\n</robot>");
+    assert!(message.starts_with("robot.urdf:3: is not well-formed XML"), "{message}");
+    for (text, format) in [
+        ("<mujoco model=\"a\"><worldbody/></mujoco>", "is MJCF"),
+        (
+            "<?xml version=\"1.0\"?>\n<sdf version=\"1.7\"/>",
+            "robot.urdf:2: is SDF",
+        ),
+        ("<html/>", "its first element is <html>"),
+    ] {
+        assert!(refusal(text).contains(format), "{}", refusal(text));
+    }
 }
 
 #[test]

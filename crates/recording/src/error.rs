@@ -14,7 +14,7 @@ pub enum RecordingError {
         reason: std::io::Error,
     },
     /// The file or its folder cannot be written.
-    #[error("{path}: cannot be written: {reason}; choose a folder you may write to")]
+    #[error("{path}: cannot be written: {reason}; {}", write_remedy(reason))]
     Write {
         /// The file.
         path: PathBuf,
@@ -92,4 +92,35 @@ pub enum RecordingError {
         /// The stamp (s).
         after: f64,
     },
+}
+
+/// How to mend a file that cannot be written.
+pub fn write_remedy(reason: &std::io::Error) -> &'static str {
+    use std::io::ErrorKind;
+    match reason.kind() {
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
+            "the disk is full: free some space, or choose another disk"
+        }
+        ErrorKind::ReadOnlyFilesystem => "the disk is read-only: choose another",
+        ErrorKind::NotFound => "give a path in a folder that exists",
+        _ => "choose a folder you may write to",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_full_disk_is_no_matter_of_permission() {
+        let failed = |kind: std::io::ErrorKind| {
+            let error = RecordingError::Write {
+                path: "a.csv".into(),
+                reason: kind.into(),
+            };
+            error.to_string()
+        };
+        assert!(failed(std::io::ErrorKind::StorageFull).contains("the disk is full: free some space"));
+        assert!(failed(std::io::ErrorKind::PermissionDenied).contains("a folder you may write to"));
+    }
 }

@@ -24,7 +24,7 @@ mod warning;
 mod whole_file;
 
 pub use column_map::ColumnMap;
-pub use error::RecordingError;
+pub use error::{RecordingError, write_remedy};
 pub use quality::{Finding, FindingKind, JointQuality, Quality};
 pub use regular::{RegularRecording, Segment};
 pub use toml_error::{nearest, toml_reason};

@@ -5,11 +5,16 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use torque::{LengthScales, TrainingOptions};
 
+mod chain;
 mod numbers;
+mod rerun;
 
 use crate::models::ModelKind;
 use crate::prove::Shard;
+pub use chain::ChainArgs;
 use numbers::{parse_accuracy, parse_frequency, parse_urdf_error};
+pub use rerun::Rerun;
+use rerun::parse_rerun;
 
 /// Tracking testbed and model diagnosis for robot arms
 #[derive(Debug, Parser)]
@@ -24,6 +29,9 @@ pub struct Cli {
     pub command: Option<Command>,
     #[command(flatten)]
     pub run: Option<RunArgs>,
+    // Not within RunArgs: clap takes an optional struct with a struct in it as never given.
+    #[command(flatten)]
+    pub chain: ChainArgs,
 }
 
 #[derive(Debug, Subcommand)]
@@ -105,6 +113,9 @@ pub struct InspectArgs {
     /// Write the complete result to this file as JSON
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub chain: ChainArgs,
 }
 
 /// The catalogue's effects, one a line.
@@ -181,6 +192,15 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "OUT")]
     pub trace: Option<PathBuf>,
 
+    /// Write the corrected model to this file as MJCF (.xml), for MuJoCo, with those effects that MJCF can represent
+    #[arg(long, value_name = "OUT")]
+    pub mjcf: Option<PathBuf>,
+
+    /// Whether friction in the URDF (<dynamics>) is known friction, which the recordings are not to explain again. In most URDFs
+    /// it is a placeholder
+    #[arg(long, value_enum, default_value = "diagnosed")]
+    pub urdf_friction: UrdfFriction,
+
     /// Propose the motion that best distinguishes the remaining alternatives, and write it to this file as a scenario (.toml)
     #[arg(long, value_name = "OUT", conflicts_with = "only")]
     pub next: Option<PathBuf>,
@@ -197,6 +217,9 @@ pub struct DiagnoseArgs {
     /// The half-power frequency of the low-pass filter (Hz)
     #[arg(long, value_name = "HZ", value_parser = parse_frequency)]
     pub cutoff: Option<f64>,
+
+    #[command(flatten)]
+    pub chain: ChainArgs,
 }
 
 #[derive(Debug, Args)]
@@ -258,6 +281,9 @@ pub struct ProveArgs {
     /// The number of concurrent processes, which does not change the result [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,
+
+    #[command(flatten)]
+    pub chain: ChainArgs,
 }
 
 #[derive(Debug, Args)]
@@ -267,10 +293,10 @@ pub struct ConcealArgs {
     pub robot: Vec<String>,
 
     /// The effects to inject (.toml, as written by diagnose --model; an effect may have an onset and a form), with their values
-    #[arg(long, value_name = "FILE", required_unless_present = "seed")]
+    #[arg(long, value_name = "FILE")]
     pub effects: Option<PathBuf>,
 
-    /// The seed of all random choices; with --effects, of motions and noise only
+    /// The seed of all random choices; with --effects, of motions and noise only. One of the two is needed
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
 
@@ -316,6 +342,9 @@ pub struct ConcealArgs {
     /// The number of threads, which does not change the result [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,
+
+    #[command(flatten)]
+    pub chain: ChainArgs,
 }
 
 impl DiagnoseArgs {
@@ -332,10 +361,22 @@ impl DiagnoseArgs {
             &self.model,
             &self.urdf,
             &self.trace,
+            &self.mjcf,
             &self.next,
         ];
         files.into_iter().flatten().map(PathBuf::as_path).chain(rerun).collect()
     }
+}
+
+/// Which friction in a URDF is known friction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum UrdfFriction {
+    /// That which testbed diagnose wrote (--urdf)
+    Diagnosed,
+    /// All
+    Known,
+    /// None
+    Ignored,
 }
 
 /// How many length scales a regression has.
@@ -358,48 +399,5 @@ impl LengthScalesArg {
             lengths,
             ..TrainingOptions::default()
         }
-    }
-}
-
-/// Where Rerun shows a run.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Rerun {
-    /// Nowhere.
-    Off,
-    /// Into a file: this one, or `run.rrd` in the run's folder.
-    Save(Option<PathBuf>),
-    /// In a viewer started for it.
-    Spawn,
-    /// In a viewer that listens, by default on this machine.
-    Connect(Option<String>),
-}
-
-fn parse_rerun(text: &str) -> Result<Rerun, String> {
-    let (word, value) = match text.split_once('=') {
-        Some((word, value)) => (word, Some(value)),
-        None => (text, None),
-    };
-    match (word, value) {
-        (_, Some("")) => Err("nothing follows the \"=\"".into()),
-        ("off", None) => Ok(Rerun::Off),
-        ("spawn", None) => Ok(Rerun::Spawn),
-        ("save", file) => Ok(Rerun::Save(file.map(PathBuf::from))),
-        ("connect", url) => Ok(Rerun::Connect(url.map(str::to_owned))),
-        _ => Err("give off, save, save=FILE, spawn, connect or connect=URL".into()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rerun_targets_parse() {
-        assert_eq!(parse_rerun("off"), Ok(Rerun::Off));
-        assert_eq!(parse_rerun("save=a=b.rrd"), Ok(Rerun::Save(Some("a=b.rrd".into()))));
-        assert_eq!(parse_rerun("connect"), Ok(Rerun::Connect(None)));
-        assert!(parse_rerun("save=").is_err());
-        assert!(parse_rerun("show").is_err());
-        assert!(parse_rerun("off=1").is_err());
     }
 }

@@ -8,8 +8,8 @@ use anyhow::{Context, ensure};
 use faults::{Campaign, Concealment, FaultError, Robot, Settings, conceal_case, conceal_effects, write_case};
 use rayon::prelude::*;
 
-use crate::cli::ConcealArgs;
-use crate::library::{self, Source};
+use crate::cli::{ChainArgs, ConcealArgs};
+use crate::library;
 use crate::output;
 
 /// Conceals what `args` ask for.
@@ -25,7 +25,11 @@ pub fn run(args: &ConcealArgs) -> anyhow::Result<()> {
 }
 
 fn conceal(args: &ConcealArgs) -> anyhow::Result<()> {
-    let robots = robots(&args.robot)?;
+    ensure!(
+        args.effects.is_some() || args.seed.is_some(),
+        "nothing says what to conceal; give --seed N to draw cases, or --effects FILE with the effects to inject"
+    );
+    let robots = robots(&args.robot, &args.chain)?;
     let truths = args.out.join("truth");
     match &args.effects {
         Some(file) => given(args, file, &robots, &truths),
@@ -33,26 +37,28 @@ fn conceal(args: &ConcealArgs) -> anyhow::Result<()> {
     }
 }
 
-/// The robots of the names or files; those that come with testbed, if there are none.
+/// The robots of the names or files, with the arm that `chain` chooses; those that come with testbed, if there are none.
 ///
 /// # Errors
-/// If one is not there or cannot be simulated.
-pub fn robots(names: &[String]) -> anyhow::Result<Vec<Robot>> {
+/// If one is not there or cannot be simulated, or an arm is chosen on several robots.
+pub fn robots(names: &[String], chain: &ChainArgs) -> anyhow::Result<Vec<Robot>> {
+    ensure!(
+        !chain.is_given() || names.len() == 1,
+        "{}: chooses the arm of one robot; name it, and no other, with --robot",
+        chain.to_string().trim_start()
+    );
     let all: Vec<String> = library::built_in().map(str::to_owned).collect();
     let names = if names.is_empty() { &all } else { names };
-    names.iter().map(|name| robot(name)).collect()
+    names.iter().map(|name| robot(name, chain)).collect()
 }
 
-fn robot(name: &str) -> anyhow::Result<Robot> {
+fn robot(name: &str, chain: &ChainArgs) -> anyhow::Result<Robot> {
     let doing = || format!("--robot {name}");
-    let here = Source {
-        name: String::new(),
-        path: "".into(),
-        text: String::new(),
-    };
-    let (_, path) = library::load_arm(name, &here).with_context(doing)?;
-    let text = library::urdf_text(name, &path).with_context(doing)?;
-    let robot = Robot::new(text, &path).with_context(doing)?;
+    let file = library::named_robot(name)?;
+    let arm = file.arm(&chain.options(&[])).with_context(doing)?;
+    // The cases are diagnosed without flags, as their recordings are of the arm alone.
+    let text = library::serial_urdf(&file.text, &arm).with_context(doing)?;
+    let robot = Robot::new(text, &file.path).with_context(doing)?;
     match library::rotor_inertias(name) {
         Some(rotors) => robot.with_rotor_inertias(&rotors).with_context(doing),
         None => Ok(robot),

@@ -2,11 +2,14 @@
 
 mod command;
 pub mod effect_file;
+mod held;
 mod inputs;
+mod mjcf_file;
 mod next_file;
 #[cfg(feature = "viewer")]
 mod rerun;
 mod trace_file;
 pub mod urdf_file;
+mod urdf_friction;
 
 pub use command::run;

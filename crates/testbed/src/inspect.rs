@@ -13,7 +13,7 @@ use recording::{ColumnMap, Quality, Recording, Warning};
 use serde::Serialize;
 
 use crate::cli::InspectArgs;
-use crate::library::{self, Source};
+use crate::library::{self, RobotFile};
 use crate::output;
 
 /// What `--json` holds.
@@ -54,8 +54,9 @@ pub fn run(args: &InspectArgs) -> anyhow::Result<()> {
         let inputs = args.files.iter().chain(&args.map).map(PathBuf::as_path);
         output::check_is_no_input(path, inputs.chain(args.robot.as_deref().map(Path::new)))?;
     }
-    let arm = args.robot.as_deref().map(load_robot).transpose()?;
+    let robot = args.robot.as_deref().map(library::named_robot).transpose()?;
     let map = args.map.as_deref().map(ColumnMap::load).transpose()?;
+    let arm = robot.map(|robot| load_arm(args, &robot, map.as_ref())).transpose()?;
     let mut files = Vec::new();
     for file in &args.files {
         let report = match inspect(file, map.as_ref(), arm.as_ref()) {
@@ -84,15 +85,16 @@ pub fn run(args: &InspectArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn load_robot(robot: &str) -> anyhow::Result<Arm> {
-    let here = Source {
-        name: String::new(),
-        path: "".into(),
-        text: String::new(),
-    };
-    let (arm, path) = library::load_arm(robot, &here).with_context(|| format!("--robot {robot}"))?;
+/// The arm among the robot's joints that the first readable recording holds.
+fn load_arm(args: &InspectArgs, robot: &RobotFile, map: Option<&ColumnMap>) -> anyhow::Result<Arm> {
+    let mut readable = args
+        .files
+        .iter()
+        .filter_map(|file| Recording::read_csv_with(file, map).ok());
+    let recorded = readable.next().map_or_else(Vec::new, |recording| recording.joints);
+    let arm = robot.arm(&args.chain.options(&recorded)).context("--robot")?;
     for warning in arm.warnings() {
-        eprintln!("note: {}: {warning}", path.display());
+        eprintln!("note: {}: {warning}", robot.path.display());
     }
     Ok(arm)
 }

@@ -1,11 +1,14 @@
 //! The scenarios and robots that come with testbed, and where others are found.
 
+mod serial;
+
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
-use arm::Arm;
+use arm::{Arm, ChainOptions};
 pub use recording::nearest;
+pub use serial::serial_urdf;
 
 /// The files are part of the program, so that it runs from any folder.
 const SCENARIOS: [(&str, &str); 4] = [
@@ -136,26 +139,47 @@ pub fn is_built_in(robot: &str) -> bool {
     ROBOTS.iter().any(|(known, _)| *known == robot)
 }
 
-/// The URDF of `robot`, which [`load_arm`] loaded from `path`.
-///
-/// # Errors
-/// If the file cannot be read.
-pub fn urdf_text(robot: &str, path: &Path) -> anyhow::Result<String> {
-    match ROBOTS.iter().find(|(known, _)| *known == robot) {
-        Some((_, text)) => Ok((*text).to_owned()),
-        None => std::fs::read_to_string(path).with_context(|| path.display().to_string()),
+/// The URDF of a robot.
+pub struct RobotFile {
+    /// Its file, or `assets/<name>.urdf` for one that comes with testbed.
+    pub path: PathBuf,
+    /// What it says.
+    pub text: String,
+}
+
+impl RobotFile {
+    /// The arm that `options` choose.
+    ///
+    /// # Errors
+    /// If the text is no URDF, or has no such arm.
+    pub fn arm(&self, options: &ChainOptions) -> anyhow::Result<Arm> {
+        Ok(Arm::from_urdf_chain(&self.text, &self.path, options)?)
     }
 }
 
-/// Loads the robot that a scenario names: the path of a URDF beside the scenario (or absolute), or the
-/// name of one that comes with testbed.
+/// The robot named on the command line: the path of a URDF, or the name of one that comes with testbed.
 ///
 /// # Errors
-/// If there is none, or it is not a serial arm.
-pub fn load_arm(robot: &str, scenario: &Source) -> anyhow::Result<(Arm, PathBuf)> {
+/// If there is none.
+pub fn named_robot(robot: &str) -> anyhow::Result<RobotFile> {
+    let here = Source {
+        name: String::new(),
+        path: PathBuf::new(),
+        text: String::new(),
+    };
+    find_robot(robot, &here).with_context(|| format!("--robot {robot}"))
+}
+
+/// The robot that a scenario names: the path of a URDF beside the scenario (or absolute), or the name of one that comes
+/// with testbed.
+///
+/// # Errors
+/// If there is none, or it cannot be read.
+pub fn find_robot(robot: &str, scenario: &Source) -> anyhow::Result<RobotFile> {
     if let Some((name, text)) = ROBOTS.iter().find(|(known, _)| *known == robot) {
         let path = PathBuf::from(format!("assets/{name}.urdf"));
-        return Ok((Arm::from_urdf_text(text, &path)?, path));
+        let text = (*text).to_owned();
+        return Ok(RobotFile { path, text });
     }
     let path = scenario.path.parent().unwrap_or(Path::new("")).join(robot);
     let is_path = Path::new(robot).extension().is_some_and(|e| e == "urdf" || e == "xml");
@@ -171,7 +195,11 @@ pub fn load_arm(robot: &str, scenario: &Source) -> anyhow::Result<(Arm, PathBuf)
             known.join(", ")
         );
     }
-    Ok((Arm::from_urdf(&path)?, path))
+    let text = std::fs::read_to_string(&path).map_err(|source| arm::ArmError::Read {
+        path: path.clone(),
+        source,
+    })?;
+    Ok(RobotFile { path, text })
 }
 
 /// Refuses a file that does not begin as XML does: a recording, say.

@@ -48,7 +48,7 @@ fn main() -> ExitCode {
         (Some(cli::Command::Diagnose(args)), _) => diagnose::run(args),
         (Some(cli::Command::Prove(args)), _) => prove::run(args),
         (Some(cli::Command::Conceal(args)), _) => conceal::run(args),
-        (None, Some(args)) => run::run(args),
+        (None, Some(args)) => run::run(args, &cli.chain),
         (None, None) => {
             let mut command = cli::Cli::command();
             eprintln!("{}", command.render_help());

@@ -91,8 +91,9 @@ pub fn check_writable(path: &Path) -> anyhow::Result<()> {
     };
     if let Err(error) = tempfile::tempfile_in(folder) {
         bail!(
-            "{}: cannot be written: {error}; give a path in a folder that exists and is yours",
-            path.display()
+            "{}: cannot be written: {error}; {}",
+            path.display(),
+            recording::write_remedy(&error)
         );
     }
     Ok(())

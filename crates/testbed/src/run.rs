@@ -11,7 +11,7 @@ use report::terminal::table;
 use serde::Serialize;
 use torque::{Gp, Lengths, Samples, TorqueModel};
 
-use crate::cli::RunArgs;
+use crate::cli::{ChainArgs, RunArgs};
 use crate::interrupt;
 use crate::models::ModelKind;
 use crate::output::{self, Tracking};
@@ -66,12 +66,12 @@ struct Percentiles {
     p99: f64,
 }
 
-/// Runs what `args` say.
+/// Runs what `args` say, with the arm that `chain` chooses.
 ///
 /// # Errors
 /// One that says what was being done, what was found and how to mend it.
-pub fn run(args: &RunArgs) -> anyhow::Result<()> {
-    let scenario = Scenario::load(&args.scenario)?;
+pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
+    let scenario = Scenario::load_chain(&args.scenario, chain)?;
     let kind = args.model.unwrap_or(scenario.model);
     let sources = if kind.learns() {
         args.train.as_ref().unwrap_or(&scenario.training).clone()
@@ -81,13 +81,13 @@ pub fn run(args: &RunArgs) -> anyhow::Result<()> {
     if kind.learns() && sources.is_empty() {
         bail!(
             "the model \"{}\" is trained, but the scenario names nothing to train on; give --train taskA,taskB,… or \
-             [training] scenarios = […]",
+             [training] scenarios = […], or take a model that needs no training: --model rigid-body",
             kind.flag()
         );
     }
     let out = args.out.as_deref();
     check_outputs(args, &scenario, &sources)?;
-    let samples = training::training_samples(&scenario, &sources, args.seed)?;
+    let samples = training::training_samples(&scenario, &sources, chain, args.seed)?;
     notes(args, kind, &scenario, &samples);
 
     let options = args.length_scales.training_options();

@@ -9,6 +9,7 @@ use anyhow::Context;
 use arm::Arm;
 use torque::{Feedback, Reference};
 
+use crate::cli::ChainArgs;
 use crate::models::ModelKind;
 use crate::sensors::SensorNoise;
 
@@ -57,7 +58,15 @@ impl Scenario {
     /// # Errors
     /// One line that names file, line and key, what was found and how to mend it.
     pub fn load(name: &str) -> anyhow::Result<Self> {
-        Self::read(&crate::library::find_scenario(name)?)
+        Self::load_chain(name, &ChainArgs::default())
+    }
+
+    /// As [`Self::load`], with the arm's joints that `chain` chooses in place of those that the file does.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn load_chain(name: &str, chain: &ChainArgs) -> anyhow::Result<Self> {
+        Self::read(&crate::library::find_scenario(name)?, chain)
     }
 
     /// Reads the scenario `name` that comes with testbed, whatever is below the current folder.
@@ -66,12 +75,13 @@ impl Scenario {
     /// If none of that name does.
     pub fn built_in(name: &str) -> anyhow::Result<Self> {
         let source = crate::library::built_in_scenario(name);
-        Self::read(&source.with_context(|| format!("no scenario \"{name}\" comes with testbed"))?)
+        let source = source.with_context(|| format!("no scenario \"{name}\" comes with testbed"))?;
+        Self::read(&source, &ChainArgs::default())
     }
 
-    fn read(source: &crate::library::Source) -> anyhow::Result<Self> {
+    fn read(source: &crate::library::Source, chain: &ChainArgs) -> anyhow::Result<Self> {
         let raw = raw::parse(source)?;
-        validate::scenario(source, raw)
+        validate::scenario(source, raw, chain)
     }
 
     /// The arm as the controller believes it to be: masses and inertia tensors off by the named factor.

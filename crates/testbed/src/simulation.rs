@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, ensure};
-use arm::Arm;
+use arm::{Arm, DMatrix, JointKind};
 use plant::{Plant, PlantOptions};
 use recording::Recording;
 use torque::{Command, Controller, Motion, TorqueModel};
@@ -141,13 +141,40 @@ pub fn run(
         }
         plant.step(&command.torque).with_context(|| {
             format!(
-                "the loop is unstable under the model \"{}\"; lower the gains or raise controller.rate",
-                kind.flag()
+                "the loop is unstable under the model \"{}\"; {}",
+                kind.flag(),
+                remedy(scenario)
             )
         })?;
     }
     let wall = started.elapsed();
     Ok(log.outcome(scenario.duration / wall.as_secs_f64()))
+}
+
+/// The share of the largest inertia about a joint below which another joint moves next to none.
+const NEXT_TO_NONE: f64 = 1e-6;
+
+/// How to mend a loop that is unstable: a joint that moves next to no inertia needs some, whatever the gains.
+fn remedy(scenario: &Scenario) -> String {
+    let arm = &scenario.arm;
+    let mut matrix = DMatrix::zeros(arm.dof(), arm.dof());
+    arm.mass_matrix(&mut arm::Workspace::new(arm), &scenario.reference.centre, &mut matrix);
+    let inertias = matrix.diagonal();
+    let lightest = inertias.imin();
+    let unit = match arm.joints()[lightest].kind {
+        JointKind::Revolute => "kg m²",
+        JointKind::Prismatic => "kg",
+    };
+    if inertias[lightest] < NEXT_TO_NONE * inertias.max() {
+        format!(
+            "joint \"{}\" moves no more than {:.1e} {unit}: correct the <inertial> of the links beyond it, or give the joint a \
+             plant.rotor_inertia",
+            arm.joints()[lightest].name,
+            inertias[lightest]
+        )
+    } else {
+        "lower the gains or raise controller.rate".to_owned()
+    }
 }
 
 /// The plant's accelerations. They are asked for in every step, so they come from the arm's own

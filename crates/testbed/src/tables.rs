@@ -9,6 +9,7 @@ use report::numbers::rounded;
 use serde::Serialize;
 use torque::{Samples, TorqueModel, TrainingOptions};
 
+use crate::cli::ChainArgs;
 use crate::models::ModelKind;
 use crate::output::{self, Tracking};
 use crate::scenario::Scenario;
@@ -102,7 +103,7 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions) -> anyhow::Result<()>
     let mut training_samples = Vec::new();
     for tasks in TRAINING {
         let names: Vec<String> = tasks.iter().map(|task| (*task).to_owned()).collect();
-        training_samples.push(training::training_samples(&test, &names, 0)?);
+        training_samples.push(training::training_samples(&test, &names, &ChainArgs::default(), 0)?);
     }
     // The dearest first, so that the last thread does not wait for one of them.
     let jobs: Vec<(usize, ModelKind)> = (0..TRAINING.len())

@@ -7,6 +7,7 @@ use arm::Arm;
 use recording::Recording;
 use torque::{Motion, Reference, Samples};
 
+use crate::cli::ChainArgs;
 use crate::scenario::Scenario;
 use crate::sensors::Sensors;
 
@@ -101,11 +102,16 @@ pub fn own_samples(scenario: &Scenario) -> anyhow::Result<Samples> {
 }
 
 /// The samples of all `sources`: scenarios by name or file, whose references are sampled on the plant
-/// of `scenario`, and recordings (`.csv`) with accelerations, thinned to the scenario's sample rate.
+/// of `scenario` with the arm's joints that `chain` chooses, and recordings (`.csv`) with accelerations, thinned to the scenario's sample rate.
 ///
 /// # Errors
 /// If a source cannot be read or is of another robot.
-pub fn training_samples(scenario: &Scenario, sources: &[String], seed: u64) -> anyhow::Result<Samples> {
+pub fn training_samples(
+    scenario: &Scenario,
+    sources: &[String],
+    chain: &ChainArgs,
+    seed: u64,
+) -> anyhow::Result<Samples> {
     let mut samples = Samples::new(scenario.arm.dof());
     let mut sensors = Sensors::new(&scenario.sensor_noise, seed, TRAINING_STREAM);
     for source in sources {
@@ -117,7 +123,7 @@ pub fn training_samples(scenario: &Scenario, sources: &[String], seed: u64) -> a
             let recording = Recording::read_csv(Path::new(source)).with_context(of_source)?;
             recording_samples(scenario, &recording, &mut samples).with_context(of_source)?;
         } else {
-            let task = Scenario::load(source).with_context(of_source)?;
+            let task = Scenario::load_chain(source, chain).with_context(of_source)?;
             reference_samples(
                 scenario,
                 &task.reference,

@@ -1,6 +1,9 @@
-//! What a text that does not parse as URDF most likely is, and where.
+//! What of a URDF's text is read; what a text that is none most likely is, and where.
 
+use std::ops::Range;
 use std::path::Path;
+
+use quick_xml::events::{BytesStart, Event};
 
 use crate::error::ArmError;
 
@@ -10,34 +13,180 @@ const NUMBERS: [&str; 18] = [
     "friction", "radius", "length", "size",
 ];
 
-/// Refuses a text that xacro has still to expand; parsed as it is, it would lose parts silently.
-pub(super) fn refuse_xacro(text: &str, path: &Path) -> Result<(), ArmError> {
-    let found = ["<xacro:", "=\"${", "=\"$("]
-        .iter()
-        .filter_map(|mark| text.find(mark))
-        .min();
-    match found {
-        None => Ok(()),
-        Some(position) => Err(syntax_error(
+/// A text that is XML with a `<robot>`.
+pub(super) struct Text {
+    /// The text without its comments and without textures that name no file, which `urdf-rs` refuses. They are blanked
+    /// out, so that every other byte keeps its place.
+    pub(super) blanked: String,
+    /// Where the links, joints and other elements of the robot are.
+    elements: Vec<Range<usize>>,
+}
+
+impl Text {
+    /// Reads `text`, which the file at `path` holds.
+    ///
+    /// # Errors
+    /// [`ArmError::Syntax`] with the line: not XML, another format, or xacro, which would lose parts silently.
+    pub(super) fn of(text: &str, path: &Path) -> Result<Self, ArmError> {
+        let mut reader = quick_xml::Reader::from_str(text);
+        let (mut blanks, mut elements): (Vec<Range<usize>>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
+        let mut depth = 0;
+        let (mut begun, mut texture) = (0, None);
+        let mut root_seen = false;
+        loop {
+            let from = reader.buffer_position() as usize;
+            let event = reader.read_event().map_err(|error| {
+                let line = line_at(text, reader.error_position() as usize);
+                syntax_error(
+                    path,
+                    Some(line),
+                    format!("is not well-formed XML: {error}; check it with xmllint or check_urdf"),
+                )
+            })?;
+            let here = from..reader.buffer_position() as usize;
+            match &event {
+                Event::Start(tag) | Event::Empty(tag) => {
+                    let is_empty = matches!(event, Event::Empty(_));
+                    if !root_seen {
+                        root_seen = true;
+                        check_root(tag).map_err(|reason| syntax_error(path, Some(line_at(text, from)), reason))?;
+                    }
+                    if is_xacro(tag) {
+                        let reason = "is xacro, not URDF; expand it first: xacro FILE > robot.urdf".into();
+                        return Err(syntax_error(path, Some(line_at(text, from)), reason));
+                    }
+                    let no_file = tag.name().as_ref() == b"texture" && lacks_file(tag);
+                    if depth == 1 {
+                        begun = from;
+                        if is_empty {
+                            elements.push(here.clone());
+                        }
+                    }
+                    match (no_file, is_empty) {
+                        (true, true) => blanks.push(here),
+                        (true, false) if texture.is_none() => texture = Some((depth, from)),
+                        _ => {}
+                    }
+                    depth += usize::from(!is_empty);
+                }
+                Event::End(_) => {
+                    depth -= 1;
+                    if depth == 1 {
+                        elements.push(begun..here.end);
+                    }
+                    if let Some((_, start)) = texture.take_if(|(at, _)| *at == depth) {
+                        blanks.push(start..here.end);
+                    }
+                }
+                Event::Comment(_) => blanks.push(here),
+                Event::Eof => break,
+                _ => {}
+            }
+        }
+        if !root_seen {
+            let reason = "is not a URDF: it has no <robot> element; give the robot's URDF".into();
+            return Err(syntax_error(path, None, reason));
+        }
+        blanks.sort_by_key(|range| range.start);
+        Ok(Self {
+            blanked: blanked(text, &blanks),
+            elements,
+        })
+    }
+
+    /// The error of the parser, with the place of what it met: a number that is none, or else the first element that
+    /// does not parse alone.
+    pub(super) fn explain(&self, path: &Path, error: &urdf_rs::UrdfError) -> ArmError {
+        let text = &self.blanked;
+        for attribute in NUMBERS {
+            for (position, opening) in text.match_indices(&format!(" {attribute}=\"")) {
+                let value = text[position + opening.len()..].split('"').next().unwrap_or_default();
+                if value.split_whitespace().any(|word| word.parse::<f64>().is_err()) {
+                    let reason = format!("{attribute}=\"{value}\" is not a number; give one in SI units");
+                    return syntax_error(path, Some(line_at(text, position)), reason);
+                }
+            }
+        }
+        for element in &self.elements {
+            let alone = format!("<robot name=\"r\">{}</robot>", &text[element.clone()]);
+            if let Err(error) = urdf_rs::read_from_string(&alone) {
+                let line = line_at(text, element.start);
+                let opening = text[element.clone()].split('>').next().unwrap_or_default();
+                let reason = format!("{opening}>: {}; correct the element", plain(&error));
+                return syntax_error(path, Some(line), reason);
+            }
+        }
+        syntax_error(
             path,
-            Some(line_at(text, position)),
-            "is xacro, not URDF; expand it first: xacro FILE > robot.urdf".into(),
+            None,
+            format!("is not a URDF: {}; check it with check_urdf", plain(error)),
+        )
+    }
+}
+
+/// What the parser says, without its own kinds of errors.
+fn plain(error: &urdf_rs::UrdfError) -> String {
+    let text = error.to_string();
+    text.strip_prefix("custom: ").unwrap_or(&text).to_owned()
+}
+
+/// What the root element says of the format, if it is another than URDF.
+fn check_root(tag: &BytesStart<'_>) -> Result<(), String> {
+    let name = String::from_utf8_lossy(tag.name().as_ref()).into_owned();
+    match name.as_str() {
+        "robot" => Ok(()),
+        "mujoco" | "mujocoinclude" => Err(
+            "is MJCF, the format of MuJoCo, and not URDF; give the URDF that it was made from (manufacturers publish one \
+             in their ROS description package)"
+                .into(),
+        ),
+        "sdf" | "gazebo" | "world" => Err("is SDF, the format of Gazebo, and not URDF; give the URDF that it was made from \
+                                           (manufacturers publish one in their ROS description package)"
+            .into()),
+        "COLLADA" => Err("is a COLLADA mesh, not a URDF; give the URDF that names this mesh".into()),
+        _ => Err(format!(
+            "is not a URDF: its first element is <{name}>, where a URDF has <robot>; give the robot's URDF"
         )),
     }
 }
 
-/// The parser's error, with the place of the first number that is none, if that is what it met.
-pub(super) fn explain(text: &str, path: &Path, error: &urdf_rs::UrdfError) -> ArmError {
-    for attribute in NUMBERS {
-        for (position, opening) in text.match_indices(&format!(" {attribute}=\"")) {
-            let value = text[position + opening.len()..].split('"').next().unwrap_or_default();
-            if value.split_whitespace().any(|word| word.parse::<f64>().is_err()) {
-                let reason = format!("{attribute}=\"{value}\" is not a number; give one in SI units");
-                return syntax_error(path, Some(line_at(text, position)), reason);
-            }
+/// Whether xacro has still to expand the element.
+fn is_xacro(tag: &BytesStart<'_>) -> bool {
+    let is_expression = |value: &[u8]| value.windows(2).any(|pair| pair == b"${" || pair == b"$(");
+    tag.name().as_ref().starts_with(b"xacro:")
+        || tag
+            .attributes()
+            .with_checks(false)
+            .flatten()
+            .any(|attribute| is_expression(&attribute.value))
+}
+
+fn lacks_file(tag: &BytesStart<'_>) -> bool {
+    tag.attributes()
+        .with_checks(false)
+        .flatten()
+        .all(|attribute| attribute.key.as_ref() != b"filename")
+}
+
+/// `text` with spaces in the place of `ranges`, which are in order; lines stay.
+fn blanked(text: &str, ranges: &[Range<usize>]) -> String {
+    let mut result = String::with_capacity(text.len());
+    let mut at = 0;
+    for range in ranges {
+        // A comment within a texture is blanked out with it.
+        let start = range.start.max(at);
+        if range.end <= at {
+            continue;
         }
+        result.push_str(&text[at..start]);
+        result.extend(text[start..range.end].bytes().map(|byte| match byte {
+            b'\n' => '\n',
+            _ => ' ',
+        }));
+        at = range.end;
     }
-    syntax_error(path, None, format!("is not a URDF: {error}; check it with check_urdf"))
+    result.push_str(&text[at..]);
+    result
 }
 
 fn syntax_error(path: &Path, line: Option<usize>, reason: String) -> ArmError {
@@ -50,5 +199,25 @@ fn syntax_error(path: &Path, line: Option<usize>, reason: String) -> ArmError {
 }
 
 fn line_at(text: &str, position: usize) -> usize {
-    text[..position].matches('\n').count() + 1
+    text.as_bytes()[..position.min(text.len())]
+        .iter()
+        .filter(|byte| **byte == b'\n')
+        .count()
+        + 1
+}
+
+/// The line (from 1) of the element `<tag … name="name"`, or that of the last such tag, or 1.
+pub(super) fn line_of(text: &str, tag: &str, name: &str) -> usize {
+    let open = format!("<{tag}");
+    let mut line = 1;
+    for (start, _) in text.match_indices(&open) {
+        let element = text[start..].split('>').next().unwrap_or_default();
+        if [format!("name=\"{name}\""), format!("name='{name}'")]
+            .iter()
+            .any(|n| element.contains(n.as_str()))
+        {
+            line = line_at(text, start);
+        }
+    }
+    line
 }

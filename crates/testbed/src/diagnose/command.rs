@@ -1,16 +1,17 @@
 //! The command itself: files in, diagnosis, files out.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::Context;
 use arm::Arm;
 use diagnosis::{Diagnosis, Input, Options};
 
 use super::effect_file::EffectFile;
-use super::inputs::Role;
-use super::{inputs, next_file, trace_file, urdf_file};
+use super::inputs::{Files, Role};
+use super::urdf_friction::{known_friction, summed};
+use super::{inputs, mjcf_file, next_file, trace_file, urdf_file};
 use crate::cli::DiagnoseArgs;
-use crate::library::{self, Source};
+use crate::library::{self, RobotFile};
 use crate::output;
 
 /// Diagnoses where and why the recordings that `args` name differ from the robot's model.
@@ -27,11 +28,18 @@ pub fn run(args: &DiagnoseArgs) -> anyhow::Result<()> {
 }
 
 fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
-    let (arm, urdf_path) = load_robot(&args.robot)?;
-    let known = inputs::known(args, &arm)?;
+    let robot = library::named_robot(&args.robot)?;
+    let files = Files::open(args)?;
+    let arm = load_arm(args, &robot, files.joints())?;
+    let mut known = inputs::known(args, &arm)?;
+    let (friction, remark) = known_friction(&robot, &arm, args.urdf_friction, &known)?;
+    known.splice(0..0, friction);
+    if let Some(remark) = remark {
+        eprintln!("note: {}: {remark}", robot.path.display());
+    }
     let only = inputs::only(args, &arm)?;
     let spinner = output::spinner("reading");
-    let recordings = inputs::read(args, &arm, &spinner)?;
+    let recordings = inputs::read(files, &arm, &spinner)?;
     let list: Vec<Input<'_>> = recordings
         .iter()
         .map(|recording| Input {
@@ -65,14 +73,18 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
         eprintln!("note: simulation: {remark}");
     }
     // The known effects are a part of the model that the findings correct.
-    let effects = [options.known.as_slice(), &diagnosis.effects].concat();
-    let removed = write(args, &arm, &urdf_path, &diagnosis, effects)?;
+    let effects = summed(&options.known, &diagnosis.effects);
+    let written = write(args, &arm, &robot, &diagnosis, effects)?;
     output::print(&report::terminal::diagnosis(&diagnosis.report))?;
     let is_written = |path: &&Path| args.next.as_deref() != Some(*path) || diagnosis.next.is_some();
     for path in args.outputs().into_iter().filter(is_written) {
         output::print(&format!("written: {}\n", path.display()))?;
     }
-    if let Some(path) = removed {
+    for (path, left) in written.left {
+        let path = path.display();
+        output::print(&format!("not in {path}:\n  {}\n", left.join("\n  ")))?;
+    }
+    if let Some(path) = written.removed {
         let path = path.display();
         output::print(&format!(
             "removed: {path} of an earlier diagnosis, because this one proposes no motion\n"
@@ -81,30 +93,48 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn load_robot(robot: &str) -> anyhow::Result<(Arm, PathBuf)> {
-    let here = Source {
-        name: String::new(),
-        path: "".into(),
-        text: String::new(),
-    };
-    let (arm, path) = library::load_arm(robot, &here).with_context(|| format!("--robot {robot}"))?;
+fn load_arm(args: &DiagnoseArgs, robot: &RobotFile, recorded: &[String]) -> anyhow::Result<Arm> {
+    let arm = robot
+        .arm(&args.chain.options(recorded))
+        .with_context(|| format!("--robot {}", args.robot))?;
     for warning in arm.warnings() {
-        eprintln!("note: {}: {warning}", path.display());
+        eprintln!("note: {}: {warning}", robot.path.display());
     }
-    Ok((arm, path))
+    Ok(arm)
 }
 
-/// Writes the requested files; returns the path of an earlier proposal that was removed without a new one.
+/// What there is to say of the files that were written.
+#[derive(Default)]
+struct Written<'a> {
+    /// What a format cannot hold, by its file.
+    left: Vec<(&'a Path, Vec<String>)>,
+    /// An earlier proposal that was removed without a new one.
+    removed: Option<&'a Path>,
+}
+
+/// Writes the requested files.
 fn write<'a>(
     args: &'a DiagnoseArgs,
     arm: &Arm,
-    urdf_path: &Path,
+    robot: &RobotFile,
     diagnosis: &Diagnosis,
     effects: Vec<effects::Effect>,
-) -> anyhow::Result<Option<&'a Path>> {
-    if let Some(path) = &args.urdf {
-        let text = library::urdf_text(&args.robot, urdf_path)?;
-        output::write_text(path, &urdf_file::corrected_urdf(&text, arm, &effects)?)?;
+) -> anyhow::Result<Written<'a>> {
+    let mut written = Written::default();
+    // Both are made before one of them is written.
+    let urdf = |_| urdf_file::corrected_urdf(&robot.text, arm, &effects);
+    let mjcf = |_| mjcf_file::mjcf(arm, &effects);
+    let exports = [
+        (&args.urdf, args.urdf.as_ref().map(urdf).transpose()?),
+        (&args.mjcf, args.mjcf.as_ref().map(mjcf).transpose()?),
+    ];
+    for (path, export) in exports {
+        if let (Some(path), Some(export)) = (path, export) {
+            output::write_text(path, &export.text)?;
+            if !export.left.is_empty() {
+                written.left.push((path, export.left));
+            }
+        }
     }
     if let Some(path) = &args.model {
         let file = EffectFile {
@@ -113,11 +143,10 @@ fn write<'a>(
         };
         file.write(path)?;
     }
-    let mut removed = None;
     if let Some(path) = &args.next {
         match (&diagnosis.next, &diagnosis.report.next_experiment) {
-            (Some(motion), Some(next)) => next_file::write(path, &args.robot, urdf_path, next, motion)?,
-            _ => removed = next_file::remove_earlier(path)?.then_some(path.as_path()),
+            (Some(motion), Some(next)) => next_file::write(path, &args.robot, &robot.path, arm, next, motion)?,
+            _ => written.removed = next_file::remove_earlier(path)?.then_some(path.as_path()),
         }
     }
     if let Some(path) = &args.trace {
@@ -129,8 +158,8 @@ fn write<'a>(
     if let Some(path) = &args.json {
         output::write_json(path, &diagnosis.report)?;
     }
-    show(args, arm, urdf_path, diagnosis)?;
-    Ok(removed)
+    show(args, arm, &robot.path, diagnosis)?;
+    Ok(written)
 }
 
 #[cfg(feature = "viewer")]

@@ -1,5 +1,7 @@
 //! The recordings of a diagnosis, checked before anything is fitted.
 
+mod joints;
+
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail, ensure};
@@ -7,8 +9,9 @@ use arm::Arm;
 use diagnosis::Wanted;
 use effects::Effect;
 use indicatif::ProgressBar;
-use recording::{ColumnMap, FindingKind, Quality, Recording, RegularRecording, Signal, nearest};
+use recording::{ColumnMap, FindingKind, Quality, Recording, RegularRecording};
 
+use self::joints::{order, reordered};
 use super::effect_file::EffectFile;
 use super::next_file;
 use crate::cli::{DiagnoseArgs, Rerun};
@@ -142,26 +145,64 @@ fn overlap(a: &RegularRecording, b: &RegularRecording) -> bool {
     })
 }
 
-/// Reads and checks the recordings that `args` name; what is doubtful is printed.
+/// The recordings that a diagnosis is to read, of which the first was read already: its joints choose the arm.
+pub struct Files<'a> {
+    map: Option<(&'a Path, ColumnMap)>,
+    files: Vec<(&'a PathBuf, Role)>,
+    first: Option<Recording>,
+}
+
+impl<'a> Files<'a> {
+    /// Opens the recordings that `args` name, those for training first.
+    ///
+    /// # Errors
+    /// If one is named twice, or the map or the first recording cannot be read.
+    pub fn open(args: &'a DiagnoseArgs) -> anyhow::Result<Self> {
+        let load = |path: &'a PathBuf| anyhow::Ok((path.as_path(), ColumnMap::load(path)?));
+        let map = args.map.as_ref().map(load).transpose()?;
+        let roles = [
+            (&args.before, Role::Before),
+            (&args.train, Role::Train),
+            (&args.held_out, Role::HeldOut),
+        ];
+        let files: Vec<(&PathBuf, Role)> = roles
+            .into_iter()
+            .flat_map(|(paths, role)| paths.iter().map(move |path| (path, role)))
+            .collect();
+        refuse_twice(&files)?;
+        let first = files
+            .first()
+            .map(|(path, _)| Recording::read_csv_with(path, map.as_ref().map(|(_, map)| map)));
+        let first = first.transpose()?;
+        Ok(Self { map, files, first })
+    }
+
+    /// The joints of the first recording.
+    pub fn joints(&self) -> &[String] {
+        self.first.as_ref().map_or(&[], |first| &first.joints)
+    }
+}
+
+/// Reads and checks the recordings of `files`; what is doubtful is printed.
 ///
 /// # Errors
 /// If one cannot be read, does not fit the arm, holds no motion or no torque, or is both fitted and held out.
-pub fn read(args: &DiagnoseArgs, arm: &Arm, progress: &ProgressBar) -> anyhow::Result<Vec<Prepared>> {
-    let load = |path| anyhow::Ok((path, ColumnMap::load(path)?));
-    let map = args.map.as_deref().map(load).transpose()?;
-    let roles = [
-        (&args.before, Role::Before),
-        (&args.train, Role::Train),
-        (&args.held_out, Role::HeldOut),
-    ];
-    let files: Vec<(&PathBuf, Role)> = roles
-        .into_iter()
-        .flat_map(|(paths, role)| paths.iter().map(move |path| (path, role)))
-        .collect();
-    refuse_twice(&files)?;
+pub fn read(files: Files<'_>, arm: &Arm, progress: &ProgressBar) -> anyhow::Result<Vec<Prepared>> {
+    let Files { map, files, mut first } = files;
+    let choosing = files
+        .first()
+        .map_or_else(String::new, |(path, _)| path.display().to_string());
     let mut list: Vec<Prepared> = Vec::new();
     for (path, role) in files {
-        let prepared = prepare(path, role, map.as_ref(), arm, progress)?;
+        progress.set_message(format!("reading {}", path.display()));
+        let recording = match first.take() {
+            Some(first) => first,
+            None => Recording::read_csv_with(path, map.as_ref().map(|(_, map)| map))?,
+        };
+        let name = path.display().to_string();
+        let map = map.as_ref().map(|(path, _)| *path);
+        let order = order(&recording, arm, &name, &choosing, map)?;
+        let prepared = prepare(recording, name, &order, role, arm, progress)?;
         // The same samples under another name.
         let twin = list.iter().find(|known| {
             let (a, b) = (&known.regular, &prepared.regular);
@@ -216,16 +257,13 @@ fn refuse_twice(files: &[(&PathBuf, Role)]) -> anyhow::Result<()> {
 }
 
 fn prepare(
-    path: &Path,
+    recording: Recording,
+    name: String,
+    order: &[usize],
     role: Role,
-    map: Option<&(&Path, ColumnMap)>,
     arm: &Arm,
     progress: &ProgressBar,
 ) -> anyhow::Result<Prepared> {
-    let name = path.display().to_string();
-    progress.set_message(format!("reading {name}"));
-    let recording = Recording::read_csv_with(path, map.map(|(_, map)| map))?;
-    let order = order(&recording, arm, &name, map.map(|(path, _)| *path))?;
     let (regular, warnings) = recording.regular().with_context(|| name.clone())?;
     let quality = Quality::of(&recording, &regular);
     let misfits = model_check::check(arm, &regular, &quality);
@@ -261,7 +299,7 @@ fn prepare(
     if let Some(misfit) = misfits.iter().find(|misfit| misfit.spoils) {
         bail!("{name}: {}", misfit.text);
     }
-    let regular = reordered(regular, &order);
+    let regular = reordered(regular, order);
     if let Some(reason) = unusable(&regular, &quality) {
         bail!("{name}: {reason}");
     }
@@ -300,88 +338,6 @@ fn unusable(regular: &RegularRecording, quality: &Quality) -> Option<String> {
         );
     }
     None
-}
-
-/// Where each joint of the arm is in the recording.
-fn order(recording: &Recording, arm: &Arm, name: &str, map: Option<&Path>) -> anyhow::Result<Vec<usize>> {
-    let known: Vec<String> = arm.joints().iter().map(|joint| joint.name.clone()).collect();
-    let quoted = |names: &[String]| {
-        names
-            .iter()
-            .map(|name| format!("\"{name}\""))
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
-    let foreign: Vec<String> = recording
-        .joints
-        .iter()
-        .filter(|joint| !known.contains(joint))
-        .cloned()
-        .collect();
-    let lacking: Vec<String> = known
-        .iter()
-        .filter(|joint| !recording.joints.contains(joint))
-        .cloned()
-        .collect();
-    if !foreign.is_empty() && lacking.len() == known.len() {
-        bail!(
-            "{name}: belongs to another robot: its joints are {}, those of {} are {}; give the URDF of the robot that was recorded, or a column map (--map)",
-            quoted(&recording.joints),
-            arm.name(),
-            quoted(&known)
-        );
-    }
-    if let (Some(joint), Some(map)) = (lacking.first(), map) {
-        let hint = foreign
-            .first()
-            .map_or_else(String::new, |other| format!(" (is [joints.{other}] meant?)"));
-        bail!(
-            "{}: has no [joints.{joint}] for {} of {}{hint}; add a table for each joint of the arm",
-            map.display(),
-            quoted(&lacking),
-            arm.name()
-        );
-    }
-    if let Some(joint) = lacking.first() {
-        let hint = nearest(joint, &foreign).map_or_else(String::new, |near| {
-            format!("; the name of its column q_{near} is similar")
-        });
-        bail!(
-            "{name}: has no column q_{joint} for {} of {}{hint}; record all joints of the arm, or name their columns in a column map (--map)",
-            quoted(&lacking),
-            arm.name()
-        );
-    }
-    if let Some(joint) = foreign.first() {
-        bail!(
-            "{name}: column q_{joint}: {} is not a joint of {}, which has {}; leave the column out with a column map (--map), or give the URDF of the robot that was recorded",
-            quoted(&foreign),
-            arm.name(),
-            quoted(&known)
-        );
-    }
-    Ok(known
-        .iter()
-        .filter_map(|joint| recording.joints.iter().position(|found| found == joint))
-        .collect())
-}
-
-/// The recording with its joints in another order.
-fn reordered(mut recording: RegularRecording, order: &[usize]) -> RegularRecording {
-    let signal = |signal: &Signal| -> Signal { order.iter().map(|&from| signal[from].clone()).collect() };
-    let partial = |signal: &recording::PartialSignal| -> recording::PartialSignal {
-        order.iter().map(|&from| signal.get(from).cloned().flatten()).collect()
-    };
-    recording.joints = order.iter().map(|&from| recording.joints[from].clone()).collect();
-    recording.q = signal(&recording.q);
-    recording.tau = signal(&recording.tau);
-    recording.qd = recording.qd.as_ref().map(signal);
-    recording.qdd = recording.qdd.as_ref().map(signal);
-    recording.q_secondary = partial(&recording.q_secondary);
-    recording.tau_current = partial(&recording.tau_current);
-    recording.current = partial(&recording.current);
-    recording.temperature = partial(&recording.temperature);
-    recording
 }
 
 /// Whether no joint moves: less than a thousandth of a radian or metre.

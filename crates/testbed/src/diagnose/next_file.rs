@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use anyhow::{Context, ensure};
+use arm::{Arm, FixedBecause, FixedJoint};
 use diagnosis::NextExperiment;
 use report::next_words::name;
 use report::{numbers, words};
@@ -45,17 +46,24 @@ fn is_earlier(path: &Path) -> anyhow::Result<bool> {
     Ok(bytes.starts_with(FIRST_LINE.as_bytes()))
 }
 
-/// Writes `motion` to `path`, whole or not at all, with what it is for in comments; `robot` is as it was given.
+/// Writes `motion` of `arm` to `path`, whole or not at all, with what it is for in comments; `robot` is as it was given.
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn write(path: &Path, robot: &str, urdf: &Path, next: &NextExperiment, motion: &Reference) -> anyhow::Result<()> {
+pub fn write(
+    path: &Path,
+    robot: &str,
+    urdf: &Path,
+    arm: &Arm,
+    next: &NextExperiment,
+    motion: &Reference,
+) -> anyhow::Result<()> {
     let robot = if library::is_built_in(robot) {
         robot.to_owned()
     } else {
         beside(path, urdf)?
     };
-    let text = text(&robot, next, motion);
+    let text = text(&robot, arm, next, motion);
     recording::write_whole(path, |file| file.write_all(text.as_bytes()))?;
     Ok(())
 }
@@ -69,7 +77,7 @@ fn beside(path: &Path, urdf: &Path) -> anyhow::Result<String> {
     Ok(place.display().to_string())
 }
 
-fn text(robot: &str, next: &NextExperiment, motion: &Reference) -> String {
+fn text(robot: &str, arm: &Arm, next: &NextExperiment, motion: &Reference) -> String {
     let mut text = format!("{FIRST_LINE}#\n");
     let mut line = |words: &str| {
         let _ = writeln!(text, "# {words}");
@@ -124,9 +132,10 @@ fn text(robot: &str, next: &NextExperiment, motion: &Reference) -> String {
     };
     let _ = writeln!(
         text,
-        "\ntitle = \"The next experiment\"\nrobot = {}\nduration = {:?}\n\n[model]\nkind = \"rigid-body\"\n\n[controller]\nkp = 10000.0\nkd = 200.0\n\n[reference]\ncentre = {}",
+        "\ntitle = \"The next experiment\"\nrobot = {}\nduration = {:?}\n{}\n[model]\nkind = \"rigid-body\"\n\n[controller]\nkp = 10000.0\nkd = 200.0\n\n[reference]\ncentre = {}",
         toml::Value::String(robot.to_owned()),
         next.duration.unwrap_or_default(),
+        chain(arm),
         list(&motion.centre)
     );
     if let Some(fade) = &motion.fade {
@@ -140,6 +149,28 @@ fn text(robot: &str, next: &NextExperiment, motion: &Reference) -> String {
         );
     }
     text
+}
+
+/// The table that chooses the arm among the robot's joints; nothing where the whole robot is the arm.
+fn chain(arm: &Arm) -> String {
+    if arm.fixed_joints().is_empty() {
+        return String::new();
+    }
+    let word = |text: &str| toml::Value::String(text.to_owned()).to_string();
+    // The others are fixed there by default, beside the tip.
+    let is_asked = |joint: &&FixedJoint| matches!(joint.reason, FixedBecause::Locked | FixedBecause::NotRecorded);
+    let locks: Vec<String> = arm
+        .fixed_joints()
+        .iter()
+        .filter(is_asked)
+        .map(|joint| format!("{} = {:?}", word(&joint.name), joint.position))
+        .collect();
+    format!(
+        "\n[chain]\nbase = {}\ntip = {}\nlock = {{ {} }}\n",
+        word(arm.base_link()),
+        word(&arm.tool_frame().name),
+        locks.join(", ")
+    )
 }
 
 #[cfg(test)]
@@ -196,6 +227,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let urdf = folder.path().join("my \"arm\".urdf");
         std::fs::write(&urdf, include_str!("../../../../assets/puma560.urdf")).expect("it writes");
+        let arm = Arm::from_urdf(&urdf).expect("it loads");
         let elsewhere = tempfile::tempdir().expect("a folder");
         let robot = urdf.display().to_string();
         for (path, robot) in [
@@ -203,7 +235,7 @@ mod tests {
             (elsewhere.path().join("next.toml"), robot.as_str()),
             (folder.path().join("built_in.toml"), "puma560"),
         ] {
-            write(&path, robot, &urdf, &next, &motion).expect("it writes");
+            write(&path, robot, &urdf, &arm, &next, &motion).expect("it writes");
             let scenario = Scenario::load(&path.display().to_string()).expect("it loads");
             assert_eq!(scenario.reference, motion);
             assert_eq!((scenario.duration, scenario.arm.dof()), (25.0, 6));

@@ -8,20 +8,50 @@ use std::ops::Range;
 
 use anyhow::Context;
 use arm::{Arm, Inertia};
-use effects::arm::{InertialScale, LinkInertialError, Payload};
-use effects::{Effect, InUrdf};
+use effects::Effect;
+use effects::arm::{InertialParameters, InertialScale, LinkInertialError, Payload};
+use effects::drive::RotorInertia;
 use torque::Corrected;
 
-use self::scan::{JointPlaces, LinkPlaces, Places};
+use self::scan::{JointPlaces, LinkPlaces, Place, Places};
+use super::held::{self, Export, Held};
 
-/// The text `urdf` of `arm` with the inertials that `effects` change, and with viscous and Coulomb friction as
-/// `<dynamics damping friction>` in place of what was there. All else stays as it was, to the byte; a comment names the
-/// effects that URDF cannot hold.
+/// The attribute of a `<dynamics>` whose friction a diagnosis found; other programs do not read it.
+const SOURCE: (&str, &str) = ("source", "testbed");
+/// The name space of what Drake reads beyond URDF.
+const DRAKE: &str = "xmlns:drake=\"http://drake.mit.edu\"";
+
+/// The text `urdf` of `arm` with what it can hold of `effects`: inertials, friction as `<dynamics damping friction>` in place
+/// of what was there, and drive inertias as Drake's `<drake:rotor_inertia>` (with a gear ratio of 1, because they are those
+/// at the joint). All else stays as it was, to the byte; a comment names what a URDF cannot hold.
 ///
 /// # Errors
 /// If an effect does not fit the arm or the text is not the arm's.
-pub fn corrected_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Result<String> {
-    edited(urdf, arm, effects, remark(effects)?)
+pub fn corrected_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Result<Export> {
+    let places = Places::of(urdf).context("the URDF cannot be edited")?;
+    // A drive that the file describes already is not described twice.
+    let is_described = |effect: &Effect| effect.joint().is_some_and(|joint| places.drives.contains(joint));
+    let left = held::left_out(effects, |effect| match held::in_common(effect) {
+        Held::Whole if effect.is(&RotorInertia) && is_described(effect) => {
+            Held::Without("the file has a transmission of this joint, which stays as it was")
+        }
+        held => held,
+    })?;
+    let whole = effects
+        .iter()
+        .filter(|effect| held::in_common(effect) == Held::Whole)
+        .count();
+    let mut lines = vec![format!(
+        "Corrected by testbed diagnose: {whole} of {} effects are in it.",
+        effects.len()
+    )];
+    if !left.is_empty() {
+        lines.push("Not in it (the TOML file of the corrected model has all effects):".into());
+        lines.extend(left.iter().map(|line| format!("  {line}")));
+    }
+    let remark = format!("\n  <!-- {} -->", held::comment(&lines));
+    let text = edited(urdf, &places, arm, effects, remark)?;
+    Ok(Export { text, left })
 }
 
 /// As [`corrected_urdf`], but without a word about what was done to it: the URDF of an arm that is believed to be so.
@@ -29,39 +59,48 @@ pub fn corrected_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Resu
 /// # Errors
 /// As [`corrected_urdf`].
 pub fn changed_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Result<String> {
-    edited(urdf, arm, effects, String::new())
+    let places = Places::of(urdf).context("the URDF cannot be edited")?;
+    edited(urdf, &places, arm, effects, String::new())
 }
 
-fn edited(urdf: &str, arm: &Arm, effects: &[Effect], remark: String) -> anyhow::Result<String> {
+/// The names of the joints whose `<dynamics>` a diagnosis wrote into `urdf`.
+///
+/// # Errors
+/// If the text is not XML.
+pub fn diagnosed_joints(urdf: &str) -> anyhow::Result<Vec<String>> {
+    let places = Places::of(urdf)?;
+    let ours = places.joints.into_iter().filter(|(_, joint)| joint.is_diagnosed);
+    Ok(ours.map(|(name, _)| name).collect())
+}
+
+fn edited(urdf: &str, places: &Places, arm: &Arm, effects: &[Effect], remark: String) -> anyhow::Result<String> {
     Corrected::new(arm, effects)?;
-    let places = Places::of(urdf).context("the URDF cannot be edited")?;
     let mut edits: Vec<(Range<usize>, String)> = Vec::new();
-    for (link, factor, payloads) in changed_links(arm, effects) {
+    for (link, body) in changed_links(arm, effects, places)? {
         let found = places
             .links
             .get(&link)
             .with_context(|| format!("the URDF has no link \"{link}\""))?;
-        edits.push(found.edit(factor, &payloads));
+        edits.extend(found.edit(body));
     }
     for joint in arm.joints() {
-        let of = |wanted: InUrdf| {
-            let on_joint = effects.iter().filter(|effect| effect.joint() == Some(&joint.name));
-            let found: Vec<f64> = on_joint
-                .filter(|effect| effect.spec().in_urdf == wanted)
-                .filter_map(|effect| effect.spec().main.first().map(|main| effect.number(main)))
-                .collect();
-            (!found.is_empty()).then(|| found.iter().sum::<f64>())
-        };
-        let (damping, friction) = (of(InUrdf::Damping), of(InUrdf::Friction));
-        if damping.is_none() && friction.is_none() {
+        let Some((damping, friction)) = held::friction(joint, effects) else {
             continue;
-        }
+        };
         let name = &joint.name;
         let found = places
             .joints
             .get(name)
             .with_context(|| format!("the URDF has no joint \"{name}\""))?;
-        edits.push(found.edit(damping.unwrap_or(joint.damping), friction.unwrap_or(joint.friction)));
+        edits.push(found.edit(damping, friction));
+    }
+    let drives = drives(places, effects);
+    if !drives.is_empty() {
+        edits.push((places.end_of_robot..places.end_of_robot, drives));
+        if !urdf[..places.inside_robot].contains("xmlns:drake") {
+            let end_of_tag = places.inside_robot - 1;
+            edits.push((end_of_tag..end_of_tag, format!(" {DRAKE}")));
+        }
     }
     edits.push((places.inside_robot..places.inside_robot, remark));
     edits.sort_by_key(|(range, _)| range.start);
@@ -76,77 +115,96 @@ fn edited(urdf: &str, arm: &Arm, effects: &[Effect], remark: String) -> anyhow::
     Ok(text)
 }
 
-/// The URDF links whose inertials change: name, factor of mass and tensor, and what is welded to them.
-fn changed_links(arm: &Arm, effects: &[Effect]) -> Vec<(String, f64, Vec<Inertia>)> {
+/// The URDF links whose inertials change, each with its new body in its own frame; `None` is none.
+fn changed_links(arm: &Arm, effects: &[Effect], places: &Places) -> anyhow::Result<Vec<(String, Option<Inertia>)>> {
+    let always: Vec<Effect> = effects
+        .iter()
+        .filter(|effect| effect.onset().is_none())
+        .cloned()
+        .collect();
+    let corrected = Corrected::new(arm, &always)?;
     let tool = arm.tool_frame().name;
     let mut changed = Vec::new();
     for (j, joint) in arm.joints().iter().enumerate() {
-        let factor: f64 = effects
+        let on_joint = |effect: &&Effect| effect.joint() == Some(&joint.name);
+        let welded = arm
+            .frames()
+            .iter()
+            .filter(|frame| frame.link == Some(j))
+            .map(|frame| &frame.name);
+        if always
+            .iter()
+            .filter(on_joint)
+            .any(|effect| effect.is(&InertialParameters))
+        {
+            // The recordings tell the body of all welded links together: it is given to the first.
+            changed.push((joint.link_name.clone(), Some(corrected.arm().joints()[j].inertia)));
+            changed.extend(welded.map(|link| (link.clone(), None)));
+            continue;
+        }
+        let factor: f64 = always
             .iter()
             .map(|effect| {
                 if effect.is(&InertialScale) {
                     effect.number("factor")
-                } else if effect.is(&LinkInertialError) && effect.joint() == Some(&joint.name) {
+                } else if effect.is(&LinkInertialError) && on_joint(&effect) {
                     1.0 + effect.number("relative")
                 } else {
                     1.0
                 }
             })
             .product();
-        let welded = arm
-            .frames()
-            .iter()
-            .filter(|frame| frame.link == Some(j))
-            .map(|frame| &frame.name);
         for link in std::iter::once(&joint.link_name).chain(welded) {
-            let payloads: Vec<Inertia> = if *link == tool { payloads(effects) } else { Vec::new() };
-            if factor != 1.0 || !payloads.is_empty() {
-                changed.push((link.clone(), factor, payloads));
+            let payloads = always.iter().filter(|effect| effect.is(&Payload) && *link == tool);
+            let payloads: Vec<Inertia> = payloads.map(Payload::inertia).collect();
+            if factor == 1.0 && payloads.is_empty() {
+                continue;
             }
+            let found = places.links.get(link);
+            let found = found.with_context(|| format!("the URDF has no link \"{link}\""))?;
+            let mut body = found.inertia;
+            body.mass *= factor;
+            body.tensor *= factor;
+            changed.push((
+                link.clone(),
+                Some(payloads.iter().fold(body, |body, payload| body.merged(payload))),
+            ));
         }
     }
-    changed
+    Ok(changed)
 }
 
-fn payloads(effects: &[Effect]) -> Vec<Inertia> {
-    let payloads = effects.iter().filter(|effect| effect.is(&Payload) && is_held(effect));
-    payloads.map(Payload::inertia).collect()
-}
-
-/// Whether a URDF says it.
-fn is_held(effect: &Effect) -> bool {
-    effect.spec().in_urdf != InUrdf::Nothing && effect.onset().is_none()
-}
-
-/// The comment that goes inside the robot.
-fn remark(effects: &[Effect]) -> anyhow::Result<String> {
-    let (held, left): (Vec<&Effect>, Vec<&Effect>) = effects.iter().partition(|effect| is_held(effect));
-    let mut lines = vec![format!(
-        "Corrected by testbed diagnose; {} effects are put in.",
-        held.len()
-    )];
-    if !left.is_empty() {
-        lines.push("What a URDF cannot hold (it is in the file that --model writes, which testbed reads):".into());
+/// A transmission for each joint with a drive inertia and without a transmission in the file.
+fn drives(places: &Places, effects: &[Effect]) -> String {
+    let mut text = String::new();
+    for joint in places.joints.keys().filter(|joint| !places.drives.contains(*joint)) {
+        let on_joint = |effect: &&Effect| effect.is(&RotorInertia) && effect.joint() == Some(joint.as_str());
+        let inertia: f64 = effects
+            .iter()
+            .filter(on_joint)
+            .map(|effect| effect.number("inertia"))
+            .sum();
+        if inertia > 0.0 {
+            let name = quick_xml::escape::escape(joint);
+            text.push_str(&format!(
+                "  <transmission name=\"{name}_drive\"><type>transmission_interface/SimpleTransmission</type><joint \
+                 name=\"{name}\"/><actuator name=\"{name}_drive\"><drake:rotor_inertia \
+                 value=\"{inertia}\"/><drake:gear_ratio value=\"1\"/></actuator></transmission>\n"
+            ));
+        }
     }
-    for effect in left {
-        let table = toml::to_string(effect)?;
-        let parameters: Vec<&str> = table.lines().skip(1).filter(|line| *line != "curve = []").collect();
-        lines.push(format!("  {}: {}", effect.name(), parameters.join(", ")));
-    }
-    // Two hyphens end a comment.
-    let text = lines.join("\n       ").replace("--", "- -");
-    Ok(format!("\n  <!-- {text} -->"))
+    text
 }
 
 impl LinkPlaces {
-    /// What takes the place of the link's inertial.
-    fn edit(&self, factor: f64, payloads: &[Inertia]) -> (Range<usize>, String) {
-        let mut body = self.inertia;
-        body.mass *= factor;
-        body.tensor *= factor;
-        for payload in payloads {
-            body = body.merged(payload);
-        }
+    /// What takes the place of the link's inertial; nothing, if it has none and is to have none.
+    fn edit(&self, body: Option<Inertia>) -> Option<(Range<usize>, String)> {
+        let Some(body) = body else {
+            return match &self.inertial {
+                Place::At(range) => Some((range.clone(), String::new())),
+                _ => None,
+            };
+        };
         let (c, i) = (body.com, body.tensor);
         let inertial = format!(
             "<inertial><origin xyz=\"{} {} {}\" rpy=\"0 0 0\"/><mass value=\"{}\"/><inertia ixx=\"{}\" ixy=\"{}\" ixz=\"{}\" \
@@ -162,14 +220,15 @@ impl LinkPlaces {
             i[(1, 2)],
             i[(2, 2)]
         );
-        self.inertial.place(inertial, "link")
+        Some(self.inertial.place(inertial, "link"))
     }
 }
 
 impl JointPlaces {
     /// What takes the place of the joint's dynamics.
     fn edit(&self, damping: f64, friction: f64) -> (Range<usize>, String) {
-        let dynamics = format!("<dynamics damping=\"{damping}\" friction=\"{friction}\"/>");
+        let (key, value) = SOURCE;
+        let dynamics = format!("<dynamics damping=\"{damping}\" friction=\"{friction}\" {key}=\"{value}\"/>");
         self.dynamics.place(dynamics, "joint")
     }
 }

@@ -99,8 +99,15 @@ fn names(arm: &Arm, regular: &RegularRecording) -> Vec<Misfit> {
         })
         .collect()
     };
+    let is_fixed = |joint: &String| arm.fixed_joints().iter().any(|fixed| fixed.name == *joint);
+    let recorded: Vec<String> = regular
+        .joints
+        .iter()
+        .filter(|joint| !is_fixed(joint))
+        .cloned()
+        .collect();
     let mut misfits = missing(
-        &regular.joints,
+        &recorded,
         &of_arm,
         "is in the recording, but the URDF has no such joint",
     );

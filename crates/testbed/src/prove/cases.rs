@@ -7,7 +7,7 @@ use anyhow::{Context, bail, ensure};
 use faults::{Campaign, CasePlan, FaultError, Robot, conceal_case, write_case};
 
 use super::{disturbance, tracking};
-use crate::cli::ProveArgs;
+use crate::cli::{ChainArgs, ProveArgs};
 use crate::conceal;
 
 /// The number of seeds that are tried for a case.
@@ -36,6 +36,8 @@ pub enum Cases {
         robots: Vec<Robot>,
         /// As they were given; empty: those that come with testbed.
         named: Vec<String>,
+        /// Which of their joints are the arm.
+        chain: ChainArgs,
         /// Whether half of them look like reality.
         lifelike: bool,
         /// How wrong their URDFs are; `None`: in turns.
@@ -77,8 +79,9 @@ impl Cases {
                 seed: args.seed,
                 lifelike: args.lifelike,
                 urdf_error: args.urdf_error,
-                robots: conceal::robots(&args.robot)?,
+                robots: conceal::robots(&args.robot, &args.chain)?,
                 named: args.robot.clone(),
+                chain: args.chain.clone(),
                 plans: Campaign {
                     seed: args.seed,
                     cases: args.cases,
@@ -134,6 +137,7 @@ impl Cases {
                 seed,
                 plans,
                 named,
+                chain,
                 lifelike,
                 urdf_error,
                 ..
@@ -142,7 +146,7 @@ impl Cases {
                 let plain = if *lifelike { "" } else { " --lifelike false" };
                 let error = urdf_error.map_or_else(String::new, |sigma| format!(" --urdf-error {sigma}"));
                 format!(
-                    "testbed prove --cases {} --seed {seed}{robots}{plain}{error} --out proof/",
+                    "testbed prove --cases {} --seed {seed}{robots}{chain}{plain}{error} --out proof/",
                     plans.len()
                 )
             }

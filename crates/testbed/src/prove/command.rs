@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use ::report::score::{figure, wanted};
 use ::report::terminal::table;
-use anyhow::Context;
+use anyhow::{Context, ensure};
 use arm::Arm;
 use faults::{Program, Seal, SealedCase, sha256};
 use scoring::{Score, Truth, true_terms, wrong_term};
@@ -52,6 +52,11 @@ pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
     if let Some(path) = &args.markdown {
         output::check_writable(path)?;
     }
+    ensure!(
+        !args.chain.is_given() || (args.cases_from.is_none() && args.published.is_none() && args.merge.is_none()),
+        "{}: chooses the arm of the robot that cases are drawn on; leave it out here",
+        args.chain.to_string().trim_start()
+    );
     if let (Some(file), Some(recordings)) = (&args.published, &args.recordings) {
         return published::run(args, file, recordings);
     }

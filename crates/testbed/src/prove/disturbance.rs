@@ -135,7 +135,7 @@ pub fn conceal() -> anyhow::Result<Concealment> {
 
 /// The URDF as the paper's controller believes it: [`Scenario::nominal_arm`], in the words of the robot's own file.
 fn heavy_urdf(scenario: &Scenario) -> anyhow::Result<String> {
-    let urdf = library::urdf_text(scenario.arm.name(), &scenario.urdf)?;
+    let urdf = library::named_robot(scenario.arm.name())?.text;
     let heavier = Effect::of(&InertialScale).with("factor", scenario.inertia_scale);
     changed_urdf(&urdf, &scenario.arm, &[heavier])
 }

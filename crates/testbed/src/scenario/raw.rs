@@ -1,5 +1,6 @@
 //! A scenario as it is written: TOML, nothing checked but its shape.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use anyhow::anyhow;
@@ -21,6 +22,8 @@ pub enum PerJoint {
 pub struct RawScenario {
     pub title: Option<String>,
     pub robot: Spanned<String>,
+    #[serde(default)]
+    pub chain: RawChain,
     pub duration: Spanned<f64>,
     #[serde(default)]
     pub model: RawModel,
@@ -33,6 +36,15 @@ pub struct RawScenario {
     pub plant: RawPlant,
     #[serde(default)]
     pub sensors: RawSensors,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawChain {
+    pub base: Option<String>,
+    pub tip: Option<String>,
+    #[serde(default)]
+    pub lock: BTreeMap<String, f64>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -95,12 +107,34 @@ pub struct RawSensors {
     pub torque_noise: Option<Spanned<PerJoint>>,
 }
 
+/// What the required keys look like.
+const EXAMPLES: [(&str, &str); 6] = [
+    ("robot", ": robot = \"puma560\", or the path of a URDF"),
+    ("duration", ": duration = 10.0 (s)"),
+    (
+        "reference",
+        ": [reference], with amplitude, frequency_1 and frequency_2",
+    ),
+    ("amplitude", ": amplitude = 0.5 (rad or m)"),
+    ("frequency", ": frequency = 0.2 (Hz)"),
+    ("scenarios", ": scenarios = [\"taskA\"]"),
+];
+
 /// Parses the text of a scenario.
 ///
 /// # Errors
 /// One line with file, line and reason; an unknown key comes with the nearest known one.
 pub fn parse(source: &Source) -> anyhow::Result<RawScenario> {
     toml::from_str(&source.text).map_err(|error| {
+        if let Some(key) = error.message().strip_prefix("missing field `") {
+            let key = key.trim_end_matches('`');
+            let example = EXAMPLES
+                .iter()
+                .find(|(known, _)| *known == key)
+                .map_or("", |(_, example)| example);
+            let place = source.place(error.span().unwrap_or(Range { start: 0, end: 0 }));
+            return anyhow!("{place}: the key `{key}` is missing; add it{example}");
+        }
         let place = source.place(error.span().unwrap_or(Range { start: 0, end: 0 }));
         let written = source.line(error.span().map_or(0, |span| span.start));
         anyhow!("{place}: `{written}`: {}", recording::toml_reason(error.message()))

@@ -7,6 +7,7 @@ use torque::{Fade, Feedback, Reference, Sine};
 
 use super::Scenario;
 use super::raw::{PerJoint, RawReference, RawScenario};
+use crate::cli::ChainArgs;
 use crate::library::{self, Source};
 use crate::models::ModelKind;
 use crate::sensors::SensorNoise;
@@ -25,18 +26,24 @@ const MAX_SAMPLES: f64 = 1e6;
 /// The largest number that a gain, an amplitude or the like can sensibly be, in any of the units.
 const MAX_VALUE: f64 = 1e9;
 
-/// Checks `raw`, which `source` holds.
+/// Checks `raw`, which `source` holds; what `chosen` says of the arm's joints takes the place of its `[chain]`.
 ///
 /// # Errors
 /// One line that names file, line and key, what was found and how to mend it.
-pub fn scenario(source: &Source, raw: RawScenario) -> anyhow::Result<Scenario> {
-    let (arm, urdf) = library::load_arm(raw.robot.get_ref(), source).with_context(|| {
-        format!(
-            "{}: robot = \"{}\"",
-            source.place(raw.robot.span()),
-            raw.robot.get_ref()
-        )
-    })?;
+pub fn scenario(source: &Source, raw: RawScenario, chosen: &ChainArgs) -> anyhow::Result<Scenario> {
+    let of_robot = || {
+        let (place, robot) = (source.place(raw.robot.span()), raw.robot.get_ref());
+        format!("{place}: robot = \"{robot}\"")
+    };
+    let robot = library::find_robot(raw.robot.get_ref(), source).with_context(of_robot)?;
+    let written = ChainArgs {
+        base: raw.chain.base,
+        tip: raw.chain.tip,
+        lock: raw.chain.lock.into_iter().collect(),
+    };
+    let chain = if chosen.is_given() { chosen } else { &written };
+    let arm = robot.arm(&chain.options(&[])).with_context(of_robot)?;
+    let urdf = robot.path;
     let check = Check { source, arm: &arm };
 
     let duration = check.number("duration", Some(&raw.duration), 0.0)?;

@@ -1,12 +1,14 @@
 //! Where in a URDF's text the inertials and the joints' dynamics stand.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use anyhow::{Context, ensure};
 use arm::{Inertia, Matrix3, Pose, Vector3};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
+
+use super::SOURCE;
 
 /// Where an element stands, or where it could be put.
 pub(super) enum Place {
@@ -39,14 +41,20 @@ pub(super) struct LinkPlaces {
 /// A joint.
 pub(super) struct JointPlaces {
     pub(super) dynamics: Place,
+    /// Whether an earlier diagnosis wrote it.
+    pub(super) is_diagnosed: bool,
 }
 
 /// A whole URDF.
 pub(super) struct Places {
     /// The byte after the robot's opening tag.
     pub(super) inside_robot: usize,
+    /// The byte before its closing tag.
+    pub(super) end_of_robot: usize,
     pub(super) links: BTreeMap<String, LinkPlaces>,
     pub(super) joints: BTreeMap<String, JointPlaces>,
+    /// The joints that a transmission drives.
+    pub(super) drives: BTreeSet<String>,
 }
 
 /// The link or joint being read.
@@ -57,6 +65,8 @@ struct Open {
     /// Where its inertial or dynamics begins, while inside it.
     begun: Option<usize>,
     inertial: RawInertial,
+    /// Whether its dynamics say that a diagnosis wrote them.
+    is_diagnosed: bool,
 }
 
 #[derive(Default)]
@@ -121,12 +131,15 @@ impl Places {
     pub(super) fn of(text: &str) -> anyhow::Result<Self> {
         let mut places = Self {
             inside_robot: 0,
+            end_of_robot: 0,
             links: BTreeMap::new(),
             joints: BTreeMap::new(),
+            drives: BTreeSet::new(),
         };
         let mut reader = Reader::from_str(text);
         let mut depth = 0;
         let mut open: Option<Open> = None;
+        let mut is_transmission = false;
         loop {
             let from = reader.buffer_position() as usize;
             let event = reader.read_event()?;
@@ -134,6 +147,8 @@ impl Places {
             match event {
                 Event::Start(tag) => {
                     depth += 1;
+                    places.note_drive(is_transmission && depth == 3, &tag)?;
+                    is_transmission |= depth == 2 && tag.name().as_ref() == b"transmission";
                     match depth {
                         1 => places.inside_robot = here.end,
                         2 => open = opened(&tag)?,
@@ -151,11 +166,16 @@ impl Places {
                     }
                 }
                 Event::Empty(tag) => {
+                    places.note_drive(is_transmission && depth == 2, &tag)?;
                     begin(&mut open, depth + 1, &tag, here.clone())?;
                     end(&mut open, depth + 1, here.end);
                 }
                 Event::End(_) => {
                     end(&mut open, depth, here.end);
+                    is_transmission &= depth > 2;
+                    if depth == 1 {
+                        places.end_of_robot = here.start;
+                    }
                     if depth == 2
                         && let Some(mut closed) = open.take()
                     {
@@ -172,6 +192,14 @@ impl Places {
         Ok(places)
     }
 
+    /// Notes the joint that `tag`, directly within a transmission, names.
+    fn note_drive(&mut self, is_within: bool, tag: &BytesStart<'_>) -> anyhow::Result<()> {
+        if is_within && tag.name().as_ref() == b"joint" {
+            self.drives.extend(attribute(tag, "name")?);
+        }
+        Ok(())
+    }
+
     fn close(&mut self, element: &mut Open, place: Place) {
         let name = std::mem::take(&mut element.name);
         if element.is_link {
@@ -184,7 +212,14 @@ impl Places {
                 },
             );
         } else {
-            self.joints.insert(name, JointPlaces { dynamics: place });
+            let is_diagnosed = element.is_diagnosed;
+            self.joints.insert(
+                name,
+                JointPlaces {
+                    dynamics: place,
+                    is_diagnosed,
+                },
+            );
         }
     }
 }
@@ -201,6 +236,7 @@ fn opened(tag: &BytesStart<'_>) -> anyhow::Result<Option<Open>> {
         found: None,
         begun: None,
         inertial: RawInertial::default(),
+        is_diagnosed: false,
     }))
 }
 
@@ -210,6 +246,8 @@ fn begin(open: &mut Option<Open>, depth: usize, tag: &BytesStart<'_>, here: Rang
     let wanted: &[u8] = if open.is_link { b"inertial" } else { b"dynamics" };
     if depth == 3 && tag.name().as_ref() == wanted && open.found.is_none() {
         open.begun = Some(here.start);
+        let (key, value) = SOURCE;
+        open.is_diagnosed = !open.is_link && attribute(tag, key)?.is_some_and(|found| found == value);
     } else if depth == 4 && open.is_link && open.begun.is_some() {
         open.inertial.read(tag)?;
     }

@@ -1,7 +1,7 @@
 //! The URDF that is written says, read again, what the corrected model says.
 
 use super::*;
-use effects::friction::{CoulombFriction, ViscousFriction};
+use effects::friction::{CoulombFriction, FrictionAsymmetry, StribeckFriction, ViscousFriction};
 use effects::sensor::TorqueOffset;
 use torque::{Prediction, TorqueModel, Workspace};
 
@@ -71,19 +71,22 @@ fn assert_same_dynamics(written: &Arm, corrected: &Corrected) {
 #[test]
 fn what_urdf_holds_is_put_in() {
     let arm = read(TWO);
-    let text = corrected_urdf(TWO, &arm, &effects()).expect("it is written");
+    let Export { text, left } = corrected_urdf(TWO, &arm, &effects()).expect("it is written");
     let written = read(&text);
     assert_same_dynamics(&written, &Corrected::new(&arm, &effects()).expect("they are physical"));
     let [a, b] = written.joints() else { panic!("two joints") };
-    assert_eq!((a.damping, a.friction), (1.25, 0.5));
+    // The joint's friction is what was found, and nothing of what was in the file.
+    assert_eq!((a.damping, a.friction), (1.25, 0.0));
     assert_eq!((b.damping, b.friction), (0.0, 0.75));
-    assert!(text.contains("torque_offset: joint = \"b\", offset = 0.3"), "{text}");
+    let [offset] = &left[..] else { panic!("{left:?}") };
+    assert_eq!(offset, "torque_offset: joint = \"b\", offset = 0.3");
+    assert!(text.contains(offset) && text.contains("5 of 6 effects"), "{text}");
 }
 
 #[test]
 fn all_else_stays_as_it_was() {
     let arm = read(TWO);
-    let text = corrected_urdf(TWO, &arm, &effects()).expect("it is written");
+    let text = corrected_urdf(TWO, &arm, &effects()).expect("it is written").text;
     for kept in [
         "<!-- a <link name=\"decoy\"/> in a comment -->\n<robot name=\"two\"   xmlns:xacro=\"x\">",
         "<link name=\"base\"/>",
@@ -94,7 +97,7 @@ fn all_else_stays_as_it_was() {
         assert!(text.contains(kept), "{kept} is not in\n{text}");
     }
     // Without effects only the comment is new.
-    let same = corrected_urdf(TWO, &arm, &[]).expect("it is written");
+    let same = corrected_urdf(TWO, &arm, &[]).expect("it is written").text;
     let (before, rest) = same.split_once("\n  <!-- Corrected").expect("there is a comment");
     let (_, after) = rest.split_once("-->").expect("it ends");
     assert_eq!(format!("{before}{after}"), TWO);
@@ -113,7 +116,7 @@ fn the_puma_goes_round() {
         Effect::of(&LinkInertialError).on(joint(1)).with("relative", -0.15),
         Effect::of(&ViscousFriction).on(joint(2)).with("coefficient", 3.5),
     ];
-    let written = read(&corrected_urdf(urdf, &arm, &effects).expect("it is written"));
+    let written = read(&corrected_urdf(urdf, &arm, &effects).expect("it is written").text);
     assert_same_dynamics(&written, &Corrected::new(&arm, &effects).expect("they are physical"));
     assert_eq!(written.joints()[2].damping, 3.5);
 }
@@ -126,4 +129,71 @@ fn what_does_not_fit_is_refused() {
     let other = TWO.replace("name=\"upper\"", "name=\"other\"");
     let error = corrected_urdf(&other, &arm, &effects()).expect_err("it is another robot's");
     assert!(error.to_string().contains("no link \"upper\""), "{error}");
+}
+
+/// A friction with more than one level is held by the level that is most like it; the rest is said.
+#[test]
+fn what_a_urdf_holds_in_part_is_put_in_and_said() {
+    let arm = read(TWO);
+    let found = [
+        Effect::of(&FrictionAsymmetry)
+            .on("a")
+            .with("positive", 3.0)
+            .with("negative", 2.0),
+        Effect::of(&StribeckFriction)
+            .on("b")
+            .with("coulomb", 1.0)
+            .with("breakaway", 1.5)
+            .with("velocity", 0.1),
+    ];
+    let Export { text, left } = corrected_urdf(TWO, &arm, &found).expect("it is written");
+    let written = read(&text);
+    let friction: Vec<f64> = written.joints().iter().map(|joint| joint.friction).collect();
+    assert_eq!(friction, [2.5, 1.0]);
+    assert_eq!(left.len(), 2);
+    assert!(
+        left[0].starts_with("friction_asymmetry (the difference between the directions"),
+        "{}",
+        left[0]
+    );
+    assert!(text.contains("0 of 2 effects"), "{text}");
+    assert_eq!(diagnosed_joints(&text).expect("it reads"), ["a", "b"]);
+}
+
+/// Bodies that the recordings tell take the place of all that is welded together.
+#[test]
+fn inertial_parameters_are_put_in() {
+    let arm = read(TWO);
+    let body = Inertia {
+        mass: 1.75,
+        com: [0.01, -0.02, 0.3].into(),
+        tensor: arm::Matrix3::new(0.03, 0.001, 0.0, 0.001, 0.04, 0.002, 0.0, 0.002, 0.02),
+    };
+    let found = [
+        InertialParameters::effect("b", &body),
+        Effect::of(&Payload).with("mass", 0.5).with("com", [0.0, 0.1, 0.2]),
+    ];
+    let written = read(&corrected_urdf(TWO, &arm, &found).expect("it is written").text);
+    assert_same_dynamics(&written, &Corrected::new(&arm, &found).expect("they are physical"));
+    assert!((written.joints()[1].inertia.mass - 2.25).abs() < 1e-12);
+}
+
+/// A drive's inertia is put where Drake reads it, unless the file describes the drive.
+#[test]
+fn drive_inertias_are_put_in_for_drake() {
+    let arm = read(TWO);
+    let drive = |joint: &str| Effect::of(&RotorInertia).on(joint).with("inertia", 0.125);
+    let Export { text, left } = corrected_urdf(TWO, &arm, &[drive("b")]).expect("it is written");
+    assert!(left.is_empty(), "{left:?}");
+    for part in [
+        "<robot name=\"two\"   xmlns:xacro=\"x\" xmlns:drake=\"http://drake.mit.edu\">",
+        "<joint name=\"b\"/><actuator name=\"b_drive\"><drake:rotor_inertia value=\"0.125\"/><drake:gear_ratio value=\"1\"/>",
+    ] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+    assert_eq!(read(&text).dof(), 2);
+    // The joint has a transmission in the file.
+    let Export { text, left } = corrected_urdf(TWO, &arm, &[drive("a")]).expect("it is written");
+    assert!(left[0].contains("transmission of this joint"), "{left:?}");
+    assert!(!text.contains("drake:"), "{text}");
 }

@@ -60,7 +60,8 @@ mod tests {
 
     #[test]
     fn a_dozen_of_different_families_is_chosen_by_the_plan() {
-        let robots = crate::conceal::robots(&[]).expect("they come with the program");
+        let robots =
+            crate::conceal::robots(&[], &crate::cli::ChainArgs::default()).expect("they come with the program");
         let campaign = |cases: usize| Campaign {
             seed: 3,
             cases,

@@ -10,7 +10,8 @@ use super::*;
 
 /// Conceals `effects` in the PUMA 560, and tracks the task with `named` as what was diagnosed.
 fn tracked(effects: &[Injected], named: &[Effect]) -> CaseTracking {
-    let robots = crate::conceal::robots(&["puma560".to_owned()]).expect("it comes with the program");
+    let robots = crate::conceal::robots(&["puma560".to_owned()], &crate::cli::ChainArgs::default())
+        .expect("it comes with the program");
     let settings = Settings {
         training: 1,
         ..Settings::default()

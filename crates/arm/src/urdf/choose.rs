@@ -1,0 +1,365 @@
+//! Which joints of a URDF move in the arm, and where the others are fixed.
+
+use std::collections::HashMap;
+
+use urdf_rs::JointType;
+
+use super::Reader;
+use crate::chain::{ChainOptions, FixedBecause, FixedJoint};
+use crate::error::ArmError;
+use crate::model::JointKind;
+use crate::pose::Pose;
+
+/// What the name of a gripper's joint contains.
+const GRIPPER_WORDS: [&str; 5] = ["gripper", "finger", "knuckle", "jaw", "thumb"];
+
+/// More runs of joints than this are counted in an error, and not listed.
+const MOST_RUNS: usize = 12;
+
+/// The joints of the arm.
+pub(super) struct Chain<'a> {
+    /// The link that stands still.
+    pub(super) base: &'a str,
+    /// The tip, if one was asked for.
+    pub(super) tip: Option<&'a str>,
+    /// The joints that could move and do not.
+    pub(super) fixed: Vec<FixedJoint>,
+    /// All joints that do not move, with their position.
+    positions: HashMap<&'a str, f64>,
+}
+
+impl Chain<'_> {
+    /// Where a joint is fixed (rad or m); `None` if it moves.
+    pub(super) fn position(&self, joint: &str) -> Option<f64> {
+        self.positions.get(joint).copied()
+    }
+}
+
+type Joints<'a> = Vec<&'a urdf_rs::Joint>;
+
+fn is_movable(joint: &urdf_rs::Joint) -> bool {
+    matches!(
+        joint.joint_type,
+        JointType::Revolute | JointType::Continuous | JointType::Prismatic
+    )
+}
+
+pub(super) fn kind(joint: &urdf_rs::Joint) -> JointKind {
+    match joint.joint_type {
+        JointType::Prismatic => JointKind::Prismatic,
+        _ => JointKind::Revolute,
+    }
+}
+
+/// The limits of a joint's position, if it has some that make sense.
+fn limits(joint: &urdf_rs::Joint) -> Option<(f64, f64)> {
+    let (lower, upper) = (joint.limit.lower, joint.limit.upper);
+    (joint.joint_type != JointType::Continuous && lower < upper).then_some((lower, upper))
+}
+
+/// Zero, or the nearest position within the limits.
+fn resting(joint: &urdf_rs::Joint) -> f64 {
+    limits(joint).map_or(0.0, |(lower, upper)| 0.0_f64.clamp(lower, upper))
+}
+
+fn is_gripper(joint: &urdf_rs::Joint) -> bool {
+    let name = joint.name.to_lowercase();
+    GRIPPER_WORDS.iter().any(|word| name.contains(word))
+}
+
+/// The flags that choose the joints of `way` from `start` on, and those that choose all of them.
+fn choice(base: &str, start: usize, way: &[&urdf_rs::Joint]) -> String {
+    let Some(last) = way.last() else { return String::new() };
+    let flags = |base: &str, joints: &[&urdf_rs::Joint]| {
+        let tip = &last.child.link;
+        match joints {
+            [_] => format!("--base {base} --tip {tip} (1 joint: {})", last.name),
+            _ => format!(
+                "--base {base} --tip {tip} ({} joints: {} … {})",
+                joints.len(),
+                joints[0].name,
+                last.name
+            ),
+        }
+    };
+    match start {
+        0 => flags(base, way),
+        _ => format!(
+            "{} or {}",
+            flags(&way[start].parent.link, &way[start..]),
+            flags(base, way)
+        ),
+    }
+}
+
+impl<'a> Reader<'a> {
+    /// Chooses the arm's joints below `root` as `options` ask.
+    ///
+    /// # Errors
+    /// If a link or joint that is asked for is not there, or if more than one chain remains, with the tips to choose from.
+    pub(super) fn choose(&self, root: &'a str, options: &ChainOptions) -> Result<Chain<'a>, ArmError> {
+        let base = options
+            .base
+            .as_deref()
+            .map_or(Ok(root), |name| self.link(name, "--base"))?;
+        let tip = options
+            .tip
+            .as_deref()
+            .map(|name| self.link(name, "--tip"))
+            .transpose()?;
+        self.check_locks(options)?;
+        let locked = |joint: &urdf_rs::Joint| options.locks.iter().any(|(name, _)| *name == joint.name);
+        let can_move = |joint: &urdf_rs::Joint| is_movable(joint) && joint.mimic.is_none() && !locked(joint);
+        let beyond = |joint: &urdf_rs::Joint| self.path(&joint.child.link, base).is_some();
+        let below: Joints<'a> = self.robot.joints.iter().filter(|joint| beyond(joint)).collect();
+        let candidates: Joints<'a> = below.iter().copied().filter(|joint| can_move(joint)).collect();
+        let (moving, grippers) = match tip {
+            Some(tip) => {
+                let path = self.path(tip, base).ok_or_else(|| {
+                    self.link_error(
+                        tip,
+                        format!("does not hang on link \"{base}\", the base"),
+                        "give a --base on its way from the root, or another --tip",
+                    )
+                })?;
+                (path.into_iter().filter(|joint| can_move(joint)).collect(), Vec::new())
+            }
+            None => {
+                let (grippers, moving) = self.grippers(base, candidates);
+                let moving = self.recorded(base, moving, &options.recorded);
+                self.check_chain(base, &moving)?;
+                (moving, grippers)
+            }
+        };
+        self.check_kinds(base, &moving)?;
+        let mut chain = Chain {
+            base,
+            tip,
+            fixed: Vec::new(),
+            positions: HashMap::new(),
+        };
+        let names = |list: &Joints<'_>, joint: &urdf_rs::Joint| list.iter().any(|other| other.name == joint.name);
+        for joint in self.robot.joints.iter().filter(|joint| !names(&moving, joint)) {
+            let lock = options.locks.iter().find(|(name, _)| *name == joint.name);
+            let position = lock.map_or_else(|| resting(joint), |(_, value)| *value);
+            chain.positions.insert(&joint.name, position);
+            if !is_movable(joint) {
+                continue;
+            }
+            let reason = match &joint.mimic {
+                _ if lock.is_some() => FixedBecause::Locked,
+                Some(mimic) => FixedBecause::Mimics(mimic.joint.clone()),
+                None if names(&grippers, joint) => FixedBecause::Gripper,
+                None if tip.is_none() && names(&below, joint) => FixedBecause::NotRecorded,
+                None => FixedBecause::OffChain,
+            };
+            let carried = self.path(&joint.parent.link, base);
+            chain.fixed.push(FixedJoint {
+                name: joint.name.clone(),
+                kind: kind(joint),
+                position,
+                parent_from_child: Pose::identity(),
+                reason,
+                is_carried: carried.is_some_and(|path| path.iter().any(|joint| names(&moving, joint))),
+            });
+        }
+        self.follow(&mut chain);
+        for fixed in &mut chain.fixed {
+            if let Some(joint) = self.robot.joints.iter().find(|joint| joint.name == fixed.name) {
+                fixed.parent_from_child = self.fixed_pose(joint, fixed.position)?;
+            }
+        }
+        Ok(chain)
+    }
+
+    /// The joints from link `base` to link `link`; `None` if it does not hang on the base.
+    pub(super) fn path(&self, link: &str, base: &str) -> Option<Joints<'a>> {
+        let mut path = Vec::new();
+        let mut at = link;
+        while at != base {
+            let joint = self.robot.joints.iter().find(|joint| joint.child.link == at)?;
+            path.push(joint);
+            at = &joint.parent.link;
+        }
+        path.reverse();
+        Some(path)
+    }
+
+    fn link(&self, name: &str, flag: &str) -> Result<&'a str, ArmError> {
+        let found = self.robot.links.iter().find(|link| link.name == name);
+        found.map(|link| link.name.as_str()).ok_or_else(|| {
+            let links: Vec<&str> = self.robot.links.iter().map(|link| link.name.as_str()).collect();
+            self.robot_error(
+                format!("has no link \"{name}\" for {flag}"),
+                &format!("its links are {}", links.join(", ")),
+            )
+        })
+    }
+
+    fn check_locks(&self, options: &ChainOptions) -> Result<(), ArmError> {
+        for (name, value) in &options.locks {
+            let movable = self.robot.joints.iter().filter(|joint| is_movable(joint));
+            let Some(joint) = movable.clone().find(|joint| joint.name == *name) else {
+                let known: Vec<&str> = movable.map(|joint| joint.name.as_str()).collect();
+                return Err(self.robot_error(
+                    format!("has no moving joint \"{name}\" for --lock"),
+                    &format!("its moving joints are {}", known.join(", ")),
+                ));
+            };
+            let outside = limits(joint).filter(|(lower, upper)| !(*lower - 1e-9..=*upper + 1e-9).contains(value));
+            if let Some((lower, upper)) = outside {
+                return Err(self.joint_error(
+                    joint,
+                    format!("is locked at {value}, outside its limits {lower} … {upper}"),
+                    "give --lock a position in rad or m",
+                ));
+            }
+            if !value.is_finite() {
+                return Err(self.joint_error(
+                    joint,
+                    format!("is locked at {value}"),
+                    "give --lock a position in rad or m",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Divides `joints` into those of grippers and the others. A gripper's joint has only such joints beyond it; if all
+    /// joints are of that kind, none is.
+    fn grippers(&self, base: &str, joints: Joints<'a>) -> (Joints<'a>, Joints<'a>) {
+        let is_beyond = |joint: &urdf_rs::Joint, other: &urdf_rs::Joint| {
+            self.path(&other.child.link, base)
+                .is_some_and(|path| path.iter().any(|on_way| on_way.name == joint.name))
+        };
+        let (grippers, others): (Joints<'a>, Joints<'a>) = joints.iter().partition(|joint| {
+            joints
+                .iter()
+                .filter(|other| is_beyond(joint, other))
+                .all(|other| is_gripper(other))
+        });
+        if others.is_empty() {
+            (others, joints)
+        } else {
+            (grippers, others)
+        }
+    }
+
+    /// Those of `joints` that are recorded, and those between two that are: a joint amid the arm is missing in the
+    /// recording rather than fixed. All, if none is recorded.
+    fn recorded(&self, base: &str, joints: Joints<'a>, recorded: &[String]) -> Joints<'a> {
+        let is_recorded = |joint: &urdf_rs::Joint| recorded.contains(&joint.name);
+        if !joints.iter().any(|joint| is_recorded(joint)) {
+            return joints;
+        }
+        let ways: Vec<Joints<'a>> = joints
+            .iter()
+            .filter(|joint| is_recorded(joint))
+            .filter_map(|joint| self.path(&joint.child.link, base))
+            .collect();
+        let is_between = |joint: &urdf_rs::Joint| {
+            ways.iter().any(|way| {
+                let at = way.iter().position(|on_way| on_way.name == joint.name);
+                at.is_some_and(|at| way[..at].iter().any(|before| is_recorded(before)))
+            })
+        };
+        joints
+            .into_iter()
+            .filter(|joint| is_recorded(joint) || is_between(joint))
+            .collect()
+    }
+
+    /// Refuses joints that are not one chain, with the unbranched runs of joints that there are, the longest first.
+    fn check_chain(&self, base: &str, moving: &Joints<'a>) -> Result<(), ArmError> {
+        let is_moving = |joint: &urdf_rs::Joint| moving.iter().any(|other| other.name == joint.name);
+        let ways: Vec<Joints<'a>> = moving
+            .iter()
+            .map(|joint| {
+                let path = self.path(&joint.child.link, base).unwrap_or_default();
+                path.into_iter().filter(|joint| is_moving(joint)).collect()
+            })
+            .collect();
+        // The joints next to each joint: the last ones of the ways that are one joint longer than its own.
+        let next = |way: &Joints<'a>| -> usize {
+            let is_next = |longer: &&Joints<'a>| {
+                longer.len() == way.len() + 1 && way.iter().zip(longer.iter()).all(|(a, b)| a.name == b.name)
+            };
+            ways.iter().filter(is_next).count()
+        };
+        let branches = ways.iter().filter(|way| next(way) == 0).count();
+        if branches < 2 {
+            return Ok(());
+        }
+        let branches_after = |count: usize, way: &Joints<'a>| next(&way[..count].to_vec()) > 1;
+        let mut runs: Vec<(usize, &Joints<'a>)> = ways
+            .iter()
+            .filter(|way| next(way) != 1)
+            .map(|way| {
+                let start = (0..way.len()).rev().find(|&count| branches_after(count, way));
+                (start.unwrap_or(0), way)
+            })
+            .collect();
+        runs.sort_by_key(|(start, way)| (std::cmp::Reverse(way.len() - start), *start));
+        let mut choices: Vec<String> = runs
+            .iter()
+            .take(MOST_RUNS)
+            .map(|(start, way)| choice(base, *start, way))
+            .collect();
+        if runs.len() > MOST_RUNS {
+            choices.push(format!("{} more", runs.len() - MOST_RUNS));
+        }
+        Err(self.robot_error(
+            format!("has {branches} chains of moving joints, and an arm is one chain"),
+            &format!("choose it: {}", choices.join("; ")),
+        ))
+    }
+
+    /// Refuses joints of other kinds between the base and a joint that moves.
+    fn check_kinds(&self, base: &str, moving: &Joints<'a>) -> Result<(), ArmError> {
+        let on_way = |joint: &&'a urdf_rs::Joint| self.path(&joint.child.link, base).unwrap_or_default();
+        let mut ways: Joints<'a> = moving.iter().flat_map(on_way).collect();
+        if moving.is_empty() {
+            ways.extend(&self.robot.joints);
+        }
+        let other = |joint: &&urdf_rs::Joint| !is_movable(joint) && joint.joint_type != JointType::Fixed;
+        ways.into_iter().find(other).map_or(Ok(()), |joint| {
+            Err(self.joint_error(
+                joint,
+                format!("is {:?}", joint.joint_type).to_lowercase(),
+                &format!(
+                    "testbed models fixed, revolute, continuous and prismatic joints only: choose the part beyond it with \
+                     --base {}",
+                    joint.child.link
+                ),
+            ))
+        })
+    }
+
+    /// Puts joints that mimic a fixed one where it puts them.
+    fn follow(&self, chain: &mut Chain<'a>) {
+        // One mimics another that mimics a third: as many rounds as there are joints reach every one.
+        for _ in 0..self.robot.joints.len() {
+            let mut changed = false;
+            for joint in &self.robot.joints {
+                let Some(mimic) = &joint.mimic else { continue };
+                let fixed = chain.fixed.iter().position(|fixed| fixed.name == joint.name);
+                let Some(at) = fixed.filter(|&at| chain.fixed[at].reason != FixedBecause::Locked) else {
+                    continue;
+                };
+                let Some(followed) = chain.positions.get(mimic.joint.as_str()) else {
+                    continue;
+                };
+                let wanted = mimic.multiplier.unwrap_or(1.0) * followed + mimic.offset.unwrap_or(0.0);
+                let position = limits(joint).map_or(wanted, |(lower, upper)| wanted.clamp(lower, upper));
+                changed |= chain.fixed[at].position != position && position.is_finite();
+                if position.is_finite() {
+                    chain.fixed[at].position = position;
+                    chain.positions.insert(&joint.name, position);
+                }
+            }
+            if !changed {
+                break;
+            }
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! What other programs' formats hold of the effects: the common part of the URDF and the MJCF that a diagnosis writes.
+
+use arm::Joint;
+use effects::drive::RotorInertia;
+use effects::friction::{CoulombFriction, FrictionAsymmetry, LoadDependentFriction, StribeckFriction, ViscousFriction};
+use effects::{Effect, InUrdf};
+
+/// A robot in a format of other programs.
+#[derive(Debug)]
+pub struct Export {
+    /// The file's text.
+    pub text: String,
+    /// What the format cannot hold, one line each.
+    pub left: Vec<String>,
+}
+
+/// What a format holds of an effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Held {
+    /// All.
+    Whole,
+    /// All but this.
+    Without(&'static str),
+    /// Nothing.
+    Nothing,
+}
+
+/// What dry friction of one level, the same at every speed and in both directions, holds of an effect, with that level
+/// (N m or N); `None` if it is no dry friction.
+pub fn level(effect: &Effect) -> Option<(f64, Held)> {
+    if effect.onset().is_some() {
+        None
+    } else if effect.is(&CoulombFriction) {
+        Some((effect.number("level"), Held::Whole))
+    } else if effect.is(&FrictionAsymmetry) {
+        let mean = 0.5 * (effect.number("positive") + effect.number("negative"));
+        Some((
+            mean,
+            Held::Without("the difference between the directions; their mean is in it"),
+        ))
+    } else if effect.is(&StribeckFriction) {
+        let held = Held::Without("the rise towards standstill; the level in motion is in it");
+        Some((effect.number("coulomb"), held))
+    } else if effect.is(&LoadDependentFriction) {
+        let held = Held::Without("the part in proportion to the load; the level without load is in it");
+        Some((effect.number("coulomb"), held))
+    } else {
+        None
+    }
+}
+
+/// What damping, one level of friction and inertia hold of an effect: the part that URDF and MJCF have in common.
+pub fn in_common(effect: &Effect) -> Held {
+    if effect.onset().is_some() {
+        Held::Nothing
+    } else if let Some((_, held)) = level(effect) {
+        held
+    } else if effect.spec().in_urdf != InUrdf::Nothing || effect.is(&RotorInertia) {
+        Held::Whole
+    } else {
+        Held::Nothing
+    }
+}
+
+/// The damping (N m s/rad or N s/m) and the level of dry friction (N m or N) that effects give a joint, if they say
+/// anything of its friction.
+pub fn friction(joint: &Joint, effects: &[Effect]) -> Option<(f64, f64)> {
+    let on_joint = effects
+        .iter()
+        .filter(|effect| effect.joint() == Some(joint.name.as_str()) && effect.onset().is_none());
+    let mut found = None;
+    for effect in on_joint {
+        let (damping, friction) = if effect.is(&ViscousFriction) {
+            (effect.number("coefficient"), 0.0)
+        } else if let Some((level, _)) = level(effect) {
+            (0.0, level)
+        } else {
+            continue;
+        };
+        let (d, f) = found.unwrap_or((0.0, 0.0));
+        found = Some((d + damping, f + friction));
+    }
+    found
+}
+
+/// The effects that a format leaves out, wholly or in part, one line each.
+///
+/// # Errors
+/// If an effect cannot be written.
+pub fn left_out(effects: &[Effect], held: impl Fn(&Effect) -> Held) -> anyhow::Result<Vec<String>> {
+    let mut lines = Vec::new();
+    for effect in effects {
+        let what = match held(effect) {
+            Held::Whole => continue,
+            Held::Without(what) => format!(" ({what})"),
+            Held::Nothing => String::new(),
+        };
+        let table = toml::to_string(effect)?;
+        let parameters: Vec<&str> = table.lines().skip(1).filter(|line| *line != "curve = []").collect();
+        lines.push(format!("{}{what}: {}", effect.name(), parameters.join(", ")));
+    }
+    Ok(lines)
+}
+
+/// Lines as the text of an XML comment.
+pub fn comment(lines: &[String]) -> String {
+    // Two hyphens end a comment, and one must not be its last character.
+    lines.join("\n       ").replace("--", "- -").replace("--", "- -")
+}

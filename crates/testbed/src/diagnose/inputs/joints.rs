@@ -1,0 +1,113 @@
+//! Which column of a recording belongs to which joint of the arm.
+
+use std::path::Path;
+
+use anyhow::bail;
+use arm::{Arm, FixedBecause, FixedJoint};
+use recording::{Recording, RegularRecording, Signal, nearest};
+
+/// Where each joint of the arm is in the recording. Columns of joints that are fixed in the arm are left out.
+///
+/// # Errors
+/// If the recording lacks a joint of the arm, or has one that the robot does not have, or that was fixed because the
+/// recording `first`, which chose the arm, lacks it.
+pub(super) fn order(
+    recording: &Recording,
+    arm: &Arm,
+    name: &str,
+    first: &str,
+    map: Option<&Path>,
+) -> anyhow::Result<Vec<usize>> {
+    let known: Vec<String> = arm.joints().iter().map(|joint| joint.name.clone()).collect();
+    let quoted = |names: &[String]| {
+        names
+            .iter()
+            .map(|name| format!("\"{name}\""))
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let lost = arm
+        .fixed_joints()
+        .iter()
+        .find(|fixed| fixed.reason == FixedBecause::NotRecorded && recording.joints.contains(&fixed.name));
+    if let Some(FixedJoint { name: joint, .. }) = lost {
+        bail!(
+            "{first}: has no column q_{joint} for \"{joint}\" of {}, and {name} has one; record all joints of the arm in every \
+             recording, or fix a joint that did not move: --lock {joint}=VALUE",
+            arm.name()
+        );
+    }
+    let is_fixed = |joint: &str| arm.fixed_joints().iter().any(|fixed| fixed.name == joint);
+    let foreign: Vec<String> = recording
+        .joints
+        .iter()
+        .filter(|joint| !known.contains(joint) && !is_fixed(joint))
+        .cloned()
+        .collect();
+    let lacking: Vec<String> = known
+        .iter()
+        .filter(|joint| !recording.joints.contains(joint))
+        .cloned()
+        .collect();
+    if lacking.len() == known.len() {
+        bail!(
+            "{name}: belongs to another robot: its joints are {}, those of {} are {}; give the URDF of the robot that was recorded, or a column map (--map)",
+            quoted(&recording.joints),
+            arm.name(),
+            quoted(&known)
+        );
+    }
+    if let (Some(joint), Some(map)) = (lacking.first(), map) {
+        let hint = foreign
+            .first()
+            .map_or_else(String::new, |other| format!(" (is [joints.{other}] meant?)"));
+        bail!(
+            "{}: has no [joints.{joint}] for {} of {}{hint}; add a table for each joint of the arm",
+            map.display(),
+            quoted(&lacking),
+            arm.name()
+        );
+    }
+    if let Some(joint) = lacking.first() {
+        let hint = nearest(joint, &foreign).map_or_else(String::new, |near| {
+            format!("; the name of its column q_{near} is similar")
+        });
+        bail!(
+            "{name}: has no column q_{joint} for {} of {}{hint}; record all joints of the arm, name their columns in a column map (--map), or fix a joint that did not move: --lock {joint}=VALUE",
+            quoted(&lacking),
+            arm.name()
+        );
+    }
+    if let Some(joint) = foreign.first() {
+        let fixed: Vec<String> = arm.fixed_joints().iter().map(|joint| joint.name.clone()).collect();
+        let hint = nearest(joint, &fixed).map_or_else(String::new, |near| format!(" (is q_{near} meant?)"));
+        bail!(
+            "{name}: column q_{joint}: {} is not a joint of {}, which has {}{hint}; leave the column out with a column map (--map), or give the URDF of the robot that was recorded",
+            quoted(&foreign),
+            arm.name(),
+            quoted(&known)
+        );
+    }
+    Ok(known
+        .iter()
+        .filter_map(|joint| recording.joints.iter().position(|found| found == joint))
+        .collect())
+}
+
+/// The recording with its joints in another order, and only those.
+pub(super) fn reordered(mut recording: RegularRecording, order: &[usize]) -> RegularRecording {
+    let signal = |signal: &Signal| -> Signal { order.iter().map(|&from| signal[from].clone()).collect() };
+    let partial = |signal: &recording::PartialSignal| -> recording::PartialSignal {
+        order.iter().map(|&from| signal.get(from).cloned().flatten()).collect()
+    };
+    recording.joints = order.iter().map(|&from| recording.joints[from].clone()).collect();
+    recording.q = signal(&recording.q);
+    recording.tau = signal(&recording.tau);
+    recording.qd = recording.qd.as_ref().map(signal);
+    recording.qdd = recording.qdd.as_ref().map(signal);
+    recording.q_secondary = partial(&recording.q_secondary);
+    recording.tau_current = partial(&recording.tau_current);
+    recording.current = partial(&recording.current);
+    recording.temperature = partial(&recording.temperature);
+    recording
+}

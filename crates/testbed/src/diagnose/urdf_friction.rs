@@ -1,0 +1,137 @@
+//! Friction that the URDF has already, as known effects.
+
+use arm::Arm;
+use effects::friction::{CoulombFriction, ViscousFriction};
+use effects::{Effect, InUrdf};
+
+use super::held;
+use super::urdf_file::diagnosed_joints;
+use crate::cli::UrdfFriction;
+use crate::library::RobotFile;
+
+/// The friction in the `<dynamics>` of `robot` that `which` takes as known, beside the effects `known`: what those say of
+/// a joint's friction takes its place. A second value says what was not taken.
+///
+/// # Errors
+/// If the URDF cannot be read again.
+pub fn known_friction(
+    robot: &RobotFile,
+    arm: &Arm,
+    which: UrdfFriction,
+    known: &[Effect],
+) -> anyhow::Result<(Vec<Effect>, Option<String>)> {
+    let with_friction = |joint: &&arm::Joint| joint.damping > 0.0 || joint.friction > 0.0;
+    let joints: Vec<&arm::Joint> = arm.joints().iter().filter(with_friction).collect();
+    let diagnosed = match which {
+        UrdfFriction::Diagnosed if !joints.is_empty() => diagnosed_joints(&robot.text)?,
+        _ => Vec::new(),
+    };
+    let is_taken = |joint: &arm::Joint| match which {
+        UrdfFriction::Known => true,
+        UrdfFriction::Ignored => false,
+        UrdfFriction::Diagnosed => diagnosed.contains(&joint.name),
+    };
+    let mut effects = Vec::new();
+    let mut left = Vec::new();
+    for joint in joints {
+        if !is_taken(joint) {
+            left.push(joint.name.as_str());
+            continue;
+        }
+        let has = |is_such: &dyn Fn(&Effect) -> bool| {
+            known
+                .iter()
+                .any(|effect| effect.joint() == Some(&joint.name) && is_such(effect))
+        };
+        if joint.damping > 0.0 && !has(&|effect| effect.spec().in_urdf == InUrdf::Damping) {
+            effects.push(
+                Effect::of(&ViscousFriction)
+                    .on(&joint.name)
+                    .with("coefficient", joint.damping),
+            );
+        }
+        if joint.friction > 0.0 && !has(&|effect| held::level(effect).is_some()) {
+            effects.push(
+                Effect::of(&CoulombFriction)
+                    .on(&joint.name)
+                    .with("level", joint.friction),
+            );
+        }
+    }
+    let remark = (which == UrdfFriction::Diagnosed && !left.is_empty()).then(|| {
+        format!(
+            "the friction in <dynamics> of {} is not used, because it is a placeholder in most URDFs; --urdf-friction known \
+             takes it as known",
+            left.join(", ")
+        )
+    });
+    Ok((effects, remark))
+}
+
+/// The known effects and those found beside them: friction that is found on top of known friction of the same kind is one
+/// effect with both.
+pub fn summed(known: &[Effect], found: &[Effect]) -> Vec<Effect> {
+    let mut sum = known.to_vec();
+    for effect in found {
+        let adds_up = matches!(effect.spec().in_urdf, InUrdf::Damping | InUrdf::Friction);
+        let is_same = |other: &&mut Effect| {
+            let key = |effect: &Effect| (effect.kind(), effect.joint().map(str::to_owned), effect.onset());
+            adds_up && key(other) == key(effect)
+        };
+        match (sum.iter_mut().find(is_same), effect.spec().main) {
+            (Some(known), [main]) => *known = known.clone().with(main, known.number(main) + effect.number(main)),
+            _ => sum.push(effect.clone()),
+        }
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::urdf_file::corrected_urdf;
+
+    const TWO: &str = r#"<robot name="two"><link name="base"/>
+<joint name="a" type="continuous"><parent link="base"/><child link="upper"/><dynamics damping="10" friction="0.1"/></joint>
+<link name="upper"><inertial><mass value="2"/><inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".1"/></inertial></link>
+<joint name="b" type="continuous"><parent link="upper"/><child link="lower"/><dynamics damping="10" friction="0.1"/></joint>
+<link name="lower"><inertial><mass value="1"/><inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".1"/></inertial></link>
+</robot>"#;
+
+    fn robot(text: &str) -> (RobotFile, Arm) {
+        let text = text.to_owned();
+        let arm = Arm::from_urdf_text(&text, "two.urdf").expect("it is an arm");
+        let path = "two.urdf".into();
+        (RobotFile { path, text }, arm)
+    }
+
+    /// What a diagnosis wrote is known to the next; what was in the file before is a placeholder.
+    #[test]
+    fn diagnosed_friction_is_known_and_other_friction_where_it_is_asked_for() {
+        let (file, arm) = robot(TWO);
+        let (none, remark) = known_friction(&file, &arm, UrdfFriction::Diagnosed, &[]).expect("it reads");
+        assert!(none.is_empty());
+        assert!(remark.expect("it says so").contains("of a, b is not used"));
+        let (all, remark) = known_friction(&file, &arm, UrdfFriction::Known, &[]).expect("it reads");
+        assert_eq!((all.len(), remark), (4, None));
+        let (none, remark) = known_friction(&file, &arm, UrdfFriction::Ignored, &[]).expect("it reads");
+        assert_eq!((none.len(), remark), (0, None));
+
+        let found = [Effect::of(&ViscousFriction).on("b").with("coefficient", 1.5)];
+        let (file, arm) = robot(&corrected_urdf(TWO, &arm, &found).expect("it is written").text);
+        let (known, remark) = known_friction(&file, &arm, UrdfFriction::Diagnosed, &[]).expect("it reads");
+        assert_eq!(known, found);
+        assert!(remark.expect("it says so").contains("of a is not used"));
+        // The next findings come on top of it, as one effect of each kind.
+        let level = Effect::of(&CoulombFriction).on("b").with("level", 0.25);
+        let other = Effect::of(&ViscousFriction).on("a").with("coefficient", 4.0);
+        let more = summed(&known, &[level, found[0].clone(), other]);
+        assert_eq!(more.len(), 3);
+        let (_, arm) = robot(&corrected_urdf(&file.text, &arm, &more).expect("it is written").text);
+        let joint = &arm.joints()[1];
+        assert_eq!((joint.damping, joint.friction), (3.0, 0.25));
+        // What --known says of a joint's damping takes the place of the file's.
+        let (known, _) = known_friction(&file, &arm, UrdfFriction::Diagnosed, &found).expect("it reads");
+        assert!(known.iter().all(|effect| effect.is(&CoulombFriction)), "{known:?}");
+    }
+}
