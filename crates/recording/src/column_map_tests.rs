@@ -35,8 +35,8 @@ fn units_signs_gears_and_order_come_out() {
     let headers: Vec<String> = ["stamp", "pos_0", "pos_1", "current_1", "tau_0", "mode"]
         .map(str::to_owned)
         .to_vec();
-    let plan = map.plan(&headers, Path::new("r.csv")).expect("it fits");
-    assert_eq!((plan.time, plan.time_factor), (0, 1e-3));
+    let plan = map.plan(&headers, &[], Path::new("r.csv")).expect("it fits");
+    assert_eq!((plan.time.index, plan.time.factor), (0, 1e-3));
     let factors: Vec<f64> = plan.channels.iter().map(|channel| channel.factor).collect();
     let expected = [-std::f64::consts::PI / 180.0, -12.3, 0.01, 100.0];
     for (factor, expected) in factors.iter().zip(expected) {
@@ -44,7 +44,7 @@ fn units_signs_gears_and_order_come_out() {
     }
     assert_eq!(plan.others, [(5, "mode".to_owned())]);
     let missing = map
-        .plan(&headers[..4], Path::new("r.csv"))
+        .plan(&headers[..4], &[], Path::new("r.csv"))
         .expect_err("a column is missing")
         .to_string();
     assert!(

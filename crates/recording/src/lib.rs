@@ -7,25 +7,32 @@
 
 mod clock;
 mod column_map;
-mod csv_read;
 mod csv_write;
+mod dialect;
 mod error;
+mod format;
+mod gathered;
 mod header;
+mod input;
 mod interpolate;
 mod quality;
 mod regular;
 mod rows;
 mod spikes;
+mod stamp;
+mod table;
 mod thinned;
 mod toml_error;
 mod units;
 mod warning;
 mod whole_file;
+mod wraps;
 
 pub use column_map::ColumnMap;
 pub use error::RecordingError;
 pub use quality::{Finding, FindingKind, JointQuality, Quality};
 pub use regular::{RegularRecording, Segment};
+pub use table::Place;
 pub use toml_error::{nearest, toml_reason};
 pub use warning::{Quantity, Warning};
 pub use whole_file::write_whole;

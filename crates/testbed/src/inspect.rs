@@ -98,7 +98,7 @@ fn load_robot(robot: &str) -> anyhow::Result<Arm> {
 }
 
 fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> anyhow::Result<FileReport<'a>> {
-    let recording = Recording::read_csv_with(file, map)?;
+    let recording = Recording::read_with(file, map)?;
     let (regular, found) = recording.regular().with_context(|| file.display().to_string())?;
     let quality = Quality::of(&recording, &regular);
     let warnings = recording.warnings.iter().cloned().chain(found);

@@ -114,7 +114,7 @@ pub fn training_samples(scenario: &Scenario, sources: &[String], seed: u64) -> a
             .extension()
             .is_some_and(|extension| extension == "csv")
         {
-            let recording = Recording::read_csv(Path::new(source)).with_context(of_source)?;
+            let recording = Recording::read(Path::new(source)).with_context(of_source)?;
             recording_samples(scenario, &recording, &mut samples).with_context(of_source)?;
         } else {
             let task = Scenario::load(source).with_context(of_source)?;

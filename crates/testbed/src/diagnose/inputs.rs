@@ -224,7 +224,7 @@ fn prepare(
 ) -> anyhow::Result<Prepared> {
     let name = path.display().to_string();
     progress.set_message(format!("reading {name}"));
-    let recording = Recording::read_csv_with(path, map.map(|(_, map)| map))?;
+    let recording = Recording::read_with(path, map.map(|(_, map)| map))?;
     let order = order(&recording, arm, &name, map.map(|(path, _)| *path))?;
     let (regular, warnings) = recording.regular().with_context(|| name.clone())?;
     let quality = Quality::of(&recording, &regular);

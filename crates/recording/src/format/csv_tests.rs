@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::*;
-use crate::Warning;
+use crate::{Place, Warning};
 
 fn recording() -> Recording {
     Recording {
@@ -31,7 +31,7 @@ fn write(folder: &tempfile::TempDir, text: &str) -> PathBuf {
 
 fn read(text: &str) -> Result<Recording, RecordingError> {
     let folder = folder();
-    Recording::read_csv(&write(&folder, text))
+    Recording::read(&write(&folder, text))
 }
 
 fn refusal(text: &str) -> String {
@@ -43,7 +43,7 @@ fn what_is_written_reads_back_to_the_same_bits() {
     let folder = folder();
     let path = folder.path().join("r.csv");
     recording().write_csv(&path).expect("it writes");
-    assert_eq!(Recording::read_csv(&path).expect("it reads"), recording());
+    assert_eq!(Recording::read(&path).expect("it reads"), recording());
 }
 
 #[test]
@@ -65,7 +65,7 @@ fn a_bad_file_is_refused_with_its_place() {
     assert!(refusal("t,q_a,tau_a\n0,1,2\n0,1,2\n").contains("one row"));
     assert!(refusal("t,q_a,tau_a\n0,1\n1,1,2\n2,1,2\n").contains("r.csv:2: the row has 2 cells, the header 3"));
     assert!(refusal("t,q_a,tau_a,q_a\n").contains("two columns \"q_a\""));
-    let gone = Recording::read_csv(Path::new("/nowhere/r.csv"))
+    let gone = Recording::read(Path::new("/nowhere/r.csv"))
         .expect_err("it is not there")
         .to_string();
     assert!(gone.contains("/nowhere/r.csv: cannot be read"), "{gone}");
@@ -126,20 +126,20 @@ fn what_spreadsheets_and_mistakes_make_of_a_file_is_refused_with_the_remedy() {
     let folder = folder();
     let latin = write(&folder, "");
     std::fs::write(&latin, b"t,q_\xE9,tau_\xE9\n0,1,2\n1,1,2\n").expect("it writes");
-    let found = Recording::read_csv(&latin).expect_err("it is refused").to_string();
+    let found = Recording::read(&latin).expect_err("it is refused").to_string();
     assert!(found.contains("r.csv:1: cell 2 is not UTF-8"), "{found}");
     for order in [u16::to_le_bytes, u16::to_be_bytes] {
         let text = "\u{FEFF}t,q_a,tau_a\n0,1,2\n1,1,2\n";
         let bytes: Vec<u8> = text.encode_utf16().flat_map(order).collect();
         let path = write(&folder, "");
         std::fs::write(&path, bytes).expect("it writes");
-        let found = Recording::read_csv(&path).expect_err("it is refused").to_string();
+        let found = Recording::read(&path).expect_err("it is refused").to_string();
         assert!(
             found.contains("r.csv:1: the text is UTF-16; save it as UTF-8"),
             "{found}"
         );
     }
-    let found = Recording::read_csv(folder.path())
+    let found = Recording::read(folder.path())
         .expect_err("it is refused")
         .to_string();
     assert!(found.contains("it is a folder"), "{found}");
@@ -168,7 +168,7 @@ fn a_file_cut_in_its_last_row_gives_what_is_whole() {
         let rows = if cut == 1 { 3 } else { 2 };
         assert_eq!(read.len(), rows, "cut by {cut}");
         assert_eq!(
-            read.warnings.contains(&Warning::CutFile { line: 4 }),
+            read.warnings.contains(&Warning::CutFile { line: Place::Line(4) }),
             cut > 1,
             "cut by {cut}"
         );
@@ -182,7 +182,7 @@ fn a_duplicated_row_is_left_out() {
     assert_eq!(read.time, [0.0, 1.0, 2.0]);
     let expected = Warning::Duplicates {
         rows: 1,
-        line: 4,
+        line: Place::Line(4),
         differ: false,
     };
     assert!(read.warnings.contains(&expected), "{:?}", read.warnings);
@@ -204,7 +204,7 @@ fn runs_end_to_end_in_one_file_are_told_apart() {
     let read = read(&text).expect("two runs");
     assert_eq!((read.len(), read.breaks.as_slice()), (200, &[100][..]));
     assert!(read.time.windows(2).all(|pair| pair[1] > pair[0]));
-    let told = |warning: &Warning| matches!(warning, Warning::ClockRestart { line: 102, .. });
+    let told = |warning: &Warning| matches!(warning, Warning::ClockRestart { line: Place::Line(102), .. });
     assert!(read.warnings.iter().any(told), "{:?}", read.warnings);
 }
 
@@ -223,7 +223,7 @@ fn a_map_reads_anybodys_columns() {
     let map = "[time]\ncolumn = \"stamp\"\nunit = \"ms\"\n[joints.a]\nq = \"pos\"\nq_unit = \"deg\"\nsign = -1\ntau = \"cur\"\n\
                tau_unit = \"A\"\ntau_scale = 12.5\n";
     let map = ColumnMap::parse(map, Path::new("m.toml")).expect("it is good");
-    let read = Recording::read_csv_with(&path, Some(&map)).expect("it reads");
+    let read = Recording::read_with(&path, Some(&map)).expect("it reads");
     assert_eq!(read.time, [0.0, 0.01]);
     assert!((read.q[0][0] + std::f64::consts::PI).abs() < 1e-15);
     assert_eq!(read.tau[0], [-12.5, -25.0]);
