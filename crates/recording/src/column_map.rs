@@ -53,7 +53,7 @@ struct Time {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-struct Entry {
+pub(crate) struct Entry {
     header: String,
     line: usize,
     quantity: Quantity,
@@ -85,7 +85,7 @@ struct RawTime {
 }
 
 /// The text of a map and where it came from.
-struct Source<'a> {
+pub(crate) struct Source<'a> {
     path: &'a Path,
     text: &'a str,
 }

@@ -2,6 +2,12 @@
 
 mod csv;
 mod csv_text;
+mod mat;
+mod mcap;
+mod npz;
+mod parquet;
+mod rosbag2;
+mod unread;
 
 use std::path::Path;
 
@@ -35,6 +41,12 @@ pub(crate) struct Options<'a> {
 
 /// The formats there are; the first that matches is taken.
 const FORMATS: &[&dyn Format] = &[
+    &mcap::Mcap,
+    &rosbag2::Rosbag2,
+    &parquet::Parquet,
+    &npz::Npz,
+    &mat::Mat,
+    &unread::Unread,
     // Text has no mark of its own.
     &csv::Csv,
 ];

@@ -22,6 +22,13 @@ pub struct Input {
     pub head: Vec<u8>,
     /// The contents, without compression, read up to the end of `head`; none of a folder.
     file: Option<File>,
+    /// Whether the contents are those of the file at `path`.
+    as_it_was: bool,
+}
+
+/// How many bytes a file of `size` bytes may expand to.
+pub fn most_expanded(size: u64) -> u64 {
+    EXPANDED.saturating_add(size.saturating_mul(EXPANSION))
 }
 
 impl Input {
@@ -40,23 +47,32 @@ impl Input {
                 path: path.to_owned(),
                 head: Vec::new(),
                 file: None,
+                as_it_was: true,
             });
         }
+        let mut as_it_was = file.metadata().map_err(unreadable)?.is_file();
         let mut head = read_head(&mut file).map_err(unreadable)?;
         if let Some(name) = compression(&head) {
             file = expand(path, name, head, file)?;
             head = read_head(&mut file).map_err(unreadable)?;
+            as_it_was = false;
         }
         Ok(Self {
             path: path.to_owned(),
             head,
             file: Some(file),
+            as_it_was,
         })
     }
 
     /// Whether it is a folder.
     pub fn is_folder(&self) -> bool {
         self.file.is_none()
+    }
+
+    /// Whether the contents are those of the file at the path: not expanded, and no pipe.
+    pub fn is_as_it_was(&self) -> bool {
+        self.as_it_was
     }
 
     /// An error that a format's reader has with this file.
@@ -105,6 +121,19 @@ impl Input {
             path: self.path.clone(),
             reason,
         })
+    }
+}
+
+impl Input {
+    /// All contents.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, RecordingError> {
+        let mut bytes = Vec::new();
+        let read = self.to_file()?.read_to_end(&mut bytes);
+        read.map_err(|reason| RecordingError::Read {
+            path: self.path.clone(),
+            reason,
+        })?;
+        Ok(bytes)
     }
 }
 
@@ -177,7 +206,7 @@ fn expand(path: &Path, name: &'static str, head: Vec<u8>, rest: File) -> Result<
             break;
         }
         total += read as u64;
-        let most = EXPANDED + EXPANSION * count.get();
+        let most = most_expanded(count.get());
         if total > most {
             return Err(error(format!(
                 "it expands to more than {} MB, over {EXPANSION} times its size, which no recording does; if it is one, \

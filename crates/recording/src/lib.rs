@@ -5,6 +5,8 @@
 //! puts its rows on the regular clock that the drive sampled on; [`Quality`] says what the
 //! recording is worth, before anything is fitted to it.
 
+mod arrays;
+mod bytes;
 mod clock;
 mod column_map;
 mod csv_write;
@@ -15,6 +17,7 @@ mod gathered;
 mod header;
 mod input;
 mod interpolate;
+mod joint_state;
 mod quality;
 mod regular;
 mod rows;

@@ -104,8 +104,6 @@ pub enum Column {
     Integers(Vec<i64>),
     /// Times (ns since 1970).
     Nanos(Vec<i64>),
-    /// Texts.
-    Texts(Vec<String>),
 }
 
 impl Column {
@@ -114,7 +112,15 @@ impl Column {
         match self {
             Self::Numbers(values) => values.len(),
             Self::Integers(values) | Self::Nanos(values) => values.len(),
-            Self::Texts(values) => values.len(),
+        }
+    }
+
+    /// The values at these places.
+    pub fn picked(&self, places: impl Iterator<Item = usize>) -> Self {
+        match self {
+            Self::Numbers(values) => Self::Numbers(places.map(|place| values[place]).collect()),
+            Self::Integers(values) => Self::Integers(places.map(|place| values[place]).collect()),
+            Self::Nanos(values) => Self::Nanos(places.map(|place| values[place]).collect()),
         }
     }
 
@@ -123,7 +129,6 @@ impl Column {
             Self::Numbers(values) => Cell::Number(values[row]),
             Self::Integers(values) => Cell::Integer(values[row]),
             Self::Nanos(values) => Cell::Nanos(values[row]),
-            Self::Texts(values) => Cell::Text(values[row].as_bytes()),
         }
     }
 }
@@ -188,12 +193,8 @@ impl Table {
     pub fn of_columns(columns: Vec<(String, Column)>) -> Self {
         let (headers, columns): (Vec<String>, Vec<Column>) = columns.into_iter().unzip();
         let rows = columns.iter().map(Column::len).min().unwrap_or(0);
-        let text = |column: &Column| match column {
-            Column::Texts(texts) => texts.first().cloned().unwrap_or_default(),
-            _ => String::new(),
-        };
         Self {
-            first: columns.iter().map(text).collect(),
+            first: Vec::new(),
             headers,
             rows: Box::new(Held { columns, rows, next: 0 }),
             warnings: Vec::new(),

@@ -100,3 +100,163 @@ fn compressed_files_are_read_as_they_are() {
     assert_eq!(read("plain.csv.gz"), plain);
     assert_eq!(read("plain.csv.zst"), plain);
 }
+
+#[test]
+fn joint_states_of_bags_are_read_whatever_the_storage() {
+    for name in [
+        "joint_states.mcap",
+        "bag_sqlite",
+        "bag_sqlite/bag_sqlite.db3",
+        "bag_messages",
+        "bag_file",
+        "bag_mcap",
+    ] {
+        let recording = read(name);
+        check(&recording, 60, 0.0);
+        assert_eq!(recording.joints, ["shoulder", "elbow"], "{name}");
+        let left_out = |warning: &Warning| matches!(warning, Warning::JointLeftOut { joint, .. } if joint == "finger");
+        assert!(recording.warnings.iter().any(left_out), "{name}: {:?}", recording.warnings);
+        assert!(system(&recording).is_some_and(|note| note.contains("/joint_states/")));
+    }
+    // Without stamps of its own, a message has that of the log.
+    for name in ["unstamped.mcap", "ros_writer.mcap"] {
+        check(&read(name), 60, 0.0);
+    }
+}
+
+#[test]
+fn topics_are_joined_by_time_or_chosen() {
+    let joined = read("two_topics.mcap");
+    // Before the first torque there is none.
+    assert_eq!(joined.len(), 59);
+    for (row, time) in joined.time.iter().enumerate() {
+        let t = 0.01 * (row + 1) as f64;
+        assert!((time - joined.time[0] + 0.01 - t).abs() < 1e-9);
+        for joint in 0..2 {
+            let [q, _, tau] = motion(joint, t);
+            assert_eq!(joined.q[joint][row], q);
+            // Linear between torques 10 ms apart.
+            assert!((joined.tau[joint][row] - tau).abs() < 1e-3);
+        }
+    }
+    let told = joined.warnings.iter().any(|warning| {
+        matches!(
+            warning,
+            Warning::Joined {
+                interpolated: 59,
+                left_out: 1,
+                ..
+            }
+        )
+    });
+    assert!(told, "{:?}", joined.warnings);
+    let ambiguous = refusal("ambiguous.mcap");
+    assert!(
+        ambiguous.contains("\"shoulder\" is in the topics /a, /b") && ambiguous.contains("topics = [\"/a\"]"),
+        "{ambiguous}"
+    );
+    check(&read_with("ambiguous.mcap", "topics = [\"/b\"]").expect("it is chosen"), 60, 0.0);
+    let columns = "[time]\ncolumn = \"__time\"\n[joints.elbow]\nq = \"/a/elbow/position\"\nqd = \"/a/elbow/velocity\"\n\
+                   tau = \"/b/elbow/effort\"\n";
+    check(&read_with("ambiguous.mcap", columns).expect("its columns are named"), 60, 0.0);
+    let missing = read_with("ambiguous.mcap", "topics = [\"/c\"]").expect_err("there is no such topic");
+    assert!(missing.contains("in /c; its topics are /a, /b, /wanted"), "{missing}");
+}
+
+#[test]
+fn parquet_is_read_whatever_its_compression() {
+    let plain = read("plain.csv");
+    for compression in ["snappy", "zstd", "gzip", "lz4"] {
+        assert_eq!(read(&format!("plain_{compression}.parquet")), plain, "{compression}");
+    }
+    let calendar = read("datetime.parquet");
+    check(&calendar, 60, 0.0);
+    assert!((calendar.time[0] - 0.25).abs() < 1e-12);
+}
+
+#[test]
+fn episodes_of_lerobot_are_runs() {
+    let recording = read("lerobot.parquet");
+    assert_eq!((recording.len(), &recording.breaks[..]), (120, &[60][..]));
+    assert_eq!(recording.joints, ["0", "1"]);
+    for row in 0..120 {
+        let t = 0.01 * (row % 60) as f64;
+        for joint in 0..2 {
+            let [q, _, tau] = motion(joint, t);
+            assert!((recording.q[joint][row] - q).abs() < 1e-6 && (recording.tau[joint][row] - tau).abs() < 1e-6);
+        }
+    }
+    let told = |warning: &Warning| matches!(warning, Warning::Runs { runs: 2, .. });
+    assert!(recording.warnings.iter().any(told), "{:?}", recording.warnings);
+    let lacking = refusal("lerobot_no_torques.parquet");
+    assert!(
+        lacking.contains("those of LeRobot") && lacking.contains("observation.effort"),
+        "{lacking}"
+    );
+}
+
+#[test]
+fn arrays_of_numpy_and_matlab_are_read() {
+    let plain = read("plain.csv");
+    for name in ["named.npz", "named.mat"] {
+        assert_eq!(read(name), plain, "{name}");
+    }
+    for name in ["arrays.npz", "fortran.npz", "rows.mat"] {
+        let recording = read(name);
+        check(&recording, 60, 0.0);
+        assert_eq!(recording.joints, ["0", "1"], "{name}");
+        let left_out = |warning: &Warning| matches!(warning, Warning::LeftOut { what } if what.contains("rate"));
+        assert_eq!(recording.warnings.iter().any(left_out), name != "fortran.npz", "{name}");
+    }
+    let map = "[time]\ncolumn = \"t\"\n[joints.shoulder]\nq = \"q[0]\"\nqd = \"qd[0]\"\ntau = \"tau[0]\"\n";
+    check(&read_with("arrays.npz", map).expect("it fits"), 60, 0.0);
+    assert!(refusal("new.mat").contains("-v7"));
+}
+
+/// Every file of a format, cut and changed at many places, is read or refused, and nothing else.
+#[test]
+fn cut_and_damaged_files_are_read_or_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in [
+        "plain.csv.gz",
+        "plain.csv.zst",
+        "libfranka.csv",
+        "joint_states.mcap",
+        "two_topics.mcap",
+        "unstamped.mcap",
+        "bag_sqlite/bag_sqlite.db3",
+        "bag_messages/bag_messages.db3",
+        "plain_snappy.parquet",
+        "plain_zstd.parquet",
+        "lerobot.parquet",
+        "named.npz",
+        "arrays.npz",
+        "named.mat",
+        "rows.mat",
+    ] {
+        let whole = std::fs::read(path(name)).expect("it is there");
+        let path = folder.path().join("recording");
+        let mut refused = 0;
+        let mut tried = |bytes: &[u8]| {
+            std::fs::write(&path, bytes).expect("it writes");
+            if let Err(error) = Recording::read(&path) {
+                let error = error.to_string();
+                assert!(error.contains("recording") && error.len() < 2000, "{name}: {error}");
+                refused += 1;
+            }
+        };
+        // A prime step, so that all places in a word are hit.
+        let step = (whole.len() / 300).max(1) | 1;
+        for at in (0..whole.len()).step_by(step) {
+            tried(&whole[..at]);
+        }
+        for at in (0..whole.len()).step_by(step).chain(0..64.min(whole.len())) {
+            for value in [0x00, 0x7F, 0xFF] {
+                let mut damaged = whole.clone();
+                damaged[at] ^= value | 1;
+                tried(&damaged);
+            }
+        }
+        assert!(refused > 50, "{name}: {refused}");
+    }
+}

@@ -61,7 +61,6 @@ impl Format for Csv {
             before: ByteRecord::new(),
             above: Vec::new(),
             any: false,
-            at_end: false,
             cut: None,
         };
         rows.any = rows.advance()?;
@@ -89,7 +88,6 @@ struct Lines {
     above: Vec<u8>,
     /// Whether `newest` is still to be given.
     any: bool,
-    at_end: bool,
     /// The line of a last row that is cut.
     cut: Option<Place>,
 }
