@@ -48,7 +48,11 @@ pub fn table(input: &Input, format: &'static str, arrays: &[Array]) -> Result<Ta
         let names: Vec<&str> = arrays.iter().map(|array| array.name.as_str()).collect();
         let reason = format!(
             "no array of numbers is a vector with a value a sample; save t, and q and tau with a column a joint; its arrays are {}",
-            if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+            if names.is_empty() {
+                "none".to_owned()
+            } else {
+                names.join(", ")
+            }
         );
         return Err(input.error(format, reason));
     }
@@ -72,7 +76,10 @@ pub fn table(input: &Input, format: &'static str, arrays: &[Array]) -> Result<Ta
     }
     let mut table = Table::of_columns(columns);
     if !left_out.is_empty() {
-        let what = format!("left out, because they have not {samples} rows: {}", left_out.join(", "));
+        let what = format!(
+            "left out, because they have not {samples} rows: {}",
+            left_out.join(", ")
+        );
         table.warnings.push(Warning::LeftOut { what });
     }
     Ok(table)

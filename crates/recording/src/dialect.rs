@@ -52,7 +52,12 @@ pub fn of(headers: &[String], topics: &[String]) -> Option<ColumnMap> {
 ///
 /// # Errors
 /// What is missing, and the remedy.
-pub fn plan(map: &ColumnMap, headers: &[String], first: &[String], file: &Path) -> Result<(Plan, Warning), RecordingError> {
+pub fn plan(
+    map: &ColumnMap,
+    headers: &[String],
+    first: &[String],
+    file: &Path,
+) -> Result<(Plan, Warning), RecordingError> {
     let Some(system) = &map.system else {
         return Err(RecordingError::Header {
             path: file.to_owned(),
@@ -65,7 +70,10 @@ pub fn plan(map: &ColumnMap, headers: &[String], first: &[String], file: &Path) 
             reason: if reason.contains("--map") {
                 reason
             } else {
-                format!("the columns look like those of {}, but {reason}; {}", system.name, system.remedy)
+                format!(
+                    "the columns look like those of {}, but {reason}; {}",
+                    system.name, system.remedy
+                )
             },
         },
         other => other,
@@ -86,4 +94,3 @@ pub fn plan(map: &ColumnMap, headers: &[String], first: &[String], file: &Path) 
     };
     Ok((plan, note))
 }
-

@@ -119,7 +119,11 @@ pub fn plan_by_names(headers: &[String]) -> Result<Plan, String> {
     let time = match at("t") {
         Some(index) => TimeColumn::plain(index, headers),
         None => seconds_and_nanos(headers).ok_or_else(|| {
-            let is_time = |header: &&String| ["time", "stamp"].iter().any(|word| header.to_lowercase().contains(word));
+            let is_time = |header: &&String| {
+                ["time", "stamp"]
+                    .iter()
+                    .any(|word| header.to_lowercase().contains(word))
+            };
             let hint = headers
                 .iter()
                 .find(is_time)

@@ -92,10 +92,11 @@ impl Input {
                 reason: std::io::Error::other("it is a folder"),
             });
         };
-        let ends_whole = ends_with_newline(&mut file, self.head.len() as u64).map_err(|reason| RecordingError::Read {
-            path: self.path,
-            reason,
-        })?;
+        let ends_whole =
+            ends_with_newline(&mut file, self.head.len() as u64).map_err(|reason| RecordingError::Read {
+                path: self.path,
+                reason,
+            })?;
         Ok((Box::new(Cursor::new(self.head).chain(file)), ends_whole))
     }
 
@@ -185,7 +186,9 @@ fn expand(path: &Path, name: &'static str, head: Vec<u8>, rest: File) -> Result<
         reason,
     };
     let broken = |reason: std::io::Error| {
-        error(format!("the compressed file is damaged or cut ({reason}); copy or compress it again"))
+        error(format!(
+            "the compressed file is damaged or cut ({reason}); copy or compress it again"
+        ))
     };
     let count = Rc::new(Cell::new(0));
     let source = Counted {

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use crate::RecordingError;
 use crate::Warning;
 use crate::bytes::Bytes;
 use crate::input::Input;
 use crate::table::{Column, Table};
-use crate::RecordingError;
 
 /// The type's names: of ROS 2, and of an older form.
 pub const TYPES: [&str; 2] = ["sensor_msgs/msg/JointState", "sensor_msgs/JointState"];
@@ -46,7 +46,9 @@ fn decode(data: &[u8]) -> Result<JointState<'_>, String> {
     for (field, values) in FIELDS.iter().zip(&message.fields) {
         if !values.is_empty() && values.len() != names {
             let count = values.len();
-            return Err(format!("it has {names} names and {count} values of {field}; publish one of each joint"));
+            return Err(format!(
+                "it has {names} names and {count} values of {field}; publish one of each joint"
+            ));
         }
     }
     Ok(message)
@@ -111,7 +113,8 @@ impl JointStates {
     pub fn add(&mut self, topic: &str, logged: i64, data: &[u8]) -> Result<(), String> {
         self.messages += 1;
         let number = self.messages;
-        let message = decode(data).map_err(|reason| format!("message {number} of joint states, in {topic}: {reason}"))?;
+        let message =
+            decode(data).map_err(|reason| format!("message {number} of joint states, in {topic}: {reason}"))?;
         let time = if message.stamp == 0 { logged } else { message.stamp };
         if !self.topics.contains_key(topic) {
             self.topics.insert(topic.to_owned(), Vec::new());
@@ -146,7 +149,12 @@ impl JointStates {
     ///
     /// # Errors
     /// [`RecordingError::Format`] if there are none.
-    pub fn into_table(mut self, input: &Input, format: &'static str, chosen: &[String]) -> Result<Table, RecordingError> {
+    pub fn into_table(
+        mut self,
+        input: &Input,
+        format: &'static str,
+        chosen: &[String],
+    ) -> Result<Table, RecordingError> {
         let joints = self.topics.values_mut().flatten();
         joints.flat_map(|joint| &mut joint.fields).for_each(|series| {
             series.sort_by_key(|(time, _)| *time);
@@ -160,7 +168,10 @@ impl JointStates {
         let base = base.map(|(topic, joints)| (topic.clone(), joints.iter().max_by_key(|joint| joint.fields[0].len())));
         let Some((base, Some(most))) = base.filter(|(_, joint)| joint.is_some_and(|joint| !joint.fields[0].is_empty()))
         else {
-            return Err(input.error(format, "its joint states have no positions; record a topic that has them"));
+            return Err(input.error(
+                format,
+                "its joint states have no positions; record a topic that has them",
+            ));
         };
         let times: Vec<i64> = most.fields[0].iter().map(|(time, _)| *time).collect();
         let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
@@ -182,7 +193,9 @@ impl JointStates {
         };
         let stamps = times.iter().zip(&keeps).filter(|(_, keeps)| **keeps);
         let stamps = Column::Nanos(stamps.map(|(time, _)| *time).collect());
-        let columns = columns.into_iter().map(|(name, values)| (name, Column::Numbers(kept(values))));
+        let columns = columns
+            .into_iter()
+            .map(|(name, values)| (name, Column::Numbers(kept(values))));
         let mut table = Table::of_columns(std::iter::once(("__time".to_owned(), stamps)).chain(columns).collect());
         table.warnings = warnings;
         Ok(table)
@@ -218,7 +231,10 @@ fn join(
         let (values, between) = at(series, times);
         let found = values.iter().filter(|value| value.is_some()).count();
         if (found as f64) < COVERED * times.len() as f64 {
-            let what = format!("{name} was left out: it has values in {found} of {} rows only", times.len());
+            let what = format!(
+                "{name} was left out: it has values in {found} of {} rows only",
+                times.len()
+            );
             warnings.push(Warning::LeftOut { what });
             continue;
         }
@@ -226,7 +242,10 @@ fn join(
             *keep &= value.is_some();
         }
         (interpolated, left_out) = (between.max(interpolated), left_out.max(times.len() - found));
-        columns.push((name, values.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect()));
+        columns.push((
+            name,
+            values.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect(),
+        ));
     }
     if interpolated + left_out > 0 {
         warnings.push(Warning::Joined {
@@ -272,8 +291,20 @@ mod tests {
     /// A message in CDR of either byte order, with a stamp of 3.5 s.
     fn message(big_endian: bool) -> Vec<u8> {
         let mut data = vec![0, u8::from(!big_endian), 0, 0];
-        let word = |value: u32| if big_endian { value.to_be_bytes() } else { value.to_le_bytes() };
-        let number = |value: f64| if big_endian { value.to_be_bytes() } else { value.to_le_bytes() };
+        let word = |value: u32| {
+            if big_endian {
+                value.to_be_bytes()
+            } else {
+                value.to_le_bytes()
+            }
+        };
+        let number = |value: f64| {
+            if big_endian {
+                value.to_be_bytes()
+            } else {
+                value.to_le_bytes()
+            }
+        };
         let pad = |data: &mut Vec<u8>, size: usize| {
             while (data.len() - 4) % size > 0 {
                 data.push(0);

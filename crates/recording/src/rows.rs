@@ -311,12 +311,17 @@ impl<'a> Rows<'a> {
             self.warnings.push(Warning::Runs { runs, column });
         }
         // A joint of which nothing was recorded; if that is every joint, the first is the error.
-        let lacking = self.plan.channels.iter().zip(&self.states).find_map(|(channel, state)| {
-            let State::Missing { place, found } = state else {
-                return None;
-            };
-            Some(missing(self.path, channel, *place, found.clone()))
-        });
+        let lacking = self
+            .plan
+            .channels
+            .iter()
+            .zip(&self.states)
+            .find_map(|(channel, state)| {
+                let State::Missing { place, found } = state else {
+                    return None;
+                };
+                Some(missing(self.path, channel, *place, found.clone()))
+            });
         let (columns, breaks, span) = self.values.finish();
         if let Some(span) = span {
             let kept = columns[0].len();

@@ -201,10 +201,7 @@ pub enum Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::CutFile { line } => write!(
-                f,
-                "{line}: the file is cut in the middle of this row; it was left out"
-            ),
+            Self::CutFile { line } => write!(f, "{line}: the file is cut in the middle of this row; it was left out"),
             Self::Duplicates { rows, line, differ } => {
                 let what = if *differ {
                     "with the time of the row before"
@@ -255,7 +252,10 @@ impl fmt::Display for Warning {
                 left_out,
             } => {
                 write!(f, "{what} has stamps of its own and was joined by time: ")?;
-                write!(f, "{interpolated} rows interpolated, {left_out} left out where there is none")
+                write!(
+                    f,
+                    "{interpolated} rows interpolated, {left_out} left out where there is none"
+                )
             }
             Self::LeftOut { what } => write!(f, "{what}"),
             Self::JointLeftOut { joint, column } => {

@@ -18,7 +18,9 @@ pub fn unwrap(recording: &mut Recording) {
     let secondary = recording.q_secondary.iter_mut().map(Option::as_mut).enumerate();
     let secondary = secondary.filter_map(|(joint, q)| Some((joint, q?, Quantity::SecondaryPosition)));
     let primary = recording.q.iter_mut().enumerate();
-    let all = primary.map(|(joint, q)| (joint, q, Quantity::Position)).chain(secondary);
+    let all = primary
+        .map(|(joint, q)| (joint, q, Quantity::Position))
+        .chain(secondary);
     let mut warnings = Vec::new();
     for (joint, q, quantity) in all {
         let jumps = continuous(&recording.time, q, &recording.breaks);

@@ -51,7 +51,7 @@ pub struct RunArgs {
     #[arg(long, value_enum)]
     pub model: Option<ModelKind>,
 
-    /// The training data of the model: scenarios, or recordings (.csv) [default: the scenario's list]
+    /// The training data of the model: scenarios, or recordings [default: the scenario's list]
     #[arg(long, value_name = "A,B,…", value_delimiter = ',')]
     pub train: Option<Vec<String>>,
 
@@ -90,7 +90,7 @@ pub struct TablesArgs {
 
 #[derive(Debug, Args)]
 pub struct InspectArgs {
-    /// The recordings (.csv)
+    /// The recordings: CSV, MCAP, rosbag2, Parquet, .npz or .mat, compressed or not
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
 
@@ -121,11 +121,11 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "URDF")]
     pub robot: String,
 
-    /// The training recordings (.csv), to which the effects are fitted
+    /// The training recordings, to which the effects are fitted
     #[arg(long, required = true, num_args = 1.., value_name = "FILE")]
     pub train: Vec<PathBuf>,
 
-    /// Recordings of the same robot from before something happened (.csv): what the other recordings show and these do not is
+    /// Recordings of the same robot from before something happened: what the other recordings show and these do not is
     /// what changed
     #[arg(long, num_args = 1.., value_name = "FILE")]
     pub before: Vec<PathBuf>,
@@ -140,7 +140,7 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "FRACTION", value_parser = parse_accuracy)]
     pub torque_accuracy: Option<f64>,
 
-    /// The held-out recordings (.csv), on which the fit is validated; without one, no finding is validated
+    /// The held-out recordings, on which the fit is validated; without one, no finding is validated
     #[arg(long, num_args = 1.., value_name = "FILE")]
     pub held_out: Vec<PathBuf>,
 

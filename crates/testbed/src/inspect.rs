@@ -9,12 +9,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use arm::Arm;
-use recording::{ColumnMap, Quality, Recording, Warning};
+use recording::{ColumnMap, Quality, Warning};
 use serde::Serialize;
 
 use crate::cli::InspectArgs;
 use crate::library::{self, Source};
-use crate::output;
+use crate::{output, recordings};
 
 /// What `--json` holds.
 #[derive(Serialize)]
@@ -98,7 +98,7 @@ fn load_robot(robot: &str) -> anyhow::Result<Arm> {
 }
 
 fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> anyhow::Result<FileReport<'a>> {
-    let recording = Recording::read_with(file, map)?;
+    let recording = recordings::read(file, map, arm)?;
     let (regular, found) = recording.regular().with_context(|| file.display().to_string())?;
     let quality = Quality::of(&recording, &regular);
     let warnings = recording.warnings.iter().cloned().chain(found);

@@ -7,6 +7,7 @@ use arm::Arm;
 use recording::Recording;
 use torque::{Motion, Reference, Samples};
 
+use crate::recordings;
 use crate::scenario::Scenario;
 use crate::sensors::Sensors;
 
@@ -101,7 +102,7 @@ pub fn own_samples(scenario: &Scenario) -> anyhow::Result<Samples> {
 }
 
 /// The samples of all `sources`: scenarios by name or file, whose references are sampled on the plant
-/// of `scenario`, and recordings (`.csv`) with accelerations, thinned to the scenario's sample rate.
+/// of `scenario`, and recordings (files that are not `.toml`) with accelerations, thinned to the scenario's sample rate.
 ///
 /// # Errors
 /// If a source cannot be read or is of another robot.
@@ -110,11 +111,10 @@ pub fn training_samples(scenario: &Scenario, sources: &[String], seed: u64) -> a
     let mut sensors = Sensors::new(&scenario.sensor_noise, seed, TRAINING_STREAM);
     for source in sources {
         let of_source = || format!("training on {source}");
-        if Path::new(source)
-            .extension()
-            .is_some_and(|extension| extension == "csv")
-        {
-            let recording = Recording::read(Path::new(source)).with_context(of_source)?;
+        let path = Path::new(source);
+        let ends = |end: &str| path.extension().is_some_and(|extension| extension == end);
+        if ends("csv") || (path.exists() && !ends("toml")) {
+            let recording = recordings::read(path, None, Some(&scenario.arm)).with_context(of_source)?;
             recording_samples(scenario, &recording, &mut samples).with_context(of_source)?;
         } else {
             let task = Scenario::load(source).with_context(of_source)?;

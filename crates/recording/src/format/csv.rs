@@ -160,7 +160,10 @@ impl RowSource for Lines {
     }
 
     fn warnings(&mut self) -> Vec<Warning> {
-        self.cut.map(|place| Warning::CutFile { line: place }).into_iter().collect()
+        self.cut
+            .map(|place| Warning::CutFile { line: place })
+            .into_iter()
+            .collect()
     }
 }
 

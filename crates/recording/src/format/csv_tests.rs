@@ -139,9 +139,7 @@ fn what_spreadsheets_and_mistakes_make_of_a_file_is_refused_with_the_remedy() {
             "{found}"
         );
     }
-    let found = Recording::read(folder.path())
-        .expect_err("it is refused")
-        .to_string();
+    let found = Recording::read(folder.path()).expect_err("it is refused").to_string();
     assert!(found.contains("it is a folder"), "{found}");
 }
 
@@ -204,7 +202,15 @@ fn runs_end_to_end_in_one_file_are_told_apart() {
     let read = read(&text).expect("two runs");
     assert_eq!((read.len(), read.breaks.as_slice()), (200, &[100][..]));
     assert!(read.time.windows(2).all(|pair| pair[1] > pair[0]));
-    let told = |warning: &Warning| matches!(warning, Warning::ClockRestart { line: Place::Line(102), .. });
+    let told = |warning: &Warning| {
+        matches!(
+            warning,
+            Warning::ClockRestart {
+                line: Place::Line(102),
+                ..
+            }
+        )
+    };
     assert!(read.warnings.iter().any(told), "{:?}", read.warnings);
 }
 
@@ -260,4 +266,64 @@ fn a_file_of_many_rows_is_read_as_means() {
     std::fs::write(&path, text.replace("4.9,", "4.9x,")).expect("it writes");
     let error = Recording::read_within(&path, None, 4 * 1000).expect_err("it is refused");
     assert!(error.to_string().contains("r.csv:4902"), "{error}");
+}
+
+#[test]
+fn a_value_that_is_not_needed_may_be_missing() {
+    let with = |cell: &str| {
+        read(&format!(
+            "t,q_a,q_b,qd_a,qd_b,tau_a,tau_b,temperature_a\n0,1,2,3,4,5,6,7\n1,1,2,{cell},4,5,6,{cell}\n2,1,2,3,4,5,6,7\n"
+        ))
+        .expect("it reads")
+    };
+    for cell in ["nan", "", "NaN", "x"] {
+        let read = with(cell);
+        assert_eq!((read.len(), &read.qd, read.temperature.len()), (3, &None, 0));
+        let told = |column: &str| {
+            let line = Place::Line(3);
+            let (column, found) = (column.to_owned(), cell.to_owned());
+            read.warnings.contains(&Warning::ColumnLeftOut { column, line, found })
+        };
+        assert!(told("qd_a") && told("temperature_a"), "{:?}", read.warnings);
+    }
+}
+
+#[test]
+fn a_joint_without_any_torque_is_left_out() {
+    let read = read("t,q_a,q_hand,tau_a,tau_hand\n0,1,2,5,nan\n1,1,2,5,\n2,1,2,5,NaN\n").expect("it reads");
+    assert_eq!((&read.joints[..], read.q.len()), (&["a".to_owned()][..], 1));
+    let told = |warning: &Warning| matches!(warning, Warning::JointLeftOut { joint, .. } if joint == "hand");
+    assert!(read.warnings.iter().any(told), "{:?}", read.warnings);
+    // With a torque here and there, the rows without one are the mistake.
+    let text = refusal("t,q_a,q_hand,tau_a,tau_hand\n0,1,2,5,nan\n1,1,2,5,3\n2,1,2,5,NaN\n");
+    assert!(text.contains("r.csv:2: column \"tau_hand\" is \"nan\""), "{text}");
+    let text = refusal("t,q_a,tau_a\n0,1,nan\n1,1,nan\n");
+    assert!(text.contains("r.csv:2: column \"tau_a\""), "{text}");
+}
+
+#[test]
+fn spaces_and_the_other_forms_of_time_are_read() {
+    let plain = read("t,q_a,tau_a\n0,1,2\n1,1.5,2.5\n").expect("it reads");
+    for other in [
+        "t q_a tau_a\n0 1 2\n1 1.5 2.5\n",
+        "  t   q_a  tau_a \r\n 0.0   1 2  \r\n  1 1.5 2.5\r\n",
+        "secs,nsecs,q_a,tau_a\n0,0,1,2\n1,0,1.5,2.5\n",
+    ] {
+        assert_eq!(read(other).expect("it reads"), plain, "{other:?}");
+    }
+    for stamps in [
+        ["2024-03-01T12:00:00Z", "2024-03-01T12:00:01Z"],
+        ["2024-03-01 23:59:59.5", "2024-03-02 00:00:00.5"],
+        ["2024-03-01T12:00:00+01:00", "2024-03-01T11:00:01Z"],
+    ] {
+        let read = read(&format!("t,q_a,tau_a\n{},1,2\n{},1.5,2.5\n", stamps[0], stamps[1])).expect("it reads");
+        assert_eq!(read.time[1] - read.time[0], 1.0, "{stamps:?}");
+    }
+    let bad = refusal("t,q_a,tau_a\nyesterday,1,2\n1,1.5,2.5\n");
+    assert!(
+        bad.contains("r.csv:2: column \"t\" is \"yesterday\"") && bad.contains("ISO 8601"),
+        "{bad}"
+    );
+    let named = refusal("stamp,q_a,tau_a\n0,1,2\n1,1.5,2.5\n");
+    assert!(named.contains("is \"stamp\" meant?"), "{named}");
 }

@@ -25,9 +25,10 @@ pub fn no_table(start: &[u8]) -> Option<(u64, String)> {
     }
     if let Some(at) = text.iter().position(|&byte| byte == 0) {
         let line = 1 + text[..at].iter().filter(|&&byte| byte == b'\n').count() as u64;
-        let reason = "there is a zero byte: this is a binary file of no format that is known here, or UTF-16; give CSV in \
+        let reason =
+            "there is a zero byte: this is a binary file of no format that is known here, or UTF-16; give CSV in \
                       UTF-8, or a format of docs/recordings.md"
-            .to_owned();
+                .to_owned();
         return Some((line, reason));
     }
     if text.trim_ascii().starts_with(b"<") {

@@ -92,7 +92,9 @@ fn variable(kind: u32, content: &[u8], big_endian: bool) -> Result<Option<Array>
     let ((_, flags), (_, sizes), (_, name)) = (next()?, next()?, next()?);
     let flags = Bytes::new(flags, big_endian).u32().ok_or(DAMAGED)?;
     let (class, is_complex) = ((flags & 0xFF) as u8, flags & 0x800 != 0);
-    let sizes = Bytes::new(sizes, big_endian).integers(4, true, sizes.len() / 4).ok_or(DAMAGED)?;
+    let sizes = Bytes::new(sizes, big_endian)
+        .integers(4, true, sizes.len() / 4)
+        .ok_or(DAMAGED)?;
     let (&[rows, columns], false, true) = (&sizes[..], is_complex, NUMERIC.contains(&class)) else {
         return Ok(None);
     };

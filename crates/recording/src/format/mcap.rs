@@ -125,7 +125,11 @@ pub fn no_states(mut topics: Vec<&str>, options: &Options<'_>) -> String {
     format!(
         "there are no messages sensor_msgs/msg/JointState (in CDR){of}; its topics are {}{more}; record the joint states, \
          and check `topics` in the column map",
-        if topics.is_empty() { "none".to_owned() } else { topics.join(", ") }
+        if topics.is_empty() {
+            "none".to_owned()
+        } else {
+            topics.join(", ")
+        }
     )
 }
 

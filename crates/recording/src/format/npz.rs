@@ -43,7 +43,11 @@ fn read(data: &[u8]) -> Result<Vec<Array>, String> {
         let content: Box<dyn Read> = match entry.compression_method() {
             rawzip::CompressionMethod::STORE => Box::new(local.data()),
             rawzip::CompressionMethod::DEFLATE => Box::new(flate2::bufread::DeflateDecoder::new(local.data())),
-            other => return Err(format!("{name} has the compression {other:?}; save it with numpy.savez")),
+            other => {
+                return Err(format!(
+                    "{name} has the compression {other:?}; save it with numpy.savez"
+                ));
+            }
         };
         let mut content = local.verifying_reader(content).take(room + 1);
         let mut expanded = Vec::new();
@@ -69,18 +73,27 @@ fn array(name: &str, data: &[u8]) -> Result<Option<Array>, String> {
     let damaged = || format!("{name} is damaged or cut; save or copy the archive again");
     let mut bytes = Bytes::new(data, false);
     let header = header(&mut bytes).ok_or_else(damaged)?;
-    let descr = between(header, "'descr':", ",").ok_or_else(damaged)?.trim_matches(['\'', ' ']);
+    let descr = between(header, "'descr':", ",")
+        .ok_or_else(damaged)?
+        .trim_matches(['\'', ' ']);
     let by_rows = between(header, "'fortran_order':", ",").ok_or_else(damaged)? == "False";
     let shape = between(header, "'shape':", ")").ok_or_else(damaged)?;
-    let sizes = shape.trim_matches(['(', ' ']).split(',').map(str::trim).filter(|size| !size.is_empty());
+    let sizes = shape
+        .trim_matches(['(', ' '])
+        .split(',')
+        .map(str::trim)
+        .filter(|size| !size.is_empty());
     let sizes: Vec<usize> = sizes.map(str::parse).collect::<Result<_, _>>().map_err(|_| damaged())?;
     let shape = match sizes[..] {
+        [] => (1, 1),
         [rows] => (rows, 1),
         [rows, columns] => (rows, columns),
         _ => return Ok(None),
     };
     let count = shape.0.checked_mul(shape.1).ok_or_else(damaged)?;
-    let values = values(descr, count, bytes)?.map(|values| values.ok_or_else(damaged)).transpose()?;
+    let values = values(descr, count, bytes)?
+        .map(|values| values.ok_or_else(damaged))
+        .transpose()?;
     Ok(values.map(|values| Array {
         name: name.to_owned(),
         shape,

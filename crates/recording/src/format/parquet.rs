@@ -1,9 +1,12 @@
 //! Parquet files, with a column a quantity or with lists of values (LeRobot).
 
+mod pages;
+
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit};
-use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
 use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
+use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
@@ -57,7 +60,16 @@ struct Leaf {
 
 /// The columns of numbers.
 fn columns(file: std::fs::File) -> Result<Vec<(String, Column)>, String> {
+    let size = file.metadata().map_or(0, |metadata| metadata.len());
     let reader = SerializedFileReader::new(file).map_err(damaged)?;
+    // The library trusts the places that the footer gives.
+    let groups = reader.metadata().row_groups().iter();
+    if !groups
+        .flat_map(|group| group.columns())
+        .all(|column| is_within(column, size))
+    {
+        return Err("its footer is damaged; write or copy it again".to_owned());
+    }
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let mut leaves: Vec<Option<Leaf>> = schema.columns().iter().map(|column| leaf(column)).collect();
     let mut count = 0;
@@ -65,7 +77,8 @@ fn columns(file: std::fs::File) -> Result<Vec<(String, Column)>, String> {
         let group = reader.get_row_group(group).map_err(damaged)?;
         for (index, leaf) in leaves.iter_mut().enumerate() {
             if let Some(leaf) = leaf {
-                let column = group.get_column_reader(index).map_err(damaged)?;
+                let pages = group.get_column_page_reader(index).map_err(damaged)?;
+                let column = get_column_reader(schema.column(index), Box::new(pages::Checked::new(pages)));
                 read_leaf(column, schema.column(index).as_ref(), leaf, &mut count)?;
             }
         }
@@ -90,6 +103,14 @@ fn columns(file: std::fs::File) -> Result<Vec<(String, Column)>, String> {
         return Err("there are no columns of numbers; give a recording with time, positions and torques".to_owned());
     }
     Ok(columns)
+}
+
+/// Whether a column's pages are within a file of `size` bytes.
+fn is_within(column: &ColumnChunkMetaData, size: u64) -> bool {
+    let first = column.dictionary_page_offset().unwrap_or(column.data_page_offset());
+    let from = u64::try_from(first.min(column.data_page_offset()));
+    let length = u64::try_from(column.compressed_size());
+    matches!((from, length), (Ok(from), Ok(length)) if from.checked_add(length).is_some_and(|end| end <= size))
 }
 
 /// An empty column, if it is one of numbers or times, or of lists of numbers.
@@ -129,12 +150,12 @@ fn read_leaf(
     count: &mut usize,
 ) -> Result<(), String> {
     match column {
-        ColumnReader::BoolColumnReader(reader) => {
-            read_typed(reader, descriptor, leaf, count, |value| (f64::from(u8::from(*value)), i64::from(*value)))
-        }
-        ColumnReader::Int32ColumnReader(reader) => {
-            read_typed(reader, descriptor, leaf, count, |value| (f64::from(*value), i64::from(*value)))
-        }
+        ColumnReader::BoolColumnReader(reader) => read_typed(reader, descriptor, leaf, count, |value| {
+            (f64::from(u8::from(*value)), i64::from(*value))
+        }),
+        ColumnReader::Int32ColumnReader(reader) => read_typed(reader, descriptor, leaf, count, |value| {
+            (f64::from(*value), i64::from(*value))
+        }),
         ColumnReader::Int64ColumnReader(reader) => {
             read_typed(reader, descriptor, leaf, count, |value| (*value as f64, *value))
         }
@@ -166,7 +187,9 @@ fn read_typed<T: DataType>(
         }
         *count += levels;
         if *count > MOST {
-            return Err(format!("it has more than {MOST} values; keep the columns of the recording alone"));
+            return Err(format!(
+                "it has more than {MOST} values; keep the columns of the recording alone"
+            ));
         }
         if let Some(width) = &mut leaf.width {
             check_lists(&leaf.name, width, &repetitions)?;
@@ -186,7 +209,11 @@ fn read_typed<T: DataType>(
 
 /// Checks that all lists are as long as the first.
 fn check_lists(name: &str, width: &mut usize, repetitions: &[i16]) -> Result<(), String> {
-    let mut starts = repetitions.iter().enumerate().filter(|(_, level)| **level == 0).map(|(at, _)| at);
+    let mut starts = repetitions
+        .iter()
+        .enumerate()
+        .filter(|(_, level)| **level == 0)
+        .map(|(at, _)| at);
     let mut from = starts.next().unwrap_or(0);
     for to in starts.chain([repetitions.len()]) {
         let length = to - from;
@@ -215,7 +242,10 @@ impl Leaf {
             }
             (Values::Nanos(values, unit), Some((_, whole))) => values.push(whole.saturating_mul(*unit)),
             (Values::Nanos(..), None) => {
-                return Err(format!("column \"{}\" lacks a time somewhere; fill it or leave the row out", self.name));
+                return Err(format!(
+                    "column \"{}\" lacks a time somewhere; fill it or leave the row out",
+                    self.name
+                ));
             }
         }
         Ok(())

@@ -7,10 +7,10 @@ use rusqlite::{Connection, OpenFlags};
 
 use super::mcap::{self, no_states};
 use super::{Format, Options};
+use crate::RecordingError;
 use crate::input::{Input, most_expanded};
 use crate::joint_state::{JointStates, TYPES};
 use crate::table::Table;
-use crate::RecordingError;
 
 const NAME: &str = "rosbag2";
 const SQLITE: &[u8] = b"SQLite format 3\0";
@@ -39,14 +39,17 @@ impl Format for Rosbag2 {
             let path = entry.map_err(unreadable)?.path();
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             // A database's journal and its index are no files of the bag.
-            let is_part = [".db3", ".db3.zstd", ".mcap", ".mcap.zstd"].iter().any(|end| name.ends_with(end));
+            let is_part = [".db3", ".db3.zstd", ".mcap", ".mcap.zstd"]
+                .iter()
+                .any(|end| name.ends_with(end));
             if is_part && path.is_file() {
                 files.push(path);
             }
         }
         files.sort();
         if files.is_empty() {
-            let reason = "it is a folder without .db3 or .mcap files, and so no bag; give a recording's file or a bag's folder";
+            let reason =
+                "it is a folder without .db3 or .mcap files, and so no bag; give a recording's file or a bag's folder";
             return Err(input.error(NAME, reason));
         }
         let mut warnings = Vec::new();
@@ -79,7 +82,9 @@ fn database(input: &Input, options: &Options<'_>, states: &mut JointStates) -> R
         copy.flush().map_err(failed)?;
         Some(copy)
     };
-    let path = copy.as_ref().map_or(input.path.as_path(), tempfile::NamedTempFile::path);
+    let path = copy
+        .as_ref()
+        .map_or(input.path.as_path(), tempfile::NamedTempFile::path);
     let size = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
     match messages(path, most_expanded(size), options, states) {
         Ok(topics) if states.messages() == 0 => {
@@ -112,7 +117,12 @@ fn messages(path: &Path, most: u64, options: &Options<'_>, states: &mut JointSta
     let database = Connection::open_with_flags(path, flags)?;
     let mut query = database.prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY name")?;
     let topics = query.query_map([], |row| {
-        Ok((row.get::<_, i64>(0)?, row.get::<_, String>(1)?, row.get::<_, String>(2)?, row.get::<_, String>(3)?))
+        Ok((
+            row.get::<_, i64>(0)?,
+            row.get::<_, String>(1)?,
+            row.get::<_, String>(2)?,
+            row.get::<_, String>(3)?,
+        ))
     })?;
     let topics = topics.collect::<Result<Vec<_>, _>>()?;
     let mut query = database.prepare("SELECT timestamp, data FROM messages WHERE topic_id = ?1")?;
@@ -125,7 +135,9 @@ fn messages(path: &Path, most: u64, options: &Options<'_>, states: &mut JointSta
         let mut rows = query.query([id])?;
         while let Some(row) = rows.next()? {
             let (logged, data) = (row.get::<_, i64>(0)?, row.get_ref(1)?);
-            let data = data.as_blob().map_err(|_| Failure::Message(format!("a message of {topic} is no blob")))?;
+            let data = data
+                .as_blob()
+                .map_err(|_| Failure::Message(format!("a message of {topic} is no blob")))?;
             if data.starts_with(ZSTD) {
                 // The compression mode "message".
                 let expanded = expand(data, &mut room).map_err(Failure::Message)?;

@@ -13,7 +13,7 @@ use super::effect_file::EffectFile;
 use super::next_file;
 use crate::cli::{DiagnoseArgs, Rerun};
 use crate::inspect::{model_check, shortened};
-use crate::output;
+use crate::{output, recordings};
 
 /// A recording ready to be diagnosed.
 pub struct Prepared {
@@ -224,7 +224,7 @@ fn prepare(
 ) -> anyhow::Result<Prepared> {
     let name = path.display().to_string();
     progress.set_message(format!("reading {name}"));
-    let recording = Recording::read_with(path, map.map(|(_, map)| map))?;
+    let recording = recordings::read(path, map.map(|(_, map)| map), Some(arm))?;
     let order = order(&recording, arm, &name, map.map(|(path, _)| *path))?;
     let (regular, warnings) = recording.regular().with_context(|| name.clone())?;
     let quality = Quality::of(&recording, &regular);
