@@ -15,22 +15,21 @@ fn refusal(bytes: &[u8]) -> String {
 }
 
 fn gzip(bytes: &[u8]) -> Vec<u8> {
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
     encoder.write_all(bytes).expect("it compresses");
     encoder.finish().expect("it compresses")
 }
 
 #[test]
 fn a_file_that_expands_without_end_is_refused_with_the_limit() {
-    let zeros = vec![b'0'; 200 << 20];
+    let zeros = vec![b'0'; 100 << 20];
     let packed = gzip(&zeros);
-    let limit = (64 << 20) + 100 * packed.len();
+    // At most 64 MiB and 100 times what was read so far.
     let found = refusal(&packed);
-    let said = format!(
-        "it expands to more than {} MB, over 100 times its size",
-        limit / 1_000_000
-    );
-    assert!(found.contains("r.csv.gz: gzip: ") && found.contains(&said), "{found}");
+    let said: Vec<u64> = found.split(' ').filter_map(|word| word.parse().ok()).collect();
+    let most = ((64 << 20) + 100 * packed.len() as u64) / 1_000_000;
+    assert!(said[0] > 64 && said[0] <= most && said[1] == 100, "{found}");
+    assert!(found.contains("r.csv.gz: gzip: it expands to more than"), "{found}");
     let packed = zstd::stream::encode_all(&zeros[..], 1).expect("it compresses");
     let found = refusal(&packed);
     assert!(found.contains("zstd: it expands to more than"), "{found}");

@@ -236,8 +236,9 @@ impl<'a> Rows<'a> {
         if self.duplicates == 1 {
             self.duplicate_place = row.place;
         }
-        let channels = self.plan.channels.iter().map(|channel| {
+        let channels = self.plan.channels.iter().zip(&self.states).map(|(channel, state)| {
             let value = row.cell(channel.index).number();
+            let value = value.filter(|_| *state != State::LeftOut);
             value.map_or(f64::NAN, |value| channel.factor * value + channel.offset)
         });
         let others = self.plan.others.iter().map(|(index, _)| row.cell(*index).number());

@@ -272,8 +272,8 @@ fn cut_and_damaged_files_are_read_or_refused() {
                 refused += 1;
             }
         };
-        // A prime step, so that all places in a word are hit.
-        let step = (whole.len() / 1500).max(1) | 1;
+        // An odd step, so that all places in a word are hit.
+        let step = (whole.len() / 40).max(1) | 1;
         for at in (0..whole.len()).step_by(step) {
             tried(&whole[..at]);
         }
@@ -284,7 +284,11 @@ fn cut_and_damaged_files_are_read_or_refused() {
                 tried(&damaged);
             }
         }
-        assert!(refused > 50, "{name}: {refused}");
-        eprintln!("{name} {largest}");
+        assert!(refused > 20, "{name}: {refused}");
+        // What a file may expand to, and the table of it.
+        assert!(
+            largest < 2 * ((64 << 20) + 100 * whole.len() as u64),
+            "{name}: {largest} bytes"
+        );
     }
 }

@@ -294,6 +294,12 @@ fn a_joint_without_any_torque_is_left_out() {
     assert_eq!((&read.joints[..], read.q.len()), (&["a".to_owned()][..], 1));
     let told = |warning: &Warning| matches!(warning, Warning::JointLeftOut { joint, .. } if joint == "hand");
     assert!(read.warnings.iter().any(told), "{:?}", read.warnings);
+    // Neither makes equal rows differ.
+    let twice =
+        "t,q_a,q_hand,qd_a,qd_hand,tau_a,tau_hand\n0,1,2,,0,5,nan\n1,1,2,3,0,5,nan\n1,1,2,3,0,5,nan\n2,1,2,3,0,5,nan\n";
+    let twice = self::read(twice).expect("it reads");
+    let same = |warning: &Warning| matches!(warning, Warning::Duplicates { differ: false, .. });
+    assert!(twice.warnings.iter().any(same), "{:?}", twice.warnings);
     // With a torque here and there, the rows without one are the mistake.
     let text = refusal("t,q_a,q_hand,tau_a,tau_hand\n0,1,2,5,nan\n1,1,2,5,3\n2,1,2,5,NaN\n");
     assert!(text.contains("r.csv:2: column \"tau_hand\" is \"nan\""), "{text}");

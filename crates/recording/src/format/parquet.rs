@@ -1,9 +1,9 @@
 //! Parquet files, with a column a quantity or with lists of values (LeRobot).
 
-mod pages;
+use std::panic::AssertUnwindSafe;
 
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit};
-use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::ColumnChunkMetaData;
@@ -12,7 +12,7 @@ use parquet::schema::types::ColumnDescriptor;
 
 use super::{Format, Options};
 use crate::RecordingError;
-use crate::input::Input;
+use crate::input::{Input, most_expanded};
 use crate::table::{Column, Table};
 
 const NAME: &str = "Parquet";
@@ -32,7 +32,10 @@ impl Format for Parquet {
 
     fn read(&self, input: Input, _: &Options<'_>) -> Result<Table, RecordingError> {
         let file = input.to_file()?;
-        let columns = columns(file).map_err(|reason| input.error(NAME, reason))?;
+        // The library panics on some damaged pages; nothing of what it holds is used afterwards.
+        let read = std::panic::catch_unwind(AssertUnwindSafe(|| columns(file)));
+        let read = read.unwrap_or_else(|_| Err("a page is damaged; write or copy the file again".to_owned()));
+        let columns = read.map_err(|reason| input.error(NAME, reason))?;
         Ok(Table::of_columns(columns))
     }
 }
@@ -72,14 +75,13 @@ fn columns(file: std::fs::File) -> Result<Vec<(String, Column)>, String> {
     }
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let mut leaves: Vec<Option<Leaf>> = schema.columns().iter().map(|column| leaf(column)).collect();
-    let mut count = 0;
+    let mut room = MOST.min(usize::try_from(most_expanded(size) / 8).unwrap_or(MOST));
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(damaged)?;
         for (index, leaf) in leaves.iter_mut().enumerate() {
             if let Some(leaf) = leaf {
-                let pages = group.get_column_page_reader(index).map_err(damaged)?;
-                let column = get_column_reader(schema.column(index), Box::new(pages::Checked::new(pages)));
-                read_leaf(column, schema.column(index).as_ref(), leaf, &mut count)?;
+                let column = group.get_column_reader(index).map_err(damaged)?;
+                read_leaf(column, schema.column(index).as_ref(), leaf, &mut room)?;
             }
         }
     }
@@ -147,25 +149,25 @@ fn read_leaf(
     column: ColumnReader,
     descriptor: &ColumnDescriptor,
     leaf: &mut Leaf,
-    count: &mut usize,
+    room: &mut usize,
 ) -> Result<(), String> {
     match column {
-        ColumnReader::BoolColumnReader(reader) => read_typed(reader, descriptor, leaf, count, |value| {
+        ColumnReader::BoolColumnReader(reader) => read_typed(reader, descriptor, leaf, room, |value| {
             (f64::from(u8::from(*value)), i64::from(*value))
         }),
-        ColumnReader::Int32ColumnReader(reader) => read_typed(reader, descriptor, leaf, count, |value| {
+        ColumnReader::Int32ColumnReader(reader) => read_typed(reader, descriptor, leaf, room, |value| {
             (f64::from(*value), i64::from(*value))
         }),
         ColumnReader::Int64ColumnReader(reader) => {
-            read_typed(reader, descriptor, leaf, count, |value| (*value as f64, *value))
+            read_typed(reader, descriptor, leaf, room, |value| (*value as f64, *value))
         }
         ColumnReader::Int96ColumnReader(reader) => {
-            read_typed(reader, descriptor, leaf, count, |value| (0.0, value.to_nanos()))
+            read_typed(reader, descriptor, leaf, room, |value| (0.0, value.to_nanos()))
         }
         ColumnReader::FloatColumnReader(reader) => {
-            read_typed(reader, descriptor, leaf, count, |value| (f64::from(*value), 0))
+            read_typed(reader, descriptor, leaf, room, |value| (f64::from(*value), 0))
         }
-        ColumnReader::DoubleColumnReader(reader) => read_typed(reader, descriptor, leaf, count, |value| (*value, 0)),
+        ColumnReader::DoubleColumnReader(reader) => read_typed(reader, descriptor, leaf, room, |value| (*value, 0)),
         ColumnReader::ByteArrayColumnReader(_) | ColumnReader::FixedLenByteArrayColumnReader(_) => Ok(()),
     }
 }
@@ -175,7 +177,7 @@ fn read_typed<T: DataType>(
     mut reader: ColumnReaderImpl<T>,
     descriptor: &ColumnDescriptor,
     leaf: &mut Leaf,
-    count: &mut usize,
+    room: &mut usize,
     both: impl Fn(&T::T) -> (f64, i64),
 ) -> Result<(), String> {
     loop {
@@ -185,12 +187,9 @@ fn read_typed<T: DataType>(
         if records == 0 {
             return Ok(());
         }
-        *count += levels;
-        if *count > MOST {
-            return Err(format!(
-                "it has more than {MOST} values; keep the columns of the recording alone"
-            ));
-        }
+        *room = room.checked_sub(levels).ok_or(
+            "it has more values than a recording of its size (over 12 a byte); keep the columns of the recording alone",
+        )?;
         if let Some(width) = &mut leaf.width {
             check_lists(&leaf.name, width, &repetitions)?;
         }
