@@ -134,6 +134,16 @@ fn joint_states_of_bags_are_read_whatever_the_storage() {
         );
         assert!(system(&recording).is_some_and(|note| note.contains("/joint_states/")));
     }
+    // A recorder that was stopped hard leaves a file that is cut.
+    let whole = std::fs::read(path("unstamped.mcap")).expect("it is there");
+    let folder = tempfile::tempdir().expect("a folder");
+    let cut = folder.path().join("cut");
+    std::fs::write(&cut, &whole[..whole.len() / 2]).expect("it writes");
+    let recording = Recording::read(&cut).expect("what is whole is used");
+    assert!((10..60).contains(&recording.len()));
+    check(&recording, recording.len(), 0.0);
+    let told = |warning: &Warning| matches!(warning, Warning::CutFile { .. });
+    assert!(recording.warnings.iter().any(told));
     // Without stamps of its own, a message has that of the log.
     for name in ["unstamped.mcap", "ros_writer.mcap"] {
         check(&read(name), 60, 0.0);
