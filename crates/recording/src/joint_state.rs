@@ -306,7 +306,7 @@ mod tests {
             }
         };
         let pad = |data: &mut Vec<u8>, size: usize| {
-            while (data.len() - 4) % size > 0 {
+            while !(data.len() - 4).is_multiple_of(size) {
                 data.push(0);
             }
         };

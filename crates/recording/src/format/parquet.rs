@@ -6,7 +6,7 @@ use parquet::basic::{ConvertedType, LogicalType, TimeUnit};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
-use parquet::file::metadata::ColumnChunkMetaData;
+use parquet::file::metadata::{ColumnChunkMetaData, RowGroupMetaData};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
@@ -68,7 +68,7 @@ fn columns(file: std::fs::File) -> Result<Vec<(String, Column)>, String> {
     // The library trusts the places that the footer gives.
     let groups = reader.metadata().row_groups().iter();
     if !groups
-        .flat_map(|group| group.columns())
+        .flat_map(RowGroupMetaData::columns)
         .all(|column| is_within(column, size))
     {
         return Err("its footer is damaged; write or copy it again".to_owned());
