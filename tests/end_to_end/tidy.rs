@@ -81,8 +81,22 @@ fn every_scenario_and_robot_comes_with_the_program() {
             .flatten()
         {
             let name = format!("{folder}/{}", entry.file_name().to_string_lossy());
-            assert!(library.contains(&name), "{name} is not in library.rs");
+            assert!(
+                entry.path().is_dir() || library.contains(&name),
+                "{name} is not in library.rs"
+            );
         }
+    }
+    let ready = read(&crate::support::root().join("crates/recording/src/dialect.rs"));
+    for entry in std::fs::read_dir(crate::support::root().join("assets/maps"))
+        .expect("the folder can be read")
+        .flatten()
+    {
+        let name = entry.path().file_stem().expect("a file").to_string_lossy().into_owned();
+        assert!(
+            ready.contains(&format!("ready!(\"{name}\")")),
+            "{name} is not in dialect.rs"
+        );
     }
 }
 

@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             held_out = true;
             continue;
         }
-        let (regular, _) = Recording::read_csv(Path::new(file))?.regular()?;
+        let (regular, _) = Recording::read(Path::new(file))?.regular()?;
         recordings.push((file, in_order(regular, &arm)?, held_out));
     }
     let inputs: Vec<Input<'_>> = recordings

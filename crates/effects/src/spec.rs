@@ -241,6 +241,8 @@ pub struct Spec {
     pub may_repeat: bool,
     /// The simpler effect that it is a form of.
     pub plain: Option<&'static str>,
+    /// What it must explain beyond that, over the joint's torque.
+    pub least_beyond_plain: f64,
     /// The effect that is fitted with it and named beside it.
     pub brings: Option<&'static str>,
     /// Effects that cannot stand beside it on one joint: the other side need not say so too.
@@ -295,6 +297,7 @@ impl Spec {
         may_set_in: false,
         may_repeat: false,
         plain: None,
+        least_beyond_plain: 0.0,
         brings: None,
         excludes: &[],
         prior: 6.0,

@@ -36,7 +36,7 @@ fn csv(bencher: divan::Bencher<'_, '_>) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("r.csv");
     recording().write_csv(&path).expect("it writes");
-    bencher.bench(|| Recording::read_csv(&path).expect("it reads"));
+    bencher.bench(|| Recording::read(&path).expect("it reads"));
 }
 
 #[divan::bench(sample_count = 5)]

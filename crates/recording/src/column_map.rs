@@ -1,5 +1,8 @@
 //! Anybody's headers, units, signs and joint order, told in TOML.
 
+mod joint;
+pub(crate) mod template;
+
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -7,24 +10,50 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::header::{Channel, Plan};
-use crate::units::{self, Conversion};
-use crate::{Quantity, RecordingError, nearest, toml_reason};
+use self::joint::RawJoint;
+use crate::header::{Channel, Plan, TimeColumn};
+use crate::{Quantity, RecordingError, nearest, toml_reason, units};
 
 /// Which column holds what, in which unit: `docs/recordings.md` has the keys.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColumnMap {
     path: PathBuf,
     delimiter: Option<u8>,
-    time: (String, usize),
-    time_factor: f64,
-    /// In the order of the file.
+    /// The topics to read of a file that has topics.
+    topics: Vec<String>,
+    /// Of a ready map: the system, the columns by which it is known, and what to do where it has no torques.
+    pub(crate) system: Option<System>,
+    time: Option<Time>,
+    /// The columns whose cells are the joints' names.
+    names: Option<String>,
+    /// In the order of the file; one with `{joint}` in it stands for all joints whose columns are there.
     joints: Vec<String>,
     entries: Vec<Entry>,
 }
 
+/// Whose columns a ready map names.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct System {
+    /// The system's name.
+    pub name: String,
+    /// The columns by which it is known.
+    pub known_by: Vec<String>,
+    /// What to do where a column is missing.
+    pub remedy: String,
+}
+
+/// The columns of the time: the header and the line of each.
 #[derive(Clone, Debug, PartialEq)]
-struct Entry {
+struct Time {
+    column: (String, usize),
+    nanosec: Option<(String, usize)>,
+    run: Option<(String, usize)>,
+    factor: f64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Entry {
     header: String,
     line: usize,
     quantity: Quantity,
@@ -37,7 +66,12 @@ struct Entry {
 #[serde(deny_unknown_fields)]
 struct RawMap {
     delimiter: Option<Spanned<String>>,
-    time: RawTime,
+    #[serde(default)]
+    topics: Vec<String>,
+    system: Option<System>,
+    names: Option<String>,
+    time: Option<RawTime>,
+    #[serde(default)]
     joints: BTreeMap<String, Spanned<RawJoint>>,
 }
 
@@ -46,41 +80,12 @@ struct RawMap {
 struct RawTime {
     column: Spanned<String>,
     unit: Option<Spanned<String>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawJoint {
-    q: Spanned<String>,
-    q_unit: Option<Spanned<String>>,
-    q_scale: Option<Spanned<f64>>,
-    q_offset: Option<Spanned<f64>>,
-    qd: Option<Spanned<String>>,
-    qd_unit: Option<Spanned<String>>,
-    qd_scale: Option<Spanned<f64>>,
-    qdd: Option<Spanned<String>>,
-    qdd_unit: Option<Spanned<String>>,
-    qdd_scale: Option<Spanned<f64>>,
-    tau: Spanned<String>,
-    tau_unit: Option<Spanned<String>>,
-    tau_scale: Option<Spanned<f64>>,
-    tau_sign: Option<Spanned<f64>>,
-    sign: Option<Spanned<f64>>,
-    gear: Option<Spanned<f64>>,
-    q_secondary: Option<Spanned<String>>,
-    q_secondary_unit: Option<Spanned<String>>,
-    q_secondary_scale: Option<Spanned<f64>>,
-    tau_current: Option<Spanned<String>>,
-    tau_current_unit: Option<Spanned<String>>,
-    tau_current_scale: Option<Spanned<f64>>,
-    current: Option<Spanned<String>>,
-    current_unit: Option<Spanned<String>>,
-    temperature: Option<Spanned<String>>,
-    temperature_unit: Option<Spanned<String>>,
+    nanosec: Option<Spanned<String>>,
+    run: Option<Spanned<String>>,
 }
 
 /// The text of a map and where it came from.
-struct Source<'a> {
+pub(crate) struct Source<'a> {
     path: &'a Path,
     text: &'a str,
 }
@@ -128,20 +133,23 @@ impl ColumnMap {
                 _ => return Err(source.error(text.span(), "delimiter must be one character: \",\", \";\" or \"\\t\"")),
             },
         };
-        let time_factor = match &raw.time.unit {
-            None => 1.0,
-            Some(unit) => units::time(unit.get_ref()).map_err(|known| unknown_unit(&source, unit, &known))?,
-        };
+        let time = raw.time.as_ref().map(|time| time_columns(&source, time)).transpose()?;
         let mut joints: Vec<(&String, &Spanned<RawJoint>)> = raw.joints.iter().collect();
         joints.sort_by_key(|(_, joint)| joint.span().start);
-        if joints.is_empty() {
+        if joints.is_empty() && raw.topics.is_empty() {
             return Err(source.error(0..0, "there are no joints; give a table [joints.<name>] for each"));
+        }
+        if !joints.is_empty() && time.is_none() {
+            return Err(source.error(0..0, "there is no table [time]; give it with the column of the time"));
         }
         let mut entries = Vec::new();
         for (joint, (_, raw)) in joints.iter().enumerate() {
-            joint_entries(&source, joint, raw.get_ref(), &mut entries)?;
+            joint::entries(&source, joint, raw.get_ref(), &mut entries)?;
         }
-        refuse_shared(&source, &raw.time.column, &entries)?;
+        if let Some(time) = &raw.time {
+            refuse_shared(&source, &time.column, &entries)?;
+        }
+        template::check(&source, &joints, &entries)?;
         for (quantity, key) in [(Quantity::Velocity, "qd"), (Quantity::Acceleration, "qdd")] {
             let has = |joint: usize| {
                 entries
@@ -161,8 +169,10 @@ impl ColumnMap {
         Ok(Self {
             path: path.to_owned(),
             delimiter,
-            time: (raw.time.column.get_ref().clone(), source.line(raw.time.column.span())),
-            time_factor,
+            topics: raw.topics,
+            system: raw.system,
+            time,
+            names: raw.names,
             joints: joints.iter().map(|(name, _)| (*name).clone()).collect(),
             entries,
         })
@@ -173,48 +183,100 @@ impl ColumnMap {
         self.delimiter
     }
 
-    /// What to read from a file with these headers.
-    pub(crate) fn plan(&self, headers: &[String], file: &Path) -> Result<Plan, RecordingError> {
-        let find = |name: &str, line: usize| {
-            headers.iter().position(|header| header == name).ok_or_else(|| {
+    /// The topics to read of a file that has topics; all if there are none.
+    pub(crate) fn topics(&self) -> &[String] {
+        &self.topics
+    }
+
+    /// Whether it names columns, and not only how to read the file.
+    pub(crate) fn has_joints(&self) -> bool {
+        !self.joints.is_empty()
+    }
+
+    /// As `self`, for these topics alone.
+    pub(crate) fn with_topics(&self, topics: &[String]) -> Self {
+        Self {
+            topics: topics.to_vec(),
+            ..self.clone()
+        }
+    }
+
+    /// What to read from a file with these headers, whose first row has the cells `first`.
+    pub(crate) fn plan(&self, headers: &[String], first: &[String], file: &Path) -> Result<Plan, RecordingError> {
+        let find = |(name, line): &(String, usize)| {
+            let index = headers.iter().position(|header| header == name).ok_or_else(|| {
                 let hint =
                     nearest(name, headers).map_or(String::new(), |nearest| format!("did you mean \"{nearest}\"? "));
-                RecordingError::Map {
-                    path: self.path.clone(),
-                    line,
-                    reason: format!(
+                self.refuse(
+                    *line,
+                    format!(
                         "{} has no column \"{name}\"; {hint}its columns are {}",
                         file.display(),
                         headers.join(", ")
                     ),
-                }
-            })
+                )
+            })?;
+            Ok::<_, RecordingError>((index, name.clone()))
         };
-        let time = find(&self.time.0, self.time.1)?;
+        let time = self.time.as_ref().ok_or_else(|| {
+            let reason = "there is no table [time]; give it with the column of the time".to_owned();
+            self.refuse(1, reason)
+        })?;
+        let (index, header) = find(&time.column)?;
+        let time = TimeColumn {
+            index,
+            header,
+            factor: time.factor,
+            nanos: time.nanosec.as_ref().map(find).transpose()?,
+            run: time.run.as_ref().map(find).transpose()?,
+        };
+        let expanded = self.expand(headers, first)?;
         let mut channels = Vec::new();
-        for entry in &self.entries {
+        for entry in &expanded.entries {
+            let (index, header) = find(&(entry.header.clone(), entry.line))?;
             channels.push(Channel {
-                index: find(&entry.header, entry.line)?,
-                header: entry.header.clone(),
+                index,
+                header,
                 quantity: entry.quantity,
                 joint: entry.joint,
                 factor: entry.factor,
                 offset: entry.offset,
             });
         }
-        let others = (0..headers.len())
-            .filter(|&index| index != time && !channels.iter().any(|channel| channel.index == index))
-            .map(|index| (index, headers[index].clone()))
-            .collect();
-        Ok(Plan {
-            joints: self.joints.clone(),
-            time,
-            time_header: headers[time].clone(),
-            time_factor: self.time_factor,
-            channels,
-            others,
-        })
+        let mut plan = Plan::new(headers, expanded.joints, time, channels);
+        plan.others
+            .retain(|(index, _)| !expanded.names.iter().any(|(name, _)| name == index));
+        plan.names = expanded.names;
+        Ok(plan)
     }
+
+    fn refuse(&self, line: usize, reason: String) -> RecordingError {
+        RecordingError::Map {
+            path: self.path.clone(),
+            line,
+            reason,
+        }
+    }
+}
+
+fn time_columns(source: &Source<'_>, raw: &RawTime) -> Result<Time, RecordingError> {
+    let placed = |column: &Spanned<String>| (column.get_ref().clone(), source.line(column.span()));
+    let factor = match &raw.unit {
+        None => 1.0,
+        Some(unit) => units::time(unit.get_ref()).map_err(|known| unknown_unit(source, unit, &known))?,
+    };
+    if let (Some(unit), Some(_)) = (&raw.unit, &raw.nanosec) {
+        return Err(source.error(
+            unit.span(),
+            "the stamps are whole seconds and nanoseconds; take `unit` or `nanosec` out",
+        ));
+    }
+    Ok(Time {
+        column: placed(&raw.column),
+        nanosec: raw.nanosec.as_ref().map(placed),
+        run: raw.run.as_ref().map(placed),
+        factor,
+    })
 }
 
 /// Refuses a column that is to be two things; a current may be the torque, too.
@@ -244,154 +306,6 @@ fn refuse_shared(source: &Source<'_>, time: &Spanned<String>, entries: &[Entry])
 fn unknown_unit(source: &Source<'_>, unit: &Spanned<String>, known: &str) -> RecordingError {
     let reason = format!("unknown unit \"{}\"; known here: {known}", unit.get_ref());
     source.error(unit.span(), reason)
-}
-
-/// A number that must be finite and not zero.
-fn factor(source: &Source<'_>, value: Option<&Spanned<f64>>, key: &str) -> Result<f64, RecordingError> {
-    match value {
-        None => Ok(1.0),
-        Some(value) if value.get_ref().is_finite() && *value.get_ref() != 0.0 => Ok(*value.get_ref()),
-        Some(value) => Err(source.error(
-            value.span(),
-            format!("{key} is {}; it must be finite and not zero", value.get_ref()),
-        )),
-    }
-}
-
-fn sign(source: &Source<'_>, value: Option<&Spanned<f64>>, key: &str) -> Result<f64, RecordingError> {
-    match value {
-        Some(value) if value.get_ref().abs() != 1.0 => Err(source.error(
-            value.span(),
-            format!("{key} is {}; it must be 1 or -1", value.get_ref()),
-        )),
-        value => Ok(value.map_or(1.0, |value| *value.get_ref())),
-    }
-}
-
-fn joint_entries(
-    source: &Source<'_>,
-    joint: usize,
-    raw: &RawJoint,
-    entries: &mut Vec<Entry>,
-) -> Result<(), RecordingError> {
-    let joint_sign = sign(source, raw.sign.as_ref(), "sign")?;
-    let tau_sign = sign(source, raw.tau_sign.as_ref(), "tau_sign")?;
-    let gear = factor(source, raw.gear.as_ref(), "gear")?;
-    let q_offset = match &raw.q_offset {
-        Some(value) if !value.get_ref().is_finite() => {
-            return Err(source.error(value.span(), "q_offset must be finite (rad or m)"));
-        }
-        value => value.as_ref().map_or(0.0, |value| *value.get_ref()),
-    };
-    // Motor-side motion is divided by the gear's ratio, motor-side torque multiplied; the second
-    // encoder sits on the link's side.
-    let motion = joint_sign / gear;
-    let torque = joint_sign * tau_sign * gear;
-    let rows = [
-        (
-            Quantity::Position,
-            "q",
-            Some(&raw.q),
-            &raw.q_unit,
-            &raw.q_scale,
-            motion,
-            q_offset,
-        ),
-        (
-            Quantity::Velocity,
-            "qd",
-            raw.qd.as_ref(),
-            &raw.qd_unit,
-            &raw.qd_scale,
-            motion,
-            0.0,
-        ),
-        (
-            Quantity::Acceleration,
-            "qdd",
-            raw.qdd.as_ref(),
-            &raw.qdd_unit,
-            &raw.qdd_scale,
-            motion,
-            0.0,
-        ),
-        (
-            Quantity::Torque,
-            "tau",
-            Some(&raw.tau),
-            &raw.tau_unit,
-            &raw.tau_scale,
-            torque,
-            0.0,
-        ),
-        (
-            Quantity::SecondaryPosition,
-            "q_secondary",
-            raw.q_secondary.as_ref(),
-            &raw.q_secondary_unit,
-            &raw.q_secondary_scale,
-            joint_sign,
-            q_offset,
-        ),
-        (
-            Quantity::CurrentTorque,
-            "tau_current",
-            raw.tau_current.as_ref(),
-            &raw.tau_current_unit,
-            &raw.tau_current_scale,
-            torque,
-            0.0,
-        ),
-        (
-            Quantity::Current,
-            "current",
-            raw.current.as_ref(),
-            &raw.current_unit,
-            &None,
-            joint_sign * tau_sign,
-            0.0,
-        ),
-        (
-            Quantity::Temperature,
-            "temperature",
-            raw.temperature.as_ref(),
-            &raw.temperature_unit,
-            &None,
-            1.0,
-            0.0,
-        ),
-    ];
-    for (quantity, key, column, unit, scale, side, offset) in rows {
-        let Some(column) = column else {
-            if let Some(unit) = unit {
-                return Err(source.error(unit.span(), format!("{key}_unit is given, but no column `{key}`")));
-            }
-            continue;
-        };
-        let conversion = match unit {
-            None => Conversion::NONE,
-            Some(unit) => units::of(quantity, unit.get_ref()).map_err(|known| unknown_unit(source, unit, &known))?,
-        };
-        if let (true, None, Some(unit)) = (conversion.needs_scale, scale, unit) {
-            return Err(source.error(
-                unit.span(),
-                format!(
-                    "a torque in \"{}\" needs {key}_scale, the N m (or N) that one unit makes",
-                    unit.get_ref()
-                ),
-            ));
-        }
-        let scale = factor(source, scale.as_ref(), &format!("{key}_scale"))?;
-        entries.push(Entry {
-            header: column.get_ref().clone(),
-            line: source.line(column.span()),
-            quantity,
-            joint,
-            factor: conversion.factor * scale * side,
-            offset: offset + conversion.offset,
-        });
-    }
-    Ok(())
 }
 
 #[cfg(test)]

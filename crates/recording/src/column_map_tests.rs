@@ -35,8 +35,8 @@ fn units_signs_gears_and_order_come_out() {
     let headers: Vec<String> = ["stamp", "pos_0", "pos_1", "current_1", "tau_0", "mode"]
         .map(str::to_owned)
         .to_vec();
-    let plan = map.plan(&headers, Path::new("r.csv")).expect("it fits");
-    assert_eq!((plan.time, plan.time_factor), (0, 1e-3));
+    let plan = map.plan(&headers, &[], Path::new("r.csv")).expect("it fits");
+    assert_eq!((plan.time.index, plan.time.factor), (0, 1e-3));
     let factors: Vec<f64> = plan.channels.iter().map(|channel| channel.factor).collect();
     let expected = [-std::f64::consts::PI / 180.0, -12.3, 0.01, 100.0];
     for (factor, expected) in factors.iter().zip(expected) {
@@ -44,7 +44,7 @@ fn units_signs_gears_and_order_come_out() {
     }
     assert_eq!(plan.others, [(5, "mode".to_owned())]);
     let missing = map
-        .plan(&headers[..4], Path::new("r.csv"))
+        .plan(&headers[..4], &[], Path::new("r.csv"))
         .expect_err("a column is missing")
         .to_string();
     assert!(
@@ -99,4 +99,45 @@ fn a_column_is_one_thing() {
         "tau = \"y\"\ntau_unit = \"A\"\ntau_scale = 2.0\ncurrent = \"y\"",
     );
     assert!(parse(&current).is_ok());
+}
+
+#[test]
+fn one_joint_stands_for_all_of_a_pattern() {
+    let headers = |names: &str| -> Vec<String> { names.split(' ').map(str::to_owned).collect() };
+    let map = "[time]\ncolumn = \"s\"\nnanosec = \"ns\"\nrun = \"take\"\n[joints.\"{joint}\"]\nq = \"{joint}.pos\"\n\
+               qd = \"{joint}.vel\"\ntau = \"{joint}.eff\"\nsign = -1\n";
+    let map = parse(map).expect("it is good");
+    let file = Path::new("r.csv");
+    let plan = map
+        .plan(&headers("s ns take b.pos b.vel b.eff a.pos a.eff hand.pos"), &[], file)
+        .expect("it fits");
+    assert_eq!(plan.joints, ["b", "a"]);
+    assert_eq!(
+        (plan.time.nanos, plan.time.run),
+        (Some((1, "ns".into())), Some((2, "take".into())))
+    );
+    // Only one of them has a velocity.
+    assert!(
+        plan.channels
+            .iter()
+            .all(|channel| channel.quantity != Quantity::Velocity && channel.factor == -1.0)
+    );
+    assert_eq!(plan.others.len(), 2);
+    let error = map
+        .plan(&headers("s ns take b.pos"), &[], file)
+        .expect_err("no torque")
+        .to_string();
+    assert!(error.contains("no column \"{joint}.eff\""), "{error}");
+    let two = "[time]\ncolumn = \"t\"\n[joints.\"{joint}\"]\nq = \"{joint}.pos\"\ntau = \"eff\"\n";
+    let error = parse(two).expect_err("one column for all").to_string();
+    assert!(
+        error.contains("map.toml:5: column \"eff\" would be that of every joint"),
+        "{error}"
+    );
+    let error = parse(&format!("{two}[joints.b]\nq = \"q\"\ntau = \"w\"\n"))
+        .expect_err("two")
+        .to_string();
+    assert!(error.contains("it must be the only one"), "{error}");
+    let error = parse("delimiter = \";\"\n").expect_err("no joints").to_string();
+    assert!(error.contains("there are no joints"), "{error}");
 }

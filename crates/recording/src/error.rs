@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::Place;
+
 /// Why a recording could not be read, understood or written.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
@@ -29,23 +31,33 @@ pub enum RecordingError {
         /// What is missing or doubled, and the remedy.
         reason: String,
     },
+    /// The file is damaged, or holds no recording that its format allows for.
+    #[error("{path}: {format}: {reason}")]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// The format's name.
+        format: &'static str,
+        /// What was found, and the remedy.
+        reason: String,
+    },
     /// A row is not what the header promises.
-    #[error("{path}:{line}: {reason}")]
+    #[error("{path}{}: {reason}", place.suffix())]
     Row {
         /// The file.
         path: PathBuf,
-        /// The line, from 1.
-        line: u64,
+        /// The line or row.
+        place: Place,
         /// What was found, and the remedy.
         reason: String,
     },
     /// A cell does not hold a number that can be used.
-    #[error("{path}:{line}: column \"{column}\" is \"{found}\", {what}; {remedy}")]
+    #[error("{path}{}: column \"{column}\" is \"{found}\", {what}; {remedy}", place.suffix())]
     Value {
         /// The file.
         path: PathBuf,
-        /// The line, from 1.
-        line: u64,
+        /// The line or row.
+        place: Place,
         /// The column's header.
         column: String,
         /// What the cell holds.

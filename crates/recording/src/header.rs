@@ -19,21 +19,74 @@ pub struct Channel {
     pub offset: f64,
 }
 
+/// The columns of the time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimeColumn {
+    /// The column of the time stamps, from 0.
+    pub index: usize,
+    /// Its header.
+    pub header: String,
+    /// Seconds in the stamps' unit.
+    pub factor: f64,
+    /// The column of nanoseconds to add, where the stamps are whole seconds, and its header.
+    pub nanos: Option<(usize, String)>,
+    /// The column that numbers the runs of a file, where there is one, and its header.
+    pub run: Option<(usize, String)>,
+}
+
+impl TimeColumn {
+    /// A column of stamps in s.
+    pub fn plain(index: usize, headers: &[String]) -> Self {
+        Self {
+            index,
+            header: headers[index].clone(),
+            factor: 1.0,
+            nanos: None,
+            run: None,
+        }
+    }
+
+    /// The columns that it takes.
+    pub fn indices(&self) -> impl Iterator<Item = usize> + '_ {
+        let more = self.nanos.iter().chain(&self.run).map(|(index, _)| *index);
+        std::iter::once(self.index).chain(more)
+    }
+}
+
 /// What to read from where.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// The joints' names, in order.
     pub joints: Vec<String>,
-    /// The column of the time stamps, from 0.
-    pub time: usize,
-    /// The header of that column.
-    pub time_header: String,
-    /// Seconds in the stamps' unit.
-    pub time_factor: f64,
+    /// The columns of the time.
+    pub time: TimeColumn,
     /// The joints' columns.
     pub channels: Vec<Channel>,
     /// The other columns, from 0, with their headers.
     pub others: Vec<(usize, String)>,
+    /// The columns whose cells are joints' names, from 0, with the names.
+    pub names: Vec<(usize, String)>,
+}
+
+impl Plan {
+    /// The plan whose other columns are all that is not used.
+    pub fn new(headers: &[String], joints: Vec<String>, time: TimeColumn, channels: Vec<Channel>) -> Self {
+        let used: Vec<usize> = time
+            .indices()
+            .chain(channels.iter().map(|channel| channel.index))
+            .collect();
+        let others = (0..headers.len())
+            .filter(|index| !used.contains(index))
+            .map(|index| (index, headers[index].clone()))
+            .collect();
+        Self {
+            joints,
+            time,
+            channels,
+            others,
+            names: Vec::new(),
+        }
+    }
 }
 
 /// Why headers that are numbers are none.
@@ -49,20 +102,35 @@ pub fn numbers(headers: &[String]) -> Option<String> {
     })
 }
 
-/// The first header that is there twice.
-pub fn doubled(headers: &[String]) -> Option<&str> {
-    let mut seen = std::collections::HashSet::new();
-    headers
-        .iter()
-        .find(|header| !header.is_empty() && !seen.insert(header.as_str()))
-        .map(String::as_str)
+/// The first header of those used that is there twice.
+pub fn doubled<'a>(headers: &'a [String], plan: &Plan) -> Option<&'a str> {
+    let used = plan
+        .time
+        .indices()
+        .chain(plan.channels.iter().map(|channel| channel.index));
+    used.map(|index| headers[index].as_str())
+        .find(|used| headers.iter().filter(|header| header == used).count() > 1)
 }
 
 /// The plan for headers named as testbed names them; else what is missing.
 pub fn plan_by_names(headers: &[String]) -> Result<Plan, String> {
     let at = |name: &str| headers.iter().position(|header| header == name);
     let remedy = "name the columns so, or give a column map (--map)";
-    let time = at("t").ok_or_else(|| format!("there is no column \"t\" (time in s); {remedy}"))?;
+    let time = match at("t") {
+        Some(index) => TimeColumn::plain(index, headers),
+        None => seconds_and_nanos(headers).ok_or_else(|| {
+            let is_time = |header: &&String| {
+                ["time", "stamp"]
+                    .iter()
+                    .any(|word| header.to_lowercase().contains(word))
+            };
+            let hint = headers
+                .iter()
+                .find(is_time)
+                .map_or(String::new(), |header| format!("is \"{header}\" meant? "));
+            format!("there is no column \"t\" (time in s); {hint}{remedy}")
+        })?,
+    };
     let of = |prefix: &'static str| headers.iter().filter_map(move |header| header.strip_prefix(prefix));
     let joints: Vec<String> = of("q_")
         .filter(|name| at(&format!("tau_{name}")).is_some())
@@ -139,18 +207,22 @@ pub fn plan_by_names(headers: &[String]) -> Result<Plan, String> {
             ));
         }
     }
-    let taken = |index: usize| index == time || channels.iter().any(|channel: &Channel| channel.index == index);
-    let others = (0..headers.len())
-        .filter(|&index| !taken(index))
-        .map(|index| (index, headers[index].clone()))
-        .collect();
-    Ok(Plan {
-        joints,
-        time,
-        time_header: headers[time].clone(),
-        time_factor: 1.0,
-        channels,
-        others,
+    Ok(Plan::new(headers, joints, time, channels))
+}
+
+/// The first two columns that together are a stamp: `sec` and `nanosec`, `stamp.secs` and `stamp.nsecs`, and so on.
+fn seconds_and_nanos(headers: &[String]) -> Option<TimeColumn> {
+    headers.iter().enumerate().find_map(|(index, header)| {
+        let stem = header.strip_suffix("secs").or_else(|| header.strip_suffix("sec"))?;
+        let nanos = ["nanosec", "nanosecs", "nsec", "nsecs"].iter().find_map(|word| {
+            let name = format!("{stem}{word}");
+            let nanos = headers.iter().position(|header| *header == name)?;
+            Some((nanos, name))
+        })?;
+        Some(TimeColumn {
+            nanos: Some(nanos),
+            ..TimeColumn::plain(index, headers)
+        })
     })
 }
 

@@ -5,28 +5,38 @@
 //! puts its rows on the regular clock that the drive sampled on; [`Quality`] says what the
 //! recording is worth, before anything is fitted to it.
 
+mod arrays;
+mod bytes;
 mod clock;
 mod column_map;
-mod csv_read;
 mod csv_write;
+mod dialect;
 mod error;
+mod format;
+mod gathered;
 mod header;
 mod held;
+mod input;
 mod interpolate;
+mod joint_state;
 mod quality;
 mod regular;
 mod rows;
 mod spikes;
+mod stamp;
+mod table;
 mod thinned;
 mod toml_error;
 mod units;
 mod warning;
 mod whole_file;
+mod wraps;
 
 pub use column_map::ColumnMap;
 pub use error::{RecordingError, write_remedy};
 pub use quality::{Finding, FindingKind, JointQuality, Quality};
 pub use regular::{RegularRecording, Segment};
+pub use table::Place;
 pub use toml_error::{nearest, toml_reason};
 pub use warning::{Quantity, Warning};
 pub use whole_file::write_whole;

@@ -1,19 +1,19 @@
-//! The rows of a file as they are read: values by the plan, duplicates and runs told apart.
+//! The rows of a table as they are read: values by the plan, duplicates and runs told apart.
 
 use std::path::Path;
 
-use csv::ByteRecord;
-
-use crate::header::Plan;
+use crate::gathered::{Gathered, State};
+use crate::header::{Channel, Plan};
+use crate::stamp::Stamps;
+use crate::table::{Cell, Place, Row};
 use crate::thinned::Thinned;
-use crate::{PartialSignal, Quantity, Recording, RecordingError, Signal, Warning};
+use crate::warning::RUN_PAUSE;
+use crate::{Recording, RecordingError, Warning};
 
 /// A clock that starts anew does so within this share of its run's length from where it started.
 const RESTART_SHARE: f64 = 0.01;
 /// A run in a file of several has at least this many rows.
 const RUN_ROWS: usize = 50;
-/// The time between two runs whose clocks say nothing of it (s).
-const RUN_PAUSE: f64 = 1.0;
 /// Rows with the stamp of the row before but other values may be this share of all.
 const DIFFERING_SHARE: f64 = 0.01;
 
@@ -26,100 +26,77 @@ const LATEST: f64 = 1e15;
 pub struct Rows<'a> {
     path: &'a Path,
     plan: &'a Plan,
-    width: usize,
     /// The time, the channels, the other columns.
     values: Thinned,
-    /// The row that is being taken.
+    /// The row that is being taken, and the one before.
     row: Vec<f64>,
+    before: Vec<f64>,
     /// Whether another column holds numbers alone so far.
     numeric: Vec<bool>,
-    /// Rows of this run.
+    /// What is known of each channel so far.
+    states: Vec<State>,
+    /// Rows of this run, its number in the file, and how many runs there are by such numbers.
     in_run: usize,
+    number: f64,
+    runs: usize,
     warnings: Vec<Warning>,
-    /// The row before, as bytes, and its stamp as the file has it (s).
-    before: ByteRecord,
+    stamps: Stamps,
+    /// The stamp of the row before as the file has it (s).
     stamp: f64,
     /// The first stamp of this run as the file has it (s), and what is added to the stamps (s).
     first: f64,
     shift: f64,
-    /// Duplicated rows: how many, how many of them differ, the lines of the first and of the first that differs.
+    /// Duplicated rows: how many, how many of them differ, the places of the first and of the first that differs.
     duplicates: usize,
     differing: usize,
-    duplicate_line: u64,
-    differing_line: u64,
+    duplicate_place: Place,
+    differing_place: Place,
 }
 
 impl<'a> Rows<'a> {
-    /// None yet, of a file with `width` columns, of which at most `most` values are kept.
-    pub fn new(path: &'a Path, plan: &'a Plan, width: usize, most: usize) -> Self {
+    /// None yet, of which at most `most` values are kept.
+    pub fn new(path: &'a Path, plan: &'a Plan, most: usize, warnings: Vec<Warning>) -> Self {
         Self {
             path,
             plan,
-            width,
             values: Thinned::new(1 + plan.channels.len() + plan.others.len(), most),
             row: Vec::new(),
+            before: Vec::new(),
             numeric: vec![true; plan.others.len()],
+            states: vec![State::New; plan.channels.len()],
             in_run: 0,
-            warnings: Vec::new(),
-            before: ByteRecord::new(),
+            number: f64::NAN,
+            runs: 1,
+            warnings,
+            stamps: Stamps::default(),
             stamp: f64::NAN,
             first: f64::NAN,
             shift: 0.0,
             duplicates: 0,
             differing: 0,
-            duplicate_line: 0,
-            differing_line: 0,
+            duplicate_place: Place::Line(1),
+            differing_place: Place::Line(1),
         }
     }
 
-    /// The last row, which is left out if the file is cut in it.
-    pub fn take_last(&mut self, row: &ByteRecord, ends_whole: bool) -> Result<(), RecordingError> {
-        // All that follows an open quotation mark is one cell.
-        if row.iter().any(|cell| cell.contains(&b'\n')) {
-            let reason = "a quotation mark is not closed in this row; close it or take it out".to_owned();
-            return Err(self.row_error(row, reason));
-        }
-        let cell = |row: &ByteRecord| row.iter().next_back().map_or(0, <[u8]>::len);
-        // Without a newline at the end, the last number may have lost digits.
-        let may_be_cut = !ends_whole && cell(row) < cell(&self.before);
-        let whole = row.len() == self.width && !may_be_cut;
-        if whole || (row.len() > self.width) {
-            let taken = self.take(row);
-            if ends_whole || taken.is_ok() || row.iter().next_back().and_then(number).is_some() {
-                return taken;
+    /// Takes a row.
+    pub fn take(&mut self, row: &Row<'_>) -> Result<(), RecordingError> {
+        for (index, name) in &self.plan.names {
+            if !matches!(row.cell(*index), Cell::Text(cell) if cell.trim_ascii() == name.as_bytes()) {
+                let found = row.cell(*index).shown();
+                let reason = format!(
+                    "joint \"{found}\" stands where \"{name}\" stood before; the order of the names must stay the same: \
+                     give the bag itself, whose names are read message by message"
+                );
+                return Err(self.row_error(row, reason));
             }
         }
-        let line = line_of(row);
-        self.warnings.push(Warning::CutFile { line });
-        Ok(())
-    }
-
-    /// Takes a row, which must be whole.
-    pub fn take(&mut self, row: &ByteRecord) -> Result<(), RecordingError> {
-        if row.len() != self.width {
-            return Err(self.row_error(
-                row,
-                format!(
-                    "the row has {} cells, the header {}; {}",
-                    row.len(),
-                    self.width,
-                    if row.len() + 1 >= 2 * self.width {
-                        "are there decimal commas? Write numbers with a decimal point"
-                    } else {
-                        "mend or delete the row"
-                    }
-                ),
-            ));
-        }
-        let stamp = self.value(
-            row,
-            self.plan.time,
-            &self.plan.time_header,
-            (self.plan.time_factor, 0.0),
-            LATEST,
-        )?;
-        let mut begins = false;
-        if self.in_run > 0 && stamp <= self.stamp {
+        let stamp = self.stamp(row)?;
+        let mut begins = self.new_run(row, stamp);
+        if begins {
+            self.shift += self.stamp + RUN_PAUSE - stamp;
+            self.first = stamp;
+        } else if self.in_run > 0 && stamp <= self.stamp {
             if stamp == self.stamp {
                 self.duplicate(row);
                 return Ok(());
@@ -132,19 +109,17 @@ impl<'a> Rows<'a> {
         self.row.clear();
         self.row.push(stamp + self.shift);
         for index in 0..self.plan.channels.len() {
-            let channel = &self.plan.channels[index];
-            let conversion = (channel.factor, channel.offset);
-            let value = self.value(row, channel.index, &channel.header, conversion, LARGEST)?;
+            let value = self.channel_value(row, index)?;
             self.row.push(value);
         }
         for (numeric, (index, header)) in self.numeric.iter_mut().zip(&self.plan.others) {
-            let value = row.get(*index).and_then(number);
+            let value = row.cell(*index).number();
             if *numeric && value.is_none() {
                 *numeric = false;
                 self.warnings.push(Warning::ColumnLeftOut {
                     column: header.clone(),
-                    line: line_of(row),
-                    found: text(row.get(*index)),
+                    line: row.place,
+                    found: row.cell(*index).shown(),
                 });
             }
             self.row.push(value.unwrap_or(f64::NAN));
@@ -152,74 +127,133 @@ impl<'a> Rows<'a> {
         self.values.push(&self.row, begins);
         self.in_run = if begins { 1 } else { self.in_run + 1 };
         self.stamp = stamp;
-        self.before.clone_from(row);
+        std::mem::swap(&mut self.row, &mut self.before);
         Ok(())
     }
 
-    /// The cell's value in SI, which is finite and at most `largest`.
-    fn value(
-        &self,
-        row: &ByteRecord,
-        index: usize,
-        column: &str,
-        (factor, offset): (f64, f64),
-        largest: f64,
-    ) -> Result<f64, RecordingError> {
-        let cell = row.get(index);
-        let found = cell.and_then(number).map(|value| factor * value + offset);
-        if let Some(value) = found.filter(|value| value.abs() <= largest) {
-            return Ok(value);
+    /// The row's time as the file has it (s).
+    fn stamp(&mut self, row: &Row<'_>) -> Result<f64, RecordingError> {
+        let time = &self.plan.time;
+        match self.stamps.seconds(row, time) {
+            Some(stamp) if stamp.abs() <= LATEST => Ok(stamp),
+            Some(_) => Err(self.value_error(row, time.index, &time.header, FAR)),
+            None => Err(self.value_error(
+                row,
+                time.index,
+                &time.header,
+                unusable(
+                    row.cell(time.index),
+                    "give the time as a number or in ISO 8601 (2024-03-01T12:00:00.004Z), or delete the row",
+                ),
+            )),
         }
-        let comma = |cell: &[u8]| {
-            let text = String::from_utf8_lossy(cell);
-            text.contains(',') && number(text.replacen(',', ".", 1).as_bytes()).is_some()
-        };
-        let (what, remedy) = if found.is_some() {
-            (
-                "far beyond what is measured",
-                "check its unit, or delete the row: gaps are dealt with",
-            )
-        } else if cell.is_some_and(comma) {
-            ("a number with a decimal comma", "write numbers with a decimal point")
-        } else {
-            (
-                "not a finite number",
-                "delete the row: a row that is missing is a gap, and gaps are dealt with",
-            )
-        };
-        Err(RecordingError::Value {
-            path: self.path.to_owned(),
-            line: line_of(row),
-            column: column.to_owned(),
-            found: text(cell),
-            what,
-            remedy,
-        })
     }
 
-    fn row_error(&self, row: &ByteRecord, reason: String) -> RecordingError {
+    /// Whether another run begins with this row, by the column that numbers them.
+    fn new_run(&mut self, row: &Row<'_>, stamp: f64) -> bool {
+        let Some((run, _)) = &self.plan.time.run else {
+            return false;
+        };
+        let number = row.cell(*run).number().unwrap_or(f64::NAN);
+        let before = std::mem::replace(&mut self.number, number);
+        // The clock may run on, too.
+        let begins = self.in_run > 0 && number != before && !(number.is_nan() && before.is_nan());
+        self.runs += usize::from(begins);
+        begins && stamp.is_finite()
+    }
+
+    /// A channel's value in SI; NaN where there is none, and the channel can do without.
+    fn channel_value(&mut self, row: &Row<'_>, index: usize) -> Result<f64, RecordingError> {
+        let channel = &self.plan.channels[index];
+        let cell = row.cell(channel.index);
+        let found = cell.number().map(|value| channel.factor * value + channel.offset);
+        if found.is_some_and(|value| !value.is_finite() || value.abs() > LARGEST) {
+            return Err(self.value_error(row, channel.index, &channel.header, FAR));
+        }
+        match (found, &self.states[index]) {
+            (_, State::LeftOut) => return Ok(f64::NAN),
+            (Some(value), State::New | State::Values) => {
+                self.states[index] = State::Values;
+                return Ok(value);
+            }
+            (Some(_), State::Missing { place, found }) => {
+                return Err(missing(self.path, channel, *place, found.clone()));
+            }
+            (None, _) => {}
+        }
+        if !channel.quantity.is_required() {
+            self.warnings.push(Warning::ColumnLeftOut {
+                column: channel.header.clone(),
+                line: row.place,
+                found: cell.shown(),
+            });
+            self.states[index] = State::LeftOut;
+            return Ok(f64::NAN);
+        }
+        match &self.states[index] {
+            State::New if cell.is_missing() => {
+                self.states[index] = State::Missing {
+                    place: row.place,
+                    found: cell.shown(),
+                };
+                Ok(f64::NAN)
+            }
+            State::Missing { .. } if cell.is_missing() => Ok(f64::NAN),
+            _ => Err(self.value_error(
+                row,
+                channel.index,
+                &channel.header,
+                unusable(
+                    cell,
+                    "delete the row: a row that is missing is a gap, and gaps are dealt with",
+                ),
+            )),
+        }
+    }
+
+    fn value_error(&self, row: &Row<'_>, index: usize, column: &str, (what, remedy): Doubt) -> RecordingError {
+        RecordingError::Value {
+            path: self.path.to_owned(),
+            place: row.place,
+            column: column.to_owned(),
+            found: row.cell(index).shown(),
+            what,
+            remedy,
+        }
+    }
+
+    fn row_error(&self, row: &Row<'_>, reason: String) -> RecordingError {
         RecordingError::Row {
             path: self.path.to_owned(),
-            line: line_of(row),
+            place: row.place,
             reason,
         }
     }
 
-    fn duplicate(&mut self, row: &ByteRecord) {
+    /// A row with the stamp of the row before.
+    fn duplicate(&mut self, row: &Row<'_>) {
         self.duplicates += 1;
         if self.duplicates == 1 {
-            self.duplicate_line = line_of(row);
+            self.duplicate_place = row.place;
         }
-        if row != &self.before {
+        let channels = self.plan.channels.iter().zip(&self.states).map(|(channel, state)| {
+            let value = row.cell(channel.index).number();
+            let value = value.filter(|_| *state != State::LeftOut);
+            value.map_or(f64::NAN, |value| channel.factor * value + channel.offset)
+        });
+        let others = self.plan.others.iter().map(|(index, _)| row.cell(*index).number());
+        let values = channels.chain(others.map(|value| value.unwrap_or(f64::NAN)));
+        let differs = |(value, before): (f64, &f64)| value.to_bits() != before.to_bits();
+        if values.zip(&self.before[1..]).any(differs) {
             self.differing += 1;
             if self.differing == 1 {
-                self.differing_line = line_of(row);
+                self.differing_place = row.place;
             }
         }
     }
 
     /// Time that runs back: another run if it starts where this one started, else an error.
-    fn restart(&mut self, row: &ByteRecord, stamp: f64) -> Result<(), RecordingError> {
+    fn restart(&mut self, row: &Row<'_>, stamp: f64) -> Result<(), RecordingError> {
         let length = self.stamp - self.first;
         let near_start = (stamp - self.first).abs() <= RESTART_SHARE * length;
         if self.in_run < RUN_ROWS || !near_start {
@@ -236,7 +270,7 @@ impl<'a> Rows<'a> {
         self.shift += self.stamp + RUN_PAUSE - stamp;
         self.first = stamp;
         self.warnings.push(Warning::ClockRestart {
-            line: line_of(row),
+            line: row.place,
             before,
             after: stamp,
             placed: stamp + self.shift,
@@ -244,8 +278,8 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// The recording that the rows make.
-    pub fn finish(mut self) -> Result<Recording, RecordingError> {
+    /// The recording that the rows make; `warnings` are those of the table's end.
+    pub fn finish(mut self, warnings: Vec<Warning>) -> Result<Recording, RecordingError> {
         let path = self.path.to_owned();
         let rows = self.values.read();
         if rows < 2 {
@@ -258,90 +292,87 @@ impl<'a> Rows<'a> {
         if self.differing as f64 > DIFFERING_SHARE * rows as f64 + 1.0 {
             return Err(RecordingError::Row {
                 path,
-                line: self.differing_line,
+                place: self.differing_place,
                 reason: format!(
                     "{} rows have the time of the row before but other values; log the time with finer digits",
                     self.differing
                 ),
             });
         }
+        self.warnings.extend(warnings);
         if self.duplicates > 0 {
             self.warnings.push(Warning::Duplicates {
                 rows: self.duplicates,
-                line: self.duplicate_line,
+                line: self.duplicate_place,
                 differ: self.differing > 0,
             });
         }
-        let (mut columns, breaks, span) = self.values.finish();
-        if let Some(span) = span {
-            self.warnings.push(Warning::Thinned {
-                rows,
-                kept: columns[0].len(),
-                span,
+        if let (Some((_, column)), 2..) = (&self.plan.time.run, self.runs) {
+            let (runs, column) = (self.runs, column.clone());
+            self.warnings.push(Warning::Runs { runs, column });
+        }
+        // A joint of which nothing was recorded; if that is every joint, the first is the error.
+        let lacking = self
+            .plan
+            .channels
+            .iter()
+            .zip(&self.states)
+            .find_map(|(channel, state)| {
+                let State::Missing { place, found } = state else {
+                    return None;
+                };
+                Some(missing(self.path, channel, *place, found.clone()))
             });
+        let (columns, breaks, span) = self.values.finish();
+        if let Some(span) = span {
+            let kept = columns[0].len();
+            self.warnings.push(Warning::Thinned { rows, kept, span });
         }
-        let others: Vec<Vec<f64>> = columns.split_off(1 + self.plan.channels.len());
-        let mut channels = columns.split_off(1);
-        let time = columns.swap_remove(0);
-        let joints = self.plan.joints.len();
-        let mut partial = |quantity: Quantity| -> PartialSignal {
-            let mut signal = vec![None; joints];
-            for (channel, values) in self.plan.channels.iter().zip(&mut channels) {
-                if channel.quantity == quantity {
-                    signal[channel.joint] = Some(std::mem::take(values));
-                }
-            }
-            if signal.iter().all(Option::is_none) {
-                Vec::new()
-            } else {
-                signal
-            }
-        };
-        let mut whole = |quantity: Quantity| -> Signal { partial(quantity).into_iter().flatten().collect() };
-        let some = |signal: Signal| if signal.is_empty() { None } else { Some(signal) };
-        let (q, tau) = (whole(Quantity::Position), whole(Quantity::Torque));
-        let (qd, qdd) = (some(whole(Quantity::Velocity)), some(whole(Quantity::Acceleration)));
-        if qd.is_none() {
-            self.warnings.push(Warning::NoVelocity);
-        }
-        let q_secondary = partial(Quantity::SecondaryPosition);
-        let tau_current = partial(Quantity::CurrentTorque);
-        let (current, temperature) = (partial(Quantity::Current), partial(Quantity::Temperature));
-        let others = self.plan.others.iter().zip(others).zip(self.numeric);
-        Ok(Recording {
-            joints: self.plan.joints.clone(),
-            time,
-            q,
-            qd,
-            qdd,
-            tau,
-            q_secondary,
-            tau_current,
-            current,
-            temperature,
-            others: others
-                .filter(|(_, numeric)| *numeric)
-                .map(|(((_, name), values), _)| (name.clone(), values))
-                .collect(),
+        let gathered = Gathered {
+            plan: self.plan,
+            columns,
             breaks,
+            states: self.states,
+            numeric: self.numeric,
             warnings: self.warnings,
-        })
+        };
+        let recording = gathered.into_recording();
+        match lacking {
+            Some(error) if recording.joints.is_empty() => Err(error),
+            _ => Ok(recording),
+        }
     }
 }
 
-/// The finite number that a cell holds.
-fn number(cell: &[u8]) -> Option<f64> {
-    let text = std::str::from_utf8(cell.trim_ascii()).ok()?;
-    text.parse().ok().filter(|value: &f64| value.is_finite())
+/// What a value is, and how to mend it.
+type Doubt = (&'static str, &'static str);
+
+const FAR: Doubt = (
+    "far beyond what is measured",
+    "check its unit, or delete the row: gaps are dealt with",
+);
+
+/// Why a cell is no number that can be used.
+fn unusable(cell: Cell<'_>, remedy: &'static str) -> Doubt {
+    let comma = |cell: &[u8]| {
+        let text = String::from_utf8_lossy(cell);
+        text.contains(',') && Cell::Text(text.replacen(',', ".", 1).as_bytes()).number().is_some()
+    };
+    match cell {
+        Cell::Text(cell) if comma(cell) => ("a number with a decimal comma", "write numbers with a decimal point"),
+        _ => ("not a finite number", remedy),
+    }
 }
 
-fn text(cell: Option<&[u8]>) -> String {
-    let text = String::from_utf8_lossy(cell.unwrap_or_default());
-    let short: String = text.chars().take(40).collect();
-    if short.len() < text.len() {
-        format!("{short}…")
-    } else {
-        short
+/// The error of a required value that is missing where others of its column are not.
+fn missing(path: &Path, channel: &Channel, place: Place, found: String) -> RecordingError {
+    RecordingError::Value {
+        path: path.to_owned(),
+        place,
+        column: channel.header.clone(),
+        found,
+        what: "not a finite number",
+        remedy: "delete the row: a row that is missing is a gap, and gaps are dealt with",
     }
 }
 
@@ -352,8 +383,4 @@ fn short(value: f64) -> String {
     } else {
         value.to_string()
     }
-}
-
-fn line_of(row: &ByteRecord) -> u64 {
-    row.position().map_or(1, csv::Position::line)
 }

@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::Serialize;
 
+use crate::Place;
+
 /// Which quantity of a joint a warning is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -27,6 +29,11 @@ pub enum Quantity {
 }
 
 impl Quantity {
+    /// Whether a joint must have it.
+    pub(crate) fn is_required(self) -> bool {
+        matches!(self, Self::Position | Self::Torque)
+    }
+
     /// The prefix of its columns, with the underscore.
     pub fn prefix(self) -> &'static str {
         match self {
@@ -42,21 +49,24 @@ impl Quantity {
     }
 }
 
+/// The time between two runs whose clocks say nothing of it (s).
+pub(crate) const RUN_PAUSE: f64 = 1.0;
+
 /// Something found in a recording and dealt with.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Warning {
     /// The file ends in the middle of a row, which was left out.
     CutFile {
-        /// The line of the row.
-        line: u64,
+        /// The line or row.
+        line: Place,
     },
     /// Rows equal to the one before (or with its time stamp) were left out.
     Duplicates {
         /// How many.
         rows: usize,
-        /// The line of the first.
-        line: u64,
+        /// The line or row of the first.
+        line: Place,
         /// Whether some had the stamp of the row before but other values.
         differ: bool,
     },
@@ -80,8 +90,8 @@ pub enum Warning {
     },
     /// The time starts anew: several runs in one file.
     ClockRestart {
-        /// The line of the new run's first row.
-        line: u64,
+        /// The line or row of the new run's first one.
+        line: Place,
         /// The last stamp before (s).
         before: f64,
         /// The first stamp after, as the file has it (s).
@@ -89,12 +99,60 @@ pub enum Warning {
         /// The stamp that the row has in the recording (s).
         placed: f64,
     },
+    /// The columns are those of a system that is known.
+    System {
+        /// The system.
+        system: String,
+        /// The columns of time, position and torque that are used.
+        columns: String,
+        /// Whether the joints have numbers, and no names.
+        numbered: bool,
+    },
+    /// The file holds several runs, by a column that numbers them.
+    Runs {
+        /// How many.
+        runs: usize,
+        /// The column.
+        column: String,
+    },
+    /// Columns with stamps of their own were joined with the others by time.
+    Joined {
+        /// What they are of.
+        what: String,
+        /// How many rows have values between two of theirs, which were interpolated.
+        interpolated: usize,
+        /// How many rows before their first and after their last were left out.
+        left_out: usize,
+    },
+    /// What has no use here, and was left out.
+    LeftOut {
+        /// What, and why.
+        what: String,
+    },
+    /// A joint without a single position or torque was left out.
+    JointLeftOut {
+        /// The joint.
+        joint: String,
+        /// The column that has no values.
+        column: String,
+    },
+    /// Positions that jump by a turn were made continuous.
+    Unwrapped {
+        /// The joint.
+        joint: String,
+        /// The quantity.
+        quantity: Quantity,
+        /// How many jumps.
+        jumps: usize,
+        /// The time of the first (s).
+        time: f64,
+    },
     /// A column that is not needed holds something other than numbers and was left out.
     ColumnLeftOut {
         /// Its header.
         column: String,
-        /// The first line where it does.
-        line: u64,
+        /// The first line or row where it does.
+        line: Place,
         /// What stands there.
         found: String,
     },
@@ -152,10 +210,7 @@ pub enum Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::CutFile { line } => write!(
-                f,
-                "line {line}: the file is cut in the middle of this row; it was left out"
-            ),
+            Self::CutFile { line } => write!(f, "{line}: the file is cut in the middle of this row; it was left out"),
             Self::Duplicates { rows, line, differ } => {
                 let what = if *differ {
                     "with the time of the row before"
@@ -163,7 +218,7 @@ impl fmt::Display for Warning {
                     "equal to the row before"
                 };
                 let verb = if *rows == 1 { "row was" } else { "rows were" };
-                write!(f, "line {line}: {rows} {verb} left out, {what}")
+                write!(f, "{line}: {rows} {verb} left out, {what}")
             }
             Self::Thinned { rows, kept, span } => write!(
                 f,
@@ -182,14 +237,55 @@ impl fmt::Display for Warning {
                 placed,
             } => write!(
                 f,
-                "line {line}: time starts again ({before} s, then {after} s): treated as another run, placed at {placed:.6} s"
+                "{line}: time starts again ({before} s, then {after} s): treated as another run, placed at {placed:.6} s"
             ),
             Self::ColumnLeftOut { column, line, found } => {
                 write!(
                     f,
-                    "line {line}: column \"{column}\" is \"{found}\", not a number; the column was left out"
+                    "{line}: column \"{column}\" is \"{found}\", not a number; the column was left out"
                 )
             }
+            Self::System {
+                system,
+                columns,
+                numbered,
+            } => {
+                write!(f, "the columns are those of {system}: {columns}")?;
+                if *numbered {
+                    write!(f, "; its joints have numbers, and are taken in the URDF's order")?;
+                }
+                Ok(())
+            }
+            Self::Runs { runs, column } => write!(
+                f,
+                "{runs} runs, by column \"{column}\": each is treated as a run of its own, {RUN_PAUSE} s after the one before"
+            ),
+            Self::Joined {
+                what,
+                interpolated,
+                left_out,
+            } => {
+                write!(f, "{what} has stamps of its own and was joined by time: ")?;
+                write!(
+                    f,
+                    "{interpolated} rows interpolated, {left_out} left out where there is none"
+                )
+            }
+            Self::LeftOut { what } => write!(f, "{what}"),
+            Self::JointLeftOut { joint, column } => {
+                write!(f, "{joint} was left out: column \"{column}\" has no values")
+            }
+            Self::Unwrapped {
+                joint,
+                quantity,
+                jumps,
+                time,
+            } => write!(
+                f,
+                "{}{joint}: the encoder wraps at a turn {jumps} {} (first at {time:.3} s); the positions were made continuous",
+                quantity.prefix(),
+                if *jumps == 1 { "time" } else { "times" }
+            ),
             Self::NoVelocity => write!(
                 f,
                 "there is no velocity (qd_<joint>); it is differentiated from the position"

@@ -25,7 +25,7 @@ fn csv_files(folder: &Path) -> Vec<PathBuf> {
 }
 
 fn load(path: &Path) -> (Recording, RegularRecording, Vec<Warning>) {
-    let recording = Recording::read_csv(path).unwrap_or_else(|error| panic!("{error}"));
+    let recording = Recording::read(path).unwrap_or_else(|error| panic!("{error}"));
     let (regular, found) = recording
         .regular()
         .unwrap_or_else(|error| panic!("{}: {error}", path.display()));

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use crate::cli::InspectArgs;
 use crate::library::{self, RobotFile};
-use crate::output;
+use crate::{output, recordings};
 
 /// What `--json` holds.
 #[derive(Serialize)]
@@ -90,9 +90,11 @@ fn load_arm(args: &InspectArgs, robot: &RobotFile, map: Option<&ColumnMap>) -> a
     let mut readable = args
         .files
         .iter()
-        .filter_map(|file| Recording::read_csv_with(file, map).ok());
-    let recorded = readable.next().map_or_else(Vec::new, |recording| recording.joints);
-    let arm = robot.arm(&args.chain.options(&recorded)).context("--robot")?;
+        .filter_map(|file| Recording::read_with(file, map).ok());
+    let first = readable.next().unwrap_or_default();
+    let arm = robot
+        .arm(&args.chain.options(recordings::named_joints(&first)))
+        .context("--robot")?;
     for warning in arm.warnings() {
         eprintln!("note: {}: {warning}", robot.path.display());
     }
@@ -100,7 +102,7 @@ fn load_arm(args: &InspectArgs, robot: &RobotFile, map: Option<&ColumnMap>) -> a
 }
 
 fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> anyhow::Result<FileReport<'a>> {
-    let recording = Recording::read_csv_with(file, map)?;
+    let recording = recordings::read(file, map, arm)?;
     let (regular, found) = recording.regular().with_context(|| file.display().to_string())?;
     let quality = Quality::of(&recording, &regular);
     let warnings = recording.warnings.iter().cloned().chain(found);

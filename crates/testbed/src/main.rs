@@ -10,6 +10,7 @@ mod models;
 mod output;
 mod paper;
 mod prove;
+mod recordings;
 mod run;
 mod scenario;
 mod sensors;

@@ -8,6 +8,7 @@ use recording::Recording;
 use torque::{Motion, Reference, Samples};
 
 use crate::cli::ChainArgs;
+use crate::recordings;
 use crate::scenario::Scenario;
 use crate::sensors::Sensors;
 
@@ -102,7 +103,8 @@ pub fn own_samples(scenario: &Scenario) -> anyhow::Result<Samples> {
 }
 
 /// The samples of all `sources`: scenarios by name or file, whose references are sampled on the plant
-/// of `scenario` with the arm's joints that `chain` chooses, and recordings (`.csv`) with accelerations, thinned to the scenario's sample rate.
+/// of `scenario` with the arm's joints that `chain` chooses, and recordings (files that are not `.toml`) with accelerations, thinned to
+/// the scenario's sample rate.
 ///
 /// # Errors
 /// If a source cannot be read or is of another robot.
@@ -116,11 +118,10 @@ pub fn training_samples(
     let mut sensors = Sensors::new(&scenario.sensor_noise, seed, TRAINING_STREAM);
     for source in sources {
         let of_source = || format!("training on {source}");
-        if Path::new(source)
-            .extension()
-            .is_some_and(|extension| extension == "csv")
-        {
-            let recording = Recording::read_csv(Path::new(source)).with_context(of_source)?;
+        let path = Path::new(source);
+        let ends = |end: &str| path.extension().is_some_and(|extension| extension == end);
+        if ends("csv") || (path.exists() && !ends("toml")) {
+            let recording = recordings::read(path, None, Some(&scenario.arm)).with_context(of_source)?;
             recording_samples(scenario, &recording, &mut samples).with_context(of_source)?;
         } else {
             let task = Scenario::load_chain(source, chain).with_context(of_source)?;

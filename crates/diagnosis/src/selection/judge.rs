@@ -1,6 +1,6 @@
 //! Which of the chosen candidates deserve their name.
 
-use effects::arm::{ExternalContact, contact_window};
+use effects::arm::contact_window;
 use effects::drive::{ActuationDelay, Backlash, JointElasticity, RotorInertia};
 use effects::friction::LoadDependentFriction;
 use effects::sensor::TorqueScale;
@@ -11,6 +11,10 @@ use crate::search::physics::is_at_its_size;
 use crate::search::problem::{Chosen, IMPOSSIBLE, Problem};
 use crate::search::study::Study;
 use crate::thresholds;
+
+mod held_out;
+
+use held_out::{out_of_sample, predicting};
 
 /// A name must explain this much of a joint's torque spread …
 pub const LEAST_SHARE: f64 = 0.012;
@@ -43,8 +47,6 @@ pub const BESIDE_NAMELESS: f64 = 1.5;
 const NEARLY_CONSTANT: f64 = 0.2;
 /// What does less than this part of a joint's torque does nothing.
 const IDLE: f64 = 0.002;
-/// What has no name must keep this part of its gain on held-out recordings.
-const HELD: f64 = 0.2;
 
 /// A chosen candidate and what it does.
 #[derive(Clone, Debug)]
@@ -55,6 +57,9 @@ pub struct Member {
     pub shares: Vec<f64>,
     /// What the score loses without it (nats).
     pub evidence: f64,
+    /// What is unexplained without it and explained with it, over the joint's torque: of a form of something simpler, what
+    /// that leaves.
+    pub beyond: f64,
 }
 
 impl Member {
@@ -194,36 +199,6 @@ fn beside(study: &Study, problem: &Problem<'_>, kept: &Chosen, nameless: &[Membe
     }
 }
 
-/// `chosen` without the nameless that do not predict recordings they were not fitted to. They may have stood for
-/// something simple, which is then looked for again.
-fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen: Chosen) -> Chosen {
-    let cause = |c: usize| study.candidates[c].cause;
-    let loss = |chosen: &Chosen| held.loss(&held.rss(&study.table, &chosen.fit.columns, &chosen.fit.coefficients));
-    let simple: Vec<usize> = (0..study.candidates.len()).filter(|&c| cause(c).is_simple()).collect();
-    loop {
-        let with = loss(&chosen);
-        let worst = chosen
-            .set
-            .par_iter()
-            .filter(|&&c| cause(c).name().is_none() && !cause(c).is_passing())
-            .map(|&c| {
-                let set: Vec<usize> = chosen.others(c);
-                let rest = problem.forward(problem.choose(set, &chosen.fit.weights), &simple);
-                let (outside, inside) = (loss(&rest) - with, rest.fit.loss - chosen.fit.loss);
-                let joint = study.candidates[c].joint.unwrap_or(0);
-                let length = held.evidence[joint] / problem.products.evidence[joint].max(1e-9);
-                (outside - HELD * length * inside, rest)
-            })
-            .collect::<Vec<_>>()
-            .into_iter()
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        match worst {
-            Some((gain, rest)) if gain < 0.0 => chosen = rest,
-            _ => return chosen,
-        }
-    }
-}
-
 /// Shares and evidence of all that is chosen.
 pub fn describe(study: &Study, problem: &Problem<'_>, chosen: &Chosen) -> Vec<Member> {
     (0..chosen.set.len())
@@ -231,12 +206,15 @@ pub fn describe(study: &Study, problem: &Problem<'_>, chosen: &Chosen) -> Vec<Me
         .map(|k| {
             let candidate = chosen.set[k];
             let without = problem.without(chosen, candidate);
-            let beyond = (0..study.motions.dof).map(|j| ((without.fit.rss[j]-chosen.fit.rss[j]).max(0.0)/problem.products.count[j].max(1.0)).sqrt()/study.scales.torque[j].max(1e-300)).fold(0.0, f64::max);
-            if study.candidates[candidate].cause.plain().is_some() { eprintln!("BEYOND {} {:?} {:.4} share {:.4} ev {:.0}", study.candidates[candidate].cause.spec().name, study.candidates[candidate].joint, beyond, shares(study, chosen, candidate).iter().fold(0.0f64,|a,b|a.max(*b)), without.score-chosen.score); }
+            let beyond = |joint: usize| {
+                let gained = (without.fit.rss[joint] - chosen.fit.rss[joint]).max(0.0);
+                (gained / problem.products.count[joint].max(1.0)).sqrt() / study.scales.torque[joint].max(1e-300)
+            };
             Member {
                 candidate,
                 shares: shares(study, chosen, candidate),
                 evidence: without.score - chosen.score,
+                beyond: (0..study.motions.dof).map(beyond).fold(0.0, f64::max),
             }
         })
         .collect()
@@ -340,7 +318,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
                 && share >= BESIDE_A_CERTAIN * others(true)
                 && share >= BESIDE_NAMELESS * largest(&|m| !is_named(m), joint)
         };
-        member.evidence < needed || !(0..dof).any(stands_out)
+        member.evidence < needed || member.beyond < cause(member).spec().least_beyond_plain || !(0..dof).any(stands_out)
     };
     (0..members.len())
         .filter(|&k| fails(&members[k]))
@@ -356,59 +334,4 @@ const WORSE: f64 = 0.01;
 /// Whether an error (NRMSE) grows from `nominal` by more than what another joint's effect may do.
 pub fn harms(nominal: f64, with: f64) -> bool {
     with > nominal + thresholds::HARMLESS.max(WORSE * nominal)
-}
-
-/// Drops what does not predict recordings it was not fitted to, and what makes a joint's prediction worse than the nominal one.
-fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen: Chosen) -> Chosen {
-    let table = &study.table;
-    let rss = |chosen: &Chosen| held.rss(table, &chosen.fit.columns, &chosen.fit.coefficients);
-    loop {
-        let with = rss(&chosen);
-        // By how much the held-out loss grows without each.
-        let gains: Vec<(usize, f64, Vec<f64>)> = (0..chosen.set.len())
-            .into_par_iter()
-            .map(|k| {
-                let mut set = chosen.set.clone();
-                let removed = set.remove(k);
-                let rest = problem.choose(set, &chosen.fit.weights);
-                let without = rss(&rest);
-                let mut gain = held.loss(&without) - held.loss(&with);
-                // What the background would say in its place predicts as much, for more nats.
-                if problem.is_background_too(&study.candidates[removed]) {
-                    gain += rest.score - chosen.score;
-                }
-                (removed, gain, without)
-            })
-            .collect();
-        let exempt = |candidate: usize| {
-            study.candidates[candidate].cause.is(&ExternalContact) || is_idle(study, &chosen, candidate)
-        };
-        let useless = gains
-            .iter()
-            .filter(|(candidate, gain, _)| !exempt(*candidate) && *gain < 0.0)
-            .min_by(|a, b| a.1.total_cmp(&b.1));
-        let harmful = || {
-            let joint = (0..with.len()).find(|&joint| {
-                let n = held.count[joint].max(1.0);
-                let spread = study.scales.torque[joint].max(1e-300);
-                let (nominal, with) = (held.power(joint).sqrt() / spread, (with[joint] / n).sqrt() / spread);
-                held.count[joint] > 0.0 && harms(nominal, with)
-            })?;
-            gains
-                .iter()
-                .filter(|(candidate, _, without)| {
-                    // What acts on all joints is judged by the likelihood of all.
-                    study.candidates[*candidate].joint.is_some() && without[joint] < with[joint]
-                })
-                .min_by(|a, b| a.2[joint].total_cmp(&b.2[joint]))
-        };
-        let (rule, bad) = match (useless, harmful()) {
-            (Some(&(bad, ..)), _) => ("held-out recordings are likelier without it", bad),
-            (None, Some(&(bad, ..))) => (HARMS, bad),
-            (None, None) => return chosen,
-        };
-        let next = problem.choose(chosen.others(bad), &chosen.fit.weights);
-        study.note(rule, &chosen, &next);
-        chosen = next;
-    }
 }

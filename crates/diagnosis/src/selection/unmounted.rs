@@ -41,7 +41,11 @@ pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
     }
     let products = study.products(|r| study.fitted[r]);
     judged.members = judge::describe(study, &study.problem(&products), &next);
-    study.note_strengths("one missing body does nearly all that the background does", &judged.named, &next);
+    study.note_strengths(
+        "one missing body does nearly all that the background does",
+        &judged.named,
+        &next,
+    );
     judged.named = next;
     Some(resampled)
 }

@@ -140,7 +140,7 @@ fn cases_are_written_once() {
         .collect();
     files.sort();
     assert_eq!(files, ["held_out.csv", "robot.urdf", "train_1.csv", "train_2.csv"]);
-    let read = Recording::read_csv(&case.join("train_2.csv")).expect("it is a recording");
+    let read = Recording::read(&case.join("train_2.csv")).expect("it is a recording");
     assert_eq!(
         (read.time, read.tau),
         (made.train[1].time.clone(), made.train[1].tau.clone())

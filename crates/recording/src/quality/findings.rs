@@ -9,6 +9,9 @@ const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 /// Revolutions per minute in rad/s.
 const RPM: f64 = 30.0 / std::f64::consts::PI;
 
+/// Rows so far apart (s) are no drive's.
+const SLOWEST_PERIOD: f64 = 0.1;
+
 /// What kind of doubt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -17,6 +20,8 @@ pub enum FindingKind {
     NoMotion,
     /// The torque is the same throughout.
     NoTorque,
+    /// The stamps look like milliseconds, or another unit than seconds.
+    TimeUnit,
     /// Positions look like degrees.
     Degrees,
     /// The recorded velocity is in another unit than the positions.
@@ -62,6 +67,10 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
         let text = "no joint moves, so that only gravity and offsets can be identified; record a motion".into();
         add(FindingKind::NoMotion, None, text);
     }
+    let time_unit = time_unit(regular.period, joints);
+    if let Some(text) = &time_unit {
+        add(FindingKind::TimeUnit, None, text.clone());
+    }
     for joint in joints.iter().filter(|joint| joint.tau_range.0 == joint.tau_range.1) {
         let text = format!(
             "the torque is {} throughout; was it logged? Check its column",
@@ -77,7 +86,7 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
                 joints[*other].joint
             );
             add(FindingKind::VelocitySwapped, Some(joint), text);
-        } else {
+        } else if time_unit.is_none() {
             velocity(joint, &mut add);
         }
         let reach = joint.q_range.0.abs().max(joint.q_range.1.abs());
@@ -154,6 +163,24 @@ fn lateness(least: f64, most: f64) -> String {
     } else {
         format!("{least} to {most} ms {way}")
     }
+}
+
+/// What the stamps' unit is where it is not s: rows are too far apart for a drive, and the recorded velocities of all
+/// joints are as many times their positions' slopes as there are units in a second.
+fn time_unit(period: f64, joints: &[JointQuality]) -> Option<String> {
+    if period < SLOWEST_PERIOD {
+        return None;
+    }
+    let ratios: Vec<f64> = joints.iter().filter_map(|joint| joint.velocity_ratio).collect();
+    let unit = [("ms", 1e3), ("us", 1e6), ("ns", 1e9)].into_iter().find(|(_, units)| {
+        let fits = ratios.iter().filter(|ratio| near(ratio.abs(), *units)).count();
+        fits > 0 && fits == ratios.len()
+    });
+    let (unit, units) = unit?;
+    Some(format!(
+        "rows are {period:.4} s apart, and all recorded velocities are {units} times their positions' slopes: the stamps are \
+         in {unit}; give unit = \"{unit}\" under [time] in a column map (--map)"
+    ))
 }
 
 fn near(value: f64, expected: f64) -> bool {

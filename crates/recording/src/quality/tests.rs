@@ -97,6 +97,8 @@ fn flaws_are_found_on_their_joint() {
         r.qd.as_mut().expect("it is there")[1].fill(0.0);
     };
     assert_eq!(flawed(&at_rest), [(FindingKind::JointAtRest, None), LATE]);
+    let stamps_in_ms = |r: &mut Recording| scale(&mut r.time, 1e3);
+    assert_eq!(flawed(&stamps_in_ms), [(FindingKind::TimeUnit, None), LATE]);
     let still = |r: &mut Recording| r.q.iter_mut().for_each(|q| q.fill(0.3));
     assert_eq!(flawed(&still), [(FindingKind::NoMotion, None)]);
 }

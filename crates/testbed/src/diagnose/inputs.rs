@@ -16,7 +16,7 @@ use super::effect_file::EffectFile;
 use super::next_file;
 use crate::cli::{DiagnoseArgs, Rerun};
 use crate::inspect::{model_check, shortened};
-use crate::output;
+use crate::{output, recordings};
 
 /// A recording ready to be diagnosed.
 pub struct Prepared {
@@ -172,14 +172,14 @@ impl<'a> Files<'a> {
         refuse_twice(&files)?;
         let first = files
             .first()
-            .map(|(path, _)| Recording::read_csv_with(path, map.as_ref().map(|(_, map)| map)));
+            .map(|(path, _)| Recording::read_with(path, map.as_ref().map(|(_, map)| map)));
         let first = first.transpose()?;
         Ok(Self { map, files, first })
     }
 
-    /// The joints of the first recording.
+    /// The joints of the first recording; none if it only numbers them.
     pub fn joints(&self) -> &[String] {
-        self.first.as_ref().map_or(&[], |first| &first.joints)
+        self.first.as_ref().map_or(&[], recordings::named_joints)
     }
 }
 
@@ -195,10 +195,11 @@ pub fn read(files: Files<'_>, arm: &Arm, progress: &ProgressBar) -> anyhow::Resu
     let mut list: Vec<Prepared> = Vec::new();
     for (path, role) in files {
         progress.set_message(format!("reading {}", path.display()));
-        let recording = match first.take() {
+        let mut recording = match first.take() {
             Some(first) => first,
-            None => Recording::read_csv_with(path, map.as_ref().map(|(_, map)| map))?,
+            None => Recording::read_with(path, map.as_ref().map(|(_, map)| map))?,
         };
+        recordings::name_joints(&mut recording, arm);
         let name = path.display().to_string();
         let map = map.as_ref().map(|(path, _)| *path);
         let order = order(&recording, arm, &name, &choosing, map)?;

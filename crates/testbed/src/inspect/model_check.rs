@@ -74,7 +74,7 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
         let doubted = quality.findings.iter().any(|finding| {
             matches!(
                 finding.kind,
-                FindingKind::Degrees | FindingKind::VelocityUnit | FindingKind::VelocitySwapped
+                FindingKind::TimeUnit | FindingKind::Degrees | FindingKind::VelocityUnit | FindingKind::VelocitySwapped
             )
         });
         if smooth.len() > 100 && !doubted {

@@ -48,7 +48,7 @@ fn the_truth_moves_the_plant_as_the_other_engine_moved() {
         let effects = concealed(&folder.join(format!("truth/case_{case:03}.json"))).expect("it is in the catalogue");
         let files = folder.join(format!("case_{case:03}"));
         let arm = Arm::from_urdf(files.join("robot.urdf")).expect("it is an arm");
-        let recording = Recording::read_csv(&files.join("held_out.csv")).expect("it is read");
+        let recording = Recording::read(&files.join("held_out.csv")).expect("it is read");
         let recording = recording.regular().expect("it has a clock").0;
         let result = rollout(&arm, &[], &effects, &recording, &RolloutOptions::default()).expect("it runs");
         assert_eq!(result.runaway_augmented, 0);
@@ -69,7 +69,7 @@ fn a_delay_is_seen_where_it_is() {
     let effects = concealed(&folder.join("truth/case_001.json")).expect("it is in the catalogue");
     let files = folder.join("case_001");
     let arm = Arm::from_urdf(files.join("robot.urdf")).expect("it is an arm");
-    let recording = Recording::read_csv(&files.join("train_1.csv")).expect("it is read");
+    let recording = Recording::read(&files.join("train_1.csv")).expect("it is read");
     let recording = recording.regular().expect("it has a clock").0;
     let found = &rollout(&arm, &[], &effects, &recording, &RolloutOptions::default())
         .expect("it runs")

@@ -29,7 +29,7 @@ impl Recorded {
     pub fn read(arm: &Arm, folder: &Path, files: &[String]) -> anyhow::Result<Self> {
         let regular = |name: &String| -> anyhow::Result<RegularRecording> {
             let path = folder.join(name);
-            let recording = Recording::read_csv(&path)?;
+            let recording = Recording::read(&path)?;
             Ok(recording.regular().with_context(|| path.display().to_string())?.0)
         };
         let recordings: Vec<RegularRecording> = files.iter().map(regular).collect::<anyhow::Result<_>>()?;

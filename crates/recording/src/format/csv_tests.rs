@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::*;
-use crate::Warning;
+use crate::{Place, Warning};
 
 fn recording() -> Recording {
     Recording {
@@ -31,7 +31,7 @@ fn write(folder: &tempfile::TempDir, text: &str) -> PathBuf {
 
 fn read(text: &str) -> Result<Recording, RecordingError> {
     let folder = folder();
-    Recording::read_csv(&write(&folder, text))
+    Recording::read(&write(&folder, text))
 }
 
 fn refusal(text: &str) -> String {
@@ -43,7 +43,7 @@ fn what_is_written_reads_back_to_the_same_bits() {
     let folder = folder();
     let path = folder.path().join("r.csv");
     recording().write_csv(&path).expect("it writes");
-    assert_eq!(Recording::read_csv(&path).expect("it reads"), recording());
+    assert_eq!(Recording::read(&path).expect("it reads"), recording());
 }
 
 #[test]
@@ -65,7 +65,7 @@ fn a_bad_file_is_refused_with_its_place() {
     assert!(refusal("t,q_a,tau_a\n0,1,2\n0,1,2\n").contains("one row"));
     assert!(refusal("t,q_a,tau_a\n0,1\n1,1,2\n2,1,2\n").contains("r.csv:2: the row has 2 cells, the header 3"));
     assert!(refusal("t,q_a,tau_a,q_a\n").contains("two columns \"q_a\""));
-    let gone = Recording::read_csv(Path::new("/nowhere/r.csv"))
+    let gone = Recording::read(Path::new("/nowhere/r.csv"))
         .expect_err("it is not there")
         .to_string();
     assert!(gone.contains("/nowhere/r.csv: cannot be read"), "{gone}");
@@ -126,22 +126,20 @@ fn what_spreadsheets_and_mistakes_make_of_a_file_is_refused_with_the_remedy() {
     let folder = folder();
     let latin = write(&folder, "");
     std::fs::write(&latin, b"t,q_\xE9,tau_\xE9\n0,1,2\n1,1,2\n").expect("it writes");
-    let found = Recording::read_csv(&latin).expect_err("it is refused").to_string();
+    let found = Recording::read(&latin).expect_err("it is refused").to_string();
     assert!(found.contains("r.csv:1: cell 2 is not UTF-8"), "{found}");
     for order in [u16::to_le_bytes, u16::to_be_bytes] {
         let text = "\u{FEFF}t,q_a,tau_a\n0,1,2\n1,1,2\n";
         let bytes: Vec<u8> = text.encode_utf16().flat_map(order).collect();
         let path = write(&folder, "");
         std::fs::write(&path, bytes).expect("it writes");
-        let found = Recording::read_csv(&path).expect_err("it is refused").to_string();
+        let found = Recording::read(&path).expect_err("it is refused").to_string();
         assert!(
             found.contains("r.csv:1: the text is UTF-16; save it as UTF-8"),
             "{found}"
         );
     }
-    let found = Recording::read_csv(folder.path())
-        .expect_err("it is refused")
-        .to_string();
+    let found = Recording::read(folder.path()).expect_err("it is refused").to_string();
     assert!(found.contains("it is a folder"), "{found}");
 }
 
@@ -168,7 +166,7 @@ fn a_file_cut_in_its_last_row_gives_what_is_whole() {
         let rows = if cut == 1 { 3 } else { 2 };
         assert_eq!(read.len(), rows, "cut by {cut}");
         assert_eq!(
-            read.warnings.contains(&Warning::CutFile { line: 4 }),
+            read.warnings.contains(&Warning::CutFile { line: Place::Line(4) }),
             cut > 1,
             "cut by {cut}"
         );
@@ -182,7 +180,7 @@ fn a_duplicated_row_is_left_out() {
     assert_eq!(read.time, [0.0, 1.0, 2.0]);
     let expected = Warning::Duplicates {
         rows: 1,
-        line: 4,
+        line: Place::Line(4),
         differ: false,
     };
     assert!(read.warnings.contains(&expected), "{:?}", read.warnings);
@@ -204,7 +202,15 @@ fn runs_end_to_end_in_one_file_are_told_apart() {
     let read = read(&text).expect("two runs");
     assert_eq!((read.len(), read.breaks.as_slice()), (200, &[100][..]));
     assert!(read.time.windows(2).all(|pair| pair[1] > pair[0]));
-    let told = |warning: &Warning| matches!(warning, Warning::ClockRestart { line: 102, .. });
+    let told = |warning: &Warning| {
+        matches!(
+            warning,
+            Warning::ClockRestart {
+                line: Place::Line(102),
+                ..
+            }
+        )
+    };
     assert!(read.warnings.iter().any(told), "{:?}", read.warnings);
 }
 
@@ -223,7 +229,7 @@ fn a_map_reads_anybodys_columns() {
     let map = "[time]\ncolumn = \"stamp\"\nunit = \"ms\"\n[joints.a]\nq = \"pos\"\nq_unit = \"deg\"\nsign = -1\ntau = \"cur\"\n\
                tau_unit = \"A\"\ntau_scale = 12.5\n";
     let map = ColumnMap::parse(map, Path::new("m.toml")).expect("it is good");
-    let read = Recording::read_csv_with(&path, Some(&map)).expect("it reads");
+    let read = Recording::read_with(&path, Some(&map)).expect("it reads");
     assert_eq!(read.time, [0.0, 0.01]);
     assert!((read.q[0][0] + std::f64::consts::PI).abs() < 1e-15);
     assert_eq!(read.tau[0], [-12.5, -25.0]);
@@ -260,4 +266,70 @@ fn a_file_of_many_rows_is_read_as_means() {
     std::fs::write(&path, text.replace("4.9,", "4.9x,")).expect("it writes");
     let error = Recording::read_within(&path, None, 4 * 1000).expect_err("it is refused");
     assert!(error.to_string().contains("r.csv:4902"), "{error}");
+}
+
+#[test]
+fn a_value_that_is_not_needed_may_be_missing() {
+    let with = |cell: &str| {
+        read(&format!(
+            "t,q_a,q_b,qd_a,qd_b,tau_a,tau_b,temperature_a\n0,1,2,3,4,5,6,7\n1,1,2,{cell},4,5,6,{cell}\n2,1,2,3,4,5,6,7\n"
+        ))
+        .expect("it reads")
+    };
+    for cell in ["nan", "", "NaN", "x"] {
+        let read = with(cell);
+        assert_eq!((read.len(), &read.qd, read.temperature.len()), (3, &None, 0));
+        let told = |column: &str| {
+            let line = Place::Line(3);
+            let (column, found) = (column.to_owned(), cell.to_owned());
+            read.warnings.contains(&Warning::ColumnLeftOut { column, line, found })
+        };
+        assert!(told("qd_a") && told("temperature_a"), "{:?}", read.warnings);
+    }
+}
+
+#[test]
+fn a_joint_without_any_torque_is_left_out() {
+    let read = read("t,q_a,q_hand,tau_a,tau_hand\n0,1,2,5,nan\n1,1,2,5,\n2,1,2,5,NaN\n").expect("it reads");
+    assert_eq!((&read.joints[..], read.q.len()), (&["a".to_owned()][..], 1));
+    let told = |warning: &Warning| matches!(warning, Warning::JointLeftOut { joint, .. } if joint == "hand");
+    assert!(read.warnings.iter().any(told), "{:?}", read.warnings);
+    // Neither makes equal rows differ.
+    let twice =
+        "t,q_a,q_hand,qd_a,qd_hand,tau_a,tau_hand\n0,1,2,,0,5,nan\n1,1,2,3,0,5,nan\n1,1,2,3,0,5,nan\n2,1,2,3,0,5,nan\n";
+    let twice = self::read(twice).expect("it reads");
+    let same = |warning: &Warning| matches!(warning, Warning::Duplicates { differ: false, .. });
+    assert!(twice.warnings.iter().any(same), "{:?}", twice.warnings);
+    // With a torque here and there, the rows without one are the mistake.
+    let text = refusal("t,q_a,q_hand,tau_a,tau_hand\n0,1,2,5,nan\n1,1,2,5,3\n2,1,2,5,NaN\n");
+    assert!(text.contains("r.csv:2: column \"tau_hand\" is \"nan\""), "{text}");
+    let text = refusal("t,q_a,tau_a\n0,1,nan\n1,1,nan\n");
+    assert!(text.contains("r.csv:2: column \"tau_a\""), "{text}");
+}
+
+#[test]
+fn spaces_and_the_other_forms_of_time_are_read() {
+    let plain = read("t,q_a,tau_a\n0,1,2\n1,1.5,2.5\n").expect("it reads");
+    for other in [
+        "t q_a tau_a\n0 1 2\n1 1.5 2.5\n",
+        "  t   q_a  tau_a \r\n 0.0   1 2  \r\n  1 1.5 2.5\r\n",
+        "secs,nsecs,q_a,tau_a\n0,0,1,2\n1,0,1.5,2.5\n",
+    ] {
+        assert_eq!(read(other).expect("it reads"), plain, "{other:?}");
+    }
+    for stamps in [
+        ["2024-03-01T12:00:00Z", "2024-03-01T12:00:01Z"],
+        ["2024-03-01 23:59:59.5", "2024-03-02 00:00:00.5"],
+        ["2024-03-01T12:00:00+01:00", "2024-03-01T11:00:01Z"],
+    ] {
+        let read = read(&format!("t,q_a,tau_a\n{},1,2\n{},1.5,2.5\n", stamps[0], stamps[1])).expect("it reads");
+        assert_eq!(read.time[1] - read.time[0], 1.0, "{stamps:?}");
+    }
+    let bad = refusal("t,q_a,tau_a\nyesterday,1,2\n1,1.5,2.5\n");
+    assert!(
+        bad.contains("r.csv:2: column \"t\" is \"yesterday\"") && bad.contains("ISO 8601"),
+        "{bad}"
+    );
+    let named = refusal("stamp,q_a,tau_a\n0,1,2\n1,1.5,2.5\n");
+    assert!(named.contains("is \"stamp\" meant?"), "{named}");
 }

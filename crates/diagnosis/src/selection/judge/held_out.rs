@@ -1,0 +1,97 @@
+//! What does not predict recordings it was not fitted to.
+
+use effects::arm::ExternalContact;
+use rayon::prelude::*;
+
+use super::{HARMS, harms, is_idle};
+use crate::regression::fit::Products;
+use crate::search::problem::{Chosen, Problem};
+use crate::search::study::Study;
+
+/// What has no name must keep this part of its gain on held-out recordings.
+const HELD: f64 = 0.2;
+
+/// `chosen` without the nameless that do not predict recordings they were not fitted to. They may have stood for
+/// something simple, which is then looked for again.
+pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen: Chosen) -> Chosen {
+    let cause = |c: usize| study.candidates[c].cause;
+    let loss = |chosen: &Chosen| held.loss(&held.rss(&study.table, &chosen.fit.columns, &chosen.fit.coefficients));
+    let simple: Vec<usize> = (0..study.candidates.len()).filter(|&c| cause(c).is_simple()).collect();
+    loop {
+        let with = loss(&chosen);
+        let worst = chosen
+            .set
+            .par_iter()
+            .filter(|&&c| cause(c).name().is_none() && !cause(c).is_passing())
+            .map(|&c| {
+                let set: Vec<usize> = chosen.others(c);
+                let rest = problem.forward(problem.choose(set, &chosen.fit.weights), &simple);
+                let (outside, inside) = (loss(&rest) - with, rest.fit.loss - chosen.fit.loss);
+                let joint = study.candidates[c].joint.unwrap_or(0);
+                let length = held.evidence[joint] / problem.products.evidence[joint].max(1e-9);
+                (outside - HELD * length * inside, rest)
+            })
+            .collect::<Vec<_>>()
+            .into_iter()
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        match worst {
+            Some((gain, rest)) if gain < 0.0 => chosen = rest,
+            _ => return chosen,
+        }
+    }
+}
+
+/// Drops what does not predict recordings it was not fitted to, and what makes a joint's prediction worse than the nominal one.
+pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen: Chosen) -> Chosen {
+    let table = &study.table;
+    let rss = |chosen: &Chosen| held.rss(table, &chosen.fit.columns, &chosen.fit.coefficients);
+    loop {
+        let with = rss(&chosen);
+        // By how much the held-out loss grows without each.
+        let gains: Vec<(usize, f64, Vec<f64>)> = (0..chosen.set.len())
+            .into_par_iter()
+            .map(|k| {
+                let mut set = chosen.set.clone();
+                let removed = set.remove(k);
+                let rest = problem.choose(set, &chosen.fit.weights);
+                let without = rss(&rest);
+                let mut gain = held.loss(&without) - held.loss(&with);
+                // What the background would say in its place predicts as much, for more nats.
+                if problem.is_background_too(&study.candidates[removed]) {
+                    gain += rest.score - chosen.score;
+                }
+                (removed, gain, without)
+            })
+            .collect();
+        let exempt = |candidate: usize| {
+            study.candidates[candidate].cause.is(&ExternalContact) || is_idle(study, &chosen, candidate)
+        };
+        let useless = gains
+            .iter()
+            .filter(|(candidate, gain, _)| !exempt(*candidate) && *gain < 0.0)
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        let harmful = || {
+            let joint = (0..with.len()).find(|&joint| {
+                let n = held.count[joint].max(1.0);
+                let spread = study.scales.torque[joint].max(1e-300);
+                let (nominal, with) = (held.power(joint).sqrt() / spread, (with[joint] / n).sqrt() / spread);
+                held.count[joint] > 0.0 && harms(nominal, with)
+            })?;
+            gains
+                .iter()
+                .filter(|(candidate, _, without)| {
+                    // What acts on all joints is judged by the likelihood of all.
+                    study.candidates[*candidate].joint.is_some() && without[joint] < with[joint]
+                })
+                .min_by(|a, b| a.2[joint].total_cmp(&b.2[joint]))
+        };
+        let (rule, bad) = match (useless, harmful()) {
+            (Some(&(bad, ..)), _) => ("held-out recordings are likelier without it", bad),
+            (None, Some(&(bad, ..))) => (HARMS, bad),
+            (None, None) => return chosen,
+        };
+        let next = problem.choose(chosen.others(bad), &chosen.fit.weights);
+        study.note(rule, &chosen, &next);
+        chosen = next;
+    }
+}

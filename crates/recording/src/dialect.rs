@@ -1,0 +1,96 @@
+//! The columns that known systems write: ready column maps, chosen by what the header looks like.
+
+use std::path::Path;
+use std::sync::LazyLock;
+
+use crate::column_map::template::capture;
+use crate::header::Plan;
+use crate::{ColumnMap, Quantity, RecordingError, Warning};
+
+/// A ready map: its file in `assets/maps` and its text.
+macro_rules! ready {
+    ($name:literal) => {
+        ($name, include_str!(concat!("../../../assets/maps/", $name, ".toml")))
+    };
+}
+
+/// The first whose columns are there is taken.
+const MAPS: &[(&str, &str)] = &[
+    ready!("ur_rtde"),
+    ready!("libfranka"),
+    ready!("joint_state"),
+    ready!("rostopic_echo"),
+    ready!("ros2_topic_echo"),
+    ready!("lerobot"),
+    ready!("arrays"),
+];
+
+static READY: LazyLock<Vec<ColumnMap>> = LazyLock::new(|| {
+    let parse = |(name, text): &(&str, &str)| {
+        let path = format!("assets/maps/{name}.toml");
+        ColumnMap::parse(text, Path::new(&path)).expect("a test parses every ready map")
+    };
+    MAPS.iter().map(parse).collect()
+});
+
+/// The ready map for a file with these headers, for these topics.
+pub fn of(headers: &[String], topics: &[String]) -> Option<ColumnMap> {
+    let has = |name: &str| headers.iter().any(|header| header == name);
+    // The columns that testbed itself writes need no map.
+    if has("t") && headers.iter().any(|header| header.starts_with("q_")) {
+        return None;
+    }
+    let is_there = |pattern: &String| has(pattern) || headers.iter().any(|header| capture(pattern, header).is_some());
+    let known = |map: &&ColumnMap| {
+        let system = map.system.as_ref();
+        system.is_some_and(|system| system.known_by.iter().all(is_there))
+    };
+    READY.iter().find(known).map(|map| map.with_topics(topics))
+}
+
+/// What to read by a ready map from a file with these headers, whose first row has the cells `first`, and a note that says so.
+///
+/// # Errors
+/// What is missing, and the remedy.
+pub fn plan(
+    map: &ColumnMap,
+    headers: &[String],
+    first: &[String],
+    file: &Path,
+) -> Result<(Plan, Warning), RecordingError> {
+    let Some(system) = &map.system else {
+        return Err(RecordingError::Header {
+            path: file.to_owned(),
+            reason: "there is no system of that name".to_owned(),
+        });
+    };
+    let plan = map.plan(headers, first, file).map_err(|error| match error {
+        RecordingError::Map { reason, .. } => RecordingError::Header {
+            path: file.to_owned(),
+            reason: if reason.contains("--map") {
+                reason
+            } else {
+                format!(
+                    "the columns look like those of {}, but {reason}; {}",
+                    system.name, system.remedy
+                )
+            },
+        },
+        other => other,
+    })?;
+    let example = |quantity: Quantity| {
+        let channel = plan.channels.iter().find(|channel| channel.quantity == quantity);
+        channel.map_or("", |channel| channel.header.as_str())
+    };
+    let note = Warning::System {
+        system: system.name.clone(),
+        columns: format!(
+            "time \"{}\", position \"{}\", torque \"{}\", and so on",
+            plan.time.header,
+            example(Quantity::Position),
+            example(Quantity::Torque)
+        ),
+        numbered: plan.joints.iter().all(|joint| joint.parse::<usize>().is_ok()),
+    };
+    Ok((plan, note))
+}

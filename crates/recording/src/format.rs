@@ -1,0 +1,116 @@
+//! The formats that a recording can have, and how one is told from the file's content.
+
+mod csv;
+mod csv_text;
+mod mat;
+mod mcap;
+mod npz;
+mod parquet;
+mod rosbag2;
+mod unread;
+
+use std::path::Path;
+
+use crate::input::Input;
+use crate::rows::Rows;
+use crate::table::Table;
+use crate::{ColumnMap, Recording, RecordingError, dialect, header};
+
+/// Of a file with more values, means over longer times are kept (1 GiB).
+const MOST_VALUES: usize = 1 << 27;
+
+/// A format of files with recordings.
+trait Format {
+    /// Whether a file that begins so, or a folder of that name, has this format.
+    fn matches(&self, input: &Input) -> bool;
+
+    /// The file as a table of named columns.
+    ///
+    /// # Errors
+    /// [`RecordingError`] with the place, if the file is not what its beginning promises.
+    fn read(&self, input: Input, options: &Options<'_>) -> Result<Table, RecordingError>;
+}
+
+/// What a column map says of how to read a file.
+pub(crate) struct Options<'a> {
+    /// What separates the cells of text.
+    pub delimiter: Option<u8>,
+    /// The topics to read of a file that has topics; all if there are none.
+    pub topics: &'a [String],
+}
+
+/// The formats there are; the first that matches is taken.
+const FORMATS: &[&dyn Format] = &[
+    &mcap::Mcap,
+    &rosbag2::Rosbag2,
+    &parquet::Parquet,
+    &npz::Npz,
+    &mat::Mat,
+    &unread::Unread,
+    // Text has no mark of its own.
+    &csv::Csv,
+];
+
+impl Recording {
+    /// Reads a recording of any format that `docs/recordings.md` lists, compressed or not, whose columns are `t` (s) and
+    /// `q_<joint>`, `tau_<joint>` for the same joints, `qd_`, `qdd_`, `q_secondary_`, `tau_current_`, `current_` and
+    /// `temperature_<joint>` where there are any, or those of a system that is known. Other columns are kept as they
+    /// are. What was dealt with is in [`Recording::warnings`].
+    ///
+    /// # Errors
+    /// [`RecordingError`] with the line or row and the column, if the file cannot be read, a column is missing, a
+    /// value is not a finite number, time runs back, or there are fewer than two rows.
+    pub fn read(path: &Path) -> Result<Self, RecordingError> {
+        Self::read_with(path, None)
+    }
+
+    /// As [`Self::read`], with the columns that `map` names.
+    ///
+    /// # Errors
+    /// As [`Self::read`], and [`RecordingError::Map`] if the file lacks a column that the map names.
+    pub fn read_with(path: &Path, map: Option<&ColumnMap>) -> Result<Self, RecordingError> {
+        Self::read_within(path, map, MOST_VALUES)
+    }
+
+    fn read_within(path: &Path, map: Option<&ColumnMap>, most: usize) -> Result<Self, RecordingError> {
+        let input = Input::open(path)?;
+        let options = Options {
+            delimiter: map.and_then(ColumnMap::delimiter),
+            topics: map.map_or(&[], ColumnMap::topics),
+        };
+        let format = FORMATS.iter().find(|format| format.matches(&input));
+        let format = format.ok_or_else(|| RecordingError::Read {
+            path: path.to_owned(),
+            reason: std::io::Error::other("it is a folder"),
+        })?;
+        let mut table = format.read(input, &options)?;
+        let header_error = |reason: String| RecordingError::Header {
+            path: path.to_owned(),
+            reason,
+        };
+        let mut warnings = std::mem::take(&mut table.warnings);
+        let plan = match map.filter(|map| map.has_joints()) {
+            Some(map) => map.plan(&table.headers, &table.first, path)?,
+            None => match dialect::of(&table.headers, options.topics) {
+                Some(ready) => {
+                    let (plan, note) = dialect::plan(&ready, &table.headers, &table.first, path)?;
+                    warnings.push(note);
+                    plan
+                }
+                None => header::plan_by_names(&table.headers).map_err(header_error)?,
+            },
+        };
+        if let Some(header) = header::doubled(&table.headers, &plan) {
+            return Err(header_error(format!("there are two columns \"{header}\"; rename one")));
+        }
+        let mut rows = Rows::new(path, &plan, most, warnings);
+        while let Some(row) = table.rows.next()? {
+            rows.take(&row)?;
+        }
+        rows.finish(table.rows.warnings())
+    }
+}
+
+#[cfg(test)]
+#[path = "format/csv_tests.rs"]
+mod csv_tests;

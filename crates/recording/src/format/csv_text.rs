@@ -1,0 +1,140 @@
+//! What a text file begins with: whether it is a table, what separates its cells, whether it has a header.
+
+use std::io::Read;
+
+/// What separates the cells of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Separator {
+    /// One byte.
+    Byte(u8),
+    /// Spaces, of which several are one separator.
+    Spaces,
+}
+
+/// Why a file that begins so is no table of text, with the line.
+pub fn no_table(start: &[u8]) -> Option<(u64, String)> {
+    let text = start.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(start);
+    let said = |reason: &str| Some((1, reason.to_owned()));
+    if text.trim_ascii().is_empty() {
+        return said("the file is empty; a recording has a header (t, q_<joint>, tau_<joint>, ...) and a row a sample");
+    }
+    if text.starts_with(b"\xFF\xFE") || text.starts_with(b"\xFE\xFF") {
+        return said(
+            "the text is UTF-16; save it as UTF-8 (in spreadsheets \"CSV UTF-8\"; or iconv -f UTF-16 -t UTF-8)",
+        );
+    }
+    if let Some(at) = text.iter().position(|&byte| byte == 0) {
+        let line = 1 + text[..at].iter().filter(|&&byte| byte == b'\n').count() as u64;
+        let reason =
+            "there is a zero byte: this is a binary file of no format that is known here, or UTF-16; give CSV in \
+                      UTF-8, or a format of docs/recordings.md"
+                .to_owned();
+        return Some((line, reason));
+    }
+    if text.trim_ascii().starts_with(b"<") {
+        return said("this is XML (a URDF?), no CSV; give a recording here, and the robot's URDF with --robot");
+    }
+    None
+}
+
+/// The separator of the cells: a semicolon, a tab or spaces where the header has no comma.
+pub fn find_separator(start: &[u8]) -> Separator {
+    let header = first_line(start).trim_ascii();
+    let has = |byte: u8| header.contains(&byte);
+    match (has(b','), has(b';'), has(b'\t')) {
+        // Commas in numbers, too.
+        (true, true, _) if header.first().is_some_and(u8::is_ascii_digit) => Separator::Byte(b';'),
+        (false, true, _) => Separator::Byte(b';'),
+        (false, false, true) => Separator::Byte(b'\t'),
+        (false, false, false) if has(b' ') => Separator::Spaces,
+        _ => Separator::Byte(b','),
+    }
+}
+
+fn first_line(start: &[u8]) -> &[u8] {
+    let text = start.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(start);
+    text.split(|&byte| byte == b'\n').next().unwrap_or_default()
+}
+
+/// The columns of `ros2 topic echo --csv` of a joint state, which writes no header: the stamp's seconds and nanoseconds,
+/// the frame, and as many names as positions, velocities and efforts.
+pub fn headless(start: &[u8], separator: Separator) -> Option<Vec<String>> {
+    if separator != Separator::Byte(b',') {
+        return None;
+    }
+    let line = std::str::from_utf8(first_line(start)).ok()?;
+    let cells: Vec<&str> = line.split(',').map(str::trim).collect();
+    let is_number = |cell: &str| cell.parse::<f64>().is_ok();
+    cells.first()?.parse::<i64>().ok()?;
+    cells.get(1)?.parse::<u32>().ok()?;
+    let names = cells.iter().skip(3).take_while(|cell| !is_number(cell)).count();
+    let numbers = cells.len().checked_sub(3 + names)?;
+    if names == 0 || is_number(cells[2]) || numbers != 3 * names {
+        return None;
+    }
+    let stamp = ["sec", "nanosec", "frame_id"].map(str::to_owned).into_iter();
+    let fields = ["name", "position", "velocity", "effort"].into_iter();
+    let columns = fields.flat_map(|field| (0..names).map(move |joint| format!("{field}[{joint}]")));
+    Some(stamp.chain(columns).collect())
+}
+
+/// Text in which one space stands for several, and none at the ends of lines.
+pub struct Squeezed<R> {
+    inner: R,
+    /// Whether a space is due before the next byte, and whether the line has begun.
+    due: bool,
+    begun: bool,
+    buffer: Vec<u8>,
+    given: usize,
+}
+
+impl<R: Read> Squeezed<R> {
+    /// The text that `inner` reads.
+    pub fn new(inner: R) -> Self {
+        Self {
+            inner,
+            due: false,
+            begun: false,
+            buffer: Vec::new(),
+            given: 0,
+        }
+    }
+
+    fn take(&mut self, byte: u8) {
+        match byte {
+            b' ' => self.due = self.begun,
+            b'\n' | b'\r' => {
+                (self.due, self.begun) = (false, false);
+                self.buffer.push(byte);
+            }
+            _ => {
+                if self.due {
+                    self.buffer.push(b' ');
+                }
+                (self.due, self.begun) = (false, true);
+                self.buffer.push(byte);
+            }
+        }
+    }
+}
+
+impl<R: Read> Read for Squeezed<R> {
+    fn read(&mut self, out: &mut [u8]) -> std::io::Result<usize> {
+        let mut chunk = [0; 1 << 14];
+        while self.given == self.buffer.len() {
+            self.buffer.clear();
+            self.given = 0;
+            let read = self.inner.read(&mut chunk)?;
+            if read == 0 {
+                return Ok(0);
+            }
+            for &byte in &chunk[..read] {
+                self.take(byte);
+            }
+        }
+        let count = out.len().min(self.buffer.len() - self.given);
+        out[..count].copy_from_slice(&self.buffer[self.given..self.given + count]);
+        self.given += count;
+        Ok(count)
+    }
+}

@@ -1,0 +1,252 @@
+//! Parquet files, with a column a quantity or with lists of values (LeRobot).
+
+use std::panic::AssertUnwindSafe;
+
+use parquet::basic::{ConvertedType, LogicalType, TimeUnit};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::DataType;
+use parquet::errors::ParquetError;
+use parquet::file::metadata::{ColumnChunkMetaData, RowGroupMetaData};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::schema::types::ColumnDescriptor;
+
+use super::{Format, Options};
+use crate::RecordingError;
+use crate::input::{Input, most_expanded};
+use crate::table::{Column, Table};
+
+const NAME: &str = "Parquet";
+const MAGIC: &[u8] = b"PAR1";
+/// Values that are read at once.
+const BATCH: usize = 1 << 14;
+/// The most values of a file (1 GiB).
+const MOST: usize = 1 << 27;
+
+/// Parquet.
+pub struct Parquet;
+
+impl Format for Parquet {
+    fn matches(&self, input: &Input) -> bool {
+        input.head.starts_with(MAGIC)
+    }
+
+    fn read(&self, input: Input, _: &Options<'_>) -> Result<Table, RecordingError> {
+        let file = input.to_file()?;
+        // The library panics on some damaged pages; nothing of what it holds is used afterwards.
+        let read = std::panic::catch_unwind(AssertUnwindSafe(|| columns(file)));
+        let read = read.unwrap_or_else(|_| Err("a page is damaged; write or copy the file again".to_owned()));
+        let columns = read.map_err(|reason| input.error(NAME, reason))?;
+        Ok(Table::of_columns(columns))
+    }
+}
+
+fn damaged(error: ParquetError) -> String {
+    format!("the file is damaged or cut ({error}); write or copy it again")
+}
+
+/// A column's values so far.
+enum Values {
+    Numbers(Vec<f64>),
+    /// Whole numbers, as long as none is missing.
+    Integers(Vec<i64>),
+    /// Times (ns since 1970), in units of so many ns.
+    Nanos(Vec<i64>, i64),
+}
+
+/// A column of the file, which makes several of the table if it holds lists.
+struct Leaf {
+    name: String,
+    values: Values,
+    /// How many values each row has, where it holds lists.
+    width: Option<usize>,
+}
+
+/// The columns of numbers.
+fn columns(file: std::fs::File) -> Result<Vec<(String, Column)>, String> {
+    let size = file.metadata().map_or(0, |metadata| metadata.len());
+    let reader = SerializedFileReader::new(file).map_err(damaged)?;
+    // The library trusts the places that the footer gives.
+    let groups = reader.metadata().row_groups().iter();
+    if !groups
+        .flat_map(RowGroupMetaData::columns)
+        .all(|column| is_within(column, size))
+    {
+        return Err("its footer is damaged; write or copy it again".to_owned());
+    }
+    let schema = reader.metadata().file_metadata().schema_descr_ptr();
+    let mut leaves: Vec<Option<Leaf>> = schema.columns().iter().map(|column| leaf(column)).collect();
+    let mut room = MOST.min(usize::try_from(most_expanded(size) / 8).unwrap_or(MOST));
+    for group in 0..reader.num_row_groups() {
+        let group = reader.get_row_group(group).map_err(damaged)?;
+        for (index, leaf) in leaves.iter_mut().enumerate() {
+            if let Some(leaf) = leaf {
+                let column = group.get_column_reader(index).map_err(damaged)?;
+                read_leaf(column, schema.column(index).as_ref(), leaf, &mut room)?;
+            }
+        }
+    }
+    let mut columns = Vec::new();
+    for leaf in leaves.into_iter().flatten() {
+        let values = match leaf.values {
+            Values::Numbers(values) => Column::Numbers(values),
+            Values::Integers(values) => Column::Integers(values),
+            Values::Nanos(values, _) => Column::Nanos(values),
+        };
+        match leaf.width {
+            None => columns.push((leaf.name, values)),
+            Some(width) => columns.extend((0..width).map(|index| {
+                let rows = values.len() / width;
+                let column = values.picked((0..rows).map(|row| row * width + index));
+                (format!("{}[{index}]", leaf.name), column)
+            })),
+        }
+    }
+    if columns.is_empty() {
+        return Err("there are no columns of numbers; give a recording with time, positions and torques".to_owned());
+    }
+    Ok(columns)
+}
+
+/// Whether a column's pages are within a file of `size` bytes.
+fn is_within(column: &ColumnChunkMetaData, size: u64) -> bool {
+    let first = column.dictionary_page_offset().unwrap_or(column.data_page_offset());
+    let from = u64::try_from(first.min(column.data_page_offset()));
+    let length = u64::try_from(column.compressed_size());
+    matches!((from, length), (Ok(from), Ok(length)) if from.checked_add(length).is_some_and(|end| end <= size))
+}
+
+/// An empty column, if it is one of numbers or times, or of lists of numbers.
+fn leaf(column: &ColumnDescriptor) -> Option<Leaf> {
+    use parquet::basic::Type;
+    let unit = match (column.logical_type_ref(), column.converted_type()) {
+        (Some(LogicalType::Timestamp(time)), _) => Some(match time.unit {
+            TimeUnit::MILLIS => 1_000_000,
+            TimeUnit::MICROS => 1_000,
+            TimeUnit::NANOS => 1,
+        }),
+        (None, ConvertedType::TIMESTAMP_MILLIS) => Some(1_000_000),
+        (None, ConvertedType::TIMESTAMP_MICROS) => Some(1_000),
+        _ => None,
+    };
+    let values = match (column.physical_type(), unit) {
+        (Type::INT64, Some(unit)) => Values::Nanos(Vec::new(), unit),
+        (Type::INT96, _) => Values::Nanos(Vec::new(), 1),
+        (Type::INT32 | Type::INT64 | Type::BOOLEAN, _) => Values::Integers(Vec::new()),
+        (Type::FLOAT | Type::DOUBLE, _) => Values::Numbers(Vec::new()),
+        _ => return None,
+    };
+    let parts = column.path().parts();
+    let (name, width) = match column.max_rep_level() {
+        0 => (parts.join("."), None),
+        // The two last parts are names of the list's own ("list.element").
+        1 => (parts[..parts.len().saturating_sub(2).max(1)].join("."), Some(0)),
+        _ => return None,
+    };
+    Some(Leaf { name, values, width })
+}
+
+fn read_leaf(
+    column: ColumnReader,
+    descriptor: &ColumnDescriptor,
+    leaf: &mut Leaf,
+    room: &mut usize,
+) -> Result<(), String> {
+    match column {
+        ColumnReader::BoolColumnReader(reader) => read_typed(reader, descriptor, leaf, room, |value| {
+            (f64::from(u8::from(*value)), i64::from(*value))
+        }),
+        ColumnReader::Int32ColumnReader(reader) => read_typed(reader, descriptor, leaf, room, |value| {
+            (f64::from(*value), i64::from(*value))
+        }),
+        ColumnReader::Int64ColumnReader(reader) => {
+            read_typed(reader, descriptor, leaf, room, |value| (*value as f64, *value))
+        }
+        ColumnReader::Int96ColumnReader(reader) => {
+            read_typed(reader, descriptor, leaf, room, |value| (0.0, value.to_nanos()))
+        }
+        ColumnReader::FloatColumnReader(reader) => {
+            read_typed(reader, descriptor, leaf, room, |value| (f64::from(*value), 0))
+        }
+        ColumnReader::DoubleColumnReader(reader) => read_typed(reader, descriptor, leaf, room, |value| (*value, 0)),
+        ColumnReader::ByteArrayColumnReader(_) | ColumnReader::FixedLenByteArrayColumnReader(_) => Ok(()),
+    }
+}
+
+/// Reads one row group of a column; `both` gives a value as a number and as a whole one.
+fn read_typed<T: DataType>(
+    mut reader: ColumnReaderImpl<T>,
+    descriptor: &ColumnDescriptor,
+    leaf: &mut Leaf,
+    room: &mut usize,
+    both: impl Fn(&T::T) -> (f64, i64),
+) -> Result<(), String> {
+    loop {
+        let (mut definitions, mut repetitions, mut values) = (Vec::new(), Vec::new(), Vec::new());
+        let read = reader.read_records(BATCH, Some(&mut definitions), Some(&mut repetitions), &mut values);
+        let (records, _, levels) = read.map_err(damaged)?;
+        if records == 0 {
+            return Ok(());
+        }
+        *room = room.checked_sub(levels).ok_or(
+            "it has more values than a recording of its size (over 12 a byte); keep the columns of the recording alone",
+        )?;
+        if let Some(width) = &mut leaf.width {
+            check_lists(&leaf.name, width, &repetitions)?;
+        }
+        let mut values = values.iter();
+        let is_there = |level: usize| {
+            definitions
+                .get(level)
+                .is_none_or(|definition| *definition == descriptor.max_def_level())
+        };
+        for level in 0..levels {
+            let value = is_there(level).then(|| values.next()).flatten();
+            leaf.push(value.map(&both))?;
+        }
+    }
+}
+
+/// Checks that all lists are as long as the first.
+fn check_lists(name: &str, width: &mut usize, repetitions: &[i16]) -> Result<(), String> {
+    let mut starts = repetitions
+        .iter()
+        .enumerate()
+        .filter(|(_, level)| **level == 0)
+        .map(|(at, _)| at);
+    let mut from = starts.next().unwrap_or(0);
+    for to in starts.chain([repetitions.len()]) {
+        let length = to - from;
+        if *width == 0 {
+            *width = length;
+        } else if *width != length {
+            return Err(format!(
+                "column \"{name}\" has lists of {width} and of {length} values; write as many in each row"
+            ));
+        }
+        from = to;
+    }
+    Ok(())
+}
+
+impl Leaf {
+    /// Adds a value, or that there is none.
+    fn push(&mut self, value: Option<(f64, i64)>) -> Result<(), String> {
+        match (&mut self.values, value) {
+            (Values::Numbers(values), value) => values.push(value.map_or(f64::NAN, |(number, _)| number)),
+            (Values::Integers(values), Some((_, whole))) => values.push(whole),
+            (Values::Integers(values), None) => {
+                let mut numbers: Vec<f64> = values.iter().map(|value| *value as f64).collect();
+                numbers.push(f64::NAN);
+                self.values = Values::Numbers(numbers);
+            }
+            (Values::Nanos(values, unit), Some((_, whole))) => values.push(whole.saturating_mul(*unit)),
+            (Values::Nanos(..), None) => {
+                return Err(format!(
+                    "column \"{}\" lacks a time somewhere; fill it or leave the row out",
+                    self.name
+                ));
+            }
+        }
+        Ok(())
+    }
+}

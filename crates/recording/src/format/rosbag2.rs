@@ -1,0 +1,163 @@
+//! Bags of ROS 2: a folder of files, and the files of the storage sqlite3.
+
+use std::io::{Read, Write};
+use std::path::Path;
+
+use rusqlite::{Connection, OpenFlags};
+
+use super::mcap::{self, no_states};
+use super::{Format, Options};
+use crate::RecordingError;
+use crate::input::{Input, most_expanded};
+use crate::joint_state::{JointStates, TYPES};
+use crate::table::Table;
+
+const NAME: &str = "rosbag2";
+const SQLITE: &[u8] = b"SQLite format 3\0";
+const ZSTD: &[u8] = &[0x28, 0xB5, 0x2F, 0xFD];
+
+/// A bag's folder, or one of its files if it is a database.
+pub struct Rosbag2;
+
+impl Format for Rosbag2 {
+    fn matches(&self, input: &Input) -> bool {
+        input.is_folder() || input.head.starts_with(SQLITE)
+    }
+
+    fn read(&self, input: Input, options: &Options<'_>) -> Result<Table, RecordingError> {
+        let mut states = JointStates::default();
+        if !input.is_folder() {
+            database(&input, options, &mut states)?;
+            return states.into_table(&input, NAME, options.topics);
+        }
+        let unreadable = |reason| RecordingError::Read {
+            path: input.path.clone(),
+            reason,
+        };
+        let mut files = Vec::new();
+        for entry in std::fs::read_dir(&input.path).map_err(unreadable)? {
+            let path = entry.map_err(unreadable)?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            // A database's journal and its index are no files of the bag.
+            let is_part = [".db3", ".db3.zstd", ".mcap", ".mcap.zstd"]
+                .iter()
+                .any(|end| name.ends_with(end));
+            if is_part && path.is_file() {
+                files.push(path);
+            }
+        }
+        files.sort();
+        if files.is_empty() {
+            let reason =
+                "it is a folder without .db3 or .mcap files, and so no bag; give a recording's file or a bag's folder";
+            return Err(input.error(NAME, reason));
+        }
+        let mut warnings = Vec::new();
+        for path in files {
+            let part = Input::open(&path)?;
+            if part.head.starts_with(SQLITE) {
+                database(&part, options, &mut states)?;
+            } else {
+                warnings.extend(mcap::read_into(&part, options, &mut states)?);
+            }
+        }
+        let mut table = states.into_table(&input, NAME, options.topics)?;
+        table.warnings.extend(warnings);
+        Ok(table)
+    }
+}
+
+/// Reads the joint states of a database.
+fn database(input: &Input, options: &Options<'_>, states: &mut JointStates) -> Result<(), RecordingError> {
+    // What was expanded, or is a pipe, has no path of its own.
+    let copy = if input.is_as_it_was() {
+        None
+    } else {
+        let failed = |reason| RecordingError::Read {
+            path: input.path.clone(),
+            reason,
+        };
+        let mut copy = tempfile::NamedTempFile::new().map_err(failed)?;
+        std::io::copy(&mut input.to_file()?, &mut copy).map_err(failed)?;
+        copy.flush().map_err(failed)?;
+        Some(copy)
+    };
+    let path = copy
+        .as_ref()
+        .map_or(input.path.as_path(), tempfile::NamedTempFile::path);
+    let size = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
+    match messages(path, most_expanded(size), options, states) {
+        Ok(topics) if states.messages() == 0 => {
+            let topics = topics.iter().map(String::as_str).collect();
+            Err(input.error(NAME, no_states(topics, options)))
+        }
+        Ok(_) => Ok(()),
+        Err(Failure::Database(error)) => Err(input.error(
+            NAME,
+            format!("the database cannot be read ({error}); copy the bag again, with all files of its folder"),
+        )),
+        Err(Failure::Message(reason)) => Err(input.error(NAME, reason)),
+    }
+}
+
+enum Failure {
+    Database(rusqlite::Error),
+    Message(String),
+}
+
+impl From<rusqlite::Error> for Failure {
+    fn from(error: rusqlite::Error) -> Self {
+        Self::Database(error)
+    }
+}
+
+/// Takes the messages of all topics with joint states that are wanted; returns all topics.
+fn messages(path: &Path, most: u64, options: &Options<'_>, states: &mut JointStates) -> Result<Vec<String>, Failure> {
+    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let database = Connection::open_with_flags(path, flags)?;
+    let mut query = database.prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY name")?;
+    let topics = query.query_map([], |row| {
+        Ok((
+            row.get::<_, i64>(0)?,
+            row.get::<_, String>(1)?,
+            row.get::<_, String>(2)?,
+            row.get::<_, String>(3)?,
+        ))
+    })?;
+    let topics = topics.collect::<Result<Vec<_>, _>>()?;
+    let mut query = database.prepare("SELECT timestamp, data FROM messages WHERE topic_id = ?1")?;
+    let mut room = most;
+    for (id, topic, kind, encoding) in &topics {
+        let is_chosen = options.topics.is_empty() || options.topics.contains(topic);
+        if !TYPES.contains(&kind.as_str()) || encoding != "cdr" || !is_chosen {
+            continue;
+        }
+        let mut rows = query.query([id])?;
+        while let Some(row) = rows.next()? {
+            let (logged, data) = (row.get::<_, i64>(0)?, row.get_ref(1)?);
+            let data = data
+                .as_blob()
+                .map_err(|_| Failure::Message(format!("a message of {topic} is no blob")))?;
+            if data.starts_with(ZSTD) {
+                // The compression mode "message".
+                let expanded = expand(data, &mut room).map_err(Failure::Message)?;
+                states.add(topic, logged, &expanded).map_err(Failure::Message)?;
+            } else {
+                states.add(topic, logged, data).map_err(Failure::Message)?;
+            }
+        }
+    }
+    Ok(topics.into_iter().map(|(_, topic, _, _)| topic).collect())
+}
+
+/// The message that was compressed; what it takes is subtracted from `room` (bytes).
+fn expand(data: &[u8], room: &mut u64) -> Result<Vec<u8>, String> {
+    let damaged = |_| "a compressed message is damaged; copy the bag again".to_owned();
+    let mut expanded = Vec::new();
+    let decoder = zstd::stream::read::Decoder::new(data).map_err(damaged)?;
+    decoder.take(*room + 1).read_to_end(&mut expanded).map_err(damaged)?;
+    *room = room.checked_sub(expanded.len() as u64).ok_or(
+        "its messages expand to more than a hundred times its size, which no recording does; record without compression",
+    )?;
+    Ok(expanded)
+}

@@ -1,0 +1,118 @@
+//! The columns that were read, put together as a recording.
+
+use crate::header::Plan;
+use crate::table::Place;
+use crate::{PartialSignal, Quantity, Recording, Signal, Warning, wraps};
+
+/// What is known of a channel.
+#[derive(Clone, Debug, PartialEq)]
+pub enum State {
+    /// Nothing yet.
+    New,
+    /// It has a value in every row so far.
+    Values,
+    /// It has had no value so far, though it must have one in every row.
+    Missing {
+        /// The first row.
+        place: Place,
+        /// What stands there.
+        found: String,
+    },
+    /// It can be done without, and lacks a value somewhere.
+    LeftOut,
+}
+
+/// Columns by a plan, the time (s) first, then the channels, then the others.
+pub struct Gathered<'a> {
+    /// What they are.
+    pub plan: &'a Plan,
+    /// Their values.
+    pub columns: Vec<Vec<f64>>,
+    /// The rows at which a run begins that is not the first.
+    pub breaks: Vec<usize>,
+    /// What is known of each channel.
+    pub states: Vec<State>,
+    /// Whether another column holds numbers alone.
+    pub numeric: Vec<bool>,
+    /// What was found so far.
+    pub warnings: Vec<Warning>,
+}
+
+impl Gathered<'_> {
+    /// The recording; joints without positions or torques are left out.
+    pub fn into_recording(mut self) -> Recording {
+        let keeps = self.kept_joints();
+        let others: Vec<Vec<f64>> = self.columns.split_off(1 + self.plan.channels.len());
+        let mut channels = self.columns.split_off(1);
+        let time = self.columns.swap_remove(0);
+        let mut signal = |quantity: Quantity| -> PartialSignal {
+            let mut signal = vec![None; keeps.len()];
+            for ((channel, state), values) in self.plan.channels.iter().zip(&self.states).zip(&mut channels) {
+                if channel.quantity == quantity && *state != State::LeftOut {
+                    signal[channel.joint] = Some(std::mem::take(values));
+                }
+            }
+            let kept = signal.into_iter().zip(&keeps).filter(|(_, keeps)| **keeps);
+            kept.map(|(values, _)| values).collect()
+        };
+        let mut partial = |quantity: Quantity| -> PartialSignal {
+            let signal = signal(quantity);
+            if signal.iter().all(Option::is_none) {
+                Vec::new()
+            } else {
+                signal
+            }
+        };
+        // For all joints or for none.
+        let mut whole = |quantity: Quantity| -> Signal {
+            let signal: Option<Signal> = partial(quantity).into_iter().collect();
+            signal.unwrap_or_default()
+        };
+        let some = |signal: Signal| if signal.is_empty() { None } else { Some(signal) };
+        let (q, tau) = (whole(Quantity::Position), whole(Quantity::Torque));
+        let (qd, qdd) = (some(whole(Quantity::Velocity)), some(whole(Quantity::Acceleration)));
+        if qd.is_none() {
+            self.warnings.push(Warning::NoVelocity);
+        }
+        let q_secondary = partial(Quantity::SecondaryPosition);
+        let tau_current = partial(Quantity::CurrentTorque);
+        let (current, temperature) = (partial(Quantity::Current), partial(Quantity::Temperature));
+        let joints = self.plan.joints.iter().zip(&keeps).filter(|(_, keeps)| **keeps);
+        let others = self.plan.others.iter().zip(others).zip(self.numeric);
+        let mut recording = Recording {
+            joints: joints.map(|(joint, _)| joint.clone()).collect(),
+            time,
+            q,
+            qd,
+            qdd,
+            tau,
+            q_secondary,
+            tau_current,
+            current,
+            temperature,
+            others: others
+                .filter(|(_, numeric)| *numeric)
+                .map(|(((_, name), values), _)| (name.clone(), values))
+                .collect(),
+            breaks: self.breaks,
+            warnings: self.warnings,
+        };
+        wraps::unwrap(&mut recording);
+        recording
+    }
+
+    /// Whether each joint has positions and torques; the others are told of.
+    fn kept_joints(&mut self) -> Vec<bool> {
+        let mut keeps = vec![true; self.plan.joints.len()];
+        for (channel, state) in self.plan.channels.iter().zip(&self.states) {
+            if matches!(state, State::Missing { .. }) && keeps[channel.joint] {
+                keeps[channel.joint] = false;
+                self.warnings.push(Warning::JointLeftOut {
+                    joint: self.plan.joints[channel.joint].clone(),
+                    column: channel.header.clone(),
+                });
+            }
+        }
+        keeps
+    }
+}

@@ -1,0 +1,222 @@
+//! A table of named columns, read row by row: what every format makes of its file.
+
+use std::fmt;
+
+use csv::ByteRecord;
+use serde::{Serialize, Serializer};
+
+use crate::{RecordingError, Warning};
+
+/// Where in a file something is: a line of text, or a row (message) of a file that has no lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// The line, from 1.
+    Line(u64),
+    /// The row, from 1.
+    Row(u64),
+}
+
+impl Place {
+    /// The place after the file's name.
+    pub(crate) fn suffix(self) -> String {
+        match self {
+            Self::Line(line) => format!(":{line}"),
+            Self::Row(row) => format!(": row {row}"),
+        }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Row(row) => write!(f, "row {row}"),
+        }
+    }
+}
+
+impl Serialize for Place {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let (Self::Line(number) | Self::Row(number)) = self;
+        serializer.serialize_u64(*number)
+    }
+}
+
+/// One value of a table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cell<'a> {
+    /// Text, which may be a number.
+    Text(&'a [u8]),
+    /// A number, which may be NaN: missing.
+    Number(f64),
+    /// A whole number.
+    Integer(i64),
+    /// A time (ns since 1970).
+    Nanos(i64),
+}
+
+impl Cell<'_> {
+    /// The finite number that it holds.
+    pub fn number(self) -> Option<f64> {
+        let value = match self {
+            Self::Text(cell) => std::str::from_utf8(cell.trim_ascii()).ok()?.parse().ok()?,
+            Self::Number(value) => value,
+            Self::Integer(value) => value as f64,
+            Self::Nanos(nanos) => nanos as f64 * 1e-9,
+        };
+        Some(value).filter(|value: &f64| value.is_finite())
+    }
+
+    /// Whether there is no value: an empty cell, or NaN.
+    pub fn is_missing(self) -> bool {
+        match self {
+            Self::Text(cell) => {
+                let cell = cell.trim_ascii();
+                cell.is_empty() || cell.eq_ignore_ascii_case(b"nan")
+            }
+            Self::Number(value) => value.is_nan(),
+            Self::Integer(_) | Self::Nanos(_) => false,
+        }
+    }
+
+    /// What it holds, for a message.
+    pub fn shown(self) -> String {
+        let text = match self {
+            Self::Text(cell) => String::from_utf8_lossy(cell).into_owned(),
+            Self::Number(value) => value.to_string(),
+            Self::Integer(value) | Self::Nanos(value) => value.to_string(),
+        };
+        let short: String = text.chars().take(40).collect();
+        if short.len() < text.len() {
+            format!("{short}…")
+        } else {
+            short
+        }
+    }
+}
+
+/// A column that is held in memory.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Column {
+    /// Numbers; NaN where there is none.
+    Numbers(Vec<f64>),
+    /// Whole numbers.
+    Integers(Vec<i64>),
+    /// Times (ns since 1970).
+    Nanos(Vec<i64>),
+}
+
+impl Column {
+    /// The number of values.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Numbers(values) => values.len(),
+            Self::Integers(values) | Self::Nanos(values) => values.len(),
+        }
+    }
+
+    /// The values at these places.
+    pub fn picked(&self, places: impl Iterator<Item = usize>) -> Self {
+        match self {
+            Self::Numbers(values) => Self::Numbers(places.map(|place| values[place]).collect()),
+            Self::Integers(values) => Self::Integers(places.map(|place| values[place]).collect()),
+            Self::Nanos(values) => Self::Nanos(places.map(|place| values[place]).collect()),
+        }
+    }
+
+    fn cell(&self, row: usize) -> Cell<'_> {
+        match self {
+            Self::Numbers(values) => Cell::Number(values[row]),
+            Self::Integers(values) => Cell::Integer(values[row]),
+            Self::Nanos(values) => Cell::Nanos(values[row]),
+        }
+    }
+}
+
+/// One row of a table.
+#[derive(Clone, Copy, Debug)]
+pub struct Row<'a> {
+    /// Where it stands in the file.
+    pub place: Place,
+    cells: Cells<'a>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Cells<'a> {
+    Record(&'a ByteRecord),
+    Columns(&'a [Column], usize),
+}
+
+impl<'a> Row<'a> {
+    /// A row of text, which has as many cells as there are columns.
+    pub fn of_text(record: &'a ByteRecord) -> Self {
+        Self {
+            place: Place::Line(record.position().map_or(1, csv::Position::line)),
+            cells: Cells::Record(record),
+        }
+    }
+
+    /// The value in a column.
+    pub fn cell(&self, column: usize) -> Cell<'a> {
+        match self.cells {
+            Cells::Record(record) => Cell::Text(record.get(column).unwrap_or_default()),
+            Cells::Columns(columns, row) => columns[column].cell(row),
+        }
+    }
+}
+
+/// Where rows come from, one after the other.
+pub trait RowSource {
+    /// The next row; none at the end.
+    fn next(&mut self) -> Result<Option<Row<'_>>, RecordingError>;
+
+    /// What was found and dealt with in reading the rows.
+    fn warnings(&mut self) -> Vec<Warning> {
+        Vec::new()
+    }
+}
+
+/// Named columns and the rows below them.
+pub struct Table {
+    /// The columns' names.
+    pub headers: Vec<String>,
+    /// The first row's cells, if they are text: joints may be named there.
+    pub first: Vec<String>,
+    /// The rows.
+    pub rows: Box<dyn RowSource>,
+    /// What was found before the first row.
+    pub warnings: Vec<Warning>,
+}
+
+impl Table {
+    /// A table of columns in memory, all of which have the same number of values.
+    pub fn of_columns(columns: Vec<(String, Column)>) -> Self {
+        let (headers, columns): (Vec<String>, Vec<Column>) = columns.into_iter().unzip();
+        let rows = columns.iter().map(Column::len).min().unwrap_or(0);
+        Self {
+            first: Vec::new(),
+            headers,
+            rows: Box::new(Held { columns, rows, next: 0 }),
+            warnings: Vec::new(),
+        }
+    }
+}
+
+struct Held {
+    columns: Vec<Column>,
+    rows: usize,
+    next: usize,
+}
+
+impl RowSource for Held {
+    fn next(&mut self) -> Result<Option<Row<'_>>, RecordingError> {
+        if self.next == self.rows {
+            return Ok(None);
+        }
+        self.next += 1;
+        Ok(Some(Row {
+            place: Place::Row(self.next as u64),
+            cells: Cells::Columns(&self.columns, self.next - 1),
+        }))
+    }
+}

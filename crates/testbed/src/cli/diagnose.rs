@@ -1,0 +1,145 @@
+//! The arguments of `testbed diagnose`.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+
+use super::chain::ChainArgs;
+use super::numbers::{parse_accuracy, parse_frequency};
+use super::rerun::{Rerun, parse_rerun};
+
+/// The catalogue's effects, one a line.
+fn effects_help() -> String {
+    let line = |kind: &&dyn effects::EffectKind| format!("\n  {:<24} {}", kind.spec().name, kind.spec().meaning);
+    let lines: String = effects::CATALOGUE.iter().map(line).collect();
+    format!("Effects:{lines}")
+}
+
+#[derive(Debug, Args)]
+#[command(after_long_help = effects_help())]
+pub struct DiagnoseArgs {
+    /// The robot's URDF
+    #[arg(long, value_name = "URDF")]
+    pub robot: String,
+
+    /// The training recordings, to which the effects are fitted
+    #[arg(long, required = true, num_args = 1.., value_name = "FILE")]
+    pub train: Vec<PathBuf>,
+
+    /// Recordings of the same robot from before something happened: what the other recordings show and these do not is
+    /// what changed
+    #[arg(long, num_args = 1.., value_name = "FILE")]
+    pub before: Vec<PathBuf>,
+
+    /// How far the URDF's masses, centres of mass and inertias may be off, as a fraction of each link's own (0.1: ten per cent)
+    /// [default: estimated from the recordings]
+    #[arg(long, value_name = "FRACTION", value_parser = parse_accuracy)]
+    pub urdf_accuracy: Option<f64>,
+
+    /// The relative standard deviation of the torque constants (0.05: five per cent), included in every interval
+    /// [default: unknown; sizes are then in the newton metres of the recorded torque]
+    #[arg(long, value_name = "FRACTION", value_parser = parse_accuracy)]
+    pub torque_accuracy: Option<f64>,
+
+    /// The held-out recordings, on which the fit is validated; without one, no finding is validated
+    #[arg(long, num_args = 1.., value_name = "FILE")]
+    pub held_out: Vec<PathBuf>,
+
+    /// The column map (.toml), for files with other headers or units
+    #[arg(long, value_name = "MAP")]
+    pub map: Option<PathBuf>,
+
+    /// Effects that the model is known to omit (.toml, as written by --model); they are not reported again
+    #[arg(long, value_name = "FILE")]
+    pub known: Option<PathBuf>,
+
+    /// Skip the comparison with the simulation and with the learned correction, which is faster
+    #[arg(long)]
+    pub torques_only: bool,
+
+    /// Test a hypothesis by fitting only these effects: effect:joint, or effect for the whole arm; or a file (.toml, as written
+    /// by --model), whose parameter values are ignored
+    #[arg(long, value_name = "EFFECT:JOINT,…|FILE", conflicts_with = "known")]
+    pub only: Option<String>,
+
+    /// Write the diagnosis to this file as JSON
+    #[arg(long, value_name = "OUT")]
+    pub json: Option<PathBuf>,
+
+    /// Write a page to this file (.html): figures, parameters, effects that are not testable
+    #[arg(long, value_name = "OUT")]
+    pub report: Option<PathBuf>,
+
+    /// Write the corrected model to this file (.toml): the known effects and the effects found
+    #[arg(long, value_name = "OUT")]
+    pub model: Option<PathBuf>,
+
+    /// Write the URDF to this file, with those effects of the corrected model that a URDF can represent
+    #[arg(long, value_name = "OUT")]
+    pub urdf: Option<PathBuf>,
+
+    /// Write what was tried, taken and dropped, by which rule and with which gain (nats), to this file (.csv)
+    #[arg(long, value_name = "OUT")]
+    pub trace: Option<PathBuf>,
+
+    /// Write the corrected model to this file as MJCF (.xml), for MuJoCo, with those effects that MJCF can represent
+    #[arg(long, value_name = "OUT")]
+    pub mjcf: Option<PathBuf>,
+
+    /// Whether friction in the URDF (<dynamics>) is known friction, which the recordings are not to explain again. In most URDFs
+    /// it is a placeholder
+    #[arg(long, value_enum, default_value = "diagnosed")]
+    pub urdf_friction: UrdfFriction,
+
+    /// Propose the motion that best distinguishes the remaining alternatives, and write it to this file as a scenario (.toml)
+    #[arg(long, value_name = "OUT", conflicts_with = "only")]
+    pub next: Option<PathBuf>,
+
+    /// Output to Rerun: off, save[=FILE], spawn or connect[=URL]
+    #[cfg_attr(not(feature = "viewer"), arg(hide = true))]
+    #[arg(long, value_name = "WHERE", value_parser = parse_rerun)]
+    pub rerun: Option<Rerun>,
+
+    /// The number of threads, which does not change the result [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub jobs: Option<u16>,
+
+    /// The half-power frequency of the low-pass filter (Hz)
+    #[arg(long, value_name = "HZ", value_parser = parse_frequency)]
+    pub cutoff: Option<f64>,
+
+    #[command(flatten)]
+    pub chain: ChainArgs,
+}
+
+impl DiagnoseArgs {
+    /// The files that will be written.
+    pub fn outputs(&self) -> Vec<&Path> {
+        let rerun = match &self.rerun {
+            Some(Rerun::Save(Some(path))) => Some(path.as_path()),
+            Some(Rerun::Save(None)) => Some(Path::new("diagnosis.rrd")),
+            _ => None,
+        };
+        let files = [
+            &self.json,
+            &self.report,
+            &self.model,
+            &self.urdf,
+            &self.trace,
+            &self.mjcf,
+            &self.next,
+        ];
+        files.into_iter().flatten().map(PathBuf::as_path).chain(rerun).collect()
+    }
+}
+
+/// Which friction in a URDF is known friction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum UrdfFriction {
+    /// That which testbed diagnose wrote (--urdf)
+    Diagnosed,
+    /// All
+    Known,
+    /// None
+    Ignored,
+}
