@@ -34,6 +34,9 @@ use crate::selection::unmounted::unmounted;
 use crate::thresholds;
 use crate::trace::Decision;
 
+/// No further search is made once so many names were refused by the final fit.
+const MOST_REFUSED: usize = 3;
+
 /// How to diagnose.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
@@ -110,13 +113,23 @@ pub fn diagnose(
             (judged, resampled)
         }
         None => {
-            let chosen = plan::search(&mut study, progress);
-            progress("testing the selected effects");
-            let products = study.products(|r| fitted[r]);
-            let held = fitted.iter().any(|f| !f).then(|| study.products(|r| !fitted[r]));
-            let mut judged = judge::judge(&study, &products, held.as_ref(), chosen);
-            progress("final fit and intervals");
-            let resampled = final_fit::settled(&mut study, &mut judged);
+            let mut judged;
+            let mut resampled;
+            loop {
+                let refused = study.refused();
+                let chosen = plan::search(&mut study, progress);
+                progress("testing the selected effects");
+                let products = study.products(|r| fitted[r]);
+                let held = fitted.iter().any(|f| !f).then(|| study.products(|r| !fitted[r]));
+                judged = judge::judge(&study, &products, held.as_ref(), chosen);
+                progress("final fit and intervals");
+                resampled = final_fit::settled(&mut study, &mut judged);
+                // What turns out not to be may have kept something else from being found.
+                if study.refused() == refused || refused > MOST_REFUSED {
+                    break;
+                }
+                study.restart();
+            }
             let resampled = unmounted(&mut study, &mut judged).unwrap_or(resampled);
             (judged, resampled)
         }

@@ -46,7 +46,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
         study.suggest(&chosen);
         let products = study.products(|r| fitted[r]);
         let problem = study.problem(&products);
-        let allowed: Vec<usize> = (0..study.candidates.len()).collect();
+        let allowed = study.allowed();
         chosen = problem.choose(chosen.set, &chosen.fit.weights);
         chosen = study.grown(chosen, &allowed);
         let mut sets = [before, chosen.set.clone()];
@@ -63,7 +63,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
         let set = formed_anew.unwrap_or_else(|| chosen.set.clone());
         let products = study.products(|r| fitted[r]);
         let problem = study.problem(&products);
-        let allowed: Vec<usize> = (0..study.candidates.len()).collect();
+        let allowed = study.allowed();
         let before = set.clone();
         chosen = problem.choose(set, &chosen.fit.weights);
         let pruned = problem.prune(chosen.clone());
@@ -82,7 +82,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
     // With all sizes found, what did not pay before may do so, and with that what was not possible.
     for _ in 0..LAST {
         let products = study.products(|r| fitted[r]);
-        let allowed: Vec<usize> = (0..study.candidates.len()).collect();
+        let allowed = study.allowed();
         let before = chosen.set.clone();
         chosen = study.problem(&products).choose(chosen.set, &chosen.fit.weights);
         chosen = study.grown(chosen, &allowed);

@@ -11,7 +11,7 @@ use crate::data::measure::{self, mean, noise, scales, seconds, spans};
 use crate::data::motion::{Input, Motions};
 use crate::data::rigid::Rigid;
 use crate::regression::background::{Background, Prior, Stated, Strengths};
-use crate::regression::fit::{Fit, Products};
+use crate::regression::fit::Products;
 use crate::regression::table::{Moving, Table};
 use crate::search::candidate::{Candidate, Cause, MayBe, catalogue};
 use crate::search::problem::Problem;
@@ -19,6 +19,7 @@ use crate::thresholds;
 use crate::trace::Trace;
 
 mod about;
+mod anew;
 mod strengths;
 
 pub use about::About;
@@ -66,6 +67,8 @@ pub struct Study {
     pub stated: Stated,
     /// What was decided so far.
     pub trace: Trace,
+    /// What the final fit showed not to be: it is not looked for again.
+    refused: Vec<(Cause, Option<usize>)>,
 }
 
 impl Study {
@@ -180,6 +183,7 @@ impl Study {
             stated,
             prior,
             trace: Trace::default(),
+            refused: Vec::new(),
         }
     }
 
@@ -211,83 +215,6 @@ impl Study {
             candidates: &self.candidates,
             arm: &self.arm,
         }
-    }
-
-    /// Forms everything anew about the arm that `fit` found: what is not linear in a tilt, an encoder's offset or a
-    /// payload is then small. Sizes tried in vain are forgotten. Returns the numbers that the candidates `kept` have now,
-    /// or `None` if there was nothing to do.
-    pub fn relinearise(&mut self, fit: &Fit, kept: &[usize]) -> Option<Vec<usize>> {
-        self.about(fit, kept, false)
-    }
-
-    /// Forms everything anew, with the rows near reversals, for the last fit. The numbers that the candidates `kept` have now.
-    pub fn settle(&mut self, fit: &Fit, kept: &[usize]) -> Vec<usize> {
-        self.moving = Moving::ThroughReversals;
-        self.about(fit, kept, true).unwrap_or_default()
-    }
-
-    fn about(&mut self, fit: &Fit, kept: &[usize], anyway: bool) -> Option<Vec<usize>> {
-        let About {
-            arm,
-            offset,
-            bare,
-            carried,
-        } = About::new(self, fit);
-        // Nothing to carry, and nothing carried by an earlier choice.
-        let carries = !carried.is_empty() || bare.is_some();
-        if !carries && !self.carries && !anyway {
-            return None;
-        }
-        self.carries = carries;
-        let nominal = self.arm.inertial_parameters();
-        self.rigid = self
-            .motions
-            .chunks
-            .par_iter()
-            .map(|chunk| {
-                let mut rigid = Rigid::new(&arm, &nominal, &offset, chunk);
-                if let Some(bare) = &bare {
-                    rigid.set_background(bare, chunk);
-                }
-                rigid
-            })
-            .collect();
-        let (set, terms) = self.forget_trials(kept);
-        self.table = self
-            .table
-            .formed_anew(&self.motions, &self.rigid, &self.scales, terms, &carried, self.moving);
-        Some(set)
-    }
-
-    /// Leaves out the trials that are not in `set`; the set's new numbers, and the terms that are left. The table is then to
-    /// be formed anew.
-    fn forget_trials(&mut self, set: &[usize]) -> (Vec<usize>, Vec<Term>) {
-        let old = &self.table.terms;
-        let mut terms: Vec<Term> = Vec::new();
-        let mut place: Vec<Option<usize>> = vec![None; old.len()];
-        let mut keep = |column: usize| -> usize {
-            *place[column].get_or_insert_with(|| {
-                terms.push(old[column]);
-                terms.len() - 1
-            })
-        };
-        // The background's columns stay the first.
-        (0..self.prior.terms().len()).for_each(|column| {
-            keep(column);
-        });
-        self.force = self.force.map(&mut keep);
-        let mut numbers = vec![0; self.candidates.len()];
-        let mut kept = Vec::new();
-        for (number, mut candidate) in std::mem::take(&mut self.candidates).into_iter().enumerate() {
-            if candidate.is_trial && !set.contains(&number) {
-                continue;
-            }
-            candidate.columns.iter_mut().for_each(|column| *column = keep(*column));
-            numbers[number] = kept.len();
-            kept.push(candidate);
-        }
-        self.candidates = kept;
-        (set.iter().map(|&number| numbers[number]).collect(), terms)
     }
 
     /// The rows of the training recordings.

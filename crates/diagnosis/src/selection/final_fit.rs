@@ -7,6 +7,7 @@ use torque::Corrected;
 use crate::findings::found::useless;
 use crate::findings::report::{JointFit, Parameter};
 use crate::findings::verdict::structured;
+use crate::regression::background::Strengths;
 use crate::regression::bootstrap::{Resampled, resample};
 use crate::search::problem::{Chosen, IMPOSSIBLE, Problem};
 use crate::search::study::Study;
@@ -32,12 +33,16 @@ pub fn settled(study: &mut Study, judged: &mut Judged) -> Resampled {
         }
         let resampled = resample(study, &judged.named);
         match unclear(study, judged, &resampled) {
-            Some(unclear) => drop_name(
-                study,
-                judged,
-                unclear,
-                "its interval holds no effect, or nothing physical",
-            ),
+            Some((unclear, true)) => {
+                study.refuse(unclear);
+                drop_name(
+                    study,
+                    judged,
+                    unclear,
+                    "its parameters contradict each other, or its rows",
+                );
+            }
+            Some((unclear, false)) => drop_name(study, judged, unclear, "its interval holds no effect"),
             None => return resampled,
         }
     }
@@ -141,10 +146,10 @@ fn give_up(study: &Study, judged: &mut Judged) {
 /// An error (NRMSE) below this says that something of the torque is explained.
 pub const PARTLY: f64 = 0.8;
 
-/// The weakest of the names whose size might be zero, or is none that physics has.
-fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<usize> {
+/// The weakest of the names whose size might be zero, or is none that physics has, and whether it is that.
+fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<(usize, bool)> {
     let resampled = &resampled.evenly();
-    let is_unclear = |member: &&judge::Member| {
+    let contradicted = |member: &judge::Member| {
         let named = name(study, resampled, member.candidate);
         // With its sizes corrected it may be no physics any more: a level below zero.
         let is_impossible = |named: &Named| Corrected::new(&study.arm, std::slice::from_ref(&named.effect)).is_err();
@@ -153,11 +158,13 @@ fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<usiz
             let interval = |key: &str| named.parameters.get(key).map(|parameter| parameter.ci95);
             !named.effect.kind().get().is_certain(&named.effect, &interval)
         };
-        if named.iter().any(|named| is_impossible(named) || is_contradicted(named))
-            || is_part_of_the_rest(study, judged, member)
-        {
+        named.iter().any(|named| is_impossible(named) || is_contradicted(named))
+    };
+    let is_unclear = |member: &&judge::Member| {
+        if contradicted(member) || is_part_of_the_rest(study, judged, member) {
             return true;
         }
+        let named = name(study, resampled, member.candidate);
         named.first().is_some_and(|named| {
             let spec = named.effect.spec();
             let sizes = spec.main.iter().filter_map(|main| named.parameters.get_key_value(main));
@@ -171,7 +178,7 @@ fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<usiz
     };
     let unclear = judged.members.iter().filter(is_unclear);
     let weakest = unclear.min_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
-    Some(weakest.candidate)
+    Some((weakest.candidate, contradicted(weakest)))
 }
 
 /// Beside structure that has no name a constant must be as large as that, and a drive's inertia larger by this: both may be a
@@ -194,33 +201,60 @@ fn is_part_of_the_rest(study: &Study, judged: &Judged, member: &judge::Member) -
     factor * nameless.chain(left).fold(0.0, f64::max) > member.shares[joint]
 }
 
-/// Drops findings until no joint's held-out error is larger than the nominal model's.
-fn guard(study: &Study, judged: &mut Judged) {
-    let fitted = study.fitted.clone();
-    let products = study.products(|r| fitted[r]);
-    let problem = study.problem(&products);
-    loop {
-        let nrmse = |chosen: &Chosen, joint: usize| {
-            let fit = errors(study, joint, &augmented(study, chosen, joint));
-            (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented)
-        };
-        let worse = (0..study.motions.dof).find(|&joint| match nrmse(&judged.named, joint) {
-            (Some(nominal), Some(augmented)) => judge::harms(nominal, augmented),
-            _ => false,
-        });
-        let Some(joint) = worse else { break };
-        let best = judged
-            .members
-            .iter()
-            .filter(|member| study.candidates[member.candidate].joint.is_some() && member.shares[joint] > 0.0)
-            .map(|member| {
+/// Takes back the background, and drops findings, until no joint's held-out error is larger than the nominal model's.
+fn guard(study: &mut Study, judged: &mut Judged) {
+    while let Some(joint) = harmed(study, &judged.named) {
+        if let Some((strengths, next)) = likelier_outside(study, &judged.named) {
+            study.strengths = strengths;
+            study.note_strengths(judge::HARMS, &judged.named, &next);
+            judged.named = next;
+        } else {
+            let products = study.products(|r| study.fitted[r]);
+            let problem = study.problem(&products);
+            let acts = |member: &&judge::Member| {
+                study.candidates[member.candidate].joint.is_some() && member.shares[joint] > 0.0
+            };
+            let without = judged.members.iter().filter(acts).map(|member| {
                 let next = problem.choose(judged.named.others(member.candidate), &judged.named.fit.weights);
-                (nrmse(&next, joint).1.unwrap_or(f64::INFINITY), next)
-            })
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, next)) = best else { break };
-        study.note(judge::HARMS, &judged.named, &next);
-        judged.members = judge::describe(study, &problem, &next);
-        judged.named = next;
+                (held_out(study, &next, joint).1.unwrap_or(f64::INFINITY), next)
+            });
+            let Some((_, next)) = without.min_by(|a, b| a.0.total_cmp(&b.0)) else {
+                break;
+            };
+            study.note(judge::HARMS, &judged.named, &next);
+            judged.named = next;
+        }
+        let products = study.products(|r| study.fitted[r]);
+        judged.members = judge::describe(study, &study.problem(&products), &judged.named);
     }
+}
+
+/// The held-out error of `joint`, of the model as it was given and with what is `chosen`.
+fn held_out(study: &Study, chosen: &Chosen, joint: usize) -> (Option<f64>, Option<f64>) {
+    let fit = errors(study, joint, &augmented(study, chosen, joint));
+    (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented)
+}
+
+/// The first joint whose held-out error is larger with what is `chosen` than without.
+fn harmed(study: &Study, chosen: &Chosen) -> Option<usize> {
+    (0..study.motions.dof).find(|&joint| match held_out(study, chosen, joint) {
+        (Some(nominal), Some(augmented)) => judge::harms(nominal, augmented),
+        _ => false,
+    })
+}
+
+/// The weaker background under which the held-out recordings of all joints are likeliest, if they are likelier than now.
+fn likelier_outside(study: &Study, chosen: &Chosen) -> Option<(Strengths, Chosen)> {
+    let held = study.products(|r| !study.fitted[r]);
+    let loss = |chosen: &Chosen| held.loss(&held.rss(&study.table, &chosen.fit.columns, &chosen.fit.coefficients));
+    let weaker = study.strengths.weaker().into_iter();
+    let trials = weaker
+        .filter(|strengths| study.stated.allows(strengths))
+        .map(|strengths| {
+            let products = study.products_at(&strengths);
+            let next = study.problem(&products).choose(chosen.set.clone(), &chosen.fit.weights);
+            (loss(&next), strengths, next)
+        });
+    let (best, strengths, next) = trials.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    (best < loss(chosen)).then_some((strengths, next))
 }

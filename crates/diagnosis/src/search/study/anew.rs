@@ -1,0 +1,117 @@
+//! Everything formed anew: about the arm that a fit found, for the last fit, or for another search.
+
+use effects::Term;
+use rayon::prelude::*;
+
+use super::{About, Study};
+use crate::data::rigid::Rigid;
+use crate::regression::fit::Fit;
+use crate::regression::table::Moving;
+
+impl Study {
+    /// Forms everything anew about the arm that `fit` found: what is not linear in a tilt, an encoder's offset or a
+    /// payload is then small. Sizes tried in vain are forgotten. Returns the numbers that the candidates `kept` have now,
+    /// or `None` if there was nothing to do.
+    pub fn relinearise(&mut self, fit: &Fit, kept: &[usize]) -> Option<Vec<usize>> {
+        self.about(fit, kept, false)
+    }
+
+    /// Forms everything anew, with the rows near reversals, for the last fit. The numbers that the candidates `kept` have now.
+    pub fn settle(&mut self, fit: &Fit, kept: &[usize]) -> Vec<usize> {
+        self.moving = Moving::ThroughReversals;
+        self.about(fit, kept, true).unwrap_or_default()
+    }
+
+    fn about(&mut self, fit: &Fit, kept: &[usize], anyway: bool) -> Option<Vec<usize>> {
+        let About {
+            arm,
+            offset,
+            bare,
+            carried,
+        } = About::new(self, fit);
+        // Nothing to carry, and nothing carried by an earlier choice.
+        let carries = !carried.is_empty() || bare.is_some();
+        if !carries && !self.carries && !anyway {
+            return None;
+        }
+        self.carries = carries;
+        let nominal = self.arm.inertial_parameters();
+        self.rigid = self
+            .motions
+            .chunks
+            .par_iter()
+            .map(|chunk| {
+                let mut rigid = Rigid::new(&arm, &nominal, &offset, chunk);
+                if let Some(bare) = &bare {
+                    rigid.set_background(bare, chunk);
+                }
+                rigid
+            })
+            .collect();
+        let (set, terms) = self.forget_trials(kept);
+        self.table = self
+            .table
+            .formed_anew(&self.motions, &self.rigid, &self.scales, terms, &carried, self.moving);
+        Some(set)
+    }
+
+    /// Leaves out the trials that are not in `set`; the set's new numbers, and the terms that are left. The table is then to
+    /// be formed anew.
+    fn forget_trials(&mut self, set: &[usize]) -> (Vec<usize>, Vec<Term>) {
+        let old = &self.table.terms;
+        let mut terms: Vec<Term> = Vec::new();
+        let mut place: Vec<Option<usize>> = vec![None; old.len()];
+        let mut keep = |column: usize| -> usize {
+            *place[column].get_or_insert_with(|| {
+                terms.push(old[column]);
+                terms.len() - 1
+            })
+        };
+        // The background's columns stay the first.
+        (0..self.prior.terms().len()).for_each(|column| {
+            keep(column);
+        });
+        self.force = self.force.map(&mut keep);
+        let mut numbers = vec![0; self.candidates.len()];
+        let mut kept = Vec::new();
+        for (number, mut candidate) in std::mem::take(&mut self.candidates).into_iter().enumerate() {
+            if candidate.is_trial && !set.contains(&number) {
+                continue;
+            }
+            candidate.columns.iter_mut().for_each(|column| *column = keep(*column));
+            numbers[number] = kept.len();
+            kept.push(candidate);
+        }
+        self.candidates = kept;
+        (set.iter().map(|&number| numbers[number]).collect(), terms)
+    }
+
+    /// Refuses the cause of `candidate` on its joint.
+    pub fn refuse(&mut self, candidate: usize) {
+        let refused = &self.candidates[candidate];
+        self.refused.push((refused.cause, refused.joint));
+    }
+
+    /// How many were refused so far.
+    pub fn refused(&self) -> usize {
+        self.refused.len()
+    }
+
+    /// The candidates that may be taken.
+    pub fn allowed(&self) -> Vec<usize> {
+        let is_allowed = |&c: &usize| {
+            let candidate = &self.candidates[c];
+            !self.refused.contains(&(candidate.cause, candidate.joint))
+        };
+        (0..self.candidates.len()).filter(is_allowed).collect()
+    }
+
+    /// Forms everything about the arm as it was given again, for another search.
+    pub fn restart(&mut self) {
+        self.moving = Moving::Steadily;
+        self.strengths = self.stated.first(self.arm.dof());
+        let products = self.products(|r| self.fitted[r]);
+        let nothing = self.problem(&products).choose(Vec::new(), &products.first_weights());
+        self.about(&nothing.fit, &[], true);
+    }
+}
