@@ -80,8 +80,11 @@ pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut 
             gains
                 .iter()
                 .filter(|(candidate, _, without)| {
-                    // What acts on all joints is judged by the likelihood of all.
-                    study.candidates[*candidate].joint.is_some() && without[joint] < with[joint]
+                    // What acts on all joints is judged by the likelihood of all, and what does not act on this one has no
+                    // part in it: there the background may be to blame, which the final fit takes back.
+                    let this = &study.candidates[*candidate];
+                    let acts = this.columns.iter().any(|&column| table.place[joint][column].is_some());
+                    this.joint.is_some() && acts && without[joint] < with[joint]
                 })
                 .min_by(|a, b| a.2[joint].total_cmp(&b.2[joint]))
         };
