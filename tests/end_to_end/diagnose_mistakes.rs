@@ -1,6 +1,10 @@
 //! `testbed diagnose` on what users mistake: units, columns, files in each other's places.
 
-use crate::diagnose_made::arguments;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+
+use arm::Vector3;
+
+use crate::diagnose_made::{Case, ELBOW, SHOULDER, arguments, recording, trio};
 use crate::diagnose_refusals::{case, changed, refused, refused_command, refused_with, says};
 
 #[test]
@@ -115,4 +119,126 @@ fn a_map_that_lacks_a_joint_is_named() {
         &refused(&case, &["--map", "map.toml"]),
         &["map.toml:10", "column \"q_turn\" is taken in line 4 already"],
     );
+}
+
+/// `a.csv` with numbers changed; time, three positions, three torques.
+fn with_numbers(change: impl Fn(&mut [f64])) -> String {
+    changed(|cells| {
+        let mut numbers: Vec<f64> = cells.iter().map(|cell| cell.parse().expect("a number")).collect();
+        change(&mut numbers);
+        *cells = numbers.iter().map(f64::to_string).collect();
+    })
+}
+
+/// The column map at the end of a text.
+fn map_in(text: &str) -> String {
+    let (_, map) = text.split_once("[time]").unwrap_or_else(|| panic!("no map in: {text}"));
+    format!("[time]{}", map.split("\n\n").next().expect("it has a first part"))
+}
+
+/// What the inspection says of `text` as `a.csv`.
+fn inspected(case: &Case, text: &str) -> String {
+    case.sandbox.write("a.csv", text);
+    case.sandbox.succeed(&["inspect", "a.csv", "--robot", "robot.urdf"])
+}
+
+#[test]
+fn zeros_signs_and_order_are_told_with_the_map_that_mends_them() {
+    let case = case();
+    let told = ["zero is off", "opposite", "swapped", "column map"];
+    for (text, parts) in [
+        (
+            with_numbers(|row| row[1 + SHOULDER] += FRAC_PI_2),
+            ["shoulder: the position's zero is off by π/2", "q_offset = -1.5708"],
+        ),
+        (
+            with_numbers(|row| row[1 + ELBOW] -= FRAC_PI_2),
+            ["elbow: the position's zero is off by -π/2", "q_offset = 1.5708"],
+        ),
+        (
+            with_numbers(|row| row[1 + ELBOW] += PI),
+            ["elbow: the position's zero is off by π", "q_offset = 3.14"],
+        ),
+        (
+            with_numbers(|row| row.swap(4 + SHOULDER, 4 + ELBOW)),
+            ["the torques of shoulder and elbow seem swapped", "tau = \"tau_elbow\""],
+        ),
+        (
+            with_numbers(|row| row[4 + SHOULDER] *= -1.0),
+            ["shoulder: the torque", "tau_sign = -1"],
+        ),
+    ] {
+        let said = inspected(&case, &text);
+        says(&said, &parts);
+        says(&said, &["mended, the model and friction explain"]);
+        case.sandbox.write("map.toml", &map_in(&said));
+        let mended = case
+            .sandbox
+            .succeed(&["inspect", "a.csv", "--robot", "robot.urdf", "--map", "map.toml"]);
+        assert!(!told.iter().any(|word| mended.contains(word)), "{said}{mended}");
+    }
+    // Times a thirtieth of what they are.
+    says(
+        &inspected(&case, &with_numbers(|row| row[0] /= 30.0)),
+        &["the speed reaches", "times the URDF's velocity limit 5"],
+    );
+}
+
+#[test]
+fn where_all_joints_are_wrong_nothing_is_searched_and_the_map_mends_it() {
+    let first = "Units, signs, order or zeros first: no effect is searched before.";
+    let degrees = with_numbers(|row| row[1..4].iter_mut().for_each(|q| *q = q.to_degrees()));
+    let currents = with_numbers(|row| {
+        for (tau, constant) in row[4..].iter_mut().zip([12.0, 15.0, 9.0]) {
+            *tau /= constant;
+        }
+    });
+    for (text, parts) in [
+        (degrees, ["turn: the position is in degrees", "q_unit = \"deg\""]),
+        (currents, ["motor currents", "tau_scale = "]),
+    ] {
+        let case = case();
+        case.sandbox.write("a.csv", &text);
+        let said = refused(&case, &[]);
+        says(&said, &[first]);
+        says(&said, &parts);
+        // The others are as they should be, so that the map is for this one.
+        case.sandbox.write("map.toml", &map_in(&said));
+        let mended = case
+            .sandbox
+            .succeed(&["inspect", "a.csv", "--robot", "robot.urdf", "--map", "map.toml"]);
+        assert!(!mended.contains("column map"), "{mended}");
+    }
+    // Something of no use at all.
+    let other = with_numbers(|row| {
+        let time = row[0];
+        for (joint, tau) in row[4..].iter_mut().enumerate() {
+            *tau = 1e-3 * (time * (5.0 + joint as f64)).sin();
+        }
+    });
+    says(
+        &refused_with(&other),
+        &[first, "times the recorded one or more", "check units"],
+    );
+}
+
+#[test]
+fn walls_ceilings_and_offsets_of_effects_are_no_mistakes() {
+    let case = case();
+    let gravity = 9.81;
+    let slope = FRAC_PI_4.sin() * gravity;
+    for down in [
+        Vector3::new(0.0, 0.0, gravity),
+        Vector3::new(gravity, 0.0, 0.0),
+        Vector3::new(0.0, -gravity, 0.0),
+        Vector3::new(slope, 0.0, -slope),
+    ] {
+        let text = recording(&trio().with_gravity(down), 0, 8.0, &|_, _| {});
+        let said = inspected(&case, &text);
+        assert!(!said.contains("column map"), "{down}: {said}");
+    }
+    for offset in [0.02, 0.1, 0.3] {
+        let said = inspected(&case, &with_numbers(|row| row[1 + SHOULDER] += offset));
+        assert!(!said.contains("column map"), "{offset}: {said}");
+    }
 }

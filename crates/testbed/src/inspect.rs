@@ -1,7 +1,9 @@
 //! `testbed inspect FILE…`: what recordings are worth, before anything is fitted to them.
 
+mod column_map;
 pub mod model_check;
 mod smooth;
+mod supposition;
 mod torque_unit;
 
 use std::fmt::Write;
@@ -32,6 +34,8 @@ struct FileReport<'a> {
     quality: Quality,
     /// What does not fit the robot's model.
     against_robot: Vec<model_check::Misfit>,
+    /// The column map (TOML) that mends it.
+    column_map: Option<String>,
     warnings: Vec<Told>,
 }
 
@@ -105,12 +109,14 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
     let recording = recordings::read(file, map, arm)?;
     let (regular, found) = recording.regular().with_context(|| file.display().to_string())?;
     let quality = Quality::of(&recording, &regular);
-    let warnings = recording.warnings.iter().cloned().chain(found);
     let against_robot = arm.map_or(Vec::new(), |arm| model_check::check(arm, &regular, &quality));
+    let column_map = model_check::column_map(&against_robot, &recording, map.is_some());
+    let warnings = recording.warnings.iter().cloned().chain(found);
     Ok(FileReport {
         file,
         quality,
         against_robot,
+        column_map,
         warnings: warnings
             .map(|warning| Told {
                 text: warning.to_string(),
@@ -198,6 +204,9 @@ fn shown(report: &FileReport<'_>) -> String {
     }
     for misfit in &report.against_robot {
         let _ = writeln!(text, "- {}{}", about(misfit.joint.as_deref()), misfit.text);
+    }
+    if let Some(map) = &report.column_map {
+        let _ = write!(text, "- a column map that mends it (--map):\n{map}");
     }
     if report.warnings.is_empty() && quality.findings.is_empty() && report.against_robot.is_empty() {
         let _ = writeln!(text, "- no remarks");

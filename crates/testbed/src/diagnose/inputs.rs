@@ -26,6 +26,8 @@ pub struct Prepared {
     pub regular: RegularRecording,
     /// What it is for.
     pub role: Role,
+    /// The column map that mends what does not fit the arm.
+    pub column_map: Option<String>,
 }
 
 /// What a recording is for.
@@ -203,7 +205,13 @@ pub fn read(files: Files<'_>, arm: &Arm, progress: &ProgressBar) -> anyhow::Resu
         let name = path.display().to_string();
         let map = map.as_ref().map(|(path, _)| *path);
         let order = order(&recording, arm, &name, &choosing, map)?;
-        let prepared = prepare(recording, name, &order, role, arm, progress)?;
+        let prepared = prepare(recording, name, &order, role, arm, map.is_some(), progress)?;
+        if let Some(map) = &prepared.column_map
+            && list.iter().all(|other| other.column_map.as_ref() != Some(map))
+        {
+            let name = &prepared.name;
+            progress.suspend(|| eprint!("note: {name}: a column map that mends it (--map):\n{map}"));
+        }
         // The same samples under another name.
         let twin = list.iter().find(|known| {
             let (a, b) = (&known.regular, &prepared.regular);
@@ -263,11 +271,13 @@ fn prepare(
     order: &[usize],
     role: Role,
     arm: &Arm,
+    mapped: bool,
     progress: &ProgressBar,
 ) -> anyhow::Result<Prepared> {
     let (regular, warnings) = recording.regular().with_context(|| name.clone())?;
     let quality = Quality::of(&recording, &regular);
     let misfits = model_check::check(arm, &regular, &quality);
+    let column_map = model_check::column_map(&misfits, &recording, mapped);
     progress.suspend(|| {
         let (told, gaps) = shortened(recording.warnings.iter().chain(&warnings), |warning| warning);
         for warning in told {
@@ -298,13 +308,26 @@ fn prepare(
         }
     });
     if let Some(misfit) = misfits.iter().find(|misfit| misfit.spoils) {
-        bail!("{name}: {}", misfit.text);
+        let joint = misfit
+            .joint
+            .as_ref()
+            .map_or_else(String::new, |joint| format!("{joint}: "));
+        let map = column_map.map_or_else(String::new, |map| format!(" A column map that mends it:\n{map}"));
+        bail!(
+            "{name}: {joint}{}. Units, signs, order or zeros first: no effect is searched before.{map}",
+            misfit.text
+        );
     }
     let regular = reordered(regular, order);
     if let Some(reason) = unusable(&regular, &quality) {
         bail!("{name}: {reason}");
     }
-    Ok(Prepared { name, regular, role })
+    Ok(Prepared {
+        name,
+        regular,
+        role,
+        column_map,
+    })
 }
 
 /// A drive is not sampled more slowly (Hz).

@@ -1,22 +1,27 @@
 //! What in a recording does not fit the robot's URDF: names, limits, signs, order, motor side.
 
-use arm::{Arm, Workspace};
-use recording::{FindingKind, Quality, RegularRecording};
+use std::f64::consts::TAU;
+
+use arm::{Arm, Joint, JointKind};
+use recording::{FindingKind, JointQuality, Quality, Recording, RegularRecording, Warning};
 use report::numbers::rounded;
 use serde::Serialize;
 
+use super::column_map::{self, Change, Value};
 use super::smooth::Smooth;
-use super::torque_unit::{self, MOTOR_SIDE, deviation};
+use super::supposition::{EXPLAINED, Fit, Supposition, fit};
+use super::torque_unit::{self, MOTOR_SIDE};
 use crate::library::nearest;
 
-/// A joint's torque is explained if its residual has at most this share of its variance.
-const EXPLAINED: f64 = 0.2;
 /// An assumption must reduce the mean log residual of the joints by at least this much.
 const GAIN: f64 = 2.0;
 /// An assumption must be better than the next one by at least this reduction of the mean log residual.
 const LEAD: f64 = 1.0;
 /// A torque more than this times the model's is in another unit.
 const OTHER_UNIT: f64 = 100.0;
+/// A speed above this times the URDF's limit is no robot's; many URDFs have limits of the normal operation.
+const BEYOND: f64 = 5.0;
+
 /// Something that does not fit.
 #[derive(Debug, Serialize)]
 pub struct Misfit {
@@ -27,6 +32,63 @@ pub struct Misfit {
     /// Whether it must be corrected before the robot can be diagnosed.
     #[serde(skip)]
     pub spoils: bool,
+    /// The keys of a column map that mend it.
+    #[serde(skip)]
+    pub changes: Vec<Change>,
+}
+
+impl Misfit {
+    fn new(joint: Option<&str>, text: impl Into<String>, changes: Vec<Change>) -> Self {
+        Self {
+            joint: joint.map(str::to_owned),
+            text: text.into(),
+            spoils: false,
+            changes,
+        }
+    }
+}
+
+/// The column map that mends `misfits` of `recording`, which was read with a map of the user's (`mapped`) or not.
+pub fn column_map(misfits: &[Misfit], recording: &Recording, mapped: bool) -> Option<String> {
+    let changes: Vec<Change> = misfits
+        .iter()
+        .flat_map(|misfit| misfit.changes.iter().cloned())
+        .collect();
+    let known = |warning: &Warning| matches!(warning, Warning::System { .. } | Warning::Joined { .. });
+    let own = !mapped && !recording.warnings.iter().any(known);
+    column_map::text(&recording.joints, &changes, own, recording.qd.is_some())
+}
+
+/// Whether the positions span two turns and more than the URDF's limits allow, and fit into them as degrees. A zero
+/// that is off by turns keeps the span, and many a motion exceeds the limits of its URDF.
+fn is_in_degrees(joint: &Joint, measured: &JointQuality) -> bool {
+    let (low, high) = measured.q_range;
+    let limits = joint.limits;
+    joint.kind == JointKind::Revolute
+        && limits.upper > limits.lower
+        && high - low > (2.0 * TAU).max(1.5 * (limits.upper - limits.lower))
+        && low.to_radians() > limits.lower - 1e-2
+        && high.to_radians() < limits.upper + 1e-2
+}
+
+fn degrees(joint: &Joint, measured: &JointQuality) -> Misfit {
+    let text = format!(
+        "the position is in degrees: it spans {} … {}, which the URDF's limits {:.3} … {:.3} rad allow in degrees only; \
+         say so in a column map (--map): q_unit = \"deg\"",
+        rounded(measured.q_range.0, 4),
+        rounded(measured.q_range.1, 4),
+        joint.limits.lower,
+        joint.limits.upper
+    );
+    let mut changes = vec![Change::new(&joint.name, "q_unit", Value::Text("deg"))];
+    // Velocities that are the positions' slopes are in the same unit.
+    if measured
+        .velocity_ratio
+        .is_some_and(|ratio| (0.5..2.0).contains(&ratio.abs()))
+    {
+        changes.push(Change::new(&joint.name, "qd_unit", Value::Text("deg/s")));
+    }
+    Misfit::new(Some(&joint.name), text, changes)
 }
 
 /// What in `regular` does not fit `arm`.
@@ -36,15 +98,21 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
         let found = quality.joints.iter().find(|quality| quality.joint == joint.name)?;
         Some((joint, found))
     }) {
-        let mut add = |text: String| {
-            misfits.push(Misfit {
-                joint: Some(joint.name.clone()),
-                text,
-                spoils: false,
-            });
-        };
         let limits = joint.limits;
         let (low, high) = measured.q_range;
+        if is_in_degrees(joint, measured) {
+            misfits.push(degrees(joint, measured));
+            continue;
+        }
+        let mut add = |text: String| misfits.push(Misfit::new(Some(&joint.name), text, Vec::new()));
+        if measured.speed_max > BEYOND * limits.velocity && limits.velocity > 0.0 {
+            add(format!(
+                "the speed reaches {}, {} times the URDF's velocity limit {}; check the units of position and time",
+                rounded(measured.speed_max, 3),
+                rounded(measured.speed_max / limits.velocity, 2),
+                rounded(limits.velocity, 4)
+            ));
+        }
         if low < limits.lower - 1e-2 || high > limits.upper + 1e-2 {
             add(format!(
                 "positions {} … {} exceed the URDF's limits {:.3} … {:.3}; check unit, zero and sign, or the limits",
@@ -62,6 +130,14 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
             ));
         }
     }
+    // All of them are spoilt together, because each position is a part of all torques.
+    let in_degrees = misfits.iter().filter(|misfit| !misfit.changes.is_empty()).count();
+    let moving = quality.joints.iter().filter(|joint| joint.moves).count();
+    if in_degrees > 0 && in_degrees >= moving {
+        for misfit in misfits.iter_mut().filter(|misfit| !misfit.changes.is_empty()) {
+            misfit.spoils = true;
+        }
+    }
     let order: Option<Vec<usize>> = arm
         .joints()
         .iter()
@@ -77,7 +153,7 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
                 FindingKind::TimeUnit | FindingKind::Degrees | FindingKind::VelocityUnit | FindingKind::VelocitySwapped
             )
         });
-        if smooth.len() > 100 && !doubted {
+        if smooth.len() > 100 && !doubted && in_degrees == 0 {
             misfits.extend(torques(arm, &smooth, &moves));
         }
     }
@@ -91,11 +167,8 @@ fn names(arm: &Arm, regular: &RegularRecording) -> Vec<Misfit> {
         lost.map(|name| {
             let free: Vec<String> = within.iter().filter(|other| !from.contains(other)).cloned().collect();
             let hint = nearest(name, &free).map_or(String::new(), |other| format!("; is \"{other}\" meant?"));
-            Misfit {
-                joint: Some(name.clone()),
-                text: format!("{what}{hint} Name the columns as the URDF does, or give a column map (--map)"),
-                spoils: false,
-            }
+            let text = format!("{what}{hint} Name the columns as the URDF does, or give a column map (--map)");
+            Misfit::new(Some(name), text, Vec::new())
         })
         .collect()
     };
@@ -119,130 +192,19 @@ fn names(arm: &Arm, regular: &RegularRecording) -> Vec<Misfit> {
     misfits
 }
 
-/// How the recording may have been meant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Supposition {
-    AsItIs,
-    /// A joint's position has the other sign.
-    Flipped(usize),
-    /// A joint's torque has.
-    TorqueFlipped(usize),
-    /// The positions and torques of two joints are swapped.
-    Swapped(usize, usize),
-    /// The torques alone are.
-    TorquesSwapped(usize, usize),
-    /// The positions alone are.
-    PositionsSwapped(usize, usize),
-}
-
-impl Supposition {
-    /// Whether both are about the signs of one joint.
-    fn same_joint(self, other: Self) -> bool {
-        let joint = |supposition| match supposition {
-            Self::Flipped(joint) | Self::TorqueFlipped(joint) => Some(joint),
-            _ => None,
-        };
-        joint(self).is_some() && joint(self) == joint(other)
-    }
-}
-
-/// The fit of measured torques by the model's, with dry and viscous friction and an offset.
-pub(super) struct Fit {
-    /// The residual share of each joint's variance.
-    left: Vec<f64>,
-    /// The factor of the model's torque.
-    pub(super) factor: Vec<f64>,
-    /// The residual share without the model's torque.
-    without: Vec<f64>,
-    /// The measured torque's standard deviation over the model's.
-    pub(super) size: Vec<f64>,
-}
-
-impl Fit {
-    /// Whether the model's torque is needed to explain the joint's.
-    pub(super) fn told_by_model(&self, joint: usize) -> bool {
-        self.left[joint] < EXPLAINED && self.without[joint] > 3.0 * self.left[joint]
-    }
-
-    fn score(&self) -> f64 {
-        self.left.iter().map(|left| left.max(0.01).ln()).sum()
-    }
-}
-
-/// Assumptions concern moving joints only, because a resting joint gives too little information.
+/// What the torques say about units, signs, order and zeros.
 fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
-    let dof = arm.dof();
     let names: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
-    let mut suppositions: Vec<Supposition> = (0..dof)
-        .filter(|&joint| moves[joint])
-        .flat_map(|joint| [Supposition::Flipped(joint), Supposition::TorqueFlipped(joint)])
-        .collect();
-    for first in 0..dof {
-        for second in (first + 1..dof).filter(|&second| moves[first] && moves[second]) {
-            suppositions.push(Supposition::Swapped(first, second));
-            suppositions.push(Supposition::TorquesSwapped(first, second));
-            suppositions.push(Supposition::PositionsSwapped(first, second));
-        }
-    }
     let as_it_is = fit(arm, smooth, Supposition::AsItIs);
-    let mut scored: Vec<(f64, Supposition, Fit)> = suppositions
-        .into_iter()
-        .map(|supposition| {
-            let fit = fit(arm, smooth, supposition);
-            (as_it_is.score() - fit.score(), supposition, fit)
-        })
-        .collect();
-    scored.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let told = |joint: Option<usize>, text: String| Misfit {
-        joint: joint.map(|joint| names[joint].to_owned()),
-        text,
-        spoils: false,
-    };
-    if let Some(text) = torque_unit::of(moves, &as_it_is) {
+    if let Some((text, changes)) = torque_unit::of(&names, moves, &as_it_is) {
+        let spoils = true;
         return vec![Misfit {
-            joint: None,
-            text,
-            spoils: true,
+            spoils,
+            ..Misfit::new(None, text, changes)
         }];
     }
-    let remedy = "correct the header, or map the columns (--map)";
-    if let Some((gain, best, fit)) = scored.first() {
-        let next = scored[1..].iter().find(|(_, other, _)| !best.same_joint(*other));
-        let lead = gain - next.map_or(0.0, |next| next.0);
-        let rival = scored
-            .get(1)
-            .is_some_and(|(next, other, _)| best.same_joint(*other) && gain - next < LEAD);
-        let good =
-            |joint: &usize| fit.left[*joint] < EXPLAINED && as_it_is.left[*joint] > 3.0 * fit.left[*joint].max(0.02);
-        let swapped = |what: &str, a: usize, b: usize| {
-            let text = format!("the {what} of {} and {} seem swapped; {remedy}", names[a], names[b]);
-            vec![told(None, text)]
-        };
-        if *gain > GAIN && lead > LEAD {
-            match *best {
-                Supposition::Flipped(joint) | Supposition::TorqueFlipped(joint) if good(&joint) => {
-                    let text = if rival {
-                        "the torque or the position has the sign opposite to the URDF's axis; invert one (tau_sign = -1, or \
-                         sign and tau_sign, in a column map)"
-                    } else if matches!(best, Supposition::TorqueFlipped(_)) {
-                        "the torque has the sign opposite to the URDF's axis; invert it (tau_sign = -1 in a column map)"
-                    } else if fit.factor[joint] < 0.0 {
-                        "position and torque have the sign opposite to the URDF's axis; invert both (sign = -1 in a column map)"
-                    } else {
-                        "the position has the sign opposite to the URDF's axis; invert it (sign = -1 and tau_sign = -1 in a \
-                         column map)"
-                    };
-                    return vec![told(Some(joint), text.into())];
-                }
-                Supposition::Swapped(a, b) if good(&a) && good(&b) => return swapped("columns", a, b),
-                Supposition::TorquesSwapped(a, b) if good(&a) && good(&b) => return swapped("torques", a, b),
-                // All joints' torques depend on the positions: that one of the two is explained is enough.
-                Supposition::PositionsSwapped(a, b) if good(&a) || good(&b) => {
-                    return swapped("positions", a, b);
-                }
-                _ => {}
-            }
-        }
+    if let Some(misfit) = supposed(arm, smooth, moves, &names, &as_it_is) {
+        return vec![misfit];
     }
     let mut misfits = Vec::new();
     for (joint, &factor) in as_it_is.factor.iter().enumerate() {
@@ -258,103 +220,117 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
                 "the torque is {size:.2e} times the model's: {what}? Give tau_scale (about {:.3}) in a column map",
                 1.0 / size
             );
-            misfits.push(told(Some(joint), text));
+            let scale = Change::scale(names[joint], 1.0 / size);
+            misfits.push(Misfit::new(Some(names[joint]), text, vec![scale]));
         }
     }
     misfits
 }
 
-fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
-    let dof = arm.dof();
-    let count = smooth.len();
-    let mut source: Vec<usize> = (0..dof).collect();
-    let mut torque_source = source.clone();
-    let mut sign = vec![1.0; dof];
-    match supposition {
-        Supposition::AsItIs | Supposition::TorqueFlipped(_) => {}
-        Supposition::Flipped(joint) => sign[joint] = -1.0,
-        Supposition::Swapped(a, b) => {
-            source.swap(a, b);
-            torque_source.swap(a, b);
-        }
-        Supposition::TorquesSwapped(a, b) => torque_source.swap(a, b),
-        Supposition::PositionsSwapped(a, b) => source.swap(a, b),
+/// The one supposition that explains the torques far better than all others.
+fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_it_is: &Fit) -> Option<Misfit> {
+    let mut scored: Vec<(f64, Supposition, Fit)> = Supposition::all(arm, moves)
+        .into_iter()
+        .map(|supposition| {
+            let fit = fit(arm, smooth, supposition);
+            (as_it_is.score() - fit.score(), supposition, fit)
+        })
+        .collect();
+    scored.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let (gain, best, fit) = scored.first()?;
+    let next = scored[1..].iter().find(|(_, other, _)| !best.same_joint(*other));
+    let lead = gain - next.map_or(0.0, |next| next.0);
+    if !(*gain > GAIN && lead > LEAD) {
+        return None;
     }
-    // The model by the motion as supposed.
-    let mut workspace = Workspace::new(arm);
-    let mut model = vec![vec![0.0; count]; dof];
-    let mut tau = vec![0.0; dof];
-    for k in 0..count {
-        let pick = |signal: &[Vec<f64>]| -> Vec<f64> { (0..dof).map(|j| sign[j] * signal[source[j]][k]).collect() };
-        let (q, qd, qdd) = (pick(&smooth.q), pick(&smooth.qd), pick(&smooth.qdd));
-        arm.inverse_dynamics(&mut workspace, &q, &qd, &qdd, &mut tau);
-        for (joint, tau) in tau.iter().enumerate() {
-            model[joint][k] = *tau;
-        }
-    }
-    let mut fit = Fit {
-        left: Vec::new(),
-        factor: Vec::new(),
-        without: Vec::new(),
-        size: Vec::new(),
+    let rivals = || {
+        let near = |(next, other, _): &&(f64, Supposition, Fit)| best.same_joint(*other) && gain - next < LEAD;
+        scored[1..].iter().filter(near).map(|(_, other, _)| *other)
     };
-    for joint in 0..dof {
-        let speed = &smooth.qd[source[joint]];
-        let top = speed.iter().fold(1e-9_f64, |top, speed| top.max(speed.abs()));
-        let dry: Vec<f64> = speed.iter().map(|speed| (speed / (0.02 * top)).tanh()).collect();
-        let measured = &smooth.tau[torque_source[joint]];
-        let (without, _) = regress(&[&dry, speed], measured);
-        let (left, factor) = regress(&[&model[joint], &dry, speed], measured);
-        // A joint whose position is flipped may have its torque flipped along, one whose torque is must;
-        // otherwise a negative factor explains nothing.
-        let explains = match supposition {
-            Supposition::Flipped(flipped) if flipped == joint => true,
-            Supposition::TorqueFlipped(flipped) if flipped == joint => factor < 0.0,
-            _ => factor >= 0.0,
+    let good = |joint: &usize| fit.left[*joint] < EXPLAINED && as_it_is.left[*joint] > 3.0 * fit.left[*joint].max(0.02);
+    // The joint at which the supposition is told best, and by how much.
+    let evidence = |joint: usize| {
+        let share = |fit: &Fit| (100.0 * (1.0 - fit.left[joint])).round();
+        format!(
+            "mended, the model and friction explain {} % of the torque's variance at {}, and {} % as it is",
+            share(fit),
+            names[joint],
+            share(as_it_is)
+        )
+    };
+    let change = |joint: usize, key, value| Change::new(names[joint], key, Value::Number(value));
+    let exchanged = |what: &str, keys: &[&'static str], told_at: usize, a: usize, b: usize| {
+        let text = format!(
+            "the {what} of {} and {} seem swapped; correct the header, or map the columns (--map): {}",
+            names[a],
+            names[b],
+            evidence(told_at)
+        );
+        let pairs = [(a, b), (b, a)];
+        let of = |key: &'static str| {
+            pairs.map(|(at, other)| Change::new(names[at], key, Value::ColumnOf(names[other].to_owned())))
         };
-        fit.left.push(if explains { left } else { without });
-        fit.factor.push(factor);
-        fit.without.push(without);
-        fit.size
-            .push(deviation(measured) / deviation(&model[joint]).max(f64::MIN_POSITIVE));
-    }
-    fit
-}
-
-/// The residual variance of `measured` after `columns` and an offset (Gram-Schmidt, the first
-/// column last), and the factor of the first column.
-fn regress(columns: &[&Vec<f64>], measured: &[f64]) -> (f64, f64) {
-    let centred = |values: &[f64]| -> Vec<f64> {
-        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-        values.iter().map(|value| value - mean).collect()
+        Some(Misfit::new(None, text, keys.iter().flat_map(|key| of(key)).collect()))
     };
-    let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
-    let mut rest = centred(measured);
-    let total = dot(&rest, &rest);
-    if total <= 0.0 {
-        return (1.0, 0.0);
-    }
-    let mut basis: Vec<Vec<f64>> = Vec::new();
-    let mut factor = 0.0;
-    for column in columns.iter().rev() {
-        let mut column = centred(column);
-        let before = dot(&column, &column);
-        for other in &basis {
-            let share = dot(&column, other) / dot(other, other);
-            column
-                .iter_mut()
-                .zip(other)
-                .for_each(|(value, other)| *value -= share * other);
+    match *best {
+        Supposition::Flipped(joint) | Supposition::TorqueFlipped(joint) if good(&joint) => {
+            let inverted = |keys: &[&'static str]| keys.iter().map(|key| change(joint, key, -1.0)).collect();
+            let (text, changes): (_, Vec<Change>) = if rivals().any(|other| matches!(other, Supposition::Zero(..))) {
+                (
+                    "the torque or the position has the sign opposite to the URDF's axis, or the position's zero is off by π; \
+                  check one after the other (tau_sign, sign, q_offset in a column map)",
+                    Vec::new(),
+                )
+            } else if rivals().next().is_some() {
+                (
+                    "the torque or the position has the sign opposite to the URDF's axis; invert one (tau_sign = -1, or \
+                  sign and tau_sign, in a column map)",
+                    inverted(&["tau_sign"]),
+                )
+            } else if matches!(best, Supposition::TorqueFlipped(_)) {
+                (
+                    "the torque has the sign opposite to the URDF's axis; invert it (tau_sign = -1 in a column map)",
+                    inverted(&["tau_sign"]),
+                )
+            } else if fit.factor[joint] < 0.0 {
+                (
+                    "position and torque have the sign opposite to the URDF's axis; invert both (sign = -1 in a column map)",
+                    inverted(&["sign"]),
+                )
+            } else {
+                (
+                    "the position has the sign opposite to the URDF's axis; invert it (sign = -1 and tau_sign = -1 in a \
+                  column map)",
+                    inverted(&["sign", "tau_sign"]),
+                )
+            };
+            let text = format!("{text}: {}", evidence(joint));
+            Some(Misfit::new(Some(names[joint]), text, changes))
         }
-        let after = dot(&column, &column);
-        factor = 0.0;
-        if after > 1e-9 * before && after > 0.0 {
-            factor = dot(&rest, &column) / after;
-            rest.iter_mut()
-                .zip(&column)
-                .for_each(|(value, column)| *value -= factor * column);
-            basis.push(column);
+        Supposition::Swapped(a, b) if good(&a) && good(&b) => exchanged("columns", &["q", "qd", "tau"], a, a, b),
+        Supposition::TorquesSwapped(a, b) if good(&a) && good(&b) => exchanged("torques", &["tau"], a, a, b),
+        // All joints' torques depend on the positions: that one of the two is explained is enough.
+        Supposition::PositionsSwapped(a, b) if good(&a) || good(&b) => {
+            exchanged("positions", &["q", "qd"], if good(&a) { a } else { b }, a, b)
         }
+        // Its own gravity torque tells a zero, or that of the joints that carry it.
+        Supposition::Zero(joint, added) if rivals().next().is_none() => {
+            let told_at = (0..=joint).rev().find(good)?;
+            let turn = match added {
+                added if added.abs() > 3.0 => "π",
+                added if added > 0.0 => "-π/2",
+                _ => "π/2",
+            };
+            let text = format!(
+                "the position's zero is off by {turn} from the URDF's; correct it (q_offset = {added:.4} in a column map): {}",
+                evidence(told_at)
+            );
+            Some(Misfit::new(
+                Some(names[joint]),
+                text,
+                vec![change(joint, "q_offset", added)],
+            ))
+        }
+        _ => None,
     }
-    (dot(&rest, &rest) / total, factor)
 }

@@ -1,18 +1,52 @@
 //! Torques of all joints in another unit, or on the motors' side.
 
-use super::model_check::Fit;
+use super::column_map::{Change, Value};
+use super::supposition::Fit;
 use report::numbers::rounded;
 
 /// A torque less than this times the model's is on the motor's side; a payload only makes it larger.
 pub const MOTOR_SIDE: f64 = 0.05;
 /// As much on all joints is another unit; no payload does that.
 const LARGE_EVERYWHERE: f64 = 30.0;
-/// Factors of the torques, the unit that each suggests (for forces, too), and the remedy.
-const UNITS: [(f64, &str, &str); 4] = [
-    (1e3, "mN m (or mN)", "tau_unit = \"mN m\", or tau_scale = 0.001"),
-    (1e2, "N cm", "tau_scale = 0.01"),
-    (1e6, "µN m (or µN)", "tau_scale = 1e-6"),
-    (1e-3, "kN m (or kN)", "tau_unit = \"kN m\", or \"kN\""),
+/// As little on all joints, each told by the model, are motor currents or another unit.
+const SMALL_EVERYWHERE: f64 = 0.2;
+/// A decimal unit of torque.
+struct Unit {
+    /// Of the recorded torque over the model's.
+    factor: f64,
+    /// The unit that it suggests, for forces, too.
+    name: &'static str,
+    /// The remedy in words.
+    remedy: &'static str,
+    /// The remedy as a key of a column map.
+    key: (&'static str, Value),
+}
+
+const UNITS: [Unit; 4] = [
+    Unit {
+        factor: 1e3,
+        name: "mN m (or mN)",
+        remedy: "tau_unit = \"mN m\", or tau_scale = 0.001",
+        key: ("tau_scale", Value::Number(1e-3)),
+    },
+    Unit {
+        factor: 1e2,
+        name: "N cm",
+        remedy: "tau_scale = 0.01",
+        key: ("tau_scale", Value::Number(1e-2)),
+    },
+    Unit {
+        factor: 1e6,
+        name: "µN m (or µN)",
+        remedy: "tau_scale = 1e-6",
+        key: ("tau_scale", Value::Number(1e-6)),
+    },
+    Unit {
+        factor: 1e-3,
+        name: "kN m (or kN)",
+        remedy: "tau_unit = \"kN m\", or \"kN\"",
+        key: ("tau_scale", Value::Number(1e3)),
+    },
 ];
 
 /// The standard deviation.
@@ -22,25 +56,46 @@ pub fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
-/// What is wrong with the torques' unit, where all joints that move have the same.
-pub fn of(moves: &[bool], fit: &Fit) -> Option<String> {
+/// What is wrong with the torques' unit, where all joints that move have the same, and the keys that mend it.
+pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Change>)> {
     let moving: Vec<usize> = (0..moves.len()).filter(|&joint| moves[joint]).collect();
-    let evident = |joint: &&usize| fit.factor[**joint] > 0.0 && fit.told_by_model(**joint);
-    let mut factors: Vec<f64> = moving.iter().filter(evident).map(|&joint| fit.factor[joint]).collect();
+    let is_evident = |joint: &usize| fit.factor[*joint] > 0.0 && fit.told_by_model(*joint);
+    let evident: Vec<usize> = moving.iter().copied().filter(is_evident).collect();
     let all = |outside: &dyn Fn(f64) -> bool| {
-        factors.iter().all(|&factor| outside(factor)) && moving.iter().all(|&joint| outside(fit.size[joint]))
+        evident.iter().all(|&joint| outside(fit.factor[joint])) && moving.iter().all(|&joint| outside(fit.size[joint]))
     };
+    if evident.is_empty() {
+        // Friction makes a measured torque larger than the model's, and nothing makes it so much smaller. A channel
+        // without a torque is another matter.
+        let sizes: Vec<f64> = moving
+            .iter()
+            .map(|&joint| fit.size[joint])
+            .filter(|&size| size > 1e-9)
+            .collect();
+        let largest = sizes.iter().copied().fold(0.0, f64::max);
+        return (sizes.len() > 1 && largest < MOTOR_SIDE).then(|| {
+            let least = 1.0 / largest;
+            let text = format!(
+                "on all joints that move, the model's torque is {} times the recorded one or more, and explains none of \
+                 it: check units, signs, order and zeros of positions and torques",
+                rounded(least, 2)
+            );
+            (text, Vec::new())
+        });
+    }
     let large = all(&|size| size > LARGE_EVERYWHERE);
     let small = all(&|size| size < MOTOR_SIDE);
-    if factors.is_empty() || !(large || small) {
+    let currents = moving.len() > 1 && evident.len() == moving.len() && all(&|size| size < SMALL_EVERYWHERE);
+    if !(large || small || currents) {
         return None;
     }
+    let mut factors: Vec<f64> = evident.iter().map(|&joint| fit.factor[joint]).collect();
     factors.sort_by(f64::total_cmp);
     let (least, most) = (factors[0], factors[factors.len() - 1]);
     let middle = factors[factors.len() / 2];
     // Masses are known to a third or so, and all joints have one unit.
-    let decimal = UNITS.iter().find(|(factor, ..)| {
-        let near = |found: f64| (0.5..2.0).contains(&(found / factor));
+    let decimal = UNITS.into_iter().find(|unit| {
+        let near = |found: f64| (0.5..2.0).contains(&(found / unit.factor));
         near(middle) && near((least * most).sqrt())
     });
     let said = format!(
@@ -48,12 +103,25 @@ pub fn of(moves: &[bool], fit: &Fit) -> Option<String> {
         rounded(middle, 2)
     );
     Some(match decimal {
-        Some((_, name, remedy)) => {
-            format!("{said}: are they in {name}? Say so for each joint in a column map (--map): {remedy}")
-        }
-        None => format!(
-            "{said}: another unit, a current, or the motor's side of the gears? Give each joint's tau_unit, tau_scale or \
-             gear in a column map (--map)"
+        Some(Unit { name, remedy, key, .. }) => (
+            format!("{said}: are they in {name}? Say so for each joint in a column map (--map): {remedy}"),
+            names
+                .iter()
+                .map(|name| Change::new(name, key.0, key.1.clone()))
+                .collect(),
         ),
+        None => {
+            let each: Vec<String> = evident
+                .iter()
+                .map(|&joint| format!("{} {}", names[joint], rounded(fit.factor[joint], 2)))
+                .collect();
+            let text = format!(
+                "{said} ({}): another unit, motor currents, or the motor's side of the gears? Give each joint's tau_unit, \
+                 tau_scale or gear in a column map (--map)",
+                each.join(", ")
+            );
+            let scale = |&joint: &usize| Change::scale(names[joint], 1.0 / fit.factor[joint]);
+            (text, evident.iter().map(scale).collect())
+        }
     })
 }

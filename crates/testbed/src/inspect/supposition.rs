@@ -1,0 +1,198 @@
+//! How a recording may have been meant, and how well the model explains it then.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use arm::{Arm, JointKind, Vector3, Workspace};
+
+use super::smooth::Smooth;
+use super::torque_unit::deviation;
+
+/// A joint's torque is explained if its residual has at most this share of its variance.
+pub const EXPLAINED: f64 = 0.2;
+
+/// How the recording may have been meant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Supposition {
+    AsItIs,
+    /// A joint's position has the other sign.
+    Flipped(usize),
+    /// A joint's torque has.
+    TorqueFlipped(usize),
+    /// The positions and torques of two joints are swapped.
+    Swapped(usize, usize),
+    /// The torques alone are.
+    TorquesSwapped(usize, usize),
+    /// The positions alone are.
+    PositionsSwapped(usize, usize),
+    /// A joint's zero is off: this is to be added to its position (rad).
+    Zero(usize, f64),
+    /// Gravity has another direction (base frame), as on a wall or a ceiling. That is an effect and no
+    /// mistake, and must not be taken for a wrong zero.
+    Gravity(Vector3<f64>),
+}
+
+impl Supposition {
+    /// All that is tried with the joints that move; a resting joint gives too little information.
+    pub fn all(arm: &Arm, moves: &[bool]) -> Vec<Self> {
+        let dof = arm.dof();
+        let mut all = Vec::new();
+        for joint in (0..dof).filter(|&joint| moves[joint]) {
+            all.extend([Self::Flipped(joint), Self::TorqueFlipped(joint)]);
+            if arm.joints()[joint].kind == JointKind::Revolute {
+                all.extend([FRAC_PI_2, -FRAC_PI_2, PI].map(|offset| Self::Zero(joint, offset)));
+            }
+        }
+        for first in 0..dof {
+            for second in (first + 1..dof).filter(|&second| moves[first] && moves[second]) {
+                all.push(Self::Swapped(first, second));
+                all.push(Self::TorquesSwapped(first, second));
+                all.push(Self::PositionsSwapped(first, second));
+            }
+        }
+        let strength = arm.gravity().norm();
+        let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let directions = axes.into_iter().flat_map(|axis| [axis * strength, -axis * strength]);
+        let others = directions.filter(|gravity| (gravity - arm.gravity()).norm() > 0.1 * strength);
+        all.extend(others.map(Self::Gravity));
+        all
+    }
+
+    /// Whether both are about the signs or the zero of one joint.
+    pub fn same_joint(self, other: Self) -> bool {
+        let joint = |supposition| match supposition {
+            Self::Flipped(joint) | Self::TorqueFlipped(joint) | Self::Zero(joint, _) => Some(joint),
+            _ => None,
+        };
+        joint(self).is_some() && joint(self) == joint(other)
+    }
+}
+
+/// The fit of measured torques by the model's, with dry and viscous friction and an offset.
+pub struct Fit {
+    /// The residual share of each joint's variance.
+    pub left: Vec<f64>,
+    /// The factor of the model's torque.
+    pub factor: Vec<f64>,
+    /// The residual share without the model's torque.
+    without: Vec<f64>,
+    /// The measured torque's standard deviation over the model's.
+    pub size: Vec<f64>,
+}
+
+impl Fit {
+    /// Whether the model's torque is needed to explain the joint's.
+    pub fn told_by_model(&self, joint: usize) -> bool {
+        self.left[joint] < EXPLAINED && self.without[joint] > 3.0 * self.left[joint]
+    }
+
+    /// The sum of the joints' log residuals.
+    pub fn score(&self) -> f64 {
+        self.left.iter().map(|left| left.max(0.01).ln()).sum()
+    }
+}
+
+/// The fit of the torques by the model of `arm`, the recording meant as `supposition` says.
+pub fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
+    let turned;
+    let arm = if let Supposition::Gravity(gravity) = supposition {
+        turned = arm.clone().with_gravity(gravity);
+        &turned
+    } else {
+        arm
+    };
+    let dof = arm.dof();
+    let count = smooth.len();
+    let mut source: Vec<usize> = (0..dof).collect();
+    let mut torque_source = source.clone();
+    let mut sign = vec![1.0; dof];
+    let mut offset = vec![0.0; dof];
+    match supposition {
+        Supposition::AsItIs | Supposition::TorqueFlipped(_) | Supposition::Gravity(_) => {}
+        Supposition::Zero(joint, added) => offset[joint] = added,
+        Supposition::Flipped(joint) => sign[joint] = -1.0,
+        Supposition::Swapped(a, b) => {
+            source.swap(a, b);
+            torque_source.swap(a, b);
+        }
+        Supposition::TorquesSwapped(a, b) => torque_source.swap(a, b),
+        Supposition::PositionsSwapped(a, b) => source.swap(a, b),
+    }
+    // The model by the motion as supposed.
+    let mut workspace = Workspace::new(arm);
+    let mut model = vec![vec![0.0; count]; dof];
+    let mut tau = vec![0.0; dof];
+    for k in 0..count {
+        let pick = |signal: &[Vec<f64>]| -> Vec<f64> { (0..dof).map(|j| sign[j] * signal[source[j]][k]).collect() };
+        let (mut q, qd, qdd) = (pick(&smooth.q), pick(&smooth.qd), pick(&smooth.qdd));
+        q.iter_mut().zip(&offset).for_each(|(q, offset)| *q += offset);
+        arm.inverse_dynamics(&mut workspace, &q, &qd, &qdd, &mut tau);
+        for (joint, tau) in tau.iter().enumerate() {
+            model[joint][k] = *tau;
+        }
+    }
+    let mut fit = Fit {
+        left: Vec::new(),
+        factor: Vec::new(),
+        without: Vec::new(),
+        size: Vec::new(),
+    };
+    for joint in 0..dof {
+        let speed = &smooth.qd[source[joint]];
+        let top = speed.iter().fold(1e-9_f64, |top, speed| top.max(speed.abs()));
+        let dry: Vec<f64> = speed.iter().map(|speed| (speed / (0.02 * top)).tanh()).collect();
+        let measured = &smooth.tau[torque_source[joint]];
+        let (without, _) = regress(&[&dry, speed], measured);
+        let (left, factor) = regress(&[&model[joint], &dry, speed], measured);
+        // A joint whose position is flipped may have its torque flipped along, one whose torque is must;
+        // otherwise a negative factor explains nothing.
+        let explains = match supposition {
+            Supposition::Flipped(flipped) if flipped == joint => true,
+            Supposition::TorqueFlipped(flipped) if flipped == joint => factor < 0.0,
+            _ => factor >= 0.0,
+        };
+        fit.left.push(if explains { left } else { without });
+        fit.factor.push(factor);
+        fit.without.push(without);
+        fit.size
+            .push(deviation(measured) / deviation(&model[joint]).max(f64::MIN_POSITIVE));
+    }
+    fit
+}
+
+/// The residual variance of `measured` after `columns` and an offset (Gram-Schmidt, the first
+/// column last), and the factor of the first column.
+fn regress(columns: &[&Vec<f64>], measured: &[f64]) -> (f64, f64) {
+    let centred = |values: &[f64]| -> Vec<f64> {
+        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        values.iter().map(|value| value - mean).collect()
+    };
+    let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+    let mut rest = centred(measured);
+    let total = dot(&rest, &rest);
+    if total <= 0.0 {
+        return (1.0, 0.0);
+    }
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    let mut factor = 0.0;
+    for column in columns.iter().rev() {
+        let mut column = centred(column);
+        let before = dot(&column, &column);
+        for other in &basis {
+            let share = dot(&column, other) / dot(other, other);
+            column
+                .iter_mut()
+                .zip(other)
+                .for_each(|(value, other)| *value -= share * other);
+        }
+        let after = dot(&column, &column);
+        factor = 0.0;
+        if after > 1e-9 * before && after > 0.0 {
+            factor = dot(&rest, &column) / after;
+            rest.iter_mut()
+                .zip(&column)
+                .for_each(|(value, column)| *value -= factor * column);
+            basis.push(column);
+        }
+    }
+    (dot(&rest, &rest) / total, factor)
+}
