@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::model::{Arm, JointKind};
 use crate::pose::cross_matrix;
+use crate::small::{cross, cross_columns, less_outer, mul, product, product_tr, rotate_symmetric, symmetric, tr_mul};
 use crate::workspace::Workspace;
 
 impl Arm {
@@ -38,43 +39,37 @@ impl Arm {
 
     /// Base to tip: velocities, velocity products c, bias wrenches p^A and the links' own inertias.
     fn propagate_velocities(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64]) {
-        let mut w_parent = Vector3::zeros();
-        let mut v_parent = Vector3::zeros();
-        for (i, joint) in self.joints.iter().enumerate() {
-            let link = &mut workspace.links[i];
-            link.parent_from_link = joint.parent_from_link(q[i]);
-            let r = &link.parent_from_link.rotation;
-            let p = &link.parent_from_link.translation;
-            let mut w = r.tr_mul(&w_parent);
-            let mut v = r.tr_mul(&(v_parent + w_parent.cross(p)));
-            let velocity = joint.axis * qd[i];
+        let mut w = Vector3::zeros();
+        let mut v = Vector3::zeros();
+        for ((joint, link), (&q, &qd)) in self.joints.iter().zip(&mut workspace.links).zip(q.iter().zip(qd)) {
+            let pose = joint.parent_from_link(q);
+            v = tr_mul(&pose.rotation, &(v + cross(&w, &pose.translation)));
+            w = tr_mul(&pose.rotation, &w);
+            link.parent_from_link = pose;
+            let velocity = joint.axis * qd;
             match joint.kind {
                 JointKind::Revolute => {
                     // v × S q̇ for S = (a, 0): (ω × a q̇, v × a q̇); the own share drops out.
-                    link.c_angular = w.cross(&velocity);
-                    link.c_linear = v.cross(&velocity);
+                    link.c_angular = cross(&w, &velocity);
+                    link.c_linear = cross(&v, &velocity);
                     w += velocity;
                 }
                 JointKind::Prismatic => {
                     link.c_angular = Vector3::zeros();
-                    link.c_linear = w.cross(&velocity);
+                    link.c_linear = cross(&w, &velocity);
                     v += velocity;
                 }
             }
-            link.angular_velocity = w;
-            link.linear_velocity = v;
 
-            let body = &joint.inertia;
-            let first_moment = body.mass * body.com;
-            link.rotational = body.tensor_about_origin();
-            link.coupling = cross_matrix(&first_moment);
-            link.translational = Matrix3::from_diagonal_element(body.mass);
+            let (mass, first) = (joint.inertia.mass, &joint.moments.first);
+            link.rotational = joint.moments.tensor;
+            link.coupling = cross_matrix(first);
+            link.translational = Matrix3::from_diagonal_element(mass);
             // p = v ×* (I v): (ω × n + v × f, ω × f) with the momentum (n, f).
-            let n = link.rotational * w + first_moment.cross(&v);
-            let f = body.mass * v + w.cross(&first_moment);
-            link.moment = w.cross(&n) + v.cross(&f);
-            link.force = w.cross(&f);
-            (w_parent, v_parent) = (w, v);
+            let n = mul(&joint.moments.tensor, &w) + cross(first, &v);
+            let f = mass * v + cross(&w, first);
+            link.moment = cross(&w, &n) + cross(&v, &f);
+            link.force = cross(&w, &f);
         }
     }
 
@@ -86,61 +81,79 @@ impl Arm {
             let a = &joint.axis;
             match joint.kind {
                 JointKind::Revolute => {
-                    link.u_moment = link.rotational * a;
-                    link.u_force = link.coupling.tr_mul(a);
+                    link.u_moment = mul(&link.rotational, a);
+                    link.u_force = tr_mul(&link.coupling, a);
                     link.d = a.dot(&link.u_moment) + joint.rotor_inertia;
                     link.u = tau[i] - a.dot(&link.moment);
                 }
                 JointKind::Prismatic => {
-                    link.u_moment = link.coupling * a;
-                    link.u_force = link.translational * a;
+                    link.u_moment = mul(&link.coupling, a);
+                    link.u_force = mul(&link.translational, a);
                     link.d = a.dot(&link.u_force) + joint.rotor_inertia;
                     link.u = tau[i] - a.dot(&link.force);
                 }
             }
             let Some(parent) = proximal.last_mut() else { continue };
-            let (um, uf) = (link.u_moment, link.u_force);
-            let rotational = link.rotational - um * (um / link.d).transpose();
-            let coupling = link.coupling - um * (uf / link.d).transpose();
-            let translational = link.translational - uf * (uf / link.d).transpose();
-            let moment = link.moment + rotational * link.c_angular + coupling * link.c_linear + um * (link.u / link.d);
-            let force =
-                link.force + coupling.tr_mul(&link.c_angular) + translational * link.c_linear + uf * (link.u / link.d);
+            let (um, uf) = (&link.u_moment, &link.u_force);
+            let inverse = 1.0 / link.d;
+            let (sm, sf) = (um * inverse, uf * inverse);
+            let rotational = less_outer(&link.rotational, um, &sm);
+            let c = &link.coupling;
+            let coupling = Matrix3::new(
+                c.m11 - um.x * sf.x,
+                c.m12 - um.x * sf.y,
+                c.m13 - um.x * sf.z,
+                c.m21 - um.y * sf.x,
+                c.m22 - um.y * sf.y,
+                c.m23 - um.y * sf.z,
+                c.m31 - um.z * sf.x,
+                c.m32 - um.z * sf.y,
+                c.m33 - um.z * sf.z,
+            );
+            let translational = less_outer(&link.translational, uf, &sf);
+            let (cw, cv) = (&link.c_angular, &link.c_linear);
+            let moment = link.moment + mul(&rotational, cw) + mul(&coupling, cv) + sm * link.u;
+            let force = link.force + tr_mul(&coupling, cw) + mul(&translational, cv) + sf * link.u;
 
-            // To the parent's frame: rotate the blocks, then shift the origin by p.
+            // To the parent's frame: rotate the blocks, then shift the origin by p. With C' = C + [p]× M, the shifted
+            // rotational block is I + [p]× C'ᵀ + ([p]× Cᵀ)ᵀ.
             let r = &link.parent_from_link.rotation;
-            let rt = r.transpose();
-            let p = cross_matrix(&link.parent_from_link.translation);
-            let rotational = r * rotational * rt;
-            let coupling = r * coupling * rt;
-            let translational = r * translational * rt;
-            let shifted = p * translational;
-            let cross = p * coupling.transpose();
-            parent.rotational += rotational + cross + cross.transpose() - shifted * p;
-            parent.coupling += coupling + shifted;
+            let p = &link.parent_from_link.translation;
+            let rotational = rotate_symmetric(r, &rotational);
+            let coupling = product_tr(&product(r, &coupling), r);
+            let translational = rotate_symmetric(r, &translational);
+            let shifted = coupling + cross_columns(p, &translational);
+            let near = cross_columns(p, &shifted.transpose());
+            let far = cross_columns(p, &coupling.transpose());
+            parent.rotational += symmetric(
+                rotational.m11 + near.m11 + far.m11,
+                rotational.m12 + near.m12 + far.m21,
+                rotational.m13 + near.m13 + far.m31,
+                rotational.m22 + near.m22 + far.m22,
+                rotational.m23 + near.m23 + far.m32,
+                rotational.m33 + near.m33 + far.m33,
+            );
+            parent.coupling += shifted;
             parent.translational += translational;
-            let force = r * force;
-            parent.moment += r * moment + link.parent_from_link.translation.cross(&force);
+            let force = mul(r, &force);
+            parent.moment += mul(r, &moment) + cross(p, &force);
             parent.force += force;
         }
     }
 
     /// Base to tip: the accelerations.
     fn accelerate(&self, workspace: &mut Workspace, qdd: &mut [f64]) {
-        let mut wd_parent = Vector3::zeros();
-        let mut vd_parent = -self.gravity;
-        for (i, joint) in self.joints.iter().enumerate() {
-            let link = &workspace.links[i];
-            let r = &link.parent_from_link.rotation;
-            let p = &link.parent_from_link.translation;
-            let mut wd = r.tr_mul(&wd_parent) + link.c_angular;
-            let mut vd = r.tr_mul(&(vd_parent + wd_parent.cross(p))) + link.c_linear;
-            qdd[i] = (link.u - link.u_moment.dot(&wd) - link.u_force.dot(&vd)) / link.d;
+        let mut wd = Vector3::zeros();
+        let mut vd = -self.gravity;
+        for ((joint, link), qdd) in self.joints.iter().zip(&workspace.links).zip(qdd) {
+            let pose = &link.parent_from_link;
+            vd = tr_mul(&pose.rotation, &(vd + cross(&wd, &pose.translation))) + link.c_linear;
+            wd = tr_mul(&pose.rotation, &wd) + link.c_angular;
+            *qdd = (link.u - link.u_moment.dot(&wd) - link.u_force.dot(&vd)) / link.d;
             match joint.kind {
-                JointKind::Revolute => wd += joint.axis * qdd[i],
-                JointKind::Prismatic => vd += joint.axis * qdd[i],
+                JointKind::Revolute => wd += joint.axis * *qdd,
+                JointKind::Prismatic => vd += joint.axis * *qdd,
             }
-            (wd_parent, vd_parent) = (wd, vd);
         }
     }
 }

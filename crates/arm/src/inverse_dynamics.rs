@@ -1,8 +1,9 @@
 //! Recursive Newton-Euler inverse dynamics, and the features Independent Joint Learning takes from it.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::model::{Arm, JointKind};
+use crate::small::{acceleration_tensor, cross, field_moment, mul, tr_mul};
 use crate::workspace::Workspace;
 
 /// How many Newton-Euler features a joint has: the paper's twelve, and its own torque as the thirteenth.
@@ -81,56 +82,58 @@ impl Arm {
 
     /// Base to tip: each link's pose in its parent, ω, ω̇, and v̇ less gravity, in its own frame.
     pub(crate) fn propagate_motion(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64]) {
-        let mut w_parent = Vector3::zeros();
-        let mut wd_parent = Vector3::zeros();
-        let mut vd_parent = -self.gravity;
-        for (i, joint) in self.joints.iter().enumerate() {
-            let link = &mut workspace.links[i];
-            link.parent_from_link = joint.parent_from_link(q[i]);
-            let r = &link.parent_from_link.rotation;
-            let p = &link.parent_from_link.translation;
-            let vd_origin = vd_parent + wd_parent.cross(p) + w_parent.cross(&w_parent.cross(p));
-            let mut w = r.tr_mul(&w_parent);
-            let mut wd = r.tr_mul(&wd_parent);
-            let mut vd = r.tr_mul(&vd_origin);
-            let velocity = joint.axis * qd[i];
-            let acceleration = joint.axis * qdd[i];
+        let mut w = Vector3::zeros();
+        let mut vd = -self.gravity;
+        let mut field = Matrix3::zeros();
+        let mut wd = Vector3::zeros();
+        let joints = self.joints.iter().zip(&mut workspace.links);
+        for (((joint, link), (&q, &qd)), &qdd) in joints.zip(q.iter().zip(qd)).zip(qdd) {
+            let pose = joint.parent_from_link(q);
+            vd = tr_mul(&pose.rotation, &(vd + mul(&field, &pose.translation)));
+            w = tr_mul(&pose.rotation, &w);
+            wd = tr_mul(&pose.rotation, &wd);
+            let velocity = joint.axis * qd;
+            let acceleration = joint.axis * qdd;
             match joint.kind {
                 JointKind::Revolute => {
-                    wd += acceleration + w.cross(&velocity);
+                    wd += acceleration + cross(&w, &velocity);
                     w += velocity;
                 }
-                JointKind::Prismatic => vd += acceleration + 2.0 * w.cross(&velocity),
+                JointKind::Prismatic => vd += acceleration + 2.0 * cross(&w, &velocity),
             }
+            field = acceleration_tensor(&w, &wd);
+            link.parent_from_link = pose;
             link.angular_velocity = w;
             link.angular_acceleration = wd;
             link.linear_acceleration = vd;
-            (w_parent, wd_parent, vd_parent) = (w, wd, vd);
+            link.field = field;
         }
     }
 
     /// Tip to base: the wrench each joint transmits, and its component along the axis.
+    ///
+    /// A point r of a link accelerates by v̇ + W r, W = [ω̇]× + [ω]×²: its inertial force is m v̇ + W ∫ r dm, its moment
+    /// ∫ r × (v̇ + W r) dm, linear in the moments of its mass (Balafoutis and Patel 1991).
     fn propagate_wrenches(&self, workspace: &mut Workspace, qdd: &[f64], tau: &mut [f64]) {
         // The wrench of link i+1 in link i's axes, about link i's origin.
-        let mut distal_force = Vector3::zeros();
-        let mut distal_moment = Vector3::zeros();
-        for (i, joint) in self.joints.iter().enumerate().rev() {
-            let link = &mut workspace.links[i];
-            let (w, wd) = (&link.angular_velocity, &link.angular_acceleration);
-            let body = &joint.inertia;
-            let vd_com = link.linear_acceleration + wd.cross(&body.com) + w.cross(&w.cross(&body.com));
-            let inertial_force = body.mass * vd_com;
-            let inertial_moment = body.tensor * wd + w.cross(&(body.tensor * w));
-            link.force = inertial_force + distal_force;
-            link.moment = inertial_moment + body.com.cross(&inertial_force) + distal_moment;
+        let mut force = Vector3::zeros();
+        let mut moment = Vector3::zeros();
+        let joints = self.joints.iter().zip(&mut workspace.links);
+        for (((joint, link), &qdd), tau) in joints.zip(qdd).zip(tau).rev() {
+            let body = &joint.moments;
+            let vd = &link.linear_acceleration;
+            force += joint.inertia.mass * vd + mul(&link.field, &body.first);
+            moment += cross(&body.first, vd) + field_moment(&link.field, &body.second);
+            link.force = force;
+            link.moment = moment;
             let along_axis = match joint.kind {
-                JointKind::Revolute => joint.axis.dot(&link.moment),
-                JointKind::Prismatic => joint.axis.dot(&link.force),
+                JointKind::Revolute => joint.axis.dot(&moment),
+                JointKind::Prismatic => joint.axis.dot(&force),
             };
-            tau[i] = along_axis + joint.rotor_inertia * qdd[i];
-            let r = &link.parent_from_link.rotation;
-            distal_force = r * link.force;
-            distal_moment = r * link.moment + link.parent_from_link.translation.cross(&distal_force);
+            *tau = along_axis + joint.rotor_inertia * qdd;
+            let pose = &link.parent_from_link;
+            force = mul(&pose.rotation, &force);
+            moment = mul(&pose.rotation, &moment) + cross(&pose.translation, &force);
         }
     }
 }

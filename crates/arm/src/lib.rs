@@ -8,6 +8,7 @@
 //! quantities put the angular part first.
 
 mod chain;
+mod derivatives;
 mod energy;
 mod error;
 mod forward_dynamics;
@@ -17,6 +18,7 @@ mod mass_matrix;
 mod model;
 mod pose;
 mod regressor;
+mod small;
 mod urdf;
 mod variants;
 mod visual;

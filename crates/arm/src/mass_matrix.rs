@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, Vector3};
 
 use crate::model::{Arm, JointKind};
-use crate::pose::cross_matrix;
+use crate::small::{cross, mul, rotate_symmetric, symmetric};
 use crate::workspace::Workspace;
 
 impl Arm {
@@ -22,43 +22,56 @@ impl Arm {
         let mut distal_mass = 0.0;
         let mut distal_moment = Vector3::zeros();
         let mut distal_tensor = nalgebra::Matrix3::zeros();
-        for (i, joint) in self.joints.iter().enumerate() {
-            workspace.links[i].parent_from_link = joint.parent_from_link(q[i]);
+        // The joints' inertia does not depend on where the first one stands: its pose is not needed.
+        for ((joint, link), &q) in self.joints.iter().zip(&mut workspace.links).zip(q).skip(1) {
+            link.parent_from_link = joint.parent_from_link(q);
         }
         for i in (0..n).rev() {
             let joint = &self.joints[i];
-            let body = &joint.inertia;
-            let mass = body.mass + distal_mass;
-            let first_moment = body.mass * body.com + distal_moment;
-            let tensor = body.tensor_about_origin() + distal_tensor;
+            let mass = joint.inertia.mass + distal_mass;
+            let first_moment = joint.moments.first + distal_moment;
+            let tensor = joint.moments.tensor + distal_tensor;
 
             // The wrench (about link i's origin) of a unit acceleration of joint i, carried to the base.
             let (mut force, mut moment) = match joint.kind {
-                JointKind::Revolute => (joint.axis.cross(&first_moment), tensor * joint.axis),
-                JointKind::Prismatic => (mass * joint.axis, first_moment.cross(&joint.axis)),
+                JointKind::Revolute => (cross(&joint.axis, &first_moment), mul(&tensor, &joint.axis)),
+                JointKind::Prismatic => (mass * joint.axis, cross(&first_moment, &joint.axis)),
             };
-            for j in (0..=i).rev() {
-                let other = &self.joints[j];
-                let element = match other.kind {
+            let column = &mut mass_matrix.as_mut_slice()[i * n..][..=i];
+            for ((other, link), element) in self.joints.iter().zip(&workspace.links).zip(column).rev() {
+                *element = match other.kind {
                     JointKind::Revolute => other.axis.dot(&moment),
                     JointKind::Prismatic => other.axis.dot(&force),
                 };
-                mass_matrix[(i, j)] = element;
-                mass_matrix[(j, i)] = element;
-                let pose = &workspace.links[j].parent_from_link;
-                force = pose.rotation * force;
-                moment = pose.rotation * moment + pose.translation.cross(&force);
+                let pose = &link.parent_from_link;
+                force = mul(&pose.rotation, &force);
+                moment = mul(&pose.rotation, &moment) + cross(&pose.translation, &force);
             }
             mass_matrix[(i, i)] += joint.rotor_inertia;
 
-            // The composite body in the parent's frame, about the parent's origin.
+            // The composite body in the parent's frame, about the parent's origin: with the first moment h about the
+            // link's origin and p to it, I' = I + (2 p·h + m p²) 1 − (p hᵀ + h pᵀ) − m p pᵀ.
             let pose = &workspace.links[i].parent_from_link;
-            let rotated = pose.rotation * first_moment;
-            let p = cross_matrix(&pose.translation);
-            let h = cross_matrix(&rotated);
-            distal_tensor = pose.rotation * tensor * pose.rotation.transpose() - (p * h + h * p) - mass * p * p;
-            distal_moment = rotated + mass * pose.translation;
+            let (p, h) = (&pose.translation, mul(&pose.rotation, &first_moment));
+            let moved = h + mass * p;
+            let both = h + moved;
+            let (xx, yy, zz) = (p.x * both.x, p.y * both.y, p.z * both.z);
+            distal_tensor = rotate_symmetric(&pose.rotation, &tensor)
+                + symmetric(
+                    yy + zz,
+                    -(p.x * moved.y + h.x * p.y),
+                    -(p.x * moved.z + h.x * p.z),
+                    xx + zz,
+                    -(p.y * moved.z + h.y * p.z),
+                    xx + yy,
+                );
+            distal_moment = moved;
             distal_mass = mass;
+        }
+        for i in 0..n {
+            for j in 0..i {
+                mass_matrix[(i, j)] = mass_matrix[(j, i)];
+            }
         }
     }
 }

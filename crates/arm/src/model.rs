@@ -107,6 +107,28 @@ impl Inertia {
     }
 }
 
+/// A body as the algorithms use it: the moments of its mass about its link frame's origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Moments {
+    /// ∫ r dm = m c (kg m).
+    pub first: Vector3<f64>,
+    /// ∫ r rᵀ dm (kg m²).
+    pub second: Matrix3<f64>,
+    /// The inertia tensor about the origin, tr(second) 1 − second (kg m²).
+    pub tensor: Matrix3<f64>,
+}
+
+impl Moments {
+    pub(crate) fn of(body: &Inertia) -> Self {
+        let tensor = body.tensor_about_origin();
+        Self {
+            first: body.mass * body.com,
+            second: Matrix3::from_diagonal_element(0.5 * tensor.trace()) - tensor,
+            tensor,
+        }
+    }
+}
+
 /// One moving joint and the link it carries (fixed joints beyond it merged in).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
@@ -130,6 +152,8 @@ pub struct Joint {
     pub friction: f64,
     /// The link's inertia.
     pub inertia: Inertia,
+    /// The moments of that inertia, kept in step with it by [`Self::set_inertia`].
+    pub(crate) moments: Moments,
     /// R₀, R₀[a]×, R₀[a]×²: the rotation is R₀ + sin q R₀[a]× + (1 − cos q) R₀[a]×² (Rodrigues).
     pub(crate) rotation_terms: [Matrix3<f64>; 3],
     /// R₀ a, the sliding direction in the parent's frame.
@@ -137,7 +161,14 @@ pub struct Joint {
 }
 
 impl Joint {
+    /// Replaces the link's inertia.
+    pub(crate) fn set_inertia(&mut self, inertia: Inertia) {
+        self.inertia = inertia;
+        self.moments = Moments::of(&inertia);
+    }
+
     /// Pose of the link in its parent at joint position `q` (rad or m).
+    #[inline]
     pub fn parent_from_link(&self, q: f64) -> Pose {
         match self.kind {
             JointKind::Revolute => {

@@ -3,7 +3,8 @@
 use nalgebra::{DMatrix, Vector3};
 
 use crate::model::{Arm, JointKind};
-use crate::workspace::Workspace;
+use crate::small::{cross, tr_mul};
+use crate::workspace::{LinkState, Workspace};
 
 /// m, m c (3), Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the link frame's origin.
 pub const PARAMETERS_PER_LINK: usize = 10;
@@ -31,52 +32,51 @@ impl Arm {
             (n, n * PARAMETERS_PER_LINK),
             "the regressor is dof × 10 dof"
         );
-        regressor.fill(0.0);
         self.propagate_motion(workspace, q, qd, qdd);
-        for i in 0..n {
-            // The unit motion of joint i as a twist (angular, linear) in link j's frame, j = i, i+1, …:
-            // its power against the wrench that link j needs is joint i's torque (virtual work).
-            let axis = self.joints[i].axis;
-            let (mut angular, mut linear) = match self.joints[i].kind {
-                JointKind::Revolute => (axis, Vector3::zeros()),
-                JointKind::Prismatic => (Vector3::zeros(), axis),
+        // For link j, the unit motions of joints 0 … j as twists in link j's frame: their power against the wrench that
+        // the link needs is the joints' torque (virtual work).
+        let Workspace { links, twists, .. } = workspace;
+        let links = self.joints.iter().zip(links.iter());
+        for (j, ((joint, link), columns)) in links
+            .zip(regressor.as_mut_slice().chunks_exact_mut(n * PARAMETERS_PER_LINK))
+            .enumerate()
+        {
+            let pose = &link.parent_from_link;
+            for (angular, linear) in &mut twists[..j] {
+                *linear = tr_mul(&pose.rotation, &(*linear + cross(angular, &pose.translation)));
+                *angular = tr_mul(&pose.rotation, angular);
+            }
+            twists[j] = match joint.kind {
+                JointKind::Revolute => (joint.axis, Vector3::zeros()),
+                JointKind::Prismatic => (Vector3::zeros(), joint.axis),
             };
-            for j in i..n {
-                let link = &workspace.links[j];
-                if j > i {
-                    let pose = &link.parent_from_link;
-                    linear = pose.rotation.tr_mul(&(linear + angular.cross(&pose.translation)));
-                    angular = pose.rotation.tr_mul(&angular);
+            for (i, (angular, linear)) in twists[..=j].iter().enumerate() {
+                let row = wrench_row(link, angular, linear);
+                for (column, value) in columns.chunks_exact_mut(n).zip(row) {
+                    column[i] = value;
                 }
-                let row = wrench_row(
-                    &link.angular_velocity,
-                    &link.angular_acceleration,
-                    &link.linear_acceleration,
-                    &angular,
-                    &linear,
-                );
-                for (k, value) in row.iter().enumerate() {
-                    regressor[(i, j * PARAMETERS_PER_LINK + k)] = *value;
-                }
+            }
+            for column in columns.chunks_exact_mut(n) {
+                column[j + 1..].fill(0.0);
             }
         }
     }
 }
 
 /// The power of the twist (`angular`, `linear`) against the inertial wrench of one link, per unit of
-/// each of its ten parameters. With a = v̇ of the origin less gravity:
-/// f = m a + (ω̇× + ω×ω×) mc, n = mc × a + I ω̇ + ω × I ω.
-fn wrench_row(
-    w: &Vector3<f64>,
-    wd: &Vector3<f64>,
-    a: &Vector3<f64>,
-    angular: &Vector3<f64>,
-    linear: &Vector3<f64>,
-) -> [f64; PARAMETERS_PER_LINK] {
-    // linear · (ω̇ × h + ω × (ω × h)) + angular · (h × a), as a vector dotted with h = mc.
-    let h = linear.cross(wd) + w.cross(&w.cross(linear)) + a.cross(angular);
+/// each of its ten parameters. With a = v̇ of the origin less gravity and W = [ω̇]× + [ω]×²:
+/// f = m a + W mc, n = mc × a + I ω̇ + ω × I ω.
+#[inline(always)]
+fn wrench_row(link: &LinkState, angular: &Vector3<f64>, linear: &Vector3<f64>) -> [f64; PARAMETERS_PER_LINK] {
+    let (w, wd, a) = (
+        &link.angular_velocity,
+        &link.angular_acceleration,
+        &link.linear_acceleration,
+    );
+    // linear · W h + angular · (h × a), as a vector dotted with h = mc.
+    let h = tr_mul(&link.field, linear) + cross(a, angular);
     // angular · (I ω̇) + (angular × ω) · (I ω): a symmetric bilinear form in I.
-    let s = angular.cross(w);
+    let s = cross(angular, w);
     [
         linear.dot(a),
         h.x,

@@ -11,7 +11,7 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use self::choose::Chain;
 use crate::chain::{self, ChainOptions};
 use crate::error::ArmError;
-use crate::model::{Arm, Frame, Inertia, Joint, JointKind, Limits, STANDARD_GRAVITY};
+use crate::model::{Arm, Frame, Inertia, Joint, JointKind, Limits, Moments, STANDARD_GRAVITY};
 use crate::pose::{Pose, cross_matrix};
 use crate::visual::{Geometry, Visual};
 
@@ -261,6 +261,7 @@ impl<'a> Reader<'a> {
             rotor_inertia: 0.0,
             damping,
             friction,
+            moments: Moments::of(&inertia),
             inertia,
             rotation_terms: [r0, r0 * a, r0 * a * a],
             axis_in_parent: r0 * axis,

@@ -49,9 +49,10 @@ impl Arm {
     /// # Panics
     /// If there is no such link.
     pub fn with_scaled_link(mut self, link: usize, factor: f64) -> Self {
-        let body = &mut self.joints[link].inertia;
+        let mut body = self.joints[link].inertia;
         body.mass *= factor;
         body.tensor *= factor;
+        self.joints[link].set_inertia(body);
         self
     }
 
@@ -62,7 +63,7 @@ impl Arm {
     pub fn with_inertias(mut self, inertias: &[Inertia]) -> Self {
         assert_eq!(inertias.len(), self.dof(), "one body a joint");
         for (joint, inertia) in self.joints.iter_mut().zip(inertias) {
-            joint.inertia = *inertia;
+            joint.set_inertia(*inertia);
         }
         self
     }
@@ -72,7 +73,7 @@ impl Arm {
     /// # Panics
     /// If there is no such link.
     pub fn with_link_inertia(mut self, link: usize, body: Inertia) -> Self {
-        self.joints[link].inertia = body;
+        self.joints[link].set_inertia(body);
         self
     }
 
@@ -81,8 +82,10 @@ impl Arm {
     pub fn with_payload(mut self, payload: &Inertia) -> Self {
         let tool = self.tool_frame();
         let last = self.dof() - 1;
-        let body = &mut self.joints[last].inertia;
-        *body = body.merged(&payload.transformed(&tool.link_from_frame));
+        let body = self.joints[last]
+            .inertia
+            .merged(&payload.transformed(&tool.link_from_frame));
+        self.joints[last].set_inertia(body);
         self
     }
 }

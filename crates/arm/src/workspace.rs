@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::derivatives::Tangent;
 use crate::model::Arm;
 use crate::pose::Pose;
 
@@ -13,8 +14,8 @@ pub(crate) struct LinkState {
     /// ω, ω̇ (rad/s, rad/s²).
     pub angular_velocity: Vector3<f64>,
     pub angular_acceleration: Vector3<f64>,
-    /// v of the frame's origin (m/s): forward dynamics only.
-    pub linear_velocity: Vector3<f64>,
+    /// [ω̇]× + [ω]×²: the acceleration of a point beyond that of the origin, per metre (1/s²).
+    pub field: Matrix3<f64>,
     /// v̇ of the frame's origin less gravity (m/s²).
     pub linear_acceleration: Vector3<f64>,
     /// f, τ that the parent exerts on the link, about the frame's origin (N, N m).
@@ -37,6 +38,9 @@ pub(crate) struct LinkState {
 #[derive(Clone, Debug)]
 pub struct Workspace {
     pub(crate) links: Vec<LinkState>,
+    /// The unit motions of the joints in one link's frame: angular and linear part.
+    pub(crate) twists: Vec<(Vector3<f64>, Vector3<f64>)>,
+    pub(crate) tangents: Vec<Tangent>,
     pub(crate) zeros: Vec<f64>,
 }
 
@@ -49,7 +53,7 @@ impl Workspace {
             base_from_link: Pose::identity(),
             angular_velocity: zero,
             angular_acceleration: zero,
-            linear_velocity: zero,
+            field: Matrix3::zeros(),
             linear_acceleration: zero,
             force: zero,
             moment: zero,
@@ -65,6 +69,8 @@ impl Workspace {
         };
         Self {
             links: vec![link; arm.dof()],
+            twists: vec![(zero, zero); arm.dof()],
+            tangents: vec![Tangent::zero(); arm.dof()],
             zeros: vec![0.0; arm.dof()],
         }
     }

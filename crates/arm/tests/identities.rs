@@ -175,6 +175,33 @@ fn regressor_times_parameters_is_the_torque() {
     });
 }
 
+/// The derivatives of inverse dynamics are what central differences give. Fails if a term or a side of a joint is missing.
+#[test]
+fn derivatives_of_inverse_dynamics_are_its_differences() {
+    for_each_state(|arm, workspace, random| {
+        let n = arm.dof();
+        let states = [random.vector(n, 3.0), random.vector(n, 3.0), random.vector(n, 3.0)];
+        let mut ours = [DMatrix::zeros(n, n), DMatrix::zeros(n, n)];
+        let [by_position, by_velocity] = &mut ours;
+        arm.inverse_dynamics_derivatives(workspace, &states[0], &states[1], &states[2], by_position, by_velocity);
+        for (which, ours) in ours.iter().enumerate() {
+            let mut differences = DMatrix::zeros(n, n);
+            let h = 1e-5;
+            for by in 0..n {
+                let mut at = |d: f64| {
+                    let mut states = states.clone();
+                    states[which][by] += d;
+                    let mut tau = vec![0.0; n];
+                    arm.inverse_dynamics(workspace, &states[0], &states[1], &states[2], &mut tau);
+                    DVector::from_vec(tau)
+                };
+                differences.set_column(by, &((at(h) - at(-h)) / (2.0 * h)));
+            }
+            assert_close("derivative", ours.as_slice(), differences.as_slice(), 1e-7);
+        }
+    });
+}
+
 /// The Jacobian is the derivative of the pose. Fails if a column uses the wrong point or frame.
 #[test]
 fn jacobian_is_the_derivative_of_the_pose() {

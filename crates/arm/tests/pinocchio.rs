@@ -89,6 +89,43 @@ fn check(robot: &str, urdf: &str) {
     println!("{robot}: largest relative errors {worst:?}");
 }
 
+/// ∂τ/∂q and ∂τ/∂q̇ on the states of `pinocchio/derivatives.py`.
+fn check_derivatives(robot: &str, urdf: &str) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let arm = Arm::from_urdf(folder.join(urdf)).expect("the robot loads");
+    let file = folder.join(format!("tests/pinocchio/{robot}_derivatives.bin"));
+    let bytes = std::fs::read(file).expect("the reference is there");
+    let values: Vec<f64> = bytes
+        .chunks_exact(8)
+        .map(|b| f64::from_le_bytes(b.try_into().expect("eight bytes")))
+        .collect();
+    let n = arm.dof();
+    let width = 3 * n + 2 * n * n;
+    assert_eq!(values.len(), 50 * width);
+    let mut workspace = Workspace::new(&arm);
+    let mut ours = [DMatrix::zeros(n, n), DMatrix::zeros(n, n)];
+    for (state, mut row) in values.chunks_exact(width).enumerate() {
+        let [q, qd, qdd] = [(); 3].map(|()| take(&mut row, n));
+        let [by_position, by_velocity] = &mut ours;
+        arm.inverse_dynamics_derivatives(&mut workspace, q, qd, qdd, by_position, by_velocity);
+        for (what, ours) in ["by position", "by velocity"].iter().zip(&ours) {
+            let theirs = DMatrix::from_row_slice(n, n, take(&mut row, n * n));
+            let error = (ours - &theirs).amax() / theirs.amax().max(1e-3);
+            assert!(
+                error <= TOLERANCE,
+                "{robot}, state {state}: {what} is off by {error:e}\n{ours}{theirs}"
+            );
+        }
+    }
+}
+
+#[test]
+fn derivatives_agree_with_pinocchio() {
+    check_derivatives("puma560", "../../assets/puma560.urdf");
+    check_derivatives("seven_axis", "tests/robots/seven_axis.urdf");
+    check_derivatives("prismatic", "tests/robots/prismatic.urdf");
+}
+
 #[test]
 fn puma560_agrees_with_pinocchio() {
     check("puma560", "../../assets/puma560.urdf");

@@ -5,9 +5,6 @@ use nalgebra::{DMatrix, Matrix6xX, Vector3};
 
 use crate::data::motion::Chunk;
 
-/// Step of the central differences (rad, rad/s, …): rounding 1e-16/1e-5, curvature 1e-10.
-const STEP: f64 = 1e-5;
-
 /// Signals on the ticks of one chunk; joint first where there are two.
 #[derive(Clone, Debug, Default)]
 pub struct Rigid {
@@ -66,7 +63,7 @@ impl Rigid {
         }
     }
 
-    /// The same; without `derivatives` those by position and velocity, which cost most, stay zero.
+    /// The same; without `derivatives` those by position and velocity stay zero.
     pub fn with_derivatives(arm: &Arm, nominal: &[f64], offset: &[f64], chunk: &Chunk, derivatives: bool) -> Self {
         let n = arm.dof();
         let ticks = chunk.ticks();
@@ -94,10 +91,11 @@ impl Rigid {
         // Turning the base by a small angle about x turns gravity by its opposite, seen from the base.
         let turned = [Vector3::x(), Vector3::y()].map(|axis| -axis.cross(&gravity));
         let (mut q, mut qd, mut qdd) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-        let (mut tau, mut plus, mut minus) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        let (mut tau, mut pull) = (vec![0.0; n], vec![0.0; n]);
         let still = vec![0.0; n];
         let mut regressor = DMatrix::zeros(n, PARAMETERS_PER_LINK * n);
         let mut mass = DMatrix::zeros(n, n);
+        let (mut by_position, mut by_velocity) = (DMatrix::zeros(n, n), DMatrix::zeros(n, n));
         let mut jacobian = Matrix6xX::zeros(n);
         let to_link = payload_to_link(arm);
         for tick in 0..ticks {
@@ -123,23 +121,13 @@ impl Rigid {
                     rigid.payload[joint][k][tick] = (0..10).map(|l| regressor[(joint, last + l)] * to_link[l][k]).sum();
                 }
             }
-            for by in 0..if derivatives { n } else { 0 } {
-                let (at, speed) = (q[by], qd[by]);
-                q[by] = at + STEP;
-                arm.inverse_dynamics(&mut workspace, &q, &qd, &qdd, &mut plus);
-                q[by] = at - STEP;
-                arm.inverse_dynamics(&mut workspace, &q, &qd, &qdd, &mut minus);
-                q[by] = at;
+            if derivatives {
+                arm.inverse_dynamics_derivatives(&mut workspace, &q, &qd, &qdd, &mut by_position, &mut by_velocity);
                 for joint in 0..n {
-                    rigid.by_position[joint][by][tick] = (plus[joint] - minus[joint]) / (2.0 * STEP);
-                }
-                qd[by] = speed + STEP;
-                arm.inverse_dynamics(&mut workspace, &q, &qd, &qdd, &mut plus);
-                qd[by] = speed - STEP;
-                arm.inverse_dynamics(&mut workspace, &q, &qd, &qdd, &mut minus);
-                qd[by] = speed;
-                for joint in 0..n {
-                    rigid.by_velocity[joint][by][tick] = (plus[joint] - minus[joint]) / (2.0 * STEP);
+                    for by in 0..n {
+                        rigid.by_position[joint][by][tick] = by_position[(joint, by)];
+                        rigid.by_velocity[joint][by][tick] = by_velocity[(joint, by)];
+                    }
                 }
             }
             arm.mass_matrix(&mut workspace, &q, &mut mass);
@@ -149,9 +137,9 @@ impl Rigid {
                 }
             }
             for (axis, along) in along.iter().enumerate() {
-                along.inverse_dynamics(&mut workspace, &q, &still, &still, &mut plus);
+                along.inverse_dynamics(&mut workspace, &q, &still, &still, &mut pull);
                 for joint in 0..n {
-                    rigid.gravity[joint][axis][tick] = plus[joint];
+                    rigid.gravity[joint][axis][tick] = pull[joint];
                 }
             }
             // The torque is linear in gravity.
