@@ -86,7 +86,7 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "OUT")]
     pub mjcf: Option<PathBuf>,
 
-    /// Whether friction in the URDF (<dynamics>) is known friction, which the recordings are not to explain again. In most URDFs
+    /// Whether friction in the URDF (its "dynamics" tags) is known friction, which the recordings are not to explain again. In most URDFs
     /// it is a placeholder
     #[arg(long, value_enum, default_value = "diagnosed")]
     pub urdf_friction: UrdfFriction,
