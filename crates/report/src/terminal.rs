@@ -3,11 +3,13 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, presets};
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, Width, presets};
 use diagnosis::{Finding, NotObservable, Report, Unexplained};
 
 use crate::statistics::rms;
 use crate::{next_words, numbers, words};
+
+mod steps;
 
 /// The width of lines in characters; a single longer word exceeds it.
 const WIDTH: usize = 80;
@@ -27,16 +29,26 @@ pub fn table(header: impl IntoIterator<Item = String>) -> Table {
     table
 }
 
-/// The text that is printed at the end of a diagnosis; it ends with a newline.
+/// The most next steps of the short text.
+const STEPS: usize = 3;
+
+/// The result of a diagnosis on one screen: verdict, table, next steps; it ends with a newline.
 pub fn diagnosis(report: &Report) -> String {
-    let changed = report.changed.as_ref().map(|list| wrapped(&words::changed(list), ""));
-    let mut text = changed.unwrap_or_default();
-    text += &wrapped(&words::verdict(report), "");
-    if !report.findings.is_empty() {
-        let _ = writeln!(text, "\n{}\n", findings(report));
-        text += &wrapped(&columns(report), "");
-        text.push('\n');
+    let mut text = opening(report);
+    let steps = steps::of(report);
+    for step in steps.iter().take(STEPS) {
+        text += &wrapped(step, "- ");
     }
+    if steps.len() > STEPS {
+        text += &wrapped(&format!("{} more with --verbose", steps.len() - STEPS), "- ");
+    }
+    text
+}
+
+/// All that is said of a diagnosis: also the findings' further parameters and alternatives, what is not testable, and the
+/// simulated motion; it ends with a newline.
+pub fn complete(report: &Report) -> String {
+    let mut text = opening(report);
     for finding in &report.findings {
         text += &details(finding);
     }
@@ -59,6 +71,19 @@ pub fn diagnosis(report: &Report) -> String {
     let rollout = rollout(report);
     if !rollout.is_empty() {
         text += &wrapped(&rollout, "- ");
+    }
+    text
+}
+
+/// What changed, the verdict, and the table.
+fn opening(report: &Report) -> String {
+    let changed = report.changed.as_ref().map(|list| wrapped(&words::changed(list), ""));
+    let mut text = changed.unwrap_or_default();
+    text += &wrapped(&words::verdict(report), "");
+    if !report.findings.is_empty() {
+        let _ = writeln!(text, "\n{}\n", findings(report));
+        text += &wrapped(&columns(report), "");
+        text.push('\n');
     }
     text
 }
@@ -145,14 +170,20 @@ fn findings(report: &Report) -> String {
     let mut table = table(["joint", "effect", "size", "share", "error"].map(str::to_owned));
     table.set_content_arrangement(ContentArrangement::Dynamic);
     table.set_width(WIDTH as u16);
+    let effects = report.findings.iter().map(words::effect);
+    let words = effects.flat_map(|effect| effect.split(' ').map(|word| word.chars().count()).max());
+    let longest = words.max().map_or(0, |length| length + 2) as u16;
     for (index, column) in table.column_iter_mut().enumerate() {
         column.set_padding((0, if index == 4 { 0 } else { 2 }));
         if index < 3 {
             column.set_cell_alignment(CellAlignment::Left);
         }
-        if index != 1 {
-            column.set_constraint(ColumnConstraint::ContentWidth);
-        }
+        // Only effects are wrapped, between words: a column narrower than a word would break it.
+        column.set_constraint(if index == 1 {
+            ColumnConstraint::LowerBoundary(Width::Fixed(longest))
+        } else {
+            ColumnConstraint::ContentWidth
+        });
     }
     let mut by_joint: Vec<(Option<&str>, Vec<&Finding>)> = Vec::new();
     for finding in &report.findings {

@@ -6,6 +6,7 @@ mod held;
 mod inputs;
 mod mjcf_file;
 mod next_file;
+mod notes;
 #[cfg(feature = "viewer")]
 mod rerun;
 mod trace_file;

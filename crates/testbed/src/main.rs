@@ -46,7 +46,10 @@ fn main() -> ExitCode {
             tables::run(args.json.as_deref(), &args.length_scales.training_options())
         }
         (Some(cli::Command::Inspect(args)), _) => inspect::run(args),
-        (Some(cli::Command::Diagnose(args)), _) => diagnose::run(args),
+        (Some(cli::Command::Diagnose(args)), _) => match diagnose::run(args) {
+            Ok(status) => return status,
+            Err(error) => Err(error),
+        },
         (Some(cli::Command::Prove(args)), _) => prove::run(args),
         (Some(cli::Command::Conceal(args)), _) => conceal::run(args),
         (None, Some(args)) => run::run(args, &cli.chain),

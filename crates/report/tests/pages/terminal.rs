@@ -7,7 +7,7 @@ use crate::made_up::{self, Plot};
 #[test]
 fn the_table_is_narrow_and_says_it_all() {
     let (report, ..) = made_up::diagnosis(6, Plot::Rich);
-    let text = terminal::diagnosis(&report);
+    let text = terminal::complete(&report);
     println!("{text}");
     for line in text.lines() {
         assert!(line.chars().count() <= 80, "{line}");
@@ -24,6 +24,52 @@ fn the_table_is_narrow_and_says_it_all() {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
     assert!(text.starts_with("The model omits 8 effects on 4 joints and the whole arm. An unmodelled residual\n"));
+}
+
+#[test]
+fn the_short_text_is_one_screen_with_at_most_three_next_steps() {
+    let (mut report, ..) = made_up::diagnosis(6, Plot::Rich);
+    let short = terminal::diagnosis(&report);
+    let steps = |text: &str| text.lines().filter(|line| line.starts_with("- ")).count();
+    assert!((1..=4).contains(&steps(&short)), "{short}");
+    assert!(
+        short.contains("62.0 ± 3.1 N m/rad") && !short.contains("not testable"),
+        "{short}"
+    );
+    assert!(short.lines().count() <= 40, "{short}");
+    // Joints with the same next experiment are one step; what exceeds three steps is counted.
+    let open = report.unexplained[0].clone();
+    report.unexplained = (0..5).map(|_| open.clone()).collect();
+    let together = terminal::diagnosis(&report);
+    assert!(
+        together.contains("unexplained residuals; next experiment"),
+        "{together}"
+    );
+    for (k, open) in report.unexplained.iter_mut().enumerate() {
+        open.next = format!("record {k} more");
+    }
+    let text = terminal::diagnosis(&report);
+    assert!(steps(&text) == 4 && text.contains("more with --verbose"), "{text}");
+}
+
+#[test]
+fn words_in_the_table_are_not_broken() {
+    let (mut report, ..) = made_up::diagnosis(6, Plot::Rich);
+    let joint = "a_joint_with_a_name_of_more_than_forty_letters";
+    for finding in report.findings.iter_mut().filter(|finding| finding.joint.is_some()) {
+        finding.joint = Some(joint.to_owned());
+    }
+    let text = terminal::diagnosis(&report);
+    assert!(text.contains(joint), "{text}");
+    for finding in &report.findings {
+        let title = effects::spec(finding.effect).map_or(finding.effect, |spec| spec.title);
+        for word in title.split(' ') {
+            assert!(
+                text.split_whitespace().any(|found| found == word),
+                "{word} is broken in\n{text}"
+            );
+        }
+    }
 }
 
 #[test]

@@ -62,7 +62,7 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "EFFECT:JOINT,…|FILE", conflicts_with = "known")]
     pub only: Option<String>,
 
-    /// Write the diagnosis to this file as JSON
+    /// Write the diagnosis to this file as JSON; - prints it on standard output, and nothing else there
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
 
@@ -100,6 +100,18 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "WHERE", value_parser = parse_rerun)]
     pub rerun: Option<Rerun>,
 
+    /// Print everything: each note, and all parameters, alternatives and effects that are not testable
+    #[arg(long, short, conflicts_with = "quiet")]
+    pub verbose: bool,
+
+    /// Print nothing but errors and the files written
+    #[arg(long, short)]
+    pub quiet: bool,
+
+    /// Exit with status 3 unless the model explains the recordings without any effect
+    #[arg(long)]
+    pub fail_on_mismatch: bool,
+
     /// The number of threads, which does not change the result [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,
@@ -121,7 +133,6 @@ impl DiagnoseArgs {
             _ => None,
         };
         let files = [
-            &self.json,
             &self.report,
             &self.model,
             &self.urdf,
@@ -129,7 +140,18 @@ impl DiagnoseArgs {
             &self.mjcf,
             &self.next,
         ];
-        files.into_iter().flatten().map(PathBuf::as_path).chain(rerun).collect()
+        let files = files.into_iter().flatten().map(PathBuf::as_path);
+        self.json_file().into_iter().chain(files).chain(rerun).collect()
+    }
+
+    /// Whether the diagnosis is printed as JSON.
+    pub fn prints_json(&self) -> bool {
+        self.json.as_deref() == Some(Path::new("-"))
+    }
+
+    /// The file that the diagnosis is written to as JSON.
+    pub fn json_file(&self) -> Option<&Path> {
+        self.json.as_deref().filter(|_| !self.prints_json())
     }
 }
 

@@ -1,24 +1,30 @@
 //! The command itself: files in, diagnosis, files out.
 
 use std::path::Path;
+use std::process::ExitCode;
 
 use anyhow::Context;
 use arm::Arm;
-use diagnosis::{Diagnosis, Input, Options};
+use diagnosis::{Diagnosis, Input, Options, Verdict};
+use indicatif::ProgressBar;
 
 use super::effect_file::EffectFile;
 use super::inputs::{Files, Role};
+use super::notes::Notes;
 use super::urdf_friction::{known_friction, summed};
 use super::{inputs, mjcf_file, next_file, trace_file, urdf_file};
 use crate::cli::DiagnoseArgs;
 use crate::library::{self, RobotFile};
 use crate::output;
 
+/// The exit status of `--fail-on-mismatch` where the model alone does not explain the recordings.
+const MISMATCH: u8 = 3;
+
 /// Diagnoses where and why the recordings that `args` name differ from the robot's model.
 ///
 /// # Errors
 /// If an input cannot be used or an output cannot be written; nothing is written then.
-pub fn run(args: &DiagnoseArgs) -> anyhow::Result<()> {
+pub fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     inputs::check_outputs(args)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(args.jobs.map_or(0, usize::from))
@@ -27,19 +33,36 @@ pub fn run(args: &DiagnoseArgs) -> anyhow::Result<()> {
     pool.install(|| diagnose(args))
 }
 
-fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
+fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     let robot = library::named_robot(&args.robot)?;
     let files = Files::open(args)?;
-    let arm = load_arm(args, &robot, files.joints())?;
+    let note = |text: &str| {
+        if !args.quiet {
+            eprintln!("note: {text}");
+        }
+    };
+    let arm = load_arm(args, &robot, files.joints(), &note)?;
     let mut known = inputs::known(args, &arm)?;
     let (friction, remark) = known_friction(&robot, &arm, args.urdf_friction, &known)?;
     known.splice(0..0, friction);
     if let Some(remark) = remark {
-        eprintln!("note: {}: {remark}", robot.path.display());
+        note(&format!("{}: {remark}", robot.path.display()));
     }
     let only = inputs::only(args, &arm)?;
-    let spinner = output::spinner("reading");
-    let recordings = inputs::read(files, &arm, &spinner)?;
+    let spinner = if args.quiet {
+        ProgressBar::hidden()
+    } else {
+        output::spinner("reading")
+    };
+    let mut notes = Notes::default();
+    let recordings = inputs::read(files, &arm, &spinner, &mut notes);
+    if !args.quiet {
+        let joints: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
+        for line in notes.lines(&joints, !args.verbose) {
+            spinner.suspend(|| eprintln!("{line}"));
+        }
+    }
+    let recordings = recordings?;
     let list: Vec<Input<'_>> = recordings
         .iter()
         .map(|recording| Input {
@@ -59,7 +82,7 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
     };
     let mut diagnosis = diagnosis::diagnose(&arm, &list, &options, &|doing| spinner.set_message(doing.to_owned()))?;
     for remark in &diagnosis.remarks {
-        spinner.suspend(|| eprintln!("note: {remark}"));
+        spinner.suspend(|| note(remark));
     }
     let mut remarks = Vec::new();
     if !args.torques_only {
@@ -70,35 +93,62 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<()> {
     }
     spinner.finish_and_clear();
     for remark in remarks {
-        eprintln!("note: simulation: {remark}");
+        note(&format!("simulation: {remark}"));
     }
     // The known effects are a part of the model that the findings correct.
     let effects = summed(&options.known, &diagnosis.effects);
     let written = write(args, &arm, &robot, &diagnosis, effects)?;
-    output::print(&report::terminal::diagnosis(&diagnosis.report))?;
+    tell(args, &diagnosis, &written)?;
+    let explains = diagnosis.report.verdict == Verdict::NoMismatch && diagnosis.report.findings.is_empty();
+    Ok(if args.fail_on_mismatch && !explains {
+        ExitCode::from(MISMATCH)
+    } else {
+        ExitCode::SUCCESS
+    })
+}
+
+/// Prints the result and the files written. JSON on standard output has it for itself.
+fn tell(args: &DiagnoseArgs, diagnosis: &Diagnosis, written: &Written<'_>) -> anyhow::Result<()> {
+    let report = &diagnosis.report;
+    if args.prints_json() {
+        output::print(&(serde_json::to_string_pretty(report)? + "\n"))?;
+    } else if args.verbose {
+        output::print(&report::terminal::complete(report))?;
+    } else if !args.quiet {
+        output::print(&report::terminal::diagnosis(report))?;
+    }
+    let say = |text: String| {
+        if args.prints_json() {
+            eprint!("{text}");
+            return Ok(());
+        }
+        output::print(&text)
+    };
     let is_written = |path: &&Path| args.next.as_deref() != Some(*path) || diagnosis.next.is_some();
     for path in args.outputs().into_iter().filter(is_written) {
-        output::print(&format!("written: {}\n", path.display()))?;
+        say(format!("written: {}\n", path.display()))?;
     }
-    for (path, left) in written.left {
-        let path = path.display();
-        output::print(&format!("not in {path}:\n  {}\n", left.join("\n  ")))?;
+    if args.quiet {
+        return Ok(());
+    }
+    for (path, left) in &written.left {
+        say(format!("not in {}:\n  {}\n", path.display(), left.join("\n  ")))?;
     }
     if let Some(path) = written.removed {
-        let path = path.display();
-        output::print(&format!(
-            "removed: {path} of an earlier diagnosis, because this one proposes no motion\n"
+        say(format!(
+            "removed: {} of an earlier diagnosis, because this one proposes no motion\n",
+            path.display()
         ))?;
     }
     Ok(())
 }
 
-fn load_arm(args: &DiagnoseArgs, robot: &RobotFile, recorded: &[String]) -> anyhow::Result<Arm> {
+fn load_arm(args: &DiagnoseArgs, robot: &RobotFile, recorded: &[String], note: &dyn Fn(&str)) -> anyhow::Result<Arm> {
     let arm = robot
         .arm(&args.chain.options(recorded))
         .with_context(|| format!("--robot {}", args.robot))?;
     for warning in arm.warnings() {
-        eprintln!("note: {}: {warning}", robot.path.display());
+        note(&format!("{}: {warning}", robot.path.display()));
     }
     Ok(arm)
 }
@@ -155,7 +205,7 @@ fn write<'a>(
     if let Some(path) = &args.report {
         output::write_text(path, &report::page(&diagnosis.report, &diagnosis.traces, arm))?;
     }
-    if let Some(path) = &args.json {
+    if let Some(path) = args.json_file() {
         output::write_json(path, &diagnosis.report)?;
     }
     show(args, arm, &robot.path, diagnosis)?;

@@ -14,6 +14,7 @@ use recording::{ColumnMap, FindingKind, Quality, Recording, RegularRecording};
 use self::joints::{order, reordered};
 use super::effect_file::EffectFile;
 use super::next_file;
+use super::notes::Notes;
 use crate::cli::{DiagnoseArgs, Rerun};
 use crate::inspect::{model_check, shortened};
 use crate::{output, recordings};
@@ -185,11 +186,11 @@ impl<'a> Files<'a> {
     }
 }
 
-/// Reads and checks the recordings of `files`; what is doubtful is printed.
+/// Reads and checks the recordings of `files`; what is doubtful is added to `notes`, also before an error.
 ///
 /// # Errors
 /// If one cannot be read, does not fit the arm, holds no motion or no torque, or is both fitted and held out.
-pub fn read(files: Files<'_>, arm: &Arm, progress: &ProgressBar) -> anyhow::Result<Vec<Prepared>> {
+pub fn read(files: Files<'_>, arm: &Arm, progress: &ProgressBar, notes: &mut Notes) -> anyhow::Result<Vec<Prepared>> {
     let Files { map, files, mut first } = files;
     let choosing = files
         .first()
@@ -205,12 +206,12 @@ pub fn read(files: Files<'_>, arm: &Arm, progress: &ProgressBar) -> anyhow::Resu
         let name = path.display().to_string();
         let map = map.as_ref().map(|(path, _)| *path);
         let order = order(&recording, arm, &name, &choosing, map)?;
-        let prepared = prepare(recording, name, &order, role, arm, map.is_some(), progress)?;
+        let prepared = prepare(recording, name, &order, role, arm, map.is_some(), notes)?;
         if let Some(map) = &prepared.column_map
             && list.iter().all(|other| other.column_map.as_ref() != Some(map))
         {
-            let name = &prepared.name;
-            progress.suspend(|| eprint!("note: {name}: a column map that mends it (--map):\n{map}"));
+            let text = format!("a column map that mends it (--map):\n{map}");
+            notes.add("note", &prepared.name, text);
         }
         // The same samples under another name.
         let twin = list.iter().find(|known| {
@@ -272,41 +273,39 @@ fn prepare(
     role: Role,
     arm: &Arm,
     mapped: bool,
-    progress: &ProgressBar,
+    notes: &mut Notes,
 ) -> anyhow::Result<Prepared> {
     let (regular, warnings) = recording.regular().with_context(|| name.clone())?;
     let quality = Quality::of(&recording, &regular);
     let misfits = model_check::check(arm, &regular, &quality);
     let column_map = model_check::column_map(&misfits, &recording, mapped);
-    progress.suspend(|| {
-        let (told, gaps) = shortened(recording.warnings.iter().chain(&warnings), |warning| warning);
-        for warning in told {
-            eprintln!("note: {name}: {warning}");
-        }
-        if gaps > 0 {
-            eprintln!("note: {name}: {gaps} more gaps (testbed inspect --json has them)");
-        }
-        for finding in &quality.findings {
-            let weight = match finding.kind {
-                // The diagnosis differentiates the positions itself.
-                FindingKind::VelocityLate | FindingKind::VelocityUnrelated => continue,
-                FindingKind::Saturation | FindingKind::JointAtRest | FindingKind::CoarseEncoder => "note",
-                _ => "warning",
-            };
-            let joint = finding
-                .joint
-                .as_ref()
-                .map_or_else(String::new, |joint| format!("{joint}: "));
-            eprintln!("{weight}: {name}: {joint}{}", finding.text);
-        }
-        for misfit in misfits.iter().filter(|misfit| !misfit.spoils) {
-            let joint = misfit
-                .joint
-                .as_ref()
-                .map_or_else(String::new, |joint| format!("{joint}: "));
-            eprintln!("warning: {name}: {joint}{}", misfit.text);
-        }
-    });
+    let (told, gaps) = shortened(recording.warnings.iter().chain(&warnings), |warning| warning);
+    for warning in told {
+        notes.add("note", &name, warning.to_string());
+    }
+    if gaps > 0 {
+        notes.add(
+            "note",
+            &name,
+            format!("{gaps} more gaps (testbed inspect --json has them)"),
+        );
+    }
+    let about = |joint: &Option<String>, text: &str| match joint {
+        Some(joint) => format!("{joint}: {text}"),
+        None => text.to_owned(),
+    };
+    for finding in &quality.findings {
+        let weight = match finding.kind {
+            // The diagnosis differentiates the positions itself.
+            FindingKind::VelocityLate | FindingKind::VelocityUnrelated => continue,
+            FindingKind::Saturation | FindingKind::JointAtRest | FindingKind::CoarseEncoder => "note",
+            _ => "warning",
+        };
+        notes.add(weight, &name, about(&finding.joint, &finding.text));
+    }
+    for misfit in misfits.iter().filter(|misfit| !misfit.spoils) {
+        notes.add("warning", &name, about(&misfit.joint, &misfit.text));
+    }
     if let Some(misfit) = misfits.iter().find(|misfit| misfit.spoils) {
         let joint = misfit
             .joint

@@ -1,0 +1,73 @@
+//! What to do after a diagnosis, the most important first.
+
+use diagnosis::{Report, Verdict};
+
+use super::{alternatives, unexplained};
+use crate::{next_words, words};
+
+/// What to do next, in sentences: data that are missing, residuals without a name, the proposed motion, findings with alternatives.
+pub fn of(report: &Report) -> Vec<String> {
+    let mut steps: Vec<String> = report
+        .not_enough_data
+        .iter()
+        .map(|reason| format!("not enough data: {reason}"))
+        .collect();
+    if report.recordings.held_out.is_empty() && report.verdict != Verdict::NotEnoughData {
+        steps.push("validate the fit with a recording of another motion (--held-out)".to_owned());
+    }
+    steps.extend(residuals(report));
+    match &report.next_experiment {
+        Some(next) => {
+            let sentences = next_words::sentences(next);
+            steps.extend(sentences.iter().map(|sentence| format!("next experiment: {sentence}")));
+        }
+        None => steps.extend(ambiguous(report)),
+    }
+    steps
+}
+
+/// The joints with unexplained residuals, those with the same next experiment together.
+fn residuals(report: &Report) -> Vec<String> {
+    let mut groups: Vec<Vec<&diagnosis::Unexplained>> = Vec::new();
+    for open in &report.unexplained {
+        match groups.iter_mut().find(|group| group[0].next == open.next) {
+            Some(group) => group.push(open),
+            None => groups.push(vec![open]),
+        }
+    }
+    let said = groups.iter().map(|group| {
+        let what = match group.as_slice() {
+            [one] => format!("{}: {}", one.joint, unexplained(one)),
+            several => {
+                let joints: Vec<String> = several.iter().map(|open| open.joint.clone()).collect();
+                format!("{}: unexplained residuals", words::list(&joints))
+            }
+        };
+        match group[0].next.as_str() {
+            "" => what,
+            next => format!("{what}; next experiment: {next}"),
+        }
+    });
+    said.collect()
+}
+
+/// The findings that another effect would explain as well, with the experiment that distinguishes them.
+fn ambiguous(report: &Report) -> Vec<String> {
+    let findings = report
+        .findings
+        .iter()
+        .filter(|finding| !finding.confusable_with.is_empty());
+    let said = findings.map(|finding| {
+        let place = words::joint(finding.joint.as_deref());
+        let what = format!(
+            "{place}, {}: could also be {}",
+            words::effect(finding),
+            alternatives(finding)
+        );
+        match words::wording(finding.effect).told_by {
+            "" => what,
+            told_by => format!("{what}; experiment that distinguishes them: {told_by}"),
+        }
+    });
+    said.collect()
+}
