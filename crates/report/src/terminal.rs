@@ -172,9 +172,9 @@ fn findings(report: &Report) -> String {
     table.set_width(WIDTH as u16);
     let effects = report.findings.iter().map(words::effect);
     let words = effects.flat_map(|effect| effect.split(' ').map(|word| word.chars().count()).max());
-    let longest = words.max().map_or(0, |length| length + 2) as u16;
+    let longest = words.max().map_or(0, |length| length + 1) as u16;
     for (index, column) in table.column_iter_mut().enumerate() {
-        column.set_padding((0, if index == 4 { 0 } else { 2 }));
+        column.set_padding((0, if index == 4 { 0 } else { 1 }));
         if index < 3 {
             column.set_cell_alignment(CellAlignment::Left);
         }

@@ -104,5 +104,8 @@ fn little_explained_and_no_held_out_recording_are_said_first() {
     report.verdict = diagnosis::Verdict::Explained;
     report.recordings.held_out.clear();
     let text = terminal::diagnosis(&report);
-    assert!(!text.contains("held-out") && text.contains("not validated"), "{text}");
+    assert!(
+        !text.contains("held-out recording") && text.contains("not validated"),
+        "{text}"
+    );
 }

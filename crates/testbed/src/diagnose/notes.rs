@@ -25,7 +25,8 @@ impl Notes {
         });
     }
 
-    /// One line for each note, or (`is_short`) for all notes that only differ in file, numbers and `joints`.
+    /// One line for each note, or (`is_short`) for all notes that only differ in file, numbers and `joints`: the first of them, and
+    /// how many more there are.
     pub fn lines(&self, joints: &[&str], is_short: bool) -> Vec<String> {
         let mut groups: Vec<(String, Vec<&Note>)> = Vec::new();
         for note in &self.list {
@@ -35,26 +36,26 @@ impl Notes {
                 None => groups.push((key, vec![note])),
             }
         }
-        groups.iter().map(|(_, group)| line(group, joints)).collect()
+        groups.iter().map(|(_, group)| line(group)).collect()
     }
 }
 
-fn line(group: &[&Note], joints: &[&str]) -> String {
+fn line(group: &[&Note]) -> String {
     let Note { weight, file, text } = group[0];
     if group.len() == 1 {
         return format!("{weight}: {file}: {text}");
     }
-    let text = if group.iter().all(|note| note.text == *text) {
-        text.clone()
-    } else {
-        template(text, joints)
-    };
     let files: BTreeSet<&str> = group.iter().map(|note| note.file.as_str()).collect();
+    if group.iter().all(|note| note.text == *text) {
+        return format!("{weight}: {} files: {text} (--verbose lists them)", files.len());
+    }
+    // The first in full: its joint and numbers say what the others are like.
+    let more = group.len() - 1;
     let place = match files.len() {
-        1 => format!("{file}, {} times", group.len()),
-        several => format!("{several} files"),
+        1 => "in this file".to_owned(),
+        several => format!("in {several} files"),
     };
-    format!("{weight}: {place}: {text} (--verbose lists them)")
+    format!("{weight}: {file}: {text} (and {more} more like it {place}; --verbose lists them)")
 }
 
 /// `text` with `…` in the place of numbers, and of names of `joints`; lists of joints become one.
@@ -89,8 +90,8 @@ mod tests {
         notes.add("warning", "b.csv", "b do not move".to_owned());
         notes.add("note", "a.csv", "no rows from 4.1 s to 4.2 s".to_owned());
         let expected = [
-            "note: 2 files: … do not move (--verbose lists them)",
-            "note: a.csv, 2 times: no rows from … s to … s (--verbose lists them)",
+            "note: a.csv: a, b do not move (and 1 more like it in 2 files; --verbose lists them)",
+            "note: a.csv: no rows from 2.30 s to 2.34 s (and 1 more like it in this file; --verbose lists them)",
             "warning: b.csv: b do not move",
         ];
         assert_eq!(notes.lines(&["a", "b"], true), expected);
