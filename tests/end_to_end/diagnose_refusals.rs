@@ -127,7 +127,7 @@ fn another_robots_urdf_is_refused_with_what_does_not_fit() {
         .text("robot.urdf")
         .replace("lower=\"-3\" upper=\"3\"", "lower=\"-0.1\" upper=\"0.1\"");
     case.sandbox.write("robot.urdf", &urdf);
-    let output = case.sandbox.run(&arguments(&[]));
+    let output = case.sandbox.run(&arguments(&["--verbose"]));
     let stderr = String::from_utf8_lossy(&output.stderr);
     says(
         &stderr,
