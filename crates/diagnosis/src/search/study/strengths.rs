@@ -13,6 +13,10 @@ use crate::search::problem::{Chosen, Growth, MOST};
 /// So many effects may stand together in the place of a part of the background.
 const IN_PLACE: usize = 3;
 
+/// So often the strengths are changed in a row: weights found anew may raise a score again, so that two of them could take turns
+/// without end.
+const MOST_MOVES: usize = 24;
+
 /// Of each joint the recordings to be fitted that move it.
 pub fn moved(motions: &Motions, scales: &Scales) -> Vec<Vec<usize>> {
     let of = |joint: usize| {
@@ -103,7 +107,8 @@ impl Study {
         let bare = self.bare_products(|r| self.fitted[r]);
         let mut products = bare.with_background(self.background());
         let mut growth = Growth::default();
-        loop {
+        let mut moves = 0;
+        while moves < MOST_MOVES {
             let problem = self.problem(&products);
             let grown = problem.grow(&chosen, allowed, &mut growth);
             self.note_tried(&chosen, &std::mem::take(&mut growth.tried));
@@ -128,6 +133,7 @@ impl Study {
                 },
             };
             if let Some(strengths) = strengths {
+                moves += 1;
                 products = bare.with_background(self.prior.at(&strengths));
                 self.strengths = strengths;
                 growth.refused.clear();
@@ -170,7 +176,7 @@ impl Study {
     /// `chosen` with the strengths of the background that the evidence asks for.
     pub fn with_best_strengths(&mut self, mut chosen: Chosen) -> Chosen {
         let bare = self.bare_products(|r| self.fitted[r]);
-        loop {
+        for _ in 0..MOST_MOVES {
             let next = [Strengths::neighbours, Strengths::with_other_links, Strengths::finer]
                 .into_iter()
                 .find_map(|others| self.strengthened(&bare, &chosen, others(&self.strengths)));
@@ -180,9 +186,10 @@ impl Study {
                     self.note_strengths("more evidence for this background", &chosen, &next);
                     chosen = next;
                 }
-                None => return chosen,
+                None => break,
             }
         }
+        chosen
     }
 
     /// The best of the strengths `others`, with what is `chosen` fitted with them, if they are better.
