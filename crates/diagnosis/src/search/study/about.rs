@@ -23,41 +23,17 @@ pub struct About {
 impl About {
     /// The arm of `study` with the links' errors of scale that `fit` found, and nothing else.
     pub fn scaled(study: &Study, fit: &Fit) -> Arm {
-        let mut found = Carried {
-            arm: study.arm.clone(),
-            offset: vec![0.0; study.arm.dof()],
-            payload: [0.0; 10],
-            tilt: [0.0; 2],
-            gravity: [0.0; 3],
-        };
-        for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
-            let term = study.table.terms[column];
-            if let (Some(carry), None) = (term.law.carry, term.onset()) {
-                carry(&term, value, &mut found);
-            }
-        }
-        found.arm
+        collected(study, fit).0.arm
     }
 
     /// The arm of `study` with what `fit` found.
     pub fn new(study: &Study, fit: &Fit) -> Self {
-        let mut found = Carried {
-            arm: study.arm.clone(),
-            offset: vec![0.0; study.arm.dof()],
-            payload: [0.0; 10],
-            tilt: [0.0; 2],
-            gravity: [0.0; 3],
-        };
-        let mut carried = Vec::new();
+        let (found, carried) = collected(study, fit);
         let mut inertial = vec![0.0; bodies::PER_LINK * study.arm.dof()];
         for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
             let term = study.table.terms[column];
             if term.is(&INERTIAL_PARAMETER) {
                 inertial[term.of[0] * bodies::PER_LINK + term.of[1]] = value;
-            }
-            if let (Some(carry), None) = (term.law.carry, term.onset()) {
-                carry(&term, value, &mut found);
-                carried.push((term, value));
             }
         }
         let Carried {
@@ -99,4 +75,24 @@ impl About {
             carried,
         }
     }
+}
+
+/// What the arm carries of `fit`, and the terms that it carries, by their coefficients.
+fn collected(study: &Study, fit: &Fit) -> (Carried, Vec<(Term, f64)>) {
+    let mut found = Carried {
+        arm: study.arm.clone(),
+        offset: vec![0.0; study.arm.dof()],
+        payload: [0.0; 10],
+        tilt: [0.0; 2],
+        gravity: [0.0; 3],
+    };
+    let mut carried = Vec::new();
+    for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
+        let term = study.table.terms[column];
+        if let (Some(carry), None) = (term.law.carry, term.onset()) {
+            carry(&term, value, &mut found);
+            carried.push((term, value));
+        }
+    }
+    (found, carried)
 }
