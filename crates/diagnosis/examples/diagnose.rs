@@ -8,7 +8,9 @@ use std::path::Path;
 
 use arm::Arm;
 use diagnosis::{Input, Options, diagnose};
-use recording::{Recording, RegularRecording};
+use recording::RegularRecording;
+
+mod support;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -21,8 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             held_out = true;
             continue;
         }
-        let (regular, _) = Recording::read(Path::new(file))?.regular()?;
-        recordings.push((file, in_order(regular, &arm)?, held_out));
+        recordings.push((file, support::read(&arm, Path::new(file))?, held_out));
     }
     let inputs: Vec<Input<'_>> = recordings
         .iter()
@@ -39,20 +40,4 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     println!("{}", serde_json::to_string_pretty(&diagnosis.report)?);
     Ok(())
-}
-
-/// The recording with its joints in the arm's order.
-fn in_order(mut recording: RegularRecording, arm: &Arm) -> Result<RegularRecording, String> {
-    let names = arm.joints().iter().map(|joint| joint.name.clone());
-    let places: Vec<usize> = names
-        .map(|name| {
-            let place = recording.joints.iter().position(|known| *known == name);
-            place.ok_or_else(|| format!("the recording has no joint {name}"))
-        })
-        .collect::<Result<_, _>>()?;
-    let pick = |signals: &[Vec<f64>]| -> Vec<Vec<f64>> { places.iter().map(|&place| signals[place].clone()).collect() };
-    recording.q = pick(&recording.q);
-    recording.tau = pick(&recording.tau);
-    recording.joints = places.iter().map(|&place| recording.joints[place].clone()).collect();
-    Ok(recording)
 }

@@ -22,7 +22,6 @@ use crate::findings::traces::traces;
 use crate::findings::transients;
 use crate::findings::verdict::{leftover, not_enough, unexplained, verdict};
 use crate::next;
-use crate::regression::background::Stated;
 use crate::search::candidate::Cause;
 use crate::search::hypothesis::{self, Wanted};
 use crate::search::plan;
@@ -31,11 +30,8 @@ use crate::selection::final_fit;
 use crate::selection::judge;
 use crate::selection::predict::{augmented, errors, exported};
 use crate::selection::unmounted::unmounted;
-use crate::thresholds;
+use crate::thresholds::{CUTOFF, MOST_REFUSED, Thresholds};
 use crate::trace::Decision;
-
-/// No further search is made once so many names were refused by the final fit.
-const MOST_REFUSED: usize = 3;
 
 /// How to diagnose.
 #[derive(Clone, Debug, Default)]
@@ -54,6 +50,8 @@ pub struct Options {
     pub only: Option<Vec<Wanted>>,
     /// Whether to propose the next experiment.
     pub next: bool,
+    /// The most decisive thresholds, to see what hangs on them.
+    pub thresholds: Thresholds,
 }
 
 /// A diagnosis and what its figures are drawn from.
@@ -85,7 +83,7 @@ pub fn diagnose(
     options: &Options,
     progress: &dyn Fn(&str),
 ) -> Result<Diagnosis, DiagnosisError> {
-    check(arm, inputs, options.cutoff.unwrap_or(thresholds::CUTOFF))?;
+    check(arm, inputs, options.cutoff.unwrap_or(CUTOFF))?;
     progress("filtering, rigid-body torques");
     let arm_and_known = known::Known::new(arm, &options.known)?;
     let may_be = |cause: Cause, joint: Option<usize>| {
@@ -98,11 +96,7 @@ pub fn diagnose(
             wanted.iter().any(is_wanted)
         })
     };
-    let stated = Stated {
-        links: options.urdf_accuracy,
-        gain: options.torque_accuracy,
-    };
-    let mut study = Study::new(&arm_and_known, inputs, options.cutoff, stated, &may_be);
+    let mut study = Study::new(&arm_and_known, inputs, options, &may_be);
     let fitted = study.fitted.clone();
     let identified = identified(&study);
     let (judged, resampled) = match &options.only {

@@ -19,5 +19,5 @@ pub use findings::report::*;
 pub use findings::sentences::described;
 pub use next::{JointLimits, NextExperiment, NotSeparated, Obstacle, Separation, Shows};
 pub use search::hypothesis::Wanted;
-pub use selection::predict::LEAST_ROWS;
+pub use thresholds::{LEAST_ROWS, Thresholds};
 pub use trace::{Action, Decision};

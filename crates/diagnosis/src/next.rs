@@ -312,7 +312,7 @@ fn visible<'a>(study: &Study, chosen: &Chosen, hidden: &'a [NotObservable]) -> V
             parameter,
             before: entry.would_be_seen_above.values().next().copied(),
             joint,
-            column: Some((*column, observability::needed(candidate))),
+            column: Some((*column, observability::needed(study, candidate))),
         })
     };
     hidden.iter().filter_map(of).collect()

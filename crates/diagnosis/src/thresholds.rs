@@ -1,22 +1,80 @@
-//! Thresholds that several phases of the diagnosis share.
+//! Every number that decides on a name, in the order of the phases.
+//!
+//! A threshold that names no source was chosen on simulated cases with a known truth. Limits of iterations, guards against
+//! rounding and the design of the filters decide on no name; they stand beside their code. The physical limits of an effect
+//! stand in its file in `effects`. `docs/thresholds.md` lists all of them; it is made from these files.
 
-/// The residual that the best model may have, as a share of the standard deviation of the joint's torque.
-pub const TOLERANCE: f64 = 0.006;
-/// The velocity deadband as a share of the joint's largest speed: below it, the joint counts as resting.
-pub const REST: f64 = 0.015;
-/// Below this cut-off (Hz) delays, springs and gaps between drive and link cannot be told from each other.
-pub const LEAST_FOR_DYNAMICS: f64 = 5.0;
-/// A row moves steadily if the joint moves within this many widths of the second filter around it.
-pub const CORE: f64 = 1.2;
-/// A row is in a fast reversal if the joint moves within [`CORE`] widths of it and reaches this multiple of that speed there.
-pub const REVERSAL: f64 = 4.0;
-/// A joint that stays within this part of its range does not move.
-pub const YIELDING: f64 = 0.02;
-/// The part of its torque's standard deviation by which an effect of another joint may increase the error of a joint.
-pub const HARMLESS: f64 = 0.001;
-/// The usual cut-off (Hz).
-pub const CUTOFF: f64 = 12.0;
-/// The part of a recording that contacts cover at most. A push is short beside the recording: those that are concealed in
-/// cases last 0.4 to 1.5 s of 25 s. What acts longer is a load, or something else that the model lacks, and a free force in a long window
-/// takes whatever that is.
-pub const MOST_OF_A_RECORDING: f64 = 0.15;
+mod data;
+mod findings;
+mod regression;
+mod search;
+mod selection;
+#[cfg(test)]
+mod table;
+
+pub use data::*;
+pub use findings::*;
+pub use regression::*;
+pub use search::*;
+pub use selection::*;
+
+/// Defines [`Thresholds`] with its defaults, and its fields by name.
+macro_rules! decisive {
+    ($($(#[doc = $doc:literal])+ $name:ident: $value:literal,)+) => {
+        /// The most decisive thresholds, which can be varied to see what hangs on them.
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct Thresholds {
+            $($(#[doc = $doc])+ pub $name: f64,)+
+        }
+
+        impl Default for Thresholds {
+            fn default() -> Self {
+                Self { $($name: $value,)+ }
+            }
+        }
+
+        impl Thresholds {
+            /// The names of all of them, in the order of the phases.
+            pub const NAMES: &[&str] = &[$(stringify!($name)),+];
+
+            /// The threshold called `name`; `None` if there is none.
+            pub fn named(&mut self, name: &str) -> Option<&mut f64> {
+                match name {
+                    $(stringify!($name) => Some(&mut self.$name),)+
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+decisive! {
+    /// The residual that the best model may have, as a share of the standard deviation of the joint's torque.
+    tolerance: 0.006,
+    /// The evidence that each coefficient must bring (nats).
+    per_coefficient: 2.5,
+    /// The evidence that an onset must bring (nats): it was looked for at some hundred times.
+    per_onset: 6.0,
+    /// The standard deviation of the logarithm of a coefficient that should be one.
+    unit_spread: 0.1,
+    /// The part of its gain that an unmodelled form must keep on recordings that were left out.
+    predicted: 0.05,
+    /// The part of its gain that an unmodelled form must keep on held-out recordings.
+    held_out: 0.2,
+    /// The least share of a named effect in a joint's torque.
+    least_share: 0.012,
+    /// The evidence that a named effect must bring (nats).
+    least_evidence: 25.0,
+    /// The evidence that a named effect must bring over the baseline effect that it is a form of (nats).
+    least_beyond: 15.0,
+    /// The part of a larger effect on the same joint that an effect must exceed: what is smaller may be an error of that one's form.
+    beside_a_larger: 0.1,
+    /// The part of a larger effect of certain form on the same joint that an effect must exceed.
+    beside_a_certain: 0.05,
+    /// The least share of an unmodelled form in a joint's torque.
+    least_unmodelled_share: 0.012,
+    /// The evidence that an unmodelled form must bring (nats).
+    least_unmodelled_evidence: 5.0,
+    /// On a joint with unmodelled forms, the multiple of the largest of them that a named effect must exceed.
+    beside_unmodelled: 1.5,
+}

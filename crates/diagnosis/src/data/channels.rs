@@ -8,22 +8,12 @@ use nalgebra::{DMatrix, DVector};
 use crate::data::measure::{self, mean};
 use crate::data::motion::{Input, Motions};
 use crate::data::rigid::Rigid;
+use crate::thresholds::{CHANNEL_MOVES, FAR_TOO_SMALL, IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED};
 
-/// A channel that holds one and the same value in so large a part of the samples in motion reports no measured torque: those
-/// of the worst drives, at rest in their dry friction, are in noise.
-const IDLE: f64 = 0.6;
-/// A joint moves where it is faster than this part of its largest speeds.
-const MOVES: f64 = 0.1;
 /// Samples on either side of which positions are compared.
 const STEP: usize = 5;
-/// A torque that is so small a part of what the model needs to hold and move the arm is in another unit, or is not the drive's.
-const FAR_TOO_SMALL: f64 = 0.05;
-/// A channel of which models of all kinds leave this part (NRMSE) on stretches that they were not fitted to holds another signal.
-const UNRELATED: f64 = 0.97;
 /// Stretches that are left out in turn.
 const FOLDS: usize = 5;
-/// With fewer moving rows nothing is said.
-const LEAST_ROWS: usize = 200;
 /// A ridge on columns of unit power, against columns that hang together.
 const RIDGE: f64 = 1e-4;
 
@@ -91,7 +81,7 @@ fn idle(inputs: &[Input<'_>], joint: usize) -> Option<f64> {
     let ticks = |input: &Input<'_>| STEP..input.recording.len().saturating_sub(STEP);
     let fitted = || inputs.iter().filter(|input| !input.held_out);
     let largest = fitted().flat_map(|input| ticks(input).map(move |tick| speed(input, tick)));
-    let least = MOVES * largest.fold(0.0, f64::max);
+    let least = CHANNEL_MOVES * largest.fold(0.0, f64::max);
     let mut counts: HashMap<u64, usize> = HashMap::new();
     let mut all = 0;
     for input in fitted() {
@@ -105,7 +95,7 @@ fn idle(inputs: &[Input<'_>], joint: usize) -> Option<f64> {
     }
     let commonest = counts.values().copied().max().unwrap_or(0);
     let part = commonest as f64 / f64::from(u32::try_from(all).unwrap_or(u32::MAX)).max(1.0);
-    (all >= LEAST_ROWS && part > IDLE).then_some(part)
+    (all >= LEAST_CHANNEL_ROWS && part > IDLE_CHANNEL).then_some(part)
 }
 
 /// Moving rows of a joint in the recordings to be fitted.
@@ -123,7 +113,7 @@ struct Rows {
 /// Why the channel is not the joint's torque, if it is not, by what the model and regressions say of it.
 fn of_another_kind(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Option<Why> {
     let rows = rows(motions, rigid, scales, joint);
-    if rows.torque.len() < LEAST_ROWS {
+    if rows.torque.len() < LEAST_CHANNEL_ROWS {
         return None;
     }
     let power = |signal: &[f64]| mean(signal.iter().map(|value| value * value).collect::<Vec<_>>().iter());

@@ -4,12 +4,7 @@ use effects::Scales;
 
 use crate::data::motion::{Chunk, Motions};
 use crate::data::rigid::Rigid;
-use crate::thresholds;
-
-/// A torque that varies by less than this part of what the model needs …
-const DEAD: f64 = 0.05;
-/// … and by no more than so many times its noise behind both filters is a dead channel.
-const NOISE_ALONE: f64 = 4.0;
+use crate::thresholds::{DEAD, NEEDED_QUANTILE, NOISE_ALONE, RANGE_QUANTILES, REST, REST_NOISE, SPEED_QUANTILE};
 
 /// The mean; zero of nothing.
 pub fn mean<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
@@ -36,7 +31,7 @@ pub fn needed(motions: &Motions, rigid: &[Rigid]) -> Vec<f64> {
             .iter()
             .flat_map(|rigid| rigid.tau[joint].iter().map(|tau| tau.abs()))
             .collect();
-        let at = (0.999 * needed.len() as f64) as usize;
+        let at = (NEEDED_QUANTILE * needed.len() as f64) as usize;
         if needed.is_empty() {
             0.0
         } else {
@@ -135,15 +130,18 @@ pub fn scales(motions: &Motions, torque: Vec<f64>) -> Scales {
     for joint in 0..motions.dof {
         let speeds = sorted(&|chunk| chunk.qd[joint].iter().map(|v| v.abs()).collect());
         let positions = sorted(&|chunk| chunk.q[joint].clone());
-        let speed = quantile(&speeds, 0.99);
+        let speed = quantile(&speeds, SPEED_QUANTILE);
         let noise = motions
             .sources
             .iter()
             .map(|source| source.velocity_noise[joint])
             .fold(0.0, f64::max);
         scales.speed.push(speed);
-        scales.rest.push((thresholds::REST * speed).max(6.0 * noise).max(1e-6));
-        let (low, high) = (quantile(&positions, 0.002), quantile(&positions, 0.998));
+        scales.rest.push((REST * speed).max(REST_NOISE * noise).max(1e-6));
+        let (low, high) = (
+            quantile(&positions, RANGE_QUANTILES.0),
+            quantile(&positions, RANGE_QUANTILES.1),
+        );
         scales.middle.push(0.5 * (low + high));
         scales.range.push((high - low).max(1e-6));
     }

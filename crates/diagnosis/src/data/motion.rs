@@ -5,7 +5,9 @@ use recording::RegularRecording;
 
 use crate::data::noise::{band_noise, white_noise};
 use crate::data::signal::{Kernel, outputs};
-use crate::thresholds;
+use crate::thresholds::{
+    CUTOFF, CUTOFF_PERIODS, HIGHEST_CUTOFF, LEAST_CUTOFF, LEAST_CUTOFF_PERIODS, MOST_NOISE, STILL, WORTH_RAISING,
+};
 
 /// The first filter passes this many times more than the second: nonlinear functions are formed between them.
 const WIDER: f64 = 3.0;
@@ -26,18 +28,6 @@ const GOLDEN: f64 = 0.618_033_988_749_895;
 /// More rows than this in all are thinned out.
 const MOST_ROWS: f64 = 12_000.0;
 
-/// The second filter passes this many times the frequency of the motion.
-const PERIODS: f64 = 22.0;
-/// … but no more than this (Hz).
-const HIGHEST_CUTOFF: f64 = 40.0;
-/// A joint whose speed is less than so many times its noise holds still.
-const STILL: f64 = 20.0;
-/// Noise may make this part of a joint's torque; if it makes more, the cut-off is lowered …
-const MOST_NOISE: f64 = 0.05;
-/// … but not below this (Hz) …
-const LEAST_CUTOFF: f64 = 4.0;
-/// … nor below so many times the frequency of the motion.
-const LEAST_PERIODS: f64 = 8.0;
 /// Between recordings without a common clock (s).
 const BETWEEN: f64 = 10.0;
 
@@ -148,7 +138,7 @@ impl Motions {
     /// data decide: the usual one, more if the motion is quick, less if what the positions' noise makes of the torques of `arm`
     /// would be a large part of them.
     pub fn new(inputs: &[Input<'_>], cutoff: Option<f64>, arm: &Arm) -> Self {
-        let wanted = cutoff.unwrap_or(thresholds::CUTOFF);
+        let wanted = cutoff.unwrap_or(CUTOFF);
         let mut motions = Self::at(inputs, wanted);
         if motions.cutoff < wanted {
             motions.remarks.push(format!(
@@ -162,15 +152,15 @@ impl Motions {
         let mut moving: Vec<f64> = motions.tempo.iter().copied().filter(|&tempo| tempo > 0.0).collect();
         moving.sort_by(f64::total_cmp);
         let tempo = moving.get(moving.len() / 2).copied().unwrap_or(0.0);
-        let quick = (PERIODS * tempo).min(HIGHEST_CUTOFF);
-        if quick > 1.15 * motions.cutoff {
+        let quick = (CUTOFF_PERIODS * tempo).min(HIGHEST_CUTOFF);
+        if quick > WORTH_RAISING * motions.cutoff {
             motions = Self::at(inputs, quick);
         }
         let (share, joint) = motions.noise_share(arm);
         if share > MOST_NOISE {
             // The acceleration's white noise grows with the power 5/2 of the cut-off.
             let quiet = motions.cutoff * (MOST_NOISE / share).powf(0.4);
-            let least = LEAST_CUTOFF.max(LEAST_PERIODS * tempo).min(motions.cutoff);
+            let least = LEAST_CUTOFF.max(LEAST_CUTOFF_PERIODS * tempo).min(motions.cutoff);
             let before = motions.cutoff;
             motions = Self::at(inputs, quiet.max(least));
             motions.remarks.push(format!(

@@ -10,9 +10,8 @@ use rustfft::num_complex::Complex;
 
 use crate::data::measure;
 use crate::data::motion::{Chunk, Motions, Source};
+use crate::thresholds::NOISE_BAND;
 
-/// The band, in cut-offs, whose power is noise.
-const BAND: (f64, f64) = (1.7, 3.4);
 /// Bins of a spectrum that a band needs.
 const LEAST_BINS: usize = 16;
 /// A logger holds values for no more samples.
@@ -107,7 +106,10 @@ pub fn band_noise(signal: &[f64], recording: &RegularRecording, cutoff: f64) -> 
         let values = &signal[segment.ticks.clone()];
         let n = values.len();
         let bin = 1.0 / (n as f64 * recording.period);
-        let (from, to) = ((BAND.0 * cutoff / bin) as usize, (BAND.1 * cutoff / bin) as usize);
+        let (from, to) = (
+            (NOISE_BAND.0 * cutoff / bin) as usize,
+            (NOISE_BAND.1 * cutoff / bin) as usize,
+        );
         if to >= n / 2 || to < from + LEAST_BINS {
             continue;
         }

@@ -12,13 +12,9 @@ use crate::data::signal::Kernel;
 use crate::findings::report::{Finding, Parameter, Place};
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
-
-/// A deflection must follow the torque to this part of its power, on recordings it was fitted to and on others.
-const FOLLOWS: f64 = 0.5;
-/// Beyond this part of the joint's range it is no deflection: the encoders measure different things.
-const LARGEST_DEFLECTION: f64 = 0.05;
-/// Friction between the sensors must explain this part of their difference's power, likewise.
-const FRICTION_EXPLAINS: f64 = 0.5;
+use crate::thresholds::{
+    CLEAR_COMPLIANCE, CLEAR_FRICTION, FOLLOWS, FRICTION_EXPLAINS, LARGEST_DEFLECTION, LEAST_BEND, SENSORS_MOVE,
+};
 
 /// A regression on one joint over the recordings.
 #[derive(Clone, Debug, Default)]
@@ -81,7 +77,7 @@ fn gather(
                 continue;
             };
             for (k, y) in y.into_iter().enumerate() {
-                if speed[k].abs() > 2.0 * study.scales.rest[joint] {
+                if speed[k].abs() > SENSORS_MOVE * study.scales.rest[joint] {
                     rows.x.push(x.iter().map(|column| column[k]).collect());
                     rows.y.push(y);
                     rows.held_out.push(input.held_out);
@@ -157,7 +153,7 @@ impl Regression {
     }
 
     fn is_clear(&self, k: usize) -> bool {
-        self.coefficients[k].abs() > 3.0 * self.errors[k]
+        self.coefficients[k].abs() > CLEAR_FRICTION * self.errors[k]
     }
 }
 
@@ -189,9 +185,9 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
         (rows.y.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / rows.y.len() as f64).sqrt()
     };
     let credible = result.follows(FOLLOWS)
-        && compliance > 4.0 * error
+        && compliance > CLEAR_COMPLIANCE * error
         && total < LARGEST_DEFLECTION * range
-        && bends > 0.4 * total;
+        && bends > LEAST_BEND * total;
     if !credible {
         return None;
     }

@@ -15,11 +15,7 @@ use crate::search::problem::Problem;
 use crate::search::study::Study;
 use crate::selection::judge::{Judged, Member};
 use crate::selection::naming::name;
-
-/// An effect that the background could say may predict worse than that by this part.
-const AS_WELL: f64 = 0.1;
-/// Pieces of recordings (s) of which every other is fitted.
-const PIECE: f64 = 2.0;
+use crate::thresholds::{AS_WELL, GAIN_PIECE};
 
 /// The findings, each with the candidate it was named from.
 pub fn findings(
@@ -196,7 +192,7 @@ fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joi
     let left = |row: usize| study.table.joints[joint].y[row] - model[row];
     let (mut with, mut bare) = (0.0, 0.0);
     for parity in [0, 1] {
-        let is_fitted = |row: &&usize| ((times[**row] / PIECE).floor() as i64 - parity) % 2 == 0;
+        let is_fitted = |row: &&usize| ((times[**row] / GAIN_PIECE).floor() as i64 - parity) % 2 == 0;
         let (mut power, mut product) = (0.0, 0.0);
         for &row in rows.iter().filter(is_fitted) {
             power += torque[row] * torque[row];

@@ -10,15 +10,12 @@ use serde::Serialize;
 use crate::findings::report::{Confusable, Finding, Parameter, Place};
 use crate::findings::rivals::probability;
 use crate::regression::bodies::{PER_LINK, physical};
-use crate::regression::bootstrap::{Resampled, SYSTEMATIC};
+use crate::regression::bootstrap::Resampled;
 use crate::regression::fit::Products;
 use crate::search::study::{About, Study};
-use crate::selection::final_fit::PARTLY;
-use crate::selection::judge::{BESIDE_NAMELESS, Judged, LEAST_EVIDENCE, LEAST_SHARE};
+use crate::selection::judge::Judged;
 use crate::selection::predict::{augmented, deviation, errors};
-
-/// A link's strength must be so many times that of most links to be named for itself.
-const APART: f64 = 2.0;
+use crate::thresholds::{LINK_STANDS_OUT, PARTLY, SYSTEMATIC};
 
 /// What the recordings say of a link's inertial parameters.
 #[derive(Clone, Debug, Serialize)]
@@ -141,7 +138,7 @@ pub fn inertials(
         list.links.insert(name, link);
     }
     let (evidence, outside) = study.evidence_of_inertials(products, held, &judged.named);
-    if evidence < LEAST_EVIDENCE || outside.is_some_and(|outside| outside <= 0.0) {
+    if evidence < study.thresholds.least_evidence || outside.is_some_and(|outside| outside <= 0.0) {
         return list;
     }
     let common = strengths.common();
@@ -171,7 +168,12 @@ pub fn inertials(
         // Beside structure without a name they may be a part of that.
         let stands_out = |joint: usize| {
             let unnamed = judged.nameless.iter().map(|member| member.shares[joint]);
-            explained[joint] && shares[joint] >= LEAST_SHARE.max(BESIDE_NAMELESS * unnamed.fold(0.0, f64::max))
+            explained[joint]
+                && shares[joint]
+                    >= study
+                        .thresholds
+                        .least_share
+                        .max(study.thresholds.beside_unmodelled * unnamed.fold(0.0, f64::max))
         };
         if !(0..dof).any(stands_out) {
             return;
@@ -193,7 +195,7 @@ pub fn inertials(
             as_effect: list.effects[joint.unwrap_or(0)].clone(),
         });
     };
-    for link in (0..dof).filter(|&link| strengths.links[link] > APART * common) {
+    for link in (0..dof).filter(|&link| strengths.links[link] > LINK_STANDS_OUT * common) {
         let name = &study.arm.joints()[link].name;
         let parameters = list
             .links

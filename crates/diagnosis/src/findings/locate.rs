@@ -4,17 +4,10 @@ use rayon::prelude::*;
 
 use crate::findings::report::{Located, Region, TimeWindow};
 use crate::search::study::Study;
+use crate::thresholds::{OVER_NOISE, REGION_STANDS_OUT, SAME_MOTION, WINDOW, WINDOW_STANDS_OUT};
 
-/// A joint is located if its nominal residual exceeds the errors of noise and filtering by this factor.
-const OVER_NOISE: f64 = 2.0;
 /// Bins of an axis of state.
 const BINS: usize = 6;
-/// A region is reported if its residual exceeds the joint's by this factor.
-const STANDS_OUT: f64 = 1.3;
-/// The length of a stretch of time (s).
-const WINDOW: f64 = 1.0;
-/// Motions are the same within this part of each range.
-const SAME: f64 = 0.04;
 
 /// Locates the mismatch of `nominal` (`[joint][row]`), beside what `augmented` leaves.
 pub fn locate(study: &Study, augmented: &[Vec<f64>]) -> Vec<Located> {
@@ -105,7 +98,7 @@ fn on_joint(study: &Study, state: &State, joint: usize, nominal: &[f64], augment
             .map(|bin| (rms(bin.iter().map(|&row| nominal[row])), bin))
             .max_by(|a, b| a.0.total_cmp(&b.0));
         if let Some((residual, bin)) = best
-            && residual > STANDS_OUT * all
+            && residual > REGION_STANDS_OUT * all
         {
             regions.push(Region {
                 axis,
@@ -142,7 +135,7 @@ fn windows(study: &Study, state: &State, rows: &[usize], nominal: &[f64], all: f
     stretches.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.2.total_cmp(&b.2)));
     let mut list: Vec<TimeWindow> = stretches
         .into_iter()
-        .take_while(|(residual, ..)| *residual > 1.5 * all)
+        .take_while(|(residual, ..)| *residual > WINDOW_STANDS_OUT * all)
         .take(3)
         .map(|(_, recording, start)| TimeWindow {
             recording: study.motions.sources[recording].name.clone(),
@@ -159,7 +152,7 @@ fn repeatable(study: &Study, state: &State, joint: usize, rows: &[usize], nomina
     let torque = study.scales.torque[joint];
     let acceleration = rms(rows.iter().map(|&row| state.qdd[row]));
     let cell = |row: usize| {
-        let part = |value: f64, range: f64| (value / (SAME * range).max(1e-12)).floor() as i64;
+        let part = |value: f64, range: f64| (value / (SAME_MOTION * range).max(1e-12)).floor() as i64;
         (
             part(state.q[row], study.scales.range[joint]),
             part(state.qd[row], study.scales.speed[joint]),

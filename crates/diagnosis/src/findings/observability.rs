@@ -10,10 +10,7 @@ use crate::regression::fit::Products;
 use crate::search::candidate::Candidate;
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
-use crate::selection::judge::{LEAST_EVIDENCE, LEAST_SHARE};
-
-/// A linear effect is listed as not testable if it could reach this part of the joint's torque undetected.
-const HIDDEN: f64 = 0.06;
+use crate::thresholds::HIDDEN;
 
 /// How well a column shows on a joint.
 pub struct Visibility {
@@ -27,6 +24,8 @@ pub struct Visibility {
     pub evidence: f64,
     /// The standard deviation of the joint's torque (N m or N).
     pub torque: f64,
+    /// The share that a name needs.
+    pub least_share: f64,
 }
 
 impl Visibility {
@@ -35,7 +34,7 @@ impl Visibility {
         let count = self.count.max(1.0);
         let drop = count * ((2.0 * needed / self.evidence.max(1e-9)).exp() - 1.0);
         let by_evidence = (drop / self.own.max(1e-300)).sqrt();
-        let by_share = LEAST_SHARE * self.torque / self.spread.max(1e-300);
+        let by_share = self.least_share * self.torque / self.spread.max(1e-300);
         by_evidence.max(by_share)
     }
 }
@@ -135,8 +134,9 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
                     count: products.count[joint],
                     evidence: products.evidence[joint],
                     torque: study.scales.torque[joint],
+                    least_share: study.thresholds.least_share,
                 };
-                let least = visibility.least(needed(candidate));
+                let least = visibility.least(needed(study, candidate));
                 let share = if is_of_all_torque {
                     least
                 } else {
@@ -183,8 +183,8 @@ fn of(study: &Study, kind: Kind, joint: usize) -> impl Iterator<Item = &Candidat
 }
 
 /// The evidence that a name needs here (nats).
-pub fn needed(candidate: &Candidate) -> f64 {
-    candidate.cost.max(LEAST_EVIDENCE)
+pub fn needed(study: &Study, candidate: &Candidate) -> f64 {
+    candidate.cost.max(study.thresholds.least_evidence)
 }
 
 /// Whether an effect of unit coefficient would have been seen at its size.
@@ -193,7 +193,7 @@ fn is_seen(study: &Study, products: &Products, chosen: &Chosen, candidate: &Cand
     let drop = products.drop_of(&study.table, &chosen.fit, column);
     let nats = 0.5 * products.evidence[joint] * (1.0 + drop / products.count[joint].max(1.0)).ln();
     let share = spread(study, joint, column) / study.scales.torque[joint].max(1e-300);
-    nats > needed(candidate) && share > LEAST_SHARE
+    nats > needed(study, candidate) && share > study.thresholds.least_share
 }
 
 /// The standard deviation of a column on a joint's moving training rows.

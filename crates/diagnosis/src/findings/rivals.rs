@@ -10,15 +10,10 @@ use rayon::prelude::*;
 use crate::search::candidate::Cause;
 use crate::search::problem::{Chosen, Problem};
 use crate::search::study::Study;
+use crate::thresholds::{MARGIN_SCALE, NEARLY, NEARLY_NATS, SUREST};
 
-/// An alternative explains nearly as much if it loses at most this part of what the finding explains.
-const NEARLY: f64 = 0.08;
-/// An alternative also explains nearly as much if it loses at most this evidence (nats).
-const NEARLY_NATS: f64 = 4.0;
 /// The number of the most promising alternatives that are fitted in full.
 const TRIED: usize = 8;
-/// However clear the evidence, the catalogue may lack the right name.
-const SUREST: f64 = 0.985;
 
 /// How a finding stands against its rivals.
 #[derive(Clone, Debug)]
@@ -43,9 +38,6 @@ impl Standing {
 pub fn probability(margin: f64) -> f64 {
     (1.0 - 0.5 * (-margin.max(0.0) / MARGIN_SCALE).exp()).min(SUREST)
 }
-
-/// The margin that halves the doubt e-fold (nats).
-const MARGIN_SCALE: f64 = 8.0;
 
 /// How much worse (nats) a rival of a finding that explains so much (nats) may be, to explain nearly as much.
 pub fn allowance(explained: f64) -> f64 {

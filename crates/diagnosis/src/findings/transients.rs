@@ -10,17 +10,8 @@ use crate::findings::report::{Finding, Parameter, Place, TimeWindow};
 use crate::search::scan;
 use crate::search::study::Study;
 use crate::selection::judge::Judged;
+use crate::thresholds::{BURST_PIECE, BURST_STRETCH, LEAST_BURST_ROWS, MOST_BURSTS, ONE_FORCE, OVER_THE_REST};
 
-/// A burst exceeds the median of all windows of its length, and the residual of the model itself, by this factor.
-const OVER_THE_REST: f64 = 6.0;
-/// One force on the tool must explain this part of a burst's power, on pieces it was not fitted to.
-const ONE_FORCE: f64 = 0.8;
-/// More bursts than this in the held-out recordings are no bursts.
-const MOST_PUSHES: usize = 4;
-/// A joint that moved on fewer training rows is not known.
-const LEAST_ROWS: usize = 50;
-/// The stretches that are compared (s).
-const STRETCH: f64 = 0.4;
 /// Bursts looked for, at most.
 const MOST: usize = 12;
 
@@ -57,7 +48,7 @@ pub fn bursts(study: &Study, judged: &Judged, left: &[Vec<f64>]) -> Bursts {
     let weights: Vec<f64> = (0..study.motions.dof)
         .map(|joint| {
             // What is usual of a joint that was never fitted is not known.
-            if study.training_rows(joint).len() < LEAST_ROWS {
+            if study.training_rows(joint).len() < LEAST_BURST_ROWS {
                 return 0.0;
             }
             1.0 / usual(study, joint, left).powi(2).max(study.floor[joint]).max(1e-300)
@@ -113,7 +104,7 @@ pub fn bursts(study: &Study, judged: &Judged, left: &[Vec<f64>]) -> Bursts {
         }
     }
     // What comes again and again is the model's error, not somebody's push.
-    if pushes.len() + bursts.unexplained.values().map(|entry| entry.1.len()).sum::<usize>() > MOST_PUSHES {
+    if pushes.len() + bursts.unexplained.values().map(|entry| entry.1.len()).sum::<usize>() > MOST_BURSTS {
         return Bursts::default();
     }
     bursts.contact = contact(study, left, &pushes);
@@ -128,7 +119,7 @@ fn usual(study: &Study, joint: usize, left: &[Vec<f64>]) -> f64 {
     let moving = &study.table.joints[joint].moving;
     let mut stretches = Vec::new();
     for (recording, rows) in study.table.rows.iter().enumerate() {
-        let length = ((STRETCH / study.seconds[recording]) as usize).max(3);
+        let length = ((BURST_STRETCH / study.seconds[recording]) as usize).max(3);
         let mut from = rows.start;
         while from < rows.end {
             let to = (from + length).min(rows.end);
@@ -205,7 +196,7 @@ fn force(study: &Study, times: &[f64], left: &[Vec<f64>], weights: &[f64], windo
             columns.map(|column| study.table.place[joint][column].map_or(0.0, |place| this.x[place][row])),
         );
         let (w, r) = (weights[joint], left[joint][row]);
-        if ((times[row] - window.0) / 0.1) as i64 % 2 == 0 {
+        if ((times[row] - window.0) / BURST_PIECE) as i64 % 2 == 0 {
             matrix += w * x * x.transpose();
             right += w * r * x;
         } else {

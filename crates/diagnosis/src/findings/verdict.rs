@@ -9,6 +9,7 @@ use crate::findings::transients::Bursts;
 use crate::regression::fit::Products;
 use crate::search::study::Study;
 use crate::selection::judge::Judged;
+use crate::thresholds::{LEAST_MOTION, POOR, POOR_ABOVE_NOISE, REMEMBERS, STRUCTURED, STRUCTURED_ABOVE_NOISE};
 
 /// The structured residuals that no effect in the catalogue explains, on each joint.
 pub fn unexplained(study: &Study, judged: &Judged, bursts: &Bursts, left: &[Vec<f64>]) -> Vec<Unexplained> {
@@ -60,17 +61,6 @@ pub fn unexplained(study: &Study, judged: &Judged, bursts: &Bursts, left: &[Vec<
         .collect()
 }
 
-/// An error (NRMSE) above this is not explained if it also exceeds the noise ([`ABOVE_NOISE`]); on held-out recordings if there are any.
-const POOR: f64 = 0.35;
-/// The ratio to the noise that a poor error ([`POOR`]) exceeds.
-const ABOVE_NOISE: f64 = 3.0;
-/// An error (NRMSE) above this, on training and on held-out recordings, is not explained if it is also structured.
-const STRUCTURED: f64 = 0.06;
-/// The ratio to the noise that a structured error ([`STRUCTURED`]) exceeds.
-const STRUCTURED_ABOVE_NOISE: f64 = 4.0;
-/// The autocorrelation from row to row that a structured error exceeds: neither noise nor filter residues reach it.
-const REMEMBERS: f64 = 0.6;
-
 /// The error (NRMSE) that the findings leave on a joint, if it is too large and too regular to be noise.
 pub fn structured(fit: &JointFit) -> Option<f64> {
     let error = fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented);
@@ -87,7 +77,7 @@ pub fn leftover(study: &Study, fit: &BTreeMap<String, JointFit>, unexplained: &m
         let Some(this) = fit.get(name) else { continue };
         let error = this.held_out_nrmse_augmented.unwrap_or(this.train_nrmse_augmented);
         let is_known = unexplained.iter().any(|left| left.joint == *name);
-        let is_poor = error >= POOR && error * this.torque_std >= ABOVE_NOISE * this.noise;
+        let is_poor = error >= POOR && error * this.torque_std >= POOR_ABOVE_NOISE * this.noise;
         if is_known || !(is_poor || structured(this).is_some()) {
             continue;
         }
@@ -105,9 +95,6 @@ pub fn leftover(study: &Study, fit: &BTreeMap<String, JointFit>, unexplained: &m
         });
     }
 }
-
-/// The least time in motion (s) and of reversals that a diagnosis needs on some joint.
-const LEAST_MOTION: f64 = 4.0;
 
 /// Why the recordings are not enough for a diagnosis; empty if they are.
 pub fn not_enough(study: &Study, products: &Products) -> Vec<String> {

@@ -15,7 +15,6 @@ use crate::regression::table::{Moving, Table};
 use crate::search::physics::is_possible;
 use crate::search::problem::Chosen;
 use crate::search::study::{About, Study};
-use crate::thresholds;
 
 /// Between the last recording and the motion (s).
 const BETWEEN: f64 = 10.0;
@@ -175,7 +174,7 @@ impl<'a> Prospect<'a> {
             })
             .collect();
         let floor = (0..dof)
-            .map(|j| study.noise[j] + (thresholds::TOLERANCE * torque[j]).powi(2))
+            .map(|j| study.noise[j] + (study.thresholds.tolerance * torque[j]).powi(2))
             .collect();
         Outlook {
             products: self.old.joined(&new, &left, evidence, floor),
@@ -287,6 +286,7 @@ impl<'a> Prospect<'a> {
                 count: products.count[joint],
                 evidence: products.evidence[joint],
                 torque: outlook.torque[joint],
+                least_share: self.study.thresholds.least_share,
             })
         };
         wanted.iter().filter_map(of).collect()

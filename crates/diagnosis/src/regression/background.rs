@@ -12,25 +12,12 @@ use effects::Term;
 use effects::arm::INERTIAL_PARAMETER;
 use effects::background::{FRICTION_CURVE, GAIN as GAIN_LAW, OWN_FRICTION};
 
+use crate::diagnose::Options;
 use crate::regression::bodies::{PER_LINK, precision};
-
-/// At strength one, friction differs from Coulomb and viscous, and from recording to recording, by this part of a joint's torque.
-const FRICTION: f64 = 0.015;
-/// At strength one, torque constants are off by this part.
-const GAIN: f64 = 0.05;
-
-/// The evidence that a part of the background must bring (nats).
-const A_PART: f64 = 4.0;
-/// The evidence that a link with a strength of its own must bring (nats).
-const A_LINK: f64 = 8.0;
-/// A URDF is seldom off by more than this part everywhere.
-const USUAL: f64 = 0.3;
-/// Strengths that are tried.
-const RHOS: [f64; 7] = [0.0, 0.01, 0.03, 0.1, 0.2, 0.4, 1.0];
-/// The factor between strengths that are tried in the end.
-const FINER: f64 = 1.4;
-const FRICTIONS: [f64; 3] = [0.0, 1.0, 3.0];
-const GAINS: [f64; 2] = [0.0, 1.0];
+use crate::thresholds::{
+    FINER_STRENGTH, FRICTION_PRIOR, FRICTION_STRENGTHS, GAIN_PRIOR, GAIN_STRENGTHS, LINK_STRENGTHS, OWN_STRENGTHS,
+    PER_BACKGROUND_PART, PER_LINK_APART, USUAL_STRENGTH,
+};
 
 /// How far the parts of the background may be from what the model says; zero switches a part off.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,18 +55,21 @@ impl Strengths {
 
     /// The evidence that they must bring (nats).
     fn cost(&self) -> f64 {
-        let part = |strength: f64| if strength > 0.0 { A_PART } else { 0.0 };
+        let part = |strength: f64| if strength > 0.0 { PER_BACKGROUND_PART } else { 0.0 };
         let common = self.common();
         let apart = self.links.iter().filter(|&&rho| rho != common).count();
-        let unlikely = 0.5 * (common / USUAL).powi(2);
-        part(self.friction) + part(self.gain) + part(common) + unlikely + A_LINK * apart as f64
+        let unlikely = 0.5 * (common / USUAL_STRENGTH).powi(2);
+        part(self.friction) + part(self.gain) + part(common) + unlikely + PER_LINK_APART * apart as f64
     }
 
     /// The strengths tried next to that of most links, below and above it.
     pub fn around_common(&self) -> (f64, f64) {
         let common = self.common();
-        let below = RHOS.into_iter().filter(|&rho| rho < common).fold(0.0, f64::max);
-        let above = RHOS
+        let below = LINK_STRENGTHS
+            .into_iter()
+            .filter(|&rho| rho < common)
+            .fold(0.0, f64::max);
+        let above = LINK_STRENGTHS
             .into_iter()
             .filter(|&rho| rho > common)
             .fold(f64::INFINITY, f64::min);
@@ -99,19 +89,19 @@ impl Strengths {
                 list.push(next);
             }
         };
-        for rho in RHOS {
+        for rho in LINK_STRENGTHS {
             add(Self {
                 links: vec![rho; self.links.len()],
                 ..self.clone()
             });
         }
-        for friction in FRICTIONS {
+        for friction in FRICTION_STRENGTHS {
             add(Self {
                 friction,
                 ..self.clone()
             });
         }
-        for gain in GAINS {
+        for gain in GAIN_STRENGTHS {
             add(Self { gain, ..self.clone() });
         }
         list
@@ -126,7 +116,7 @@ impl Strengths {
             }
         };
         for link in 0..self.links.len() {
-            for rho in [self.common(), 0.1, 0.3, 1.0] {
+            for rho in std::iter::once(self.common()).chain(OWN_STRENGTHS) {
                 let mut next = self.clone();
                 next.links[link] = rho;
                 if rho >= self.common() {
@@ -146,26 +136,29 @@ impl Strengths {
         if self.links.iter().all(|&rho| rho == 0.0) {
             return Vec::new();
         }
-        vec![scaled(1.0 / FINER), scaled(FINER)]
+        vec![scaled(1.0 / FINER_STRENGTH), scaled(FINER_STRENGTH)]
     }
 
     /// These with less of one part.
     pub fn weaker(&self) -> Vec<Self> {
         let mut list = Vec::new();
         let largest = self.links.iter().copied().fold(0.0, f64::max);
-        for rho in RHOS.into_iter().filter(|&rho| rho < largest) {
+        for rho in LINK_STRENGTHS.into_iter().filter(|&rho| rho < largest) {
             list.push(Self {
                 links: self.links.iter().map(|&own| own.min(rho)).collect(),
                 ..self.clone()
             });
         }
-        for friction in FRICTIONS.into_iter().filter(|&friction| friction < self.friction) {
+        for friction in FRICTION_STRENGTHS
+            .into_iter()
+            .filter(|&friction| friction < self.friction)
+        {
             list.push(Self {
                 friction,
                 ..self.clone()
             });
         }
-        for gain in GAINS.into_iter().filter(|&gain| gain < self.gain) {
+        for gain in GAIN_STRENGTHS.into_iter().filter(|&gain| gain < self.gain) {
             list.push(Self { gain, ..self.clone() });
         }
         list
@@ -187,12 +180,20 @@ pub struct Stated {
 }
 
 impl Stated {
+    /// What the user states.
+    pub fn of(options: &Options) -> Self {
+        Self {
+            links: options.urdf_accuracy,
+            gain: options.torque_accuracy,
+        }
+    }
+
     /// The strengths to begin with.
     pub fn first(self, links: usize) -> Strengths {
         Strengths {
             links: vec![self.links.unwrap_or(0.0); links],
             friction: 0.0,
-            gain: self.gain.map_or(0.0, |gain| gain / GAIN),
+            gain: self.gain.map_or(0.0, |gain| gain / GAIN_PRIOR),
         }
     }
 
@@ -240,7 +241,7 @@ impl Prior {
             }
         }
         for (joint, recordings) in moved.iter().enumerate() {
-            let level = FRICTION * torque[joint];
+            let level = FRICTION_PRIOR * torque[joint];
             if level <= 0.0 || speed[joint] <= 0.0 {
                 continue;
             }
@@ -255,7 +256,7 @@ impl Prior {
                     }
                 }
             }
-            prior.push(Term::on(&GAIN_LAW, joint), GAIN);
+            prior.push(Term::on(&GAIN_LAW, joint), GAIN_PRIOR);
         }
         prior
     }

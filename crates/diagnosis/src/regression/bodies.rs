@@ -2,10 +2,8 @@
 
 use nalgebra::{Cholesky, DMatrix, Matrix3, Matrix4, SymmetricEigen};
 
-/// A body that is a point in the URDF may have about this radius of gyration (m).
-const LEAST_RADIUS: f64 = 0.05;
-/// A link without mass in the URDF may have about this (kg).
-const LEAST_MASS: f64 = 0.05;
+use crate::thresholds::{LEAST_BODY_LEFT, LEAST_BODY_MASS, LEAST_BODY_RADIUS};
+
 /// Parameters of a link: m, m c (3), Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the link frame's origin.
 pub const PER_LINK: usize = 10;
 /// The pseudo-inertia \[Σ, m c; (m c)ᵀ, m\] of ten inertial parameters, Σ = ½ tr(I) 1 − I.
@@ -54,9 +52,6 @@ fn parameters_of(pseudo: &Matrix4<f64>) -> [f64; PER_LINK] {
     ]
 }
 
-/// In no direction is less left of a body than this part.
-const LEAST_LEFT: f64 = 0.02;
-
 /// The body nearest to `nominal` + `change` (ten inertial parameters each) that can be: its pseudo-inertia, seen from the
 /// nominal one, has no eigenvalue below a fiftieth.
 pub fn physical(nominal: &[f64], change: &[f64]) -> [f64; PER_LINK] {
@@ -69,10 +64,10 @@ pub fn physical(nominal: &[f64], change: &[f64]) -> [f64; PER_LINK] {
         return std::array::from_fn(|k| sum[k]);
     };
     let mut eigen = SymmetricEigen::new(inverse * pseudo_inertia(&sum) * inverse.transpose());
-    if eigen.eigenvalues.min() >= LEAST_LEFT {
+    if eigen.eigenvalues.min() >= LEAST_BODY_LEFT {
         return std::array::from_fn(|k| sum[k]);
     }
-    eigen.eigenvalues.apply(|value| *value = value.max(LEAST_LEFT));
+    eigen.eigenvalues.apply(|value| *value = value.max(LEAST_BODY_LEFT));
     parameters_of(&(lower * eigen.recompose() * lower.transpose()))
 }
 
@@ -92,13 +87,13 @@ pub fn precision(parameters: &[f64]) -> DMatrix<f64> {
 /// The pseudo-inertia of a body, made larger where it is too small to have an inverse.
 fn floored(parameters: &[f64]) -> Matrix4<f64> {
     let pseudo = pseudo_inertia(parameters);
-    let mass = pseudo[(3, 3)].max(LEAST_MASS);
+    let mass = pseudo[(3, 3)].max(LEAST_BODY_MASS);
     let com = pseudo.fixed_view::<3, 1>(0, 3) / mass;
     let about_com: Matrix3<f64> = pseudo.fixed_view::<3, 3>(0, 0) - mass * com * com.transpose();
     let mut eigen = SymmetricEigen::new(about_com);
     eigen
         .eigenvalues
-        .apply(|value| *value = value.max(mass * LEAST_RADIUS * LEAST_RADIUS));
+        .apply(|value| *value = value.max(mass * LEAST_BODY_RADIUS * LEAST_BODY_RADIUS));
     let second = eigen.recompose() + mass * com * com.transpose();
     let mut floored = Matrix4::zeros();
     floored.fixed_view_mut::<3, 3>(0, 0).copy_from(&second);

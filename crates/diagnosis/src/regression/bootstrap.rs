@@ -9,14 +9,10 @@ use rayon::prelude::*;
 use crate::search::problem::Chosen;
 use crate::search::refine::{sizes, varied};
 use crate::search::study::Study;
+use crate::thresholds::{BLOCK, INFLATION, UNEVEN};
 
-/// A strength of the prior is a mean over all links and directions; in a single one the URDF may be wrong by so many times as
-/// much: its centres of mass more than its moments of inertia, one link more than another.
-const UNEVEN: f64 = 2.0;
 /// Resamplings.
 const DRAWS: usize = 120;
-/// The shortest block (s): longer than what residuals remember.
-const BLOCK: f64 = 2.5;
 /// Blocks in all, at most.
 const MOST_BLOCKS: usize = 80;
 /// The step of a derivative by a size, as a part of it.
@@ -79,14 +75,6 @@ impl Resampled {
         Some(self.columns.len() + at)
     }
 }
-
-/// Residuals remember longer than a block.
-const INFLATION: f64 = 1.25;
-/// What filtering and a form that is not quite right leave, as a part of the value.
-pub const SYSTEMATIC: f64 = 0.01;
-/// The same for what hangs on a form that recordings hardly show: how a gap ends, how friction falls near standstill, what else
-/// is late in a drive. Cases with a known truth err by this much.
-pub const OF_FORM: f64 = 0.05;
 
 /// Resamples the fit of `chosen`.
 pub fn resample(study: &mut Study, chosen: &Chosen) -> Resampled {

@@ -6,6 +6,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::regression::background::Background;
 use crate::regression::table::{Gram, Table};
+use crate::thresholds::{EVIDENCE_PER_PERIOD, EVIDENCE_RATE, MOST_EVIDENCE_RATE};
 
 mod eliminated;
 mod joined;
@@ -13,12 +14,6 @@ mod left_out;
 
 use eliminated::Eliminated;
 
-/// Independent pieces of evidence a second of motion: residuals of a wrong model are correlated over longer than the filter …
-const EVIDENCE_RATE: f64 = 4.0;
-/// … and as long as the motion is slow: so many in a period of it.
-const EVIDENCE_PER_PERIOD: f64 = 8.0;
-/// No motion is so quick that it gives more pieces of evidence a second.
-const MOST_EVIDENCE_RATE: f64 = 10.0;
 /// Of the diagonal, so that aliases share a torque instead of fighting over it.
 const RIDGE: f64 = 1e-9;
 /// Weights are found anew as often.

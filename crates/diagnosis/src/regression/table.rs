@@ -10,7 +10,7 @@ use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
 use crate::regression::bodies;
 use crate::regression::columns::{behind, behind_torque, values};
-use crate::thresholds;
+use crate::thresholds::{CORE, REVERSAL, YIELDING};
 
 mod gram;
 
@@ -102,7 +102,7 @@ impl Table {
                         }
                     }
                     y.extend(chunk.filter(&difference));
-                    let core = (thresholds::CORE * chunk.kernel.width() / chunk.period).ceil() as usize;
+                    let core = (CORE * chunk.kernel.width() / chunk.period).ceil() as usize;
                     let rest = scales.rest[joint];
                     // A joint that only yields a little does not move.
                     let (low, high) = chunk.q[joint]
@@ -110,7 +110,7 @@ impl Table {
                         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &q| {
                             (low.min(q), high.max(q))
                         });
-                    let yields = high - low < thresholds::YIELDING * scales.range[joint];
+                    let yields = high - low < YIELDING * scales.range[joint];
                     let is_dead = scales.torque[joint] == 0.0;
                     moves.extend((0..chunk.rows()).map(|row| {
                         let tick = chunk.tick_of(row);
@@ -122,7 +122,7 @@ impl Table {
                         match moving {
                             Moving::Steadily => window.iter().all(|qd| qd.abs() > rest),
                             Moving::ThroughReversals => {
-                                qd[tick].abs() > rest && window.iter().any(|qd| qd.abs() > thresholds::REVERSAL * rest)
+                                qd[tick].abs() > rest && window.iter().any(|qd| qd.abs() > REVERSAL * rest)
                             }
                         }
                     }));

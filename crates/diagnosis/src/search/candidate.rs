@@ -2,6 +2,8 @@
 
 use effects::{EffectKind, Grounds, Kind, Spec, Term};
 
+use crate::thresholds::Thresholds;
+
 /// A kind of cause, with the other joint whose motion it depends on; the catalogue's come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Cause {
@@ -95,13 +97,10 @@ pub struct Candidate {
     pub is_trial: bool,
 }
 
-/// Evidence that each coefficient must bring (nats).
-pub const PER_COEFFICIENT: f64 = 2.5;
-
 impl Candidate {
     /// A candidate with the usual cost.
-    pub fn new(cause: Cause, joint: Option<usize>, columns: Vec<usize>) -> Self {
-        let cost = cause.spec().prior + PER_COEFFICIENT * columns.len() as f64;
+    pub fn new(cause: Cause, joint: Option<usize>, columns: Vec<usize>, thresholds: &Thresholds) -> Self {
+        let cost = cause.spec().prior + thresholds.per_coefficient * columns.len() as f64;
         Self {
             cause,
             joint,

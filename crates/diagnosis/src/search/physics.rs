@@ -6,9 +6,7 @@ use effects::{Fitted, Term, UNIT};
 use crate::regression::fit::Fit;
 use crate::regression::table::Table;
 use crate::search::candidate::Candidate;
-
-/// A cause that is so many times larger than what it is to explain cancels another.
-const LARGEST_SHARE: f64 = 3.0;
+use crate::thresholds::LARGEST_TORQUE_SHARE;
 
 /// A candidate with the coefficients of a fit.
 struct InFit<'a> {
@@ -67,7 +65,7 @@ impl Fitted for InFit<'_> {
 /// Whether `candidate` is possible at the coefficients of `fit`.
 pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bool {
     // What every drive has may well be hidden by masses that are wrong the other way.
-    let cancels = |joint| torque_share(candidate, table, fit, joint) >= LARGEST_SHARE;
+    let cancels = |joint| torque_share(candidate, table, fit, joint) >= LARGEST_TORQUE_SHARE;
     if !candidate.cause.is_ordinary() && candidate.joint.is_some_and(cancels) {
         return false;
     }

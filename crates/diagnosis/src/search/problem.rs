@@ -10,6 +10,7 @@ use crate::regression::fit::{Fit, Products};
 use crate::regression::table::Table;
 use crate::search::candidate::{Candidate, Cause};
 use crate::search::physics::is_possible;
+use crate::thresholds::{KNOWN_DRIVE, TELLING_DRIVES, Thresholds};
 
 mod exchange;
 mod exclusion;
@@ -21,18 +22,8 @@ const AT_ONCE: usize = 3;
 /// More candidates than this are not taken.
 pub const MOST: usize = 60;
 
-/// The spread of coefficients that should be one.
-const UNIT_SPREAD: f64 = 0.1;
-
 /// So many times the next most promising are tried, if the first do not pay.
 const BATCHES: usize = 6;
-/// Where so many drives' inertias are left out of a model, all drives' are likely to be …
-const TELLING_DRIVES: usize = 2;
-/// … and each further one needs so much less evidence (nats): beside a gap that is never crossed, which is an encoder's offset
-/// with a drive's inertia, the two then stand for themselves.
-const KNOWN_DRIVE: f64 = 3.0;
-/// What has no name must keep this much of its gain on recordings that were left out.
-const PREDICTED: f64 = 0.05;
 
 /// A choice of candidates with its fit.
 #[derive(Clone, Debug)]
@@ -75,6 +66,8 @@ pub struct Problem<'a> {
     pub candidates: &'a [Candidate],
     /// The robot.
     pub arm: &'a Arm,
+    /// What decides.
+    pub thresholds: &'a Thresholds,
 }
 
 impl Problem<'_> {
@@ -97,7 +90,7 @@ impl Problem<'_> {
             .iter()
             .filter(|&&c| self.candidates[c].cause.is(&RotorInertia))
             .count();
-        own - crate::search::candidate::PER_COEFFICIENT * (counted - self.columns(set).len()) as f64
+        own - self.thresholds.per_coefficient * (counted - self.columns(set).len()) as f64
             - KNOWN_DRIVE * drives.saturating_sub(TELLING_DRIVES) as f64
     }
 
@@ -122,7 +115,7 @@ impl Problem<'_> {
             .filter(|candidate| candidate.cause.is_unit())
             .map(|candidate| {
                 let coefficient = fit.coefficient(candidate.columns[0]).max(1e-3);
-                0.5 * (coefficient.ln() / UNIT_SPREAD).powi(2)
+                0.5 * (coefficient.ln() / self.thresholds.unit_spread).powi(2)
             })
             .sum()
     }
@@ -148,7 +141,7 @@ impl Problem<'_> {
         }
         let drop = self.products.drop(self.table, &chosen.fit, &new);
         let cost = self.candidates[candidate].cost
-            - crate::search::candidate::PER_COEFFICIENT * (self.candidates[candidate].columns.len() - new.len()) as f64;
+            - self.thresholds.per_coefficient * (self.candidates[candidate].columns.len() - new.len()) as f64;
         let log = |drop: f64, joint: usize| {
             let count = self.products.count[joint].max(1.0);
             -0.5 * self.products.evidence[joint] * (1.0 - (drop / count).min(0.999_999)).ln()
@@ -299,7 +292,7 @@ impl Problem<'_> {
             .gains(self.table, joint, columns, &candidate.columns, weights);
         outside
             > if candidate.cause.name().is_none() {
-                PREDICTED * inside
+                self.thresholds.predicted * inside
             } else {
                 0.0
             }

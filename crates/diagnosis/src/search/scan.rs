@@ -7,7 +7,9 @@ use crate::data::motion::Motions;
 use crate::regression::fit::Fit;
 use crate::regression::table::Table;
 use crate::search::study::Study;
-use crate::thresholds;
+use crate::thresholds::{
+    CONTACT_DURATIONS, CONTACT_PIECE, LEAST_RIPPLE_PHASE, MOST_OF_A_RECORDING, MOST_RIPPLE_PERIODS, RIPPLE_SPEED,
+};
 
 mod onsets;
 mod waves;
@@ -15,8 +17,6 @@ mod waves;
 pub use onsets::onsets;
 pub use waves::waves;
 
-/// Durations of contact that are tried (s).
-const DURATIONS: [f64; 7] = [0.2, 0.35, 0.6, 1.0, 1.6, 2.5, 4.0];
 /// The coarse scan for ripples takes so many samples at most.
 const MOST_SAMPLES: usize = 6000;
 
@@ -76,8 +76,8 @@ pub fn contacts(
             sums[k + 1] = sum;
         }
         let step = (times[rows.end - 1] - times[rows.start]) / (rows.len() - 1) as f64;
-        let most = thresholds::MOST_OF_A_RECORDING * step * rows.len() as f64;
-        for duration in DURATIONS.into_iter().filter(|&duration| duration <= most) {
+        let most = MOST_OF_A_RECORDING * step * rows.len() as f64;
+        for duration in CONTACT_DURATIONS.into_iter().filter(|&duration| duration <= most) {
             let length = ((duration / step).round() as usize).max(3);
             let hop = (length / 5).max(1);
             let mut from = 0;
@@ -126,10 +126,10 @@ pub fn ripples(
     let range = scales.range[joint].max(1e-6);
     let samples = samples(table, motions, joint, residual, fitted);
     // What the filter passes at the usual speed.
-    let usual = 0.4 * scales.speed[joint];
-    let most_periods = (2.0 * std::f64::consts::PI * motions.cutoff / usual).min(400.0);
+    let usual = RIPPLE_SPEED * scales.speed[joint];
+    let most_periods = (2.0 * std::f64::consts::PI * motions.cutoff / usual).min(MOST_RIPPLE_PERIODS);
     let step = 1.5 / range;
-    let least = 16.0 / range;
+    let least = LEAST_RIPPLE_PHASE / range;
     let at = |samples: &[Sample], periods: f64| {
         power(samples, |sample| {
             // The filter weakens fast ripples.
@@ -227,7 +227,7 @@ pub fn golden(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// How well a contact's force predicts its own window: fitted to every other piece of .15 s, tried on the rest; the
+/// How well a contact's force predicts its own window: fitted to every other piece, tried on the rest; the
 /// relative drop of what `without` leaves there.
 pub fn contact_gain(study: &Study, without: &Fit, columns: &[usize]) -> f64 {
     let table = &study.table;
@@ -236,7 +236,7 @@ pub fn contact_gain(study: &Study, without: &Fit, columns: &[usize]) -> f64 {
     let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
     let mut tried: Vec<(f64, f64, [f64; 3])> = Vec::new();
     for row in study.training() {
-        let piece = (times[row] / PIECE).floor() as i64;
+        let piece = (times[row] / CONTACT_PIECE).floor() as i64;
         for joint in 0..table.dof() {
             let this = &table.joints[joint];
             let mut x = [0.0; 3];
@@ -272,6 +272,3 @@ pub fn contact_gain(study: &Study, without: &Fit, columns: &[usize]) -> f64 {
         0.0
     }
 }
-
-/// Pieces of a contact's window (s).
-const PIECE: f64 = 0.15;

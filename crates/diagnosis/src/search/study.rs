@@ -10,12 +10,13 @@ use crate::data::known::Known;
 use crate::data::measure::{self, mean, noise, scales, seconds, spans};
 use crate::data::motion::{Input, Motions};
 use crate::data::rigid::Rigid;
+use crate::diagnose::Options;
 use crate::regression::background::{Background, Prior, Stated, Strengths};
 use crate::regression::fit::Products;
 use crate::regression::table::{Moving, Table};
 use crate::search::candidate::{Candidate, Cause, MayBe, catalogue};
 use crate::search::problem::Problem;
-use crate::thresholds;
+use crate::thresholds::{LEAST_FOR_DYNAMICS, RESTING, RESTING_REACH, Thresholds};
 use crate::trace::Trace;
 
 mod about;
@@ -23,9 +24,6 @@ mod anew;
 mod strengths;
 
 pub use about::About;
-
-/// The evidence that an onset must bring: it was looked for at some hundred times (nats).
-const ONSET: f64 = 6.0;
 
 /// The recordings, the model along them, and the candidates.
 pub struct Study {
@@ -65,6 +63,8 @@ pub struct Study {
     pub strengths: Strengths,
     /// What of them the user states.
     pub stated: Stated,
+    /// What decides.
+    pub thresholds: Thresholds,
     /// What was decided so far.
     pub trace: Trace,
     /// What the final fit showed not to be: it is not looked for again.
@@ -72,10 +72,11 @@ pub struct Study {
 }
 
 impl Study {
-    /// Prepares `inputs` for the arm and effects in `known`, filtered at `cutoff` (Hz) or as the data ask for, with the candidates that `may_be`.
-    pub fn new(known: &Known, inputs: &[Input<'_>], cutoff: Option<f64>, stated: Stated, may_be: &MayBe<'_>) -> Self {
+    /// Prepares `inputs` for the arm and effects in `known`, with the candidates that `may_be`.
+    pub fn new(known: &Known, inputs: &[Input<'_>], options: &Options, may_be: &MayBe<'_>) -> Self {
+        let (stated, thresholds) = (Stated::of(options), options.thresholds.clone());
         let arm = &known.arm;
-        let mut motions = Motions::new(inputs, cutoff, arm);
+        let mut motions = Motions::new(inputs, options.cutoff, arm);
         let measured: Vec<Vec<f64>> = (0..motions.dof)
             .map(|joint| {
                 motions
@@ -105,7 +106,7 @@ impl Study {
         let floor = noise
             .iter()
             .zip(&scales.torque)
-            .map(|(noise, torque)| noise + (thresholds::TOLERANCE * torque).powi(2))
+            .map(|(noise, torque)| noise + (thresholds.tolerance * torque).powi(2))
             .collect();
         let times: Vec<(f64, f64)> = spans(&motions)
             .into_iter()
@@ -133,7 +134,7 @@ impl Study {
             needed: &measure::needed(&motions, &rigid),
             inertial: &measure::inertial(&motions, &rigid, &scales.torque),
         });
-        if motions.cutoff < thresholds::LEAST_FOR_DYNAMICS {
+        if motions.cutoff < LEAST_FOR_DYNAMICS {
             list.retain(|(cause, ..)| !cause.is_unit());
         }
         list.retain(|(cause, joint, _)| may_be(*cause, *joint));
@@ -156,7 +157,7 @@ impl Study {
                     })
                 })
                 .collect();
-            candidates.push(Candidate::new(cause, joint, columns));
+            candidates.push(Candidate::new(cause, joint, columns, &thresholds));
         }
         let always = contact_columns(f64::NEG_INFINITY, f64::INFINITY, false);
         let force = [0, 1, 2].map(|k| terms.len() + k);
@@ -181,6 +182,7 @@ impl Study {
             moving: Moving::Steadily,
             strengths: stated.first(arm.dof()),
             stated,
+            thresholds,
             prior,
             trace: Trace::default(),
             refused: Vec::new(),
@@ -214,6 +216,7 @@ impl Study {
             products,
             candidates: &self.candidates,
             arm: &self.arm,
+            thresholds: &self.thresholds,
         }
     }
 
@@ -243,12 +246,12 @@ impl Study {
         let mut rows = Vec::new();
         let mut first = 0;
         for chunk in &self.motions.chunks {
-            let reach = (3.0 * chunk.kernel.width() / chunk.period).ceil() as usize;
+            let reach = (RESTING_REACH * chunk.kernel.width() / chunk.period).ceil() as usize;
             let qd = &chunk.qd[joint];
             for row in 0..chunk.rows() {
                 let tick = chunk.tick_of(row);
                 let window = &qd[tick.saturating_sub(reach)..(tick + reach + 1).min(qd.len())];
-                if window.iter().all(|qd| qd.abs() < 0.7 * self.scales.rest[joint]) {
+                if window.iter().all(|qd| qd.abs() < RESTING * self.scales.rest[joint]) {
                     rows.push(first + row);
                 }
             }
@@ -310,9 +313,9 @@ impl Study {
         if let Some(known) = self.candidates.iter().position(same) {
             return known;
         }
-        let mut candidate = Candidate::new(cause, joint, columns);
+        let mut candidate = Candidate::new(cause, joint, columns, &self.thresholds);
         if terms.iter().any(|term| term.onset().is_some()) {
-            candidate.cost += ONSET;
+            candidate.cost += self.thresholds.per_onset;
         }
         self.candidates.push(candidate);
         self.candidates.len() - 1

@@ -11,7 +11,7 @@ use crate::search::candidate::Cause;
 use crate::search::problem::Chosen;
 use crate::search::scan;
 use crate::search::study::Study;
-use crate::thresholds;
+use crate::thresholds::{MOST_CONTACTS, MOST_OF_A_RECORDING, MOST_RIPPLES, MOST_WAVES};
 
 impl Study {
     /// Adds what the residual of `chosen` suggests.
@@ -26,7 +26,7 @@ impl Study {
             &chosen.fit.weights,
             self.force(),
             &self.fitted,
-            4,
+            MOST_CONTACTS,
         );
         let found: Vec<(Vec<f64>, Vec<f64>)> = (0..dof)
             .into_par_iter()
@@ -36,8 +36,16 @@ impl Study {
                 }
                 let (table, motions) = (&self.table, &self.motions);
                 (
-                    scan::ripples(table, motions, &self.scales, joint, &residual[joint], &self.fitted, 3),
-                    scan::waves(table, motions, joint, &residual[joint], &self.fitted, 2),
+                    scan::ripples(
+                        table,
+                        motions,
+                        &self.scales,
+                        joint,
+                        &residual[joint],
+                        &self.fitted,
+                        MOST_RIPPLES,
+                    ),
+                    scan::waves(table, motions, joint, &residual[joint], &self.fitted, MOST_WAVES),
                 )
             })
             .collect();
@@ -73,7 +81,7 @@ impl Study {
             return true;
         };
         self.contact_share(&[window])
-            .is_none_or(|(_, share)| share <= thresholds::MOST_OF_A_RECORDING)
+            .is_none_or(|(_, share)| share <= MOST_OF_A_RECORDING)
     }
 
     /// The recording of which contacts in these windows (s) cover the largest part, and that part.

@@ -14,6 +14,7 @@ use crate::search::study::Study;
 use crate::selection::judge::{self, Judged};
 use crate::selection::naming::{Named, name};
 use crate::selection::predict::{augmented, errors};
+use crate::thresholds::{BESIDE_THE_REST, HOPELESS, PARTLY};
 
 /// Fits the named effects for the last time: about the arm that they make, with the rows near reversals; drops what makes a
 /// joint's held-out error grow, what does not help there, and what might be zero.
@@ -126,7 +127,7 @@ fn give_up(study: &Study, judged: &mut Judged) {
         .collect();
     let is_hopeless = |joint: usize| {
         let fit = &left[joint];
-        fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented) > 1.0
+        fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented) > HOPELESS
     };
     // Friction that explains a part of the training recordings is there, whatever else is.
     let stays = |&candidate: &usize| {
@@ -142,9 +143,6 @@ fn give_up(study: &Study, judged: &mut Judged) {
         refit(study, &study.problem(&products), judged, set);
     }
 }
-
-/// An error (NRMSE) below this says that something of the torque is explained.
-pub const PARTLY: f64 = 0.8;
 
 /// The weakest of the names whose size might be zero, or is none that physics has, and whether it is that.
 fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<(usize, bool)> {
@@ -180,10 +178,6 @@ fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<(usi
     let weakest = unclear.min_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
     Some((weakest.candidate, contradicted(weakest)))
 }
-
-/// Beside structure that has no name a constant must be as large as that, and a drive's inertia larger by this: both may be a
-/// part of it.
-const BESIDE_THE_REST: f64 = 1.25;
 
 /// Whether it is a constant or a drive's inertia no larger than what is left beside it with structure.
 fn is_part_of_the_rest(study: &Study, judged: &Judged, member: &judge::Member) -> bool {

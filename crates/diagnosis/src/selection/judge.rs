@@ -10,43 +10,14 @@ use crate::regression::fit::Products;
 use crate::search::physics::is_at_its_size;
 use crate::search::problem::{Chosen, IMPOSSIBLE, Problem};
 use crate::search::study::Study;
-use crate::thresholds;
+use crate::thresholds::{
+    BESIDE_A_LOOSE_LINK, BESIDE_LOADED_FRICTION, HARMLESS, IDLE_EFFECT, LEAST_DRIVE, LEAST_OF_MISMATCH,
+    MOST_OF_A_RECORDING, NEARLY_CONSTANT, WORSE,
+};
 
 mod held_out;
 
 use held_out::{out_of_sample, predicting};
-
-/// A name must explain this much of a joint's torque spread …
-pub const LEAST_SHARE: f64 = 0.012;
-/// … and bring this much evidence (nats).
-pub const LEAST_EVIDENCE: f64 = 25.0;
-/// … or, over the ordinary cause that it is a form of, this much.
-const LEAST_BEYOND: f64 = 15.0;
-/// On the joint of a larger effect, it must be larger than this part of that effect: what is smaller may be its form's error …
-const BESIDE_A_LARGER: f64 = 0.1;
-/// … or, where that effect's form is certain, than this part.
-const BESIDE_A_CERTAIN: f64 = 0.05;
-/// Beside friction that grows with the load, a torque's scale must be larger than this part of it: both are a gain on the load,
-/// and what the load is, the drive's or the link's, is a matter of form.
-const BESIDE_LOADED_FRICTION: f64 = 0.3;
-/// Beside a link that is loose or sprung, a delay must be larger than this part of that: the link is late too, and what its
-/// simulation misses looks like more of it.
-const BESIDE_A_LOOSE_LINK: f64 = 0.5;
-/// A drive's inertia, which every drive has, must be this part of the joint's torque to be told.
-const LEAST_DRIVE: f64 = 0.01;
-/// Structure without a name must explain this much of a joint's torque spread …
-const LEAST_NAMELESS_SHARE: f64 = 0.012;
-/// … and this much of what the model as it was given misses …
-const LEAST_OF_MISMATCH: f64 = 0.05;
-/// … and bring this much evidence (nats).
-const LEAST_NAMELESS_EVIDENCE: f64 = 5.0;
-/// On a joint with unnamed structure a name must be so much larger than it.
-pub const BESIDE_NAMELESS: f64 = 1.5;
-
-/// What varies by less than this part of its mean is nearly constant: an offset, or friction of a joint that never turns back.
-const NEARLY_CONSTANT: f64 = 0.2;
-/// What does less than this part of a joint's torque does nothing.
-const IDLE: f64 = 0.002;
 
 /// A chosen candidate and what it does.
 #[derive(Clone, Debug)]
@@ -163,7 +134,7 @@ fn lasting(study: &Study, chosen: &Chosen) -> Option<usize> {
     let window = |&c: &usize| Some((c, contact_window(&study.terms(c).first().copied()?)?));
     let windows: Vec<(usize, [f64; 2])> = chosen.set.iter().filter_map(window).collect();
     let (recording, share) = study.contact_share(&windows.iter().map(|(_, window)| *window).collect::<Vec<_>>())?;
-    if share <= thresholds::MOST_OF_A_RECORDING {
+    if share <= MOST_OF_A_RECORDING {
         return None;
     }
     let is_there = |[from, to]: [f64; 2]| study.motions.recording_at(0.5 * (from + to)) == Some(recording);
@@ -185,8 +156,12 @@ fn beside(study: &Study, problem: &Problem<'_>, kept: &Chosen, nameless: &[Membe
         let fails = |member: &Member| {
             let joint = study.candidates[member.candidate].joint.unwrap_or(0);
             let mismatch = problem.products.power(joint).sqrt() / study.scales.torque[joint].max(1e-300);
-            member.share() < LEAST_NAMELESS_SHARE.max(LEAST_OF_MISMATCH * mismatch)
-                || member.evidence < LEAST_NAMELESS_EVIDENCE
+            member.share()
+                < study
+                    .thresholds
+                    .least_unmodelled_share
+                    .max(LEAST_OF_MISMATCH * mismatch)
+                || member.evidence < study.thresholds.least_unmodelled_evidence
         };
         let weak = members
             .iter()
@@ -255,7 +230,7 @@ pub fn is_idle(study: &Study, chosen: &Chosen, candidate: usize) -> bool {
             power += torque[row] * torque[row];
             count += 1.0;
         }
-        (power / f64::max(count, 1.0)).sqrt() < IDLE * study.scales.torque[joint]
+        (power / f64::max(count, 1.0)).sqrt() < IDLE_EFFECT * study.scales.torque[joint]
     })
 }
 
@@ -279,9 +254,9 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             .unwrap_or(0);
         if !is_named(member) {
             let named = largest(&|m| is_named(m) && !cause(m).is_ordinary(), at);
-            return share < LEAST_NAMELESS_SHARE
-                || member.evidence < LEAST_NAMELESS_EVIDENCE
-                || share < BESIDE_A_LARGER * named;
+            return share < study.thresholds.least_unmodelled_share
+                || member.evidence < study.thresholds.least_unmodelled_evidence
+                || share < study.thresholds.beside_a_larger * named;
         }
         let nameless = largest(&|m| !is_named(m), at);
         if cause(member).is_ordinary() {
@@ -289,9 +264,9 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             return cause(member).is(&RotorInertia) && share < nameless.max(LEAST_DRIVE);
         }
         let needed = if cause(member).plain().is_some() {
-            LEAST_BEYOND
+            study.thresholds.least_beyond
         } else {
-            LEAST_EVIDENCE
+            study.thresholds.least_evidence
         };
         // What acts on several joints need not stand out on all of them.
         let stands_out = |joint: usize| {
@@ -312,11 +287,11 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             } else {
                 0.0
             };
-            share >= LEAST_SHARE
+            share >= study.thresholds.least_share
                 && share >= alike
-                && share >= BESIDE_A_LARGER * others(false)
-                && share >= BESIDE_A_CERTAIN * others(true)
-                && share >= BESIDE_NAMELESS * largest(&|m| !is_named(m), joint)
+                && share >= study.thresholds.beside_a_larger * others(false)
+                && share >= study.thresholds.beside_a_certain * others(true)
+                && share >= study.thresholds.beside_unmodelled * largest(&|m| !is_named(m), joint)
         };
         member.evidence < needed || member.beyond < cause(member).spec().least_beyond_plain || !(0..dof).any(stands_out)
     };
@@ -328,10 +303,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
 /// The rule that drops what makes a joint's held-out error larger than the nominal model's.
 pub const HARMS: &str = "a joint's held-out error becomes larger than the nominal model's";
 
-/// A joint is worse predicted if its error grows by this part.
-const WORSE: f64 = 0.01;
-
 /// Whether an error (NRMSE) grows from `nominal` by more than what another joint's effect may do.
 pub fn harms(nominal: f64, with: f64) -> bool {
-    with > nominal + thresholds::HARMLESS.max(WORSE * nominal)
+    with > nominal + HARMLESS.max(WORSE * nominal)
 }

@@ -8,8 +8,9 @@ use arm::Arm;
 use effects::{Effect, Estimate, Kind, Size, Systematic, Term};
 
 use crate::findings::report::Parameter;
-use crate::regression::bootstrap::{OF_FORM, Resampled, SYSTEMATIC};
+use crate::regression::bootstrap::Resampled;
 use crate::search::study::Study;
+use crate::thresholds::{OF_FORM, SYSTEMATIC};
 
 /// A named effect with its parameters.
 #[derive(Clone, Debug)]

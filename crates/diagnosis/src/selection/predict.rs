@@ -8,11 +8,7 @@ use effects::{Cone, Term};
 use crate::findings::report::JointFit;
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
-
-/// With fewer moving rows the error is told over all.
-pub const LEAST_ROWS: usize = 10;
-/// The lag of the residual's autocorrelation (s): beyond the filter's memory.
-const LAG: f64 = 0.1;
+use crate::thresholds::{LEAST_ROWS, RESIDUAL_LAG};
 
 /// What the model with named effects and the background leaves on all rows of one joint. At rest dry friction may hold any torque
 /// within its cone: the error is the distance to it.
@@ -153,7 +149,7 @@ pub fn errors(study: &Study, joint: usize, augmented: &[f64]) -> JointFit {
 fn autocorrelation(study: &Study, signal: &[f64], moving: &[bool]) -> f64 {
     let (mut product, mut power) = (0.0, 0.0);
     for (recording, rows) in study.table.rows.iter().enumerate() {
-        let lag = (LAG / study.seconds[recording]).round().max(1.0) as usize;
+        let lag = (RESIDUAL_LAG / study.seconds[recording]).round().max(1.0) as usize;
         for row in rows.start..rows.end.saturating_sub(lag) {
             if moving[row] && moving[row + lag] {
                 product += signal[row] * signal[row + lag];

@@ -14,9 +14,7 @@ use crate::search::problem::Chosen;
 use crate::search::study::Study;
 use crate::selection::judge::{self, Judged};
 use crate::selection::naming::name;
-
-/// The part of what the background of all links explains (nats) that one missing body must explain alone.
-const NEARLY_ALL: f64 = 0.7;
+use crate::thresholds::NEARLY_ALL;
 
 /// Names a body that is missing at the tool, if the background stands for one; the new resamplings. Other payloads stay what
 /// they are: a part of the background, or named by the search.

@@ -79,6 +79,7 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
         known,
         only,
         next: args.next.is_some(),
+        ..Options::default()
     };
     let mut diagnosis = diagnosis::diagnose(&arm, &list, &options, &|doing| spinner.set_message(doing.to_owned()))?;
     for remark in &diagnosis.remarks {

@@ -4,9 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{Products, cholesky};
 use crate::regression::table::{Stretch, Table};
-
-/// Recordings are left out in so many groups.
-const FOLDS: usize = 6;
+use crate::thresholds::RECORDING_GROUPS;
 
 impl Products {
     /// What `added` columns on top of `columns` bring on `joint` (nats): where they were fitted, and on recordings left out one
@@ -128,7 +126,7 @@ impl Products {
         let folds: Vec<Vec<&Stretch>> = if let [only] = excited[..] {
             of(only).map(|stretch| vec![stretch]).collect()
         } else {
-            let count = excited.len().min(FOLDS);
+            let count = excited.len().min(RECORDING_GROUPS);
             let fold = |k: usize| excited.iter().skip(k).step_by(count).flat_map(|&r| of(r)).collect();
             (0..count).map(fold).collect()
         };

@@ -4,8 +4,7 @@ use std::ops::Range;
 
 use faer::{Accum, Mat, MatRef, Par, linalg::matmul::matmul};
 
-/// The only recording that moves a joint is cut into so many stretches, to be left out in turns.
-const STRETCHES: usize = 4;
+use crate::thresholds::STRETCHES;
 
 /// A recording, or a stretch of one, as one joint moves in it.
 #[derive(Clone, Debug)]

@@ -4,6 +4,7 @@ use effects::arm::ExternalContact;
 use rayon::prelude::*;
 
 use super::{Chosen, Growth, Problem};
+use crate::thresholds::SWAP_GAIN;
 
 impl Problem<'_> {
     /// `chosen` with one cause that acts on the whole arm, without what that then explains: on several joints at once other
@@ -82,7 +83,7 @@ impl Problem<'_> {
                 .chain(self.arm_wide(&chosen, allowed))
                 .chain(self.other_masses(&chosen, allowed));
             match trials.min_by(|a, b| a.score.total_cmp(&b.score)) {
-                Some(next) if next.score < chosen.score - 0.5 => chosen = self.prune(self.reweighted(next)),
+                Some(next) if next.score < chosen.score - SWAP_GAIN => chosen = self.prune(self.reweighted(next)),
                 _ => break,
             }
         }

@@ -7,12 +7,11 @@ use rayon::prelude::*;
 use crate::regression::table::Table;
 use crate::search::candidate::Cause;
 use crate::search::study::Study;
+use crate::thresholds::ONSET_FROM_END;
 
 /// From one time that is tried to the next, and about the best of them (s).
 const STEP: f64 = 0.5;
 const FINE: f64 = 0.05;
-/// From either end of the recordings to the first time that is tried (s).
-const LEAST: f64 = 2.0;
 
 /// For each form on each joint, and for a payload, the candidate whose onset explains most of `residual` (N m or N, all rows).
 /// None where the recordings are not on one clock: before and after mean nothing then.
@@ -95,8 +94,18 @@ impl Past<'_> {
             times[*self.rows.iter().find(moves)?],
             times[*self.rows.iter().rev().find(moves)?],
         );
-        let about = |found: f64| [(found - STEP).max(earliest + LEAST), (found + STEP).min(latest - LEAST)];
-        let coarse = self.scan(joints, &columns, [earliest + LEAST, latest - LEAST], STEP)?;
+        let about = |found: f64| {
+            [
+                (found - STEP).max(earliest + ONSET_FROM_END),
+                (found + STEP).min(latest - ONSET_FROM_END),
+            ]
+        };
+        let coarse = self.scan(
+            joints,
+            &columns,
+            [earliest + ONSET_FROM_END, latest - ONSET_FROM_END],
+            STEP,
+        )?;
         self.scan(joints, &columns, about(coarse), FINE)
     }
 

@@ -8,9 +8,8 @@ use rustfft::num_complex::Complex;
 use super::{explained, peaks, power, samples};
 use crate::data::motion::Motions;
 use crate::regression::table::Table;
+use crate::thresholds::{WAVE_CUTOFF, WAVE_FREQUENCIES};
 
-/// Frequencies of a sinusoid in time (Hz) from … to.
-const WAVES: (f64, f64) = (0.3, 8.0);
 /// Bins in a period of the highest frequency: samples are put into the nearest.
 const BINS: f64 = 8.0;
 
@@ -31,7 +30,10 @@ pub fn waves(
         return Vec::new();
     };
     let span = (last.time - first.time).max(1.0);
-    let (low, high) = (TAU * WAVES.0, TAU * WAVES.1.min(0.7 * motions.cutoff));
+    let (low, high) = (
+        TAU * WAVE_FREQUENCIES.0,
+        TAU * WAVE_FREQUENCIES.1.min(WAVE_CUTOFF * motions.cutoff),
+    );
     if high <= low {
         return Vec::new();
     }

@@ -9,6 +9,7 @@ use crate::regression::background::Strengths;
 use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::{Fit, Products};
 use crate::search::problem::{Chosen, Growth, MOST};
+use crate::thresholds::MOVED;
 
 /// So many effects may stand together in the place of a part of the background.
 const IN_PLACE: usize = 3;
@@ -35,9 +36,6 @@ pub fn moved(motions: &Motions, scales: &Scales) -> Vec<Vec<usize>> {
     };
     (0..motions.dof).map(of).collect()
 }
-
-/// A recording moves a joint that in it is so many times faster than at rest.
-const MOVED: f64 = 4.0;
 
 impl Study {
     /// The prior variances of a link's ten inertial parameters, at the strength that the evidence gave it.

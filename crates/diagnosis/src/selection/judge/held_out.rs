@@ -8,9 +8,6 @@ use crate::regression::fit::Products;
 use crate::search::problem::{Chosen, Problem};
 use crate::search::study::Study;
 
-/// What has no name must keep this part of its gain on held-out recordings.
-const HELD: f64 = 0.2;
-
 /// `chosen` without the nameless that do not predict recordings they were not fitted to. They may have stood for
 /// something simple, which is then looked for again.
 pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen: Chosen) -> Chosen {
@@ -29,7 +26,7 @@ pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut cho
                 let (outside, inside) = (loss(&rest) - with, rest.fit.loss - chosen.fit.loss);
                 let joint = study.candidates[c].joint.unwrap_or(0);
                 let length = held.evidence[joint] / problem.products.evidence[joint].max(1e-9);
-                (outside - HELD * length * inside, rest)
+                (outside - study.thresholds.held_out * length * inside, rest)
             })
             .collect::<Vec<_>>()
             .into_iter()

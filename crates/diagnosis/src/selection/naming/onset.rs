@@ -2,13 +2,7 @@
 
 use super::Reader;
 use crate::findings::report::Parameter;
-
-/// A time for whose sake the fit is so much worse is outside the 95 % interval (nats): half the square of 1.96, and as much
-/// again for what residuals remember and the filter smears.
-const TOO_MUCH: f64 = 2.0 * 1.92;
-
-/// A push that sets in gently seems to begin later, by this part of its duration.
-const OF_A_PUSH: f64 = 0.1;
+use crate::thresholds::{ONSET_INTERVAL, PUSH_START};
 
 impl Reader<'_> {
     /// Notes when the candidate sets in, if it does not always act.
@@ -22,7 +16,7 @@ impl Reader<'_> {
 
     /// Notes when a push of a `duration` (s) begins.
     pub(super) fn note_start(&mut self, start: f64, duration: f64) {
-        let half = OF_A_PUSH * duration;
+        let half = PUSH_START * duration;
         let parameter = Parameter {
             value: start,
             ci95: [start - half, start + half],
@@ -88,7 +82,7 @@ impl Reader<'_> {
             .clone()
             .min_by(|&a, &b| misfit[a].total_cmp(&misfit[b]))
             .unwrap_or(now);
-        let is_near = |k: &usize| misfit[*k] < misfit[best] + TOO_MUCH;
+        let is_near = |k: &usize| misfit[*k] < misfit[best] + ONSET_INTERVAL;
         let first = (1..=best).rev().take_while(is_near).last().unwrap_or(best);
         let last = (best..rows.len()).take_while(is_near).last().unwrap_or(best);
         let time = |k: usize| rows.get(k).map_or(near, |&row| times[row]);

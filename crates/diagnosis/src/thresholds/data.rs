@@ -1,0 +1,57 @@
+//! Thresholds of phase 1: the filters, which channels hold a torque, when a joint moves.
+
+/// The cut-off of the second filter where the motion does not ask for another (Hz).
+pub const CUTOFF: f64 = 12.0;
+/// The second filter passes this many times the frequency of the motion.
+pub const CUTOFF_PERIODS: f64 = 22.0;
+/// The cut-off that a quick motion may lead to (Hz).
+pub const HIGHEST_CUTOFF: f64 = 40.0;
+/// A quick motion raises the cut-off if it asks for at least this multiple of the present one.
+pub const WORTH_RAISING: f64 = 1.15;
+/// The part of a joint's torque that the noise of the positions may make before the cut-off is lowered.
+pub const MOST_NOISE: f64 = 0.05;
+/// Noise does not lower the cut-off below this (Hz).
+pub const LEAST_CUTOFF: f64 = 4.0;
+/// Noise does not lower the cut-off below this multiple of the motion's frequency.
+pub const LEAST_CUTOFF_PERIODS: f64 = 8.0;
+/// A joint whose speed is less than this multiple of its noise holds still.
+pub const STILL: f64 = 20.0;
+/// The band, in cut-offs, whose power counts as noise of the positions.
+pub const NOISE_BAND: (f64, f64) = (1.7, 3.4);
+/// A channel is idle if it holds one and the same value in this part of the samples in motion. Source: recordings of real
+/// drives; in the worst of them, which stand in their dry friction, the part stays below it.
+pub const IDLE_CHANNEL: f64 = 0.6;
+/// For the test of idle channels, a joint moves where it is faster than this part of its largest speed.
+pub const CHANNEL_MOVES: f64 = 0.1;
+/// A torque channel with fewer moving samples or rows is not judged.
+pub const LEAST_CHANNEL_ROWS: usize = 200;
+/// A torque that is below this part of what the model needs to hold and move the arm is in another unit, or is not the drive's.
+pub const FAR_TOO_SMALL: f64 = 0.05;
+/// A channel of which models of all kinds leave this part (NRMSE) on stretches that they were not fitted to holds another signal.
+pub const UNRELATED: f64 = 0.97;
+/// A dead channel varies by less than this part of what the model needs, and by no more than [`NOISE_ALONE`] allows.
+pub const DEAD: f64 = 0.05;
+/// A dead channel varies by no more than this multiple of its noise behind both filters.
+pub const NOISE_ALONE: f64 = 4.0;
+/// The quantile of a joint's speeds that counts as its largest speed.
+pub const SPEED_QUANTILE: f64 = 0.99;
+/// The quantiles of a joint's positions that count as the ends of its range.
+pub const RANGE_QUANTILES: (f64, f64) = (0.002, 0.998);
+/// The quantile of the torque that the model needs, above which a torque limit cannot lie.
+pub const NEEDED_QUANTILE: f64 = 0.999;
+/// The velocity deadband as a share of the joint's largest speed: below it, the joint counts as resting.
+pub const REST: f64 = 0.015;
+/// The velocity deadband is at least this multiple of the velocity's noise.
+pub const REST_NOISE: f64 = 6.0;
+/// A row moves steadily if the joint moves within this many widths of the second filter around it.
+pub const CORE: f64 = 1.2;
+/// A row is in a fast reversal if the joint moves within [`CORE`] widths of it and reaches this multiple of that speed there.
+pub const REVERSAL: f64 = 4.0;
+/// A joint that stays within this part of its range does not move.
+pub const YIELDING: f64 = 0.02;
+/// A row is at rest if the joint rests within this many widths of the second filter around it.
+pub const RESTING_REACH: f64 = 3.0;
+/// On a row at rest the joint is slower than this part of the velocity deadband.
+pub const RESTING: f64 = 0.7;
+/// A recording moves a joint that exceeds this multiple of the velocity deadband in it.
+pub const MOVED: f64 = 4.0;

@@ -1,0 +1,63 @@
+//! Thresholds of phase 5: alternatives, what is not testable, contacts, second sensors, what is left unexplained.
+
+/// An alternative explains nearly as much if it loses at most this part of what the finding explains.
+pub const NEARLY: f64 = 0.08;
+/// An alternative also explains nearly as much if it loses at most this evidence (nats).
+pub const NEARLY_NATS: f64 = 4.0;
+/// The margin that divides the doubt about a name by e (nats). Source: calibrated on simulated cases.
+pub const MARGIN_SCALE: f64 = 8.0;
+/// The largest probability of a name: however clear the evidence, the catalogue may lack the right one.
+pub const SUREST: f64 = 0.985;
+/// A linear effect is listed as not testable if it could reach this part of the joint's torque undetected.
+pub const HIDDEN: f64 = 0.06;
+/// A link's strength must be this multiple of that of most links to be named for itself.
+pub const LINK_STANDS_OUT: f64 = 2.0;
+/// A burst exceeds the median of all windows of its length, and the residual of the model itself, by this factor.
+pub const OVER_THE_REST: f64 = 6.0;
+/// One force on the tool must explain this part of a burst's power, on pieces it was not fitted to.
+pub const ONE_FORCE: f64 = 0.8;
+/// More bursts than this in the held-out recordings are the model's error.
+pub const MOST_BURSTS: usize = 4;
+/// The usual residual of a joint that moves on fewer training rows is not known.
+pub const LEAST_BURST_ROWS: usize = 50;
+/// The length of the stretches whose residuals are compared with a burst (s).
+pub const BURST_STRETCH: f64 = 0.4;
+/// The length of the pieces of a burst of which every other is fitted (s).
+pub const BURST_PIECE: f64 = 0.1;
+/// Two sensors are compared where the joint exceeds this multiple of the velocity deadband.
+pub const SENSORS_MOVE: f64 = 2.0;
+/// A deflection must follow the torque to this part of its power, on recordings it was fitted to and on others.
+pub const FOLLOWS: f64 = 0.5;
+/// Beyond this part of the joint's range it is no deflection: the encoders measure different things.
+pub const LARGEST_DEFLECTION: f64 = 0.05;
+/// The part of the difference of two encoders that the torque must bend.
+pub const LEAST_BEND: f64 = 0.4;
+/// A compliance must exceed this multiple of its standard error.
+pub const CLEAR_COMPLIANCE: f64 = 4.0;
+/// Friction between the sensors must explain this part of their difference's power, as a deflection must ([`FOLLOWS`]).
+pub const FRICTION_EXPLAINS: f64 = 0.5;
+/// A friction between the sensors must exceed this multiple of its standard error.
+pub const CLEAR_FRICTION: f64 = 3.0;
+/// A joint is located if its nominal residual exceeds the errors of noise and filtering by this factor.
+pub const OVER_NOISE: f64 = 2.0;
+/// A region of state is reported if its residual exceeds the joint's by this factor.
+pub const REGION_STANDS_OUT: f64 = 1.3;
+/// A stretch of time is reported if its residual exceeds the joint's by this factor.
+pub const WINDOW_STANDS_OUT: f64 = 1.5;
+/// The length of the stretches of time that are reported (s).
+pub const WINDOW: f64 = 1.0;
+/// Motions are the same within this part of each range.
+pub const SAME_MOTION: f64 = 0.04;
+/// An error (NRMSE) above this is not explained if it also exceeds the noise ([`POOR_ABOVE_NOISE`]); on held-out recordings if
+/// there are any.
+pub const POOR: f64 = 0.35;
+/// The ratio to the noise that a poor error ([`POOR`]) exceeds.
+pub const POOR_ABOVE_NOISE: f64 = 3.0;
+/// An error (NRMSE) above this, on training and on held-out recordings, is not explained if it is also structured.
+pub const STRUCTURED: f64 = 0.06;
+/// The ratio to the noise that a structured error ([`STRUCTURED`]) exceeds.
+pub const STRUCTURED_ABOVE_NOISE: f64 = 4.0;
+/// The autocorrelation from row to row that a structured error exceeds: neither noise nor filter residues reach it.
+pub const REMEMBERS: f64 = 0.6;
+/// The least time in motion that a diagnosis needs on some joint (s).
+pub const LEAST_MOTION: f64 = 4.0;

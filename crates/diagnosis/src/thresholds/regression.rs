@@ -1,0 +1,53 @@
+//! Thresholds of phase 2: what counts as evidence, the prior of the background, what no resampling shows.
+
+/// Independent pieces of evidence in a second of a slow motion (1/s). Residuals of a wrong model are correlated over longer
+/// than the filter.
+pub const EVIDENCE_RATE: f64 = 4.0;
+/// Independent pieces of evidence in a period of the motion, where that gives more than [`EVIDENCE_RATE`].
+pub const EVIDENCE_PER_PERIOD: f64 = 8.0;
+/// Independent pieces of evidence in a second of any motion, at most (1/s).
+pub const MOST_EVIDENCE_RATE: f64 = 10.0;
+/// Stretches of the only recording that moves a joint: each is predicted by the others.
+pub const STRETCHES: usize = 4;
+/// Groups of recordings, each of which is predicted by the others.
+pub const RECORDING_GROUPS: usize = 6;
+/// The prior standard deviation of friction's form, and of its change from recording to recording, at strength one, as a part of
+/// the joint's torque.
+pub const FRICTION_PRIOR: f64 = 0.015;
+/// The prior standard deviation of a torque constant at strength one. Source: torque constants are good to about five per cent.
+pub const GAIN_PRIOR: f64 = 0.05;
+/// The evidence that a part of the background must bring (nats).
+pub const PER_BACKGROUND_PART: f64 = 4.0;
+/// The evidence that a link with a strength of its own must bring (nats).
+pub const PER_LINK_APART: f64 = 8.0;
+/// The prior standard deviation of the links' common strength: a URDF is seldom off by more than this part everywhere.
+pub const USUAL_STRENGTH: f64 = 0.3;
+/// The strengths of all links' inertial parameters that are tried.
+pub const LINK_STRENGTHS: [f64; 7] = [0.0, 0.01, 0.03, 0.1, 0.2, 0.4, 1.0];
+/// The strengths that are tried on one link beside the common one.
+pub const OWN_STRENGTHS: [f64; 3] = [0.1, 0.3, 1.0];
+/// The factor between the strengths that are tried in the end.
+pub const FINER_STRENGTH: f64 = 1.4;
+/// The strengths of friction's form that are tried.
+pub const FRICTION_STRENGTHS: [f64; 3] = [0.0, 1.0, 3.0];
+/// The strengths of the torque constants that are tried.
+pub const GAIN_STRENGTHS: [f64; 2] = [0.0, 1.0];
+/// The radius of gyration about which a body that is a point in the URDF may have (m).
+pub const LEAST_BODY_RADIUS: f64 = 0.05;
+/// The mass about which a link without mass in the URDF may have (kg).
+pub const LEAST_BODY_MASS: f64 = 0.05;
+/// The least eigenvalue of a body's pseudo-inertia as seen from the URDF's body: less cannot be left of a link.
+pub const LEAST_BODY_LEFT: f64 = 0.02;
+/// The URDF may be wrong in a single direction by this multiple of the background's strength, which is a mean over all links and
+/// directions: centres of mass more than moments of inertia, one link more than another.
+pub const UNEVEN: f64 = 2.0;
+/// The shortest block that is resampled (s): longer than what residuals remember.
+pub const BLOCK: f64 = 2.5;
+/// The factor on resampled standard deviations, because residuals remember longer than a block. Source: coverage of the
+/// intervals on simulated cases.
+pub const INFLATION: f64 = 1.25;
+/// The half-width of an interval, as a part of the value, that filtering and a form that is not quite right leave.
+pub const SYSTEMATIC: f64 = 0.01;
+/// The half-width of an interval, as a part of the value, where it hangs on a form that recordings hardly show: how a gap ends,
+/// how friction falls near standstill, what else is late in a drive. Source: the errors on simulated cases.
+pub const OF_FORM: f64 = 0.05;

@@ -1,0 +1,45 @@
+//! Thresholds of phase 4: which effects keep their name.
+
+/// On the joint of a load-dependent friction, a torque scale must be larger than this part of it: both are a gain on the load,
+/// and what the load is, the drive's or the link's, is a matter of form.
+pub const BESIDE_LOADED_FRICTION: f64 = 0.3;
+/// On the joint of a gap or a spring in the drive, a delay must be larger than this part of that: such a link is late too, and
+/// what its simulation misses looks like more of it.
+pub const BESIDE_A_LOOSE_LINK: f64 = 0.5;
+/// The least share of a drive's inertia, which every drive has, in the joint's torque.
+pub const LEAST_DRIVE: f64 = 0.01;
+/// The least share of an unmodelled form in what the nominal model misses of a joint's torque.
+pub const LEAST_OF_MISMATCH: f64 = 0.05;
+/// What varies by less than this part of its mean is nearly constant, so that its size counts instead of its standard deviation:
+/// an offset, or friction of a joint that never turns back.
+pub const NEARLY_CONSTANT: f64 = 0.2;
+/// An effect below this part of a joint's torque does nothing in a recording, which then does not say whether it predicts.
+pub const IDLE_EFFECT: f64 = 0.002;
+/// The part of its torque's standard deviation by which an effect of another joint may increase the error of a joint.
+pub const HARMLESS: f64 = 0.001;
+/// The relative growth of a joint's held-out error beyond which it is predicted worse.
+pub const WORSE: f64 = 0.01;
+/// An effect that the background could stand for may predict worse than the background by this part.
+pub const AS_WELL: f64 = 0.1;
+/// The length of the pieces of recordings of which every other is fitted, where the held-out recordings do not test an
+/// effect (s).
+pub const GAIN_PIECE: f64 = 2.0;
+/// With fewer moving rows the error is that of all rows.
+pub const LEAST_ROWS: usize = 10;
+/// The lag of the residual's autocorrelation (s): beyond the filter's memory.
+pub const RESIDUAL_LAG: f64 = 0.1;
+/// A joint with a larger error (NRMSE) than this is predicted worse than by a constant.
+pub const HOPELESS: f64 = 1.0;
+/// An error (NRMSE) below this says that something of the torque is explained.
+pub const PARTLY: f64 = 0.8;
+/// A drive's inertia must be larger than this multiple of the structure that remains on its joint: it may be a part of that.
+pub const BESIDE_THE_REST: f64 = 1.25;
+/// No further search is made once so many names were refused by the final fit.
+pub const MOST_REFUSED: usize = 3;
+/// A time for whose sake the fit is so much worse is outside the 95 % interval of an onset (nats). Source: half the square of
+/// 1.96, and as much again for what residuals remember and the filter smears.
+pub const ONSET_INTERVAL: f64 = 2.0 * 1.92;
+/// The part of its duration by which a push that sets in gently seems to begin later.
+pub const PUSH_START: f64 = 0.1;
+/// The part of what the background of all links explains (nats) that one missing body must explain alone.
+pub const NEARLY_ALL: f64 = 0.7;
