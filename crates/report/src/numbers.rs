@@ -260,13 +260,13 @@ pub fn rounded(value: f64, digits: usize) -> String {
     }
 }
 
-/// A probability is never 0 or 100 %.
-pub fn probability(value: f64) -> String {
+/// A probability is never 0 or 100 %; a dash where there is none.
+pub fn probability(value: Option<f64>) -> String {
     match value {
-        p if !p.is_finite() => "–".into(),
-        p if p > 0.995 => ">99 %".into(),
-        p if p < 0.005 => "<1 %".into(),
-        p => percent(p),
+        None => "–".into(),
+        Some(p) if p > 0.995 => ">99 %".into(),
+        Some(p) if p < 0.005 => "<1 %".into(),
+        Some(p) => percent(p),
     }
 }
 
@@ -325,7 +325,7 @@ mod tests {
         assert_eq!(share(8564.8), "8565 ×");
         assert_eq!(of_torque_spread(3.21), "3.2 times the torque's standard deviation");
         assert_eq!(of_torque_spread(0.4), "40 % of the torque's standard deviation");
-        assert_eq!(probability(0.999), ">99 %");
+        assert_eq!(probability(Some(0.999)), ">99 %");
         assert_eq!(round_quantity(0.002, "s"), "2 ms");
         assert_eq!(quantity(-0.00001, ""), "−0.0000100");
     }

@@ -285,7 +285,7 @@ fn finding(
         joint: Some(joint.to_owned()),
         other: None,
         parameters,
-        probability: 0.95,
+        probability: None,
         share,
         share_by_joint: BTreeMap::from([(joint.to_owned(), share)]),
         held_out_gain: gain,

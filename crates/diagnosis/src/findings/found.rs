@@ -94,7 +94,7 @@ fn finding(
             joint: named.effect.joint().map(str::to_owned),
             other: named.other,
             parameters: named.parameters,
-            probability: standing.probability(member.evidence),
+            probability: Some(standing.probability(member.evidence)),
             share,
             share_by_joint: if k == 0 {
                 share_by_joint.clone()

@@ -183,7 +183,7 @@ pub fn inertials(
             joint: joint.map(|joint| study.arm.joints()[joint].name.clone()),
             other: None,
             parameters,
-            probability: probability(evidence),
+            probability: Some(probability(evidence)),
             share: largest(shares),
             share_by_joint: by_joint(shares),
             held_out_gain: None,

@@ -81,8 +81,8 @@ pub struct Finding {
     pub other: Option<String>,
     /// Its parameters.
     pub parameters: BTreeMap<&'static str, Parameter>,
-    /// How likely it is that this effect is there, on this joint.
-    pub probability: f64,
+    /// How likely it is that this effect is there, on this joint; `None` where that was not calibrated.
+    pub probability: Option<f64>,
     /// Standard deviation of its torque over that of the measured torque, training recordings; the largest of the joints.
     pub share: f64,
     /// The share of each joint that it acts on.

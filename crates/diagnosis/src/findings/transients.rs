@@ -259,7 +259,7 @@ fn contact(study: &Study, left: &[Vec<f64>], pushes: &[Push]) -> Option<Finding>
             ("start", exactly(from, 0.1, "s")),
             ("duration", exactly(to - from, 0.2, "s")),
         ]),
-        probability: 0.9,
+        probability: None,
         share: share_by_joint.values().copied().fold(0.0, f64::max),
         share_by_joint,
         held_out_gain: Some(1.0 - (1.0 - explained).max(0.0).sqrt()),

@@ -189,7 +189,9 @@ impl Page<'_> {
                         span.size { (numbers::with_interval(name, parameter)) }
                     }
                     span.odds {
-                        "probability " (numbers::probability(finding.probability)) " · "
+                        @if finding.probability.is_some() {
+                            "probability " (numbers::probability(finding.probability)) " · "
+                        }
                         (numbers::share(finding.share)) " of the torque"
                         @if let Some(gain) = finding.held_out_gain {
                             " · reduces the held-out error by " (numbers::percent(gain))

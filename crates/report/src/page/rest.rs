@@ -119,8 +119,8 @@ impl Page<'_> {
             p.small.soft {
                 "Made by testbed " (env!("CARGO_PKG_VERSION")) " (" code { "testbed diagnose" } "), schema " code { (self.report.schema) }
                 ". Torques and motion are filtered with the same zero-phase filter. The residual is the measured torque minus the torque of the \
-                 rigid model. A share is a ratio of standard deviations, so that shares do not add up to one. The probability is the rate \
-                 at which the effect is found again on resampled recordings. The same recordings give the same page, byte for byte."
+                 rigid model. A share is a ratio of standard deviations, so that shares do not add up to one. The probability that \
+                 a name is right rises with the evidence against its best alternative; it is missing where it was not calibrated. The same recordings give the same page, byte for byte."
             }
         }
     }

@@ -71,7 +71,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
                 .iter()
                 .map(|&(key, value, half, unit)| (key, parameter(value, half, unit)))
                 .collect(),
-            probability: 0.999 - 0.03 * f as f64,
+            probability: Some(0.999 - 0.03 * f as f64),
             share: shares.values().copied().fold(0.0, f64::max),
             share_by_joint: shares,
             held_out_gain: Some(0.6 / (1.0 + f as f64)),
