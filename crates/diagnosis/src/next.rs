@@ -7,10 +7,7 @@
 use std::collections::BTreeSet;
 
 use arm::Arm;
-use effects::arm::InertialScale;
-use effects::drive::TorqueSaturation;
-use effects::sensor::TorqueScale;
-use effects::{Effect, EffectKind, Kind, Unseen};
+use effects::{Effect, Unseen};
 use rayon::prelude::*;
 use torque::Reference;
 
@@ -245,8 +242,8 @@ fn confusions(
             let instead: Vec<(Vec<usize>, Vec<usize>)> = if is_alias {
                 // Fitted in the finding's place it is the finding itself.
                 vec![(chosen.fit.columns.clone(), Vec::new())]
-            } else if this.cause.is(&InertialScale) && is(rival.effect, &TorqueScale) {
-                let is_factor = |c: &usize| study.candidates[*c].cause.is(&TorqueScale);
+            } else if this.cause.spec().same_on_all_joints == Some(rival.effect) {
+                let is_factor = |c: &usize| study.candidates[*c].cause.name() == Some(rival.effect);
                 let all: Vec<usize> = (0..study.candidates.len()).filter(is_factor).collect();
                 vec![(with(&all), all)]
             } else {
@@ -277,17 +274,13 @@ fn confusions(
     list
 }
 
-/// Whether a name is that of a kind of effect.
-fn is(name: &str, kind: &'static dyn EffectKind) -> bool {
-    Kind::named(name).is_some_and(|named| named.is(kind))
-}
-
 /// Those of `hidden` whose size a motion can be tried on without simulating it: torque limits, and what is linear.
 fn visible<'a>(study: &Study, chosen: &Chosen, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> {
     let of = |entry: &'a NotObservable| {
         let name = entry.joint.as_deref()?;
         let joint = study.arm.joints().iter().position(|joint| joint.name == name)?;
-        if is(entry.effect, &TorqueSaturation) {
+        let spec = effects::spec(entry.effect)?;
+        if matches!(spec.unseen, Unseen::Limit { .. }) {
             let (parameter, before) = entry.would_be_seen_below.iter().next()?;
             return Some(Hidden {
                 entry,
@@ -297,7 +290,9 @@ fn visible<'a>(study: &Study, chosen: &Chosen, hidden: &'a [NotObservable]) -> V
                 column: None,
             });
         }
-        let spec = effects::spec(entry.effect).filter(|spec| matches!(spec.unseen, Unseen::Linear { .. }))?;
+        if !matches!(spec.unseen, Unseen::Linear { .. }) {
+            return None;
+        }
         let parameter = *spec.main.first()?;
         let mut candidates = study.candidates.iter();
         let candidate = candidates

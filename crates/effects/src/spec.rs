@@ -259,6 +259,16 @@ pub struct Spec {
     pub is_certain_in_form: bool,
     /// Whether it may be there in one recording alone.
     pub is_passing: bool,
+    /// Whether its forms come from what a fit leaves, which is looked at again when more is known.
+    pub is_suggested: bool,
+    /// Whether it may be a part of inertial parameters that differ from the URDF's.
+    pub may_be_inertial: bool,
+    /// The effect that is the same torque if it acts on all joints.
+    pub same_on_all_joints: Option<&'static str>,
+    /// Effects beside which, on the same joint, it must be larger than a part of them: what their forms miss looks like it.
+    pub least_beside: &'static [(&'static str, f64)],
+    /// The multiple of the structure that remains on its joint that it must exceed, where it may be a part of that.
+    pub least_beside_residual: Option<f64>,
     /// Whether it is simulated at its size, so that its coefficient must be one; it is no function of the motion at one time.
     pub is_simulated: bool,
     /// Whether it says that masses are not the model's.
@@ -306,6 +316,11 @@ impl Spec {
         is_simple: false,
         is_certain_in_form: false,
         is_passing: false,
+        is_suggested: false,
+        may_be_inertial: false,
+        same_on_all_joints: None,
+        least_beside: &[],
+        least_beside_residual: None,
         is_simulated: false,
         is_wrong_mass: false,
         is_behind_the_drive: false,

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use effects::arm::{ExternalContact, contact_window};
 use effects::laws::ACCELERATION;
 use rayon::prelude::*;
 
@@ -162,7 +161,7 @@ fn held_out_gain(
 ) -> Option<f64> {
     let table = &study.table;
     let without = problem.choose(judged.named.others(member.candidate), &judged.named.fit.weights);
-    if study.candidates[member.candidate].cause.is(&ExternalContact) {
+    if study.window(member.candidate).is_some() {
         let columns = &study.candidates[member.candidate].columns;
         return Some(crate::search::scan::contact_gain(study, &without.fit, columns));
     }
@@ -208,8 +207,7 @@ fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joi
 }
 
 fn place(study: &Study, cause: Cause, candidate: usize) -> Place {
-    let terms = study.terms(candidate);
-    if let Some([from, to]) = terms.first().and_then(contact_window) {
+    if let Some([from, to]) = study.window(candidate) {
         let at = study.motions.recording_at(0.5 * (from + to));
         let own = |time: f64| at.map_or(time, |at| study.motions.own_time(at, time));
         let recording = at.map(|at| study.motions.sources[at].name.clone());
@@ -221,7 +219,7 @@ fn place(study: &Study, cause: Cause, candidate: usize) -> Place {
     }
     let joint = &study.arm.joints()[study.candidates[candidate].joint.unwrap_or(0)];
     Place {
-        state: cause.kind.get().region(&terms, joint.kind),
+        state: cause.kind.get().region(&study.terms(candidate), joint.kind),
         ..Place::default()
     }
 }

@@ -1,10 +1,8 @@
 //! What a finding could be instead: other causes, fitted in its place with all else refitted.
 
-use effects::EffectKind;
-use effects::arm::{GravityMisalignment, InertialParameters, InertialScale, LinkInertialError, Payload};
+use effects::arm::InertialParameters;
 use effects::friction::{CoulombFriction, FrictionAsymmetry};
-use effects::joint::Spring;
-use effects::sensor::{EncoderOffset, TorqueOffset, TorqueScale};
+use effects::sensor::TorqueOffset;
 use rayon::prelude::*;
 
 use crate::search::candidate::Cause;
@@ -79,21 +77,6 @@ pub fn alias(study: &Study, chosen: &Chosen, member: usize, set: &[usize]) -> Op
     (sets_in && set.iter().any(is_larger_friction)).then_some((Cause::of(&FrictionAsymmetry), finding.joint))
 }
 
-/// Whether an effect may be a part of inertial parameters that differ from the URDF's.
-fn may_be_background(cause: Cause) -> bool {
-    let kinds: [&'static dyn EffectKind; 8] = [
-        &Payload,
-        &LinkInertialError,
-        &InertialScale,
-        &GravityMisalignment,
-        &EncoderOffset,
-        &TorqueScale,
-        &Spring,
-        &TorqueOffset,
-    ];
-    kinds.into_iter().any(|kind| cause.is(kind))
-}
-
 /// Tries everything else in the place of `member`.
 pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: usize) -> Standing {
     let finding = &study.candidates[member];
@@ -105,7 +88,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         // What holds all of the finding's columns and more is a finer form of it, not another cause.
         let finer = finding.columns.iter().all(|column| other.columns.contains(column));
         // A body's inertia is felt by all joints before it: what one link has too much, its neighbour may have.
-        let are_links = finding.cause.is(&LinkInertialError) && other.cause.is(&LinkInertialError);
+        let are_links = finding.cause.kind == other.cause.kind && finding.cause.is_wrong_mass();
         !same_name
             && !finer
             && other.cause.name().is_some()
@@ -139,13 +122,13 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         .iter()
         .map(|&c| (study.candidates[c].cause, study.candidates[c].joint, vec![c]))
         .collect();
-    if finding.cause.is(&InertialScale) {
+    if let Some(same) = finding.cause.spec().same_on_all_joints {
         // Masses all too large, or torques all measured too large: one and the same without a known load.
         let factors: Vec<usize> = (0..study.candidates.len())
-            .filter(|&c| study.candidates[c].cause.is(&TorqueScale))
+            .filter(|&c| study.candidates[c].cause.name() == Some(same))
             .collect();
         for &c in &factors {
-            sets.push((Cause::of(&TorqueScale), study.candidates[c].joint, factors.clone()));
+            sets.push((study.candidates[c].cause, study.candidates[c].joint, factors.clone()));
         }
     }
     let explained = without.fit.loss - chosen.fit.loss;
@@ -162,7 +145,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         })
         .collect();
     results.extend(identical);
-    if may_be_background(finding.cause) {
+    if finding.cause.spec().may_be_inertial {
         let cause = Cause::of(&InertialParameters);
         let trials = study.in_the_background(problem.products, &set, chosen);
         let results_of = |(link, next): (Option<usize>, Chosen)| {

@@ -55,12 +55,7 @@ pub fn bursts(study: &Study, judged: &Judged, left: &[Vec<f64>]) -> Bursts {
         })
         .collect();
     let windows = scan::contacts(&study.table, &times, left, &weights, study.force(), &held, MOST);
-    let already = judged
-        .named
-        .set
-        .iter()
-        .filter(|&&c| study.candidates[c].cause.is(&ExternalContact))
-        .count();
+    let already = judged.named.set.iter().any(|&c| study.window(c).is_some());
     let mut pushes: Vec<Push> = Vec::new();
     for (from, to) in windows {
         let Some((recording, powers)) = power(study, &times, left, &weights, (from, to)) else {
@@ -73,7 +68,7 @@ pub fn bursts(study: &Study, judged: &Judged, left: &[Vec<f64>]) -> Bursts {
         }
         let name = study.motions.sources[recording].name.clone();
         let (force, explained) = force(study, &times, left, &weights, (from, to));
-        if explained > ONE_FORCE && already == 0 {
+        if explained > ONE_FORCE && !already {
             pushes.push(Push {
                 window: [from, to],
                 recording: name,

@@ -47,6 +47,11 @@ impl Cause {
         self.spec().is_friction
     }
 
+    /// Whether it is the inertia that every drive has.
+    pub fn is_drive_inertia(self) -> bool {
+        self.is_ordinary() && !self.is_friction()
+    }
+
     /// Whether a URDF ordinarily leaves it out: friction and the drives' inertia need less evidence.
     pub fn is_ordinary(self) -> bool {
         self.spec().is_ordinary

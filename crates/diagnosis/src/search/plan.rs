@@ -1,8 +1,5 @@
 //! The order of the search: suggest, grow, refine, relinearise, swap.
 
-use effects::arm::ExternalContact;
-use effects::drive::TorqueRipple;
-
 use crate::search::problem::Chosen;
 use crate::search::refine::refine;
 use crate::search::study::Study;
@@ -37,7 +34,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
             .filter(|&c| {
                 let cause = study.candidates[c].cause;
                 let sets_in = study.terms(c).iter().any(|term| term.onset().is_some());
-                cause.name().is_some() && !sets_in && !cause.is(&TorqueRipple) && !cause.is(&ExternalContact)
+                cause.name().is_some() && !sets_in && !cause.spec().is_suggested
             })
             .collect();
         let next = study.problem(&products).choose(named, &chosen.fit.weights);

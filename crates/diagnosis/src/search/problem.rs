@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 
 use arm::Arm;
-use effects::drive::RotorInertia;
 use rayon::prelude::*;
 
 use crate::regression::fit::{Fit, Products};
@@ -88,7 +87,7 @@ impl Problem<'_> {
         let counted: usize = set.iter().map(|&c| self.candidates[c].columns.len()).sum();
         let drives = set
             .iter()
-            .filter(|&&c| self.candidates[c].cause.is(&RotorInertia))
+            .filter(|&&c| self.candidates[c].cause.is_drive_inertia())
             .count();
         own - self.thresholds.per_coefficient * (counted - self.columns(set).len()) as f64
             - KNOWN_DRIVE * drives.saturating_sub(TELLING_DRIVES) as f64

@@ -75,6 +75,11 @@ impl Study {
         }
     }
 
+    /// From when to when a candidate pushes the arm (s), if it does.
+    pub fn window(&self, candidate: usize) -> Option<[f64; 2]> {
+        self.terms(candidate).first().and_then(contact_window)
+    }
+
     /// Whether terms are no contact, or one that is short beside its recording.
     pub fn is_brief(&self, terms: &[Term]) -> bool {
         let Some(window) = terms.first().and_then(contact_window) else {

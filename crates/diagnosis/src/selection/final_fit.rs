@@ -1,7 +1,8 @@
 //! The last fit: about the arm that the named effects make, and without what does not prove itself.
 
-use effects::drive::RotorInertia;
-use effects::sensor::TorqueOffset;
+use std::collections::BTreeMap;
+
+use effects::Spec;
 use torque::Corrected;
 
 use crate::findings::found::useless;
@@ -14,7 +15,7 @@ use crate::search::study::Study;
 use crate::selection::judge::{self, Judged};
 use crate::selection::naming::{Named, name};
 use crate::selection::predict::{augmented, errors};
-use crate::thresholds::{BESIDE_THE_REST, HOPELESS, PARTLY};
+use crate::thresholds::{HOPELESS, PARTLY};
 
 /// Fits the named effects for the last time: about the arm that they make, with the rows near reversals; drops what makes a
 /// joint's held-out error grow, what does not help there, and what might be zero.
@@ -163,30 +164,30 @@ fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<(usi
             return true;
         }
         let named = name(study, resampled, member.candidate);
-        named.first().is_some_and(|named| {
-            let spec = named.effect.spec();
-            let sizes = spec.main.iter().filter_map(|main| named.parameters.get_key_value(main));
-            let may_be_nothing = |(key, size): (&&'static str, &Parameter)| {
-                let nothing = spec.parameter(key).map_or(0.0, |parameter| parameter.neutral);
-                size.ci95[0] <= nothing && nothing <= size.ci95[1]
-            };
-            // Where several parameters say how large it is, one that is clear is enough.
-            sizes.clone().next().is_some() && sizes.into_iter().all(may_be_nothing)
-        })
+        named
+            .first()
+            .is_some_and(|named| may_be_nothing(named.effect.spec(), &named.parameters))
     };
     let unclear = judged.members.iter().filter(is_unclear);
     let weakest = unclear.min_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
     Some((weakest.candidate, contradicted(weakest)))
 }
 
+/// Whether the intervals of all parameters that say how large an effect is hold the value at which there is none: one that is
+/// clear is enough.
+fn may_be_nothing(spec: &Spec, parameters: &BTreeMap<&'static str, Parameter>) -> bool {
+    let sizes = spec.main.iter().filter_map(|main| parameters.get_key_value(main));
+    let holds_nothing = |(key, size): (&&'static str, &Parameter)| {
+        let nothing = spec.parameter(key).map_or(0.0, |parameter| parameter.neutral);
+        size.ci95[0] <= nothing && nothing <= size.ci95[1]
+    };
+    sizes.clone().next().is_some() && sizes.into_iter().all(holds_nothing)
+}
+
 /// Whether it is a constant or a drive's inertia no larger than what is left beside it with structure.
 fn is_part_of_the_rest(study: &Study, judged: &Judged, member: &judge::Member) -> bool {
     let candidate = &study.candidates[member.candidate];
-    let factor = if candidate.cause.is(&TorqueOffset) {
-        1.0
-    } else if candidate.cause.is(&RotorInertia) {
-        BESIDE_THE_REST
-    } else {
+    let Some(factor) = candidate.cause.spec().least_beside_residual else {
         return false;
     };
     let Some(joint) = candidate.joint else { return false };
@@ -251,4 +252,29 @@ fn likelier_outside(study: &Study, chosen: &Chosen) -> Option<(Strengths, Chosen
         });
     let (best, strengths, next) = trials.min_by(|a, b| a.0.total_cmp(&b.0))?;
     (best < loss(chosen)).then_some((strengths, next))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every effect that is looked for has a parameter that says how large it is, so that its name is dropped where the interval
+    /// holds no effect.
+    #[test]
+    fn an_interval_that_holds_no_effect_is_seen_in_every_effect() {
+        for kind in effects::CATALOGUE {
+            let spec = kind.spec();
+            let with = |half: f64| -> BTreeMap<&'static str, Parameter> {
+                let size = |&key: &&'static str| {
+                    let neutral = spec.parameter(key).map_or(0.0, |parameter| parameter.neutral);
+                    let (value, unit) = (neutral + 1.0, "1");
+                    let ci95 = [value - half, value + half];
+                    (key, Parameter { value, ci95, unit })
+                };
+                spec.main.iter().map(size).collect()
+            };
+            assert!(may_be_nothing(spec, &with(1.1)), "{}", spec.name);
+            assert!(!may_be_nothing(spec, &with(0.9)), "{}", spec.name);
+        }
+    }
 }

@@ -1,9 +1,5 @@
 //! Which of the chosen candidates deserve their name.
 
-use effects::arm::contact_window;
-use effects::drive::{ActuationDelay, Backlash, JointElasticity, RotorInertia};
-use effects::friction::LoadDependentFriction;
-use effects::sensor::TorqueScale;
 use rayon::prelude::*;
 
 use crate::regression::fit::Products;
@@ -11,8 +7,7 @@ use crate::search::physics::is_at_its_size;
 use crate::search::problem::{Chosen, IMPOSSIBLE, Problem};
 use crate::search::study::Study;
 use crate::thresholds::{
-    BESIDE_A_LOOSE_LINK, BESIDE_LOADED_FRICTION, HARMLESS, IDLE_EFFECT, LEAST_DRIVE, LEAST_OF_MISMATCH,
-    MOST_OF_A_RECORDING, NEARLY_CONSTANT, WORSE,
+    HARMLESS, IDLE_EFFECT, LEAST_DRIVE, LEAST_OF_MISMATCH, MOST_OF_A_RECORDING, NEARLY_CONSTANT, WORSE,
 };
 
 mod held_out;
@@ -131,7 +126,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
 
 /// The longest contact in a recording that contacts cover too much of: together they stand for something else.
 fn lasting(study: &Study, chosen: &Chosen) -> Option<usize> {
-    let window = |&c: &usize| Some((c, contact_window(&study.terms(c).first().copied()?)?));
+    let window = |&c: &usize| Some((c, study.window(c)?));
     let windows: Vec<(usize, [f64; 2])> = chosen.set.iter().filter_map(window).collect();
     let (recording, share) = study.contact_share(&windows.iter().map(|(_, window)| *window).collect::<Vec<_>>())?;
     if share <= MOST_OF_A_RECORDING {
@@ -261,7 +256,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
         let nameless = largest(&|m| !is_named(m), at);
         if cause(member).is_ordinary() {
             // Beside larger structure without a name a drive's inertia may be a part of that.
-            return cause(member).is(&RotorInertia) && share < nameless.max(LEAST_DRIVE);
+            return cause(member).is_drive_inertia() && share < nameless.max(LEAST_DRIVE);
         }
         let needed = if cause(member).plain().is_some() {
             study.thresholds.least_beyond
@@ -279,14 +274,8 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
                 largest(&is_other, joint)
             };
             let share = member.shares[joint];
-            let alike = if cause(member).is(&TorqueScale) {
-                BESIDE_LOADED_FRICTION * largest(&|m| cause(m).is(&LoadDependentFriction), joint)
-            } else if cause(member).is(&ActuationDelay) {
-                let loose = |m: &Member| cause(m).is(&Backlash) || cause(m).is(&JointElasticity);
-                BESIDE_A_LOOSE_LINK * largest(&loose, joint)
-            } else {
-                0.0
-            };
+            let alike = |&(name, part): &(&str, f64)| part * largest(&|m| cause(m).name() == Some(name), joint);
+            let alike = cause(member).spec().least_beside.iter().map(alike).fold(0.0, f64::max);
             share >= study.thresholds.least_share
                 && share >= alike
                 && share >= study.thresholds.beside_a_larger * others(false)

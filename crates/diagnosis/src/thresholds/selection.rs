@@ -1,11 +1,5 @@
 //! Thresholds of phase 4: which effects keep their name.
 
-/// On the joint of a load-dependent friction, a torque scale must be larger than this part of it: both are a gain on the load,
-/// and what the load is, the drive's or the link's, is a matter of form.
-pub const BESIDE_LOADED_FRICTION: f64 = 0.3;
-/// On the joint of a gap or a spring in the drive, a delay must be larger than this part of that: such a link is late too, and
-/// what its simulation misses looks like more of it.
-pub const BESIDE_A_LOOSE_LINK: f64 = 0.5;
 /// The least share of a drive's inertia, which every drive has, in the joint's torque.
 pub const LEAST_DRIVE: f64 = 0.01;
 /// The least share of an unmodelled form in what the nominal model misses of a joint's torque.
@@ -32,8 +26,6 @@ pub const RESIDUAL_LAG: f64 = 0.1;
 pub const HOPELESS: f64 = 1.0;
 /// An error (NRMSE) below this says that something of the torque is explained.
 pub const PARTLY: f64 = 0.8;
-/// A drive's inertia must be larger than this multiple of the structure that remains on its joint: it may be a part of that.
-pub const BESIDE_THE_REST: f64 = 1.25;
 /// No further search is made once so many names were refused by the final fit.
 pub const MOST_REFUSED: usize = 3;
 /// A time for whose sake the fit is so much worse is outside the 95 % interval of an onset (nats). Source: half the square of

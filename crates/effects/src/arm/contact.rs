@@ -29,6 +29,7 @@ static SPEC: Spec = Spec {
     may_repeat: true,
     prior: 8.0,
     is_passing: true,
+    is_suggested: true,
     against: Against::Time,
     experiment: Some(Experiment {
         rank: 2,

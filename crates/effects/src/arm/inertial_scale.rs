@@ -23,6 +23,8 @@ static SPEC: Spec = Spec {
         .remarked("true over model")],
     main: &["factor"],
     is_certain_in_form: true,
+    may_be_inertial: true,
+    same_on_all_joints: Some("torque_scale"),
     is_wrong_mass: true,
     is_behind_the_drive: true,
     in_urdf: InUrdf::Inertials,

@@ -21,6 +21,7 @@ static SPEC: Spec = Spec {
         .remarked("true over model, less one")],
     main: &["relative"],
     is_certain_in_form: true,
+    may_be_inertial: true,
     is_wrong_mass: true,
     is_behind_the_drive: true,
     in_urdf: InUrdf::Inertials,

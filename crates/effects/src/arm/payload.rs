@@ -35,6 +35,7 @@ static SPEC: Spec = Spec {
     may_set_in: true,
     prior: 4.0,
     is_certain_in_form: true,
+    may_be_inertial: true,
     is_wrong_mass: true,
     is_behind_the_drive: true,
     in_urdf: InUrdf::Inertials,

@@ -27,6 +27,7 @@ static SPEC: Spec = Spec {
     ],
     main: &["angle"],
     is_certain_in_form: true,
+    may_be_inertial: true,
     is_behind_the_drive: true,
     experiment: Some(Experiment {
         rank: 7,

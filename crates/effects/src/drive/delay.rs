@@ -24,6 +24,8 @@ static SPEC: Spec = Spec {
     sentence: "a delay of {delay} between commanded and applied torque",
     parameters: &[Parameter::new("delay", Quantity::Time).within(Range::NotNegative)],
     main: &["delay"],
+    // A link behind a gap or a spring is late too.
+    least_beside: &[("backlash", 0.5), ("joint_elasticity", 0.5)],
     is_simulated: true,
     experiment: Some(SECOND_ENCODER),
     unseen: Unseen::Sized {

@@ -23,6 +23,7 @@ static SPEC: Spec = Spec {
         Parameter::new("phase", Quantity::Angle),
     ],
     main: &["amplitude"],
+    is_suggested: true,
     may_repeat: true,
     against: Against::Position,
     ..Spec::EMPTY

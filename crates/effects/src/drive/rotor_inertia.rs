@@ -22,6 +22,7 @@ static SPEC: Spec = Spec {
     prior: 4.0,
     is_ordinary: true,
     is_simple: true,
+    least_beside_residual: Some(1.25),
     against: Against::Acceleration,
     experiment: Some(Experiment {
         rank: 8,

@@ -25,6 +25,7 @@ static SPEC: Spec = Spec {
             .remarked("rad, N m"),
     ],
     main: &["stiffness"],
+    may_be_inertial: true,
     may_set_in: true,
     plain: Some("torque_offset"),
     excludes: &["own_position", "torque_offset", "friction_asymmetry"],

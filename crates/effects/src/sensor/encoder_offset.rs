@@ -19,6 +19,7 @@ static SPEC: Spec = Spec {
     parameters: &[Parameter::new("offset", Quantity::Position)],
     main: &["offset"],
     is_certain_in_form: true,
+    may_be_inertial: true,
     experiment: Some(Experiment {
         rank: 6,
         text: "move the joint to a mechanical reference, or measure its angle: the comparison shows an encoder offset",

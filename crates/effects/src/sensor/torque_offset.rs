@@ -30,6 +30,8 @@ static SPEC: Spec = Spec {
     prior: 10.0,
     is_simple: true,
     is_certain_in_form: true,
+    may_be_inertial: true,
+    least_beside_residual: Some(1.0),
     against: Against::Position,
     experiment: Some(KNOWN_LOAD),
     ..Spec::EMPTY

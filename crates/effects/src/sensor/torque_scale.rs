@@ -25,6 +25,9 @@ static SPEC: Spec = Spec {
     main: &["factor"],
     may_set_in: true,
     is_certain_in_form: true,
+    may_be_inertial: true,
+    // Both are a gain on the load; what the load is, the drive's or the link's, is a matter of form.
+    least_beside: &[("load_dependent_friction", 0.3)],
     against: Against::Load,
     experiment: Some(KNOWN_LOAD),
     experiments_against: &[("inertial_scale", KNOWN_BODY), ("link_inertial_error", KNOWN_BODY)],

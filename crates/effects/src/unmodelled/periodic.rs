@@ -10,6 +10,7 @@ pub struct Periodic;
 static SPEC: Spec = Spec {
     name: "periodic",
     is_passing: true,
+    is_suggested: true,
     depends_on: "time",
     ..Spec::UNNAMED
 };

@@ -1,6 +1,5 @@
 //! Exchanging members of a choice for better ones.
 
-use effects::arm::ExternalContact;
 use rayon::prelude::*;
 
 use super::{Chosen, Growth, Problem};
@@ -13,7 +12,7 @@ impl Problem<'_> {
         let is_free = |c: &usize| {
             let candidate = &self.candidates[*c];
             candidate.joint.is_none()
-                && !candidate.cause.is(&ExternalContact)
+                && !candidate.cause.is_passing()
                 && !chosen.set.iter().any(|&other| other == *c || self.exclude(*c, other))
         };
         let free: Vec<usize> = allowed.iter().copied().filter(is_free).collect();

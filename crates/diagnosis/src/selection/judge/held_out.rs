@@ -1,6 +1,5 @@
 //! What does not predict recordings it was not fitted to.
 
-use effects::arm::ExternalContact;
 use rayon::prelude::*;
 
 use super::{HARMS, harms, is_idle};
@@ -60,9 +59,7 @@ pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut 
                 (removed, gain, without)
             })
             .collect();
-        let exempt = |candidate: usize| {
-            study.candidates[candidate].cause.is(&ExternalContact) || is_idle(study, &chosen, candidate)
-        };
+        let exempt = |candidate: usize| study.window(candidate).is_some() || is_idle(study, &chosen, candidate);
         let useless = gains
             .iter()
             .filter(|(candidate, gain, _)| !exempt(*candidate) && *gain < 0.0)
