@@ -1,5 +1,12 @@
 //! Phase 1, data: recordings filtered and differentiated alike, the rigid model along them, scales and noise.
 
+use arm::Arm;
+use effects::{Effect, Scales};
+use rayon::prelude::*;
+
+use crate::diagnose::Options;
+use crate::error::DiagnosisError;
+
 pub mod channels;
 pub mod known;
 pub mod measure;
@@ -7,3 +14,68 @@ pub mod motion;
 pub mod noise;
 pub mod rigid;
 pub mod signal;
+
+/// What is known before anything is fitted: the recordings, filtered, and the model along them.
+pub struct Data {
+    /// The model as it was given, with what the user knows.
+    pub arm: Arm,
+    /// Known effects that no torque at one time tells: they are found again, and not reported.
+    pub past: Vec<Effect>,
+    /// The recordings, filtered.
+    pub motions: motion::Motions,
+    /// The model along them, one a chunk.
+    pub rigid: Vec<rigid::Rigid>,
+    /// What is slow and what is large.
+    pub scales: Scales,
+    /// Measured torque on all rows (N m or N), one list a joint.
+    pub measured: Vec<Vec<f64>>,
+    /// The variance of the measured noise, one a joint.
+    pub noise: Vec<f64>,
+    /// From row to row, one a recording (s).
+    pub seconds: Vec<f64>,
+    /// Whether a recording is fitted.
+    pub fitted: Vec<bool>,
+}
+
+impl Data {
+    /// Filters `inputs` and evaluates `arm`, with the effects that are known, along them.
+    ///
+    /// # Errors
+    /// [`DiagnosisError`], if a known effect does not fit the arm.
+    pub fn new(arm: &Arm, inputs: &[motion::Input<'_>], options: &Options) -> Result<Self, DiagnosisError> {
+        let known = known::Known::new(arm, &options.known)?;
+        let arm = &known.arm;
+        let mut motions = motion::Motions::new(inputs, options.cutoff, arm);
+        let measured: Vec<Vec<f64>> = (0..motions.dof)
+            .map(|joint| {
+                let chunks = motions.chunks.iter();
+                chunks.flat_map(|chunk| chunk.filter(&chunk.tau[joint])).collect()
+            })
+            .collect();
+        let torque = measure::deviations(&motions);
+        known.take_off(&mut motions);
+        let offset = vec![0.0; arm.dof()];
+        let nominal = arm.inertial_parameters();
+        let chunks = motions.chunks.par_iter();
+        let rigid: Vec<rigid::Rigid> = chunks
+            .map(|chunk| rigid::Rigid::new(arm, &nominal, &offset, chunk))
+            .collect();
+        let mut scales = measure::scales(&motions, torque);
+        for (joint, why) in channels::without_torque(inputs, &motions, &rigid, &scales) {
+            scales.torque[joint] = 0.0;
+            motions.remarks.push(why.remark(&arm.joints()[joint].name));
+        }
+        let fitted: Vec<bool> = motions.sources.iter().map(|source| !source.held_out).collect();
+        Ok(Self {
+            seconds: measure::seconds(&motions),
+            noise: measure::noise(&motions, &rigid, &fitted),
+            arm: known.arm,
+            past: known.past,
+            motions,
+            rigid,
+            scales,
+            measured,
+            fitted,
+        })
+    }
+}

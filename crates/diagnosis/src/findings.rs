@@ -1,5 +1,6 @@
 //! Phase 5, findings: rivals, places, what is not testable with these recordings, what stays unexplained, the verdict.
 
+pub mod conclusion;
 pub mod dual_sensor;
 pub mod found;
 pub mod identified;

@@ -1,7 +1,79 @@
 //! Phase 4, selection: which of the effects found keep their name, by size, evidence and prediction of held-out recordings.
 
+use rayon::prelude::*;
+
+use crate::diagnose::Options;
+use crate::error::DiagnosisError;
+use crate::regression::bootstrap::Resampled;
+use crate::regression::fit::Products;
+use crate::search::study::Study;
+use crate::search::{hypothesis, plan};
+use crate::thresholds::MOST_REFUSED;
+
 pub mod final_fit;
 pub mod judge;
 pub mod naming;
 pub mod predict;
 pub mod unmounted;
+
+/// The last fit: what is named, how certain it is, and what it leaves.
+pub struct FinalFit {
+    /// The names, and the forms without one.
+    pub judged: judge::Judged,
+    /// The named effects' coefficients, resampled.
+    pub resampled: Resampled,
+    /// Inner products over the recordings that were fitted.
+    pub products: Products,
+    /// Inner products over the held-out recordings, if there are any.
+    pub held: Option<Products>,
+    /// What the named effects leave of the torque (N m or N): `[joint][row]`.
+    pub residual: Vec<Vec<f64>>,
+}
+
+impl FinalFit {
+    /// Of the effects that are searched for, or of those that `options` ask for.
+    ///
+    /// # Errors
+    /// [`DiagnosisError::Wanted`], if an effect that was asked for cannot be fitted.
+    pub fn new(study: &mut Study, options: &Options, progress: &dyn Fn(&str)) -> Result<Self, DiagnosisError> {
+        let (judged, resampled) = match &options.only {
+            Some(wanted) => {
+                progress("fitting the requested effects");
+                let mut judged = hypothesis::fit(study, wanted)?;
+                let resampled = final_fit::as_given(study, &mut judged);
+                (judged, resampled)
+            }
+            None => selected(study, progress),
+        };
+        let joints = (0..study.arm.dof()).into_par_iter();
+        let residual = joints
+            .map(|joint| predict::augmented(study, &judged.named, joint))
+            .collect();
+        Ok(Self {
+            products: study.training_products(),
+            held: study.held_products(),
+            judged,
+            resampled,
+            residual,
+        })
+    }
+}
+
+/// Searches and judges until the final fit refuses no name that it has not refused before.
+fn selected(study: &mut Study, progress: &dyn Fn(&str)) -> (judge::Judged, Resampled) {
+    loop {
+        let refused = study.refused();
+        let chosen = plan::search(study, progress);
+        progress("testing the selected effects");
+        let (products, held) = (study.training_products(), study.held_products());
+        let mut judged = judge::judge(study, &products, held.as_ref(), chosen);
+        progress("final fit and intervals");
+        let resampled = final_fit::settled(study, &mut judged);
+        // What turns out not to be may have kept something else from being found.
+        if study.refused() == refused || refused > MOST_REFUSED {
+            let resampled = unmounted::unmounted(study, &mut judged).unwrap_or(resampled);
+            return (judged, resampled);
+        }
+        study.restart();
+    }
+}

@@ -84,9 +84,6 @@ impl Cause {
     }
 }
 
-/// Whether a cause is a candidate on a joint, or (`None`) on the whole arm.
-pub type MayBe<'a> = dyn Fn(Cause, Option<usize>) -> bool + 'a;
-
 /// Some columns that come and go together.
 #[derive(Clone, Debug)]
 pub struct Candidate {

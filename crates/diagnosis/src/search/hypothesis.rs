@@ -1,9 +1,12 @@
 //! A hypothesis: the effects that were asked for, fitted together, with no search and no judgement.
 
+use arm::Arm;
 use effects::Scope;
 use effects::drive::FARTHEST_COUPLED;
 
+use crate::diagnose::Options;
 use crate::error::DiagnosisError;
+use crate::search::candidate::Cause;
 use crate::search::problem::{Chosen, Problem};
 use crate::search::refine::resize;
 use crate::search::study::Study;
@@ -43,6 +46,18 @@ impl Wanted {
             reason,
         }
     }
+}
+
+/// Whether a cause is a candidate on a joint, or (`None`) on the whole arm: all are, unless certain effects were asked for.
+pub fn may_be(options: &Options, arm: &Arm, cause: Cause, joint: Option<usize>) -> bool {
+    options.only.as_ref().is_none_or(|wanted| {
+        let joint = joint.map(|joint| &arm.joints()[joint].name);
+        let is_wanted = |one: &Wanted| {
+            let is_there = joint == one.joint.as_ref() || (joint.is_some() && joint == one.other.as_ref());
+            cause.name() == Some(&one.effect) && is_there
+        };
+        wanted.iter().any(is_wanted)
+    })
 }
 
 /// Fits `wanted`, each in the form and at the size that explain the training recordings best.

@@ -2,19 +2,18 @@
 
 use arm::Arm;
 use effects::arm::contact_columns;
-use effects::{Grounds, Scales, Term};
-use rayon::prelude::*;
+use effects::{Effect, Grounds, Scales, Term};
 
-use crate::data::channels;
-use crate::data::known::Known;
-use crate::data::measure::{self, mean, noise, scales, seconds, spans};
-use crate::data::motion::{Input, Motions};
+use crate::data::Data;
+use crate::data::measure::{self, mean, spans};
+use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
 use crate::diagnose::Options;
 use crate::regression::background::{Background, Prior, Stated, Strengths};
 use crate::regression::fit::Products;
 use crate::regression::table::{Moving, Table};
-use crate::search::candidate::{Candidate, Cause, MayBe, catalogue};
+use crate::search::candidate::{Candidate, Cause, catalogue};
+use crate::search::hypothesis;
 use crate::search::problem::Problem;
 use crate::thresholds::{LEAST_FOR_DYNAMICS, RESTING, RESTING_REACH, Thresholds};
 use crate::trace::Trace;
@@ -29,6 +28,8 @@ pub use about::About;
 pub struct Study {
     /// The model as it was given.
     pub arm: Arm,
+    /// Known effects that no torque at one time tells.
+    pub past: Vec<Effect>,
     /// The recordings, filtered.
     pub motions: Motions,
     /// The model along them, one a chunk.
@@ -72,37 +73,21 @@ pub struct Study {
 }
 
 impl Study {
-    /// Prepares `inputs` for the arm and effects in `known`, with the candidates that `may_be`.
-    pub fn new(known: &Known, inputs: &[Input<'_>], options: &Options, may_be: &MayBe<'_>) -> Self {
+    /// The candidates that `options` allow, with their columns along `data`.
+    pub fn new(data: Data, options: &Options) -> Self {
         let (stated, thresholds) = (Stated::of(options), options.thresholds.clone());
-        let arm = &known.arm;
-        let mut motions = Motions::new(inputs, options.cutoff, arm);
-        let measured: Vec<Vec<f64>> = (0..motions.dof)
-            .map(|joint| {
-                motions
-                    .chunks
-                    .iter()
-                    .flat_map(|chunk| chunk.filter(&chunk.tau[joint]))
-                    .collect()
-            })
-            .collect();
-        let torque = measure::deviations(&motions);
-        known.take_off(&mut motions);
-        let offset = vec![0.0; arm.dof()];
+        let Data {
+            arm,
+            past,
+            motions,
+            rigid,
+            scales,
+            measured,
+            noise,
+            seconds,
+            fitted,
+        } = data;
         let nominal = arm.inertial_parameters();
-        let rigid: Vec<Rigid> = motions
-            .chunks
-            .par_iter()
-            .map(|chunk| Rigid::new(arm, &nominal, &offset, chunk))
-            .collect();
-        let mut scales = scales(&motions, torque);
-        for (joint, why) in channels::without_torque(inputs, &motions, &rigid, &scales) {
-            scales.torque[joint] = 0.0;
-            motions.remarks.push(why.remark(&arm.joints()[joint].name));
-        }
-        let fitted: Vec<bool> = motions.sources.iter().map(|source| !source.held_out).collect();
-        let seconds = seconds(&motions);
-        let noise = noise(&motions, &rigid, &fitted);
         let floor = noise
             .iter()
             .zip(&scales.torque)
@@ -137,7 +122,7 @@ impl Study {
         if motions.cutoff < LEAST_FOR_DYNAMICS {
             list.retain(|(cause, ..)| !cause.is_unit());
         }
-        list.retain(|(cause, joint, _)| may_be(*cause, *joint));
+        list.retain(|(cause, joint, _)| hypothesis::may_be(options, &arm, *cause, *joint));
         if let Some(at) = motions.changed_at {
             // Whatever has a name may have come since the recordings from before.
             let new: Vec<_> = list
@@ -164,8 +149,10 @@ impl Study {
         terms.extend(always);
         let table = Table::new(&motions, &rigid, &scales, terms, &[], Moving::Steadily);
         let nominal = table.joints.iter().map(|joint| joint.y.clone()).collect();
+        let strengths = stated.first(arm.dof());
         Self {
-            arm: arm.clone(),
+            arm,
+            past,
             motions,
             rigid,
             scales,
@@ -180,7 +167,7 @@ impl Study {
             measured,
             carries: false,
             moving: Moving::Steadily,
-            strengths: stated.first(arm.dof()),
+            strengths,
             stated,
             thresholds,
             prior,
@@ -197,6 +184,17 @@ impl Study {
     /// Inner products over the recordings that `chosen` picks.
     pub fn products(&self, chosen: impl Fn(usize) -> bool) -> Products {
         self.bare_products(chosen).with_background(self.background())
+    }
+
+    /// Inner products over the recordings to be fitted.
+    pub fn training_products(&self) -> Products {
+        self.products(|recording| self.fitted[recording])
+    }
+
+    /// Inner products over the held-out recordings; `None` if there are none.
+    pub fn held_products(&self) -> Option<Products> {
+        let has_held_out = self.fitted.contains(&false);
+        has_held_out.then(|| self.products(|recording| !self.fitted[recording]))
     }
 
     /// What every fit has besides the effects, if anything.

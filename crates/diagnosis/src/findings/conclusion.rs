@@ -1,0 +1,193 @@
+//! What the last fit means: findings, what is left unexplained, what is not testable, and the report of all that.
+
+use std::collections::BTreeMap;
+
+use arm::Arm;
+use effects::Effect;
+
+use super::found::findings;
+use super::inertials::{Inertials, inertials};
+use super::locate::locate;
+use super::observability::unseen;
+use super::report::{Finding, JointFit, Located, NotObservable, RecordingNames, Report, Traces, Unexplained};
+use super::traces::traces;
+use super::verdict::{leftover, not_enough, unexplained, verdict};
+use super::{dual_sensor, sentences, transients};
+use crate::data::motion::Input;
+use crate::diagnose::{Diagnosis, Options};
+use crate::error::DiagnosisError;
+use crate::next::{self, Next};
+use crate::search::study::Study;
+use crate::selection::FinalFit;
+use crate::selection::predict::{errors, exported};
+
+/// What the last fit means.
+pub struct Conclusion {
+    /// The findings, the largest share first, each with the candidate that it was named from.
+    findings: Vec<(Finding, Option<usize>)>,
+    inertials: Inertials,
+    located: Vec<Located>,
+    not_enough_data: Vec<String>,
+    fit: BTreeMap<String, JointFit>,
+    unexplained: Vec<Unexplained>,
+    not_observable: Vec<NotObservable>,
+    changed: Option<Vec<String>>,
+    traces: Traces,
+}
+
+impl Conclusion {
+    /// Of the fit `last`; `identified` is each joint's held-out error with full linear identification.
+    pub fn new(
+        study: &Study,
+        last: &FinalFit,
+        identified: &[Option<f64>],
+        inputs: &[Input<'_>],
+        options: &Options,
+    ) -> Self {
+        let FinalFit {
+            judged,
+            resampled,
+            products,
+            held,
+            residual,
+        } = last;
+        let mut findings = findings(study, products, held.as_ref(), judged, resampled);
+        findings.retain(|(finding, _)| {
+            let same = |known: &Effect| known.name() == finding.effect && known.joint() == finding.joint.as_deref();
+            !study.past.iter().any(same)
+        });
+        let mut inertials = inertials(study, products, held.as_ref(), judged, resampled);
+        let bursts = transients::bursts(study, judged, residual);
+        let mut others = std::mem::take(&mut inertials.findings);
+        if options.only.is_none() {
+            others.splice(0..0, dual_sensor::findings(study, &judged.named, inputs));
+            others.extend(bursts.contact.clone());
+        }
+        findings.extend(others.into_iter().map(|finding| (finding, None)));
+        let not_enough_data = not_enough(study, products);
+        if !not_enough_data.is_empty() {
+            // So little data does not support any finding.
+            findings.clear();
+        }
+        let fit = fit(study, last, identified);
+        let mut unexplained = unexplained(study, judged, &bursts, residual);
+        leftover(study, &fit, &mut unexplained);
+        findings.sort_by(|(a, _), (b, _)| {
+            b.share
+                .total_cmp(&a.share)
+                .then(a.effect.cmp(b.effect))
+                .then(a.joint.cmp(&b.joint))
+        });
+        let changed = study.motions.changed_at.map(|_| {
+            let new = findings.iter().filter(|(finding, _)| finding.since_before);
+            new.map(|(finding, _)| sentences::changed(finding)).collect()
+        });
+        for (finding, _) in &mut findings {
+            finding.sentence = sentences::of(finding, &fit);
+        }
+        Self {
+            located: locate(study, residual),
+            traces: traces(study, judged, &findings, residual),
+            not_observable: unseen(study, products, &judged.named),
+            findings,
+            inertials,
+            not_enough_data,
+            fit,
+            unexplained,
+            changed,
+        }
+    }
+
+    /// The next experiment on `arm`, if `options` ask for one and there are enough data to propose it.
+    ///
+    /// # Errors
+    /// If the effects cannot be put into the model.
+    pub fn next(
+        &self,
+        study: &mut Study,
+        last: &FinalFit,
+        (arm, options): (&Arm, &Options),
+        progress: &dyn Fn(&str),
+    ) -> Result<Option<Next>, DiagnosisError> {
+        if !options.next {
+            return Ok(None);
+        }
+        if !self.not_enough_data.is_empty() {
+            let remark = "no motion is proposed, because the recordings do not contain enough data";
+            study.motions.remarks.push(remark.to_owned());
+            return Ok(None);
+        }
+        progress("next experiment");
+        let effects: Vec<Effect> = options.known.iter().cloned().chain(self.effects()).collect();
+        let next = next::propose(
+            study,
+            &last.products,
+            &last.judged.named,
+            (arm, &effects),
+            &self.findings,
+            &self.not_observable,
+            &self.unexplained,
+        )?;
+        Ok(Some(next))
+    }
+
+    /// The effects that correct the torque model.
+    fn effects(&self) -> impl Iterator<Item = Effect> {
+        let found = self.findings.iter().filter(|(finding, _)| finding.corrects);
+        let found = found.map(|(finding, _)| &finding.as_effect);
+        found.chain(&self.inertials.effects).cloned()
+    }
+
+    /// All of it, with the next experiment.
+    pub fn diagnosis(self, arm: &Arm, mut study: Study, next: Option<Next>) -> Diagnosis {
+        let names = |held_out: bool| {
+            let sources = study.motions.sources.iter();
+            let chosen = sources.filter(|source| source.held_out == held_out);
+            chosen.map(|source| source.name.clone()).collect()
+        };
+        let effects = self.effects().collect();
+        let (next_experiment, next) = next.map_or((None, None), |next| (Some(next.report), next.motion));
+        let findings: Vec<Finding> = self.findings.into_iter().map(|(finding, _)| finding).collect();
+        let report = Report {
+            schema: "testbed.diagnosis/1",
+            robot: arm.name().to_owned(),
+            recordings: RecordingNames {
+                train: names(false),
+                held_out: names(true),
+            },
+            verdict: verdict(&findings, &self.unexplained, &self.not_enough_data, &self.located),
+            unexplained: self.unexplained,
+            not_observable: self.not_observable,
+            not_enough_data: self.not_enough_data,
+            located: self.located,
+            fit: self.fit,
+            changed: self.changed,
+            inertials: self.inertials.links,
+            rollout: BTreeMap::new(),
+            next_experiment,
+            findings,
+        };
+        Diagnosis {
+            report,
+            traces: self.traces,
+            effects,
+            next,
+            remarks: std::mem::take(&mut study.motions.remarks),
+            trace: study.trace.take(),
+        }
+    }
+}
+
+/// How well each joint's torque is predicted.
+fn fit(study: &Study, last: &FinalFit, identified: &[Option<f64>]) -> BTreeMap<String, JointFit> {
+    let of = |(joint, residual): (usize, &Vec<f64>)| {
+        let of_exported = errors(study, joint, &exported(study, &last.judged.named, joint));
+        let errors = JointFit {
+            held_out_nrmse_identified: identified[joint],
+            held_out_nrmse_exported: of_exported.held_out_nrmse_augmented,
+            ..errors(study, joint, residual)
+        };
+        (study.arm.joints()[joint].name.clone(), errors)
+    };
+    last.residual.iter().enumerate().map(of).collect()
+}
