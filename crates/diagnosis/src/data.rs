@@ -14,6 +14,7 @@ pub mod motion;
 pub mod noise;
 pub mod rigid;
 pub mod signal;
+pub mod statistics;
 
 /// What is known before anything is fitted: the recordings, filtered, and the model along them.
 pub struct Data {

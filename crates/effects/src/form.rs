@@ -27,6 +27,13 @@ impl Grounds<'_> {
         (0..self.dof()).filter(|&joint| self.scales.moves(joint))
     }
 
+    /// Pairs of joints that move: one that may feel an effect, and another that it may depend on.
+    pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> {
+        let others = |joint: usize| self.moving().filter(move |&other| other != joint);
+        self.moving()
+            .flat_map(move |joint| others(joint).map(move |other| (joint, other)))
+    }
+
     /// The number of joints.
     pub fn dof(&self) -> usize {
         self.scales.speed.len()

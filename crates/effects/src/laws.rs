@@ -4,6 +4,12 @@ use crate::form::Times;
 use crate::motion::Motion;
 use crate::term::{Cone, Law, Term};
 
+/// Sine (form 0) and cosine (form 1) of a law of waves on a joint, at one size.
+pub fn sine_and_cosine(law: &'static Law, joint: usize, size: f64) -> Vec<Term> {
+    let wave = |form| Term::on(law, joint).form(form).sized([size]);
+    vec![wave(0), wave(1)]
+}
+
 /// q̇.
 pub static VELOCITY: Law = Law {
     name: "velocity",

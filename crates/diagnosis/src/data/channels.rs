@@ -5,9 +5,10 @@ use std::collections::HashMap;
 use effects::{Scales, sign};
 use nalgebra::{DMatrix, DVector};
 
-use crate::data::measure::{self, mean};
+use crate::data::measure;
 use crate::data::motion::{Input, Motions};
 use crate::data::rigid::Rigid;
+use crate::data::statistics::mean;
 use crate::thresholds::{CHANNEL_MOVES, FAR_TOO_SMALL, IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED};
 
 /// Samples on either side of which positions are compared.
@@ -116,7 +117,7 @@ fn of_another_kind(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: u
     if rows.torque.len() < LEAST_CHANNEL_ROWS {
         return None;
     }
-    let power = |signal: &[f64]| mean(signal.iter().map(|value| value * value).collect::<Vec<_>>().iter());
+    let power = |signal: &[f64]| mean(signal.iter().map(|value| value * value));
     let size = (power(&rows.torque) / power(&rows.needed).max(f64::MIN_POSITIVE)).sqrt();
     if size < FAR_TOO_SMALL {
         return Some(Why::FarTooSmall(size));
@@ -180,11 +181,7 @@ fn left(columns: &[&Vec<f64>], y: &[f64]) -> f64 {
     let n = columns.len();
     let scaled: Vec<f64> = columns
         .iter()
-        .map(|column| {
-            1.0 / mean(column.iter().map(|v| v * v).collect::<Vec<_>>().iter())
-                .sqrt()
-                .max(1e-12)
-        })
+        .map(|column| 1.0 / mean(column.iter().map(|v| v * v)).sqrt().max(1e-12))
         .collect();
     let x = |row: usize| DVector::from_fn(n, |k, _| scaled[k] * columns[k][row]);
     let length = y.len().div_ceil(FOLDS);

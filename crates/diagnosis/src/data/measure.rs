@@ -4,17 +4,8 @@ use effects::Scales;
 
 use crate::data::motion::{Chunk, Motions};
 use crate::data::rigid::Rigid;
+use crate::data::statistics::{deviation, mean};
 use crate::thresholds::{DEAD, NEEDED_QUANTILE, NOISE_ALONE, RANGE_QUANTILES, REST, REST_NOISE, SPEED_QUANTILE};
-
-/// The mean; zero of nothing.
-pub fn mean<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
-    let (mut sum, mut count) = (0.0, 0.0);
-    for value in values {
-        sum += value;
-        count += 1.0;
-    }
-    if count > 0.0 { sum / count } else { 0.0 }
-}
 
 /// The largest measured torque of each joint (N m or N).
 pub fn largest(motions: &Motions) -> Vec<f64> {
@@ -61,7 +52,7 @@ pub fn inertial(motions: &Motions, rigid: &[Rigid], torque: &[f64]) -> Vec<f64> 
     let share = |joint: usize| {
         let values = needed(joint);
         if torque[joint] > 0.0 {
-            deviation(&|| values.iter()) / torque[joint]
+            deviation(values.iter()) / torque[joint]
         } else {
             0.0
         }
@@ -73,7 +64,7 @@ pub fn inertial(motions: &Motions, rigid: &[Rigid], torque: &[f64]) -> Vec<f64> 
 pub fn deviations(motions: &Motions) -> Vec<f64> {
     let chunks = || motions.chunks.iter().filter(|chunk| is_fitted(motions, chunk));
     (0..motions.dof)
-        .map(|joint| deviation(&|| chunks().flat_map(move |chunk| &chunk.tau[joint])))
+        .map(|joint| deviation(chunks().flat_map(move |chunk| &chunk.tau[joint])))
         .collect()
 }
 
@@ -84,7 +75,7 @@ pub fn dead(motions: &Motions, rigid: &[Rigid], torque: &[f64]) -> Vec<usize> {
         chunks.filter(|(chunk, _)| is_fitted(motions, chunk))
     };
     let is_dead = |&joint: &usize| {
-        let needed = deviation(&|| fitted().flat_map(move |(_, rigid)| &rigid.tau[joint]));
+        let needed = deviation(fitted().flat_map(move |(_, rigid)| &rigid.tau[joint]));
         let noise = motions.sources.iter().map(|source| source.torque_noise[joint]);
         let noise = noise.fold(0.0, f64::max);
         torque[joint] <= (NOISE_ALONE * noise).max(1e-9 * needed) && torque[joint] <= DEAD * needed
@@ -94,16 +85,6 @@ pub fn dead(motions: &Motions, rigid: &[Rigid], torque: &[f64]) -> Vec<usize> {
 
 fn is_fitted(motions: &Motions, chunk: &Chunk) -> bool {
     !motions.sources[chunk.recording].held_out
-}
-
-fn deviation<'a, I: Iterator<Item = &'a f64>>(values: &dyn Fn() -> I) -> f64 {
-    let middle = mean(values());
-    let (mut sum, mut count) = (0.0, 0.0_f64);
-    for value in values() {
-        sum += (value - middle).powi(2);
-        count += 1.0;
-    }
-    (sum / count.max(1.0)).sqrt()
 }
 
 /// Speeds and ranges of all joints, with their torques.

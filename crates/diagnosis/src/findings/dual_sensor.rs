@@ -9,6 +9,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::data::motion::Input;
 use crate::data::signal::Kernel;
+use crate::data::statistics::deviation;
 use crate::findings::report::{Finding, Parameter, Place};
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
@@ -173,17 +174,9 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
     });
     let range = study.scales.range[joint];
     let result = regress(&rows)?;
-    let spread = |k: usize| -> f64 {
-        let values: Vec<f64> = rows.x.iter().map(|x| x[k]).collect();
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
-    };
     let (compliance, error) = (-result.coefficients[2], result.errors[2]);
-    let bends = compliance * spread(2);
-    let total = {
-        let mean = rows.y.iter().sum::<f64>() / rows.y.len() as f64;
-        (rows.y.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / rows.y.len() as f64).sqrt()
-    };
+    let bends = compliance * deviation(rows.x.iter().map(|x| x[2]));
+    let total = deviation(rows.y.iter());
     let credible = result.follows(FOLLOWS)
         && compliance > CLEAR_COMPLIANCE * error
         && total < LARGEST_DEFLECTION * range

@@ -142,11 +142,7 @@ fn rotor_share(study: &Study, judged: &Judged, candidate: usize) -> f64 {
         .copied()
         .filter(|&column| study.table.terms[column].is(&ACCELERATION))
         .collect();
-    let values: Vec<f64> = rotor
-        .iter()
-        .map(|&column| judged.named.fit.coefficient(column))
-        .collect();
-    let torque = study.table.torque(joint, &rotor, &values);
+    let torque = study.table.torque(joint, &rotor, &judged.named.fit.values(&rotor));
     crate::selection::predict::deviation(&torque, &study.training_rows(joint)) / study.scales.torque[joint].max(1e-300)
 }
 
@@ -183,24 +179,22 @@ fn held_out_gain(
 /// every other piece of the training recordings, and tried on the rest.
 fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joint: usize) -> f64 {
     let columns = &study.candidates[candidate].columns;
-    let values: Vec<f64> = columns.iter().map(|&column| fit.coefficient(column)).collect();
-    let torque = study.table.torque(joint, columns, &values);
-    let model = study.table.torque(joint, &without.columns, &without.coefficients);
+    let torque = study.table.torque(joint, columns, &fit.values(columns));
+    let left = study.table.residual(joint, &without.columns, &without.coefficients);
     let times = study.motions.row_times();
     let rows = study.training_rows(joint);
-    let left = |row: usize| study.table.joints[joint].y[row] - model[row];
     let (mut with, mut bare) = (0.0, 0.0);
     for parity in [0, 1] {
         let is_fitted = |row: &&usize| ((times[**row] / GAIN_PIECE).floor() as i64 - parity) % 2 == 0;
         let (mut power, mut product) = (0.0, 0.0);
         for &row in rows.iter().filter(is_fitted) {
             power += torque[row] * torque[row];
-            product += torque[row] * left(row);
+            product += torque[row] * left[row];
         }
         let scale = product / f64::max(power, 1e-300);
         for &row in rows.iter().filter(|row| !is_fitted(row)) {
-            with += (left(row) - scale * torque[row]).powi(2);
-            bare += left(row).powi(2);
+            with += (left[row] - scale * torque[row]).powi(2);
+            bare += left[row].powi(2);
         }
     }
     1.0 - (with / f64::max(bare, 1e-300)).sqrt()

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use crate::data::statistics::rms;
 use crate::findings::report::{Located, Region, TimeWindow};
 use crate::search::study::Study;
 use crate::thresholds::{OVER_NOISE, REGION_STANDS_OUT, SAME_MOTION, WINDOW, WINDOW_STANDS_OUT};
@@ -55,13 +56,9 @@ fn states(study: &Study) -> Vec<State> {
         .collect()
 }
 
-fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let (mut sum, mut count) = (0.0, 0.0);
-    for value in values {
-        sum += value * value;
-        count += 1.0;
-    }
-    if count > 0.0 { (sum / count).sqrt() } else { 0.0 }
+/// The root of the mean square; zero of nothing.
+fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
+    rms(values).unwrap_or(0.0)
 }
 
 fn on_joint(study: &Study, state: &State, joint: usize, nominal: &[f64], augmented: &[f64]) -> Option<Located> {
@@ -72,7 +69,7 @@ fn on_joint(study: &Study, state: &State, joint: usize, nominal: &[f64], augment
     if rows.is_empty() {
         return None;
     }
-    let all = rms(rows.iter().map(|&row| nominal[row]));
+    let all = root_mean_square(rows.iter().map(|&row| nominal[row]));
     let floor = study.floor[joint].sqrt().max(1e-300);
     if all < OVER_NOISE * floor {
         return None;
@@ -95,7 +92,7 @@ fn on_joint(study: &Study, state: &State, joint: usize, nominal: &[f64], augment
         let best = bins
             .map(|bin| &sorted[sorted.len() * bin / BINS..sorted.len() * (bin + 1) / BINS])
             .filter(|bin| !bin.is_empty())
-            .map(|bin| (rms(bin.iter().map(|&row| nominal[row])), bin))
+            .map(|bin| (root_mean_square(bin.iter().map(|&row| nominal[row])), bin))
             .max_by(|a, b| a.0.total_cmp(&b.0));
         if let Some((residual, bin)) = best
             && residual > REGION_STANDS_OUT * all
@@ -104,7 +101,7 @@ fn on_joint(study: &Study, state: &State, joint: usize, nominal: &[f64], augment
                 axis,
                 range: [values[bin[0]], values[bin[bin.len() - 1]]],
                 residual: residual / torque,
-                residual_augmented: rms(bin.iter().map(|&row| augmented[row])) / torque,
+                residual_augmented: root_mean_square(bin.iter().map(|&row| augmented[row])) / torque,
             });
         }
     }
@@ -126,7 +123,7 @@ fn windows(study: &Study, state: &State, rows: &[usize], nominal: &[f64], all: f
         let (recording, start) = (state.recording[rows[from]], state.time[rows[from]]);
         let inside = |&&row: &&usize| state.recording[row] == recording && state.time[row] < start + WINDOW;
         let length = rows[from..].iter().take_while(inside).count().max(1);
-        let residual = rms(rows[from..from + length].iter().map(|&row| nominal[row]));
+        let residual = root_mean_square(rows[from..from + length].iter().map(|&row| nominal[row]));
         if length >= 5 {
             stretches.push((residual, recording, start));
         }
@@ -150,7 +147,7 @@ fn windows(study: &Study, state: &State, rows: &[usize], nominal: &[f64], all: f
 /// The part of the residual that comes again where the joint's own state does, in another recording.
 fn repeatable(study: &Study, state: &State, joint: usize, rows: &[usize], nominal: &[f64]) -> Option<f64> {
     let torque = study.scales.torque[joint];
-    let acceleration = rms(rows.iter().map(|&row| state.qdd[row]));
+    let acceleration = root_mean_square(rows.iter().map(|&row| state.qdd[row]));
     let cell = |row: usize| {
         let part = |value: f64, range: f64| (value / (SAME_MOTION * range).max(1e-12)).floor() as i64;
         (

@@ -10,6 +10,7 @@ use crate::regression::fit::Products;
 use crate::search::candidate::Candidate;
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
+use crate::selection::predict::deviation;
 use crate::thresholds::HIDDEN;
 
 /// How well a column shows on a joint.
@@ -201,9 +202,5 @@ fn spread(study: &Study, joint: usize, column: usize) -> f64 {
     let Some(place) = study.table.place[joint][column] else {
         return 0.0;
     };
-    let x = &study.table.joints[joint].x[place];
-    let rows = study.training_rows(joint);
-    let n = rows.len().max(1) as f64;
-    let mean = rows.iter().map(|&r| x[r]).sum::<f64>() / n;
-    (rows.iter().map(|&r| (x[r] - mean).powi(2)).sum::<f64>() / n).sqrt()
+    deviation(&study.table.joints[joint].x[place], &study.training_rows(joint))
 }

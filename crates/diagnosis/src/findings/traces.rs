@@ -1,6 +1,5 @@
 //! What the figures are drawn from.
 
-use effects::drive::RotorInertia;
 use effects::laws::ACCELERATION;
 use rayon::prelude::*;
 
@@ -19,7 +18,7 @@ pub fn traces(study: &Study, judged: &Judged, findings: &[(Finding, Option<usize
                 return vec![Vec::new(); dof];
             };
             // A drive's inertia named with a spring or a gap has a column of its own.
-            let is_rotor = finding.as_effect.is(&RotorInertia) && !study.candidates[member].cause.is(&RotorInertia);
+            let is_brought = finding.as_effect.kind() != study.candidates[member].cause.kind;
             let columns: Vec<usize> = study.candidates[member]
                 .columns
                 .iter()
@@ -27,13 +26,10 @@ pub fn traces(study: &Study, judged: &Judged, findings: &[(Finding, Option<usize
                 .filter(|&column| {
                     let accelerates = table.terms[column].is(&ACCELERATION);
                     let alone = study.candidates[member].columns.len() == 1;
-                    alone || accelerates == is_rotor
+                    alone || accelerates == is_brought
                 })
                 .collect();
-            let values: Vec<f64> = columns
-                .iter()
-                .map(|&column| judged.named.fit.coefficient(column))
-                .collect();
+            let values = judged.named.fit.values(&columns);
             (0..dof)
                 .map(|joint| {
                     let acts = columns.iter().any(|&column| table.place[joint][column].is_some());

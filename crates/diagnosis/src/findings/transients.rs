@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 
 use effects::arm::ExternalContact;
 use effects::{Effect, EffectKind};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
+use crate::data::statistics::rms;
 use crate::findings::report::{Finding, Parameter, Place, TimeWindow};
+use crate::regression::small::ForceFit;
 use crate::search::scan;
 use crate::search::study::Study;
 use crate::selection::judge::Judged;
@@ -120,10 +122,10 @@ fn usual(study: &Study, joint: usize, left: &[Vec<f64>]) -> f64 {
             let to = (from + length).min(rows.end);
             let values: Vec<f64> = (from..to)
                 .filter(|&row| moving[row])
-                .map(|row| left[joint][row].powi(2))
+                .map(|row| left[joint][row])
                 .collect();
             if values.len() * 2 > length {
-                stretches.push((values.iter().sum::<f64>() / values.len() as f64).sqrt());
+                stretches.extend(rms(values));
             }
             from = to;
         }
@@ -170,44 +172,25 @@ fn power(
 }
 
 fn joint_rms(study: &Study, times: &[f64], left: &[Vec<f64>], joint: usize, window: (f64, f64)) -> f64 {
-    let (mut sum, mut count) = (0.0, 0.0_f64);
-    for (_, row, at) in rows(study, times, window) {
-        if at == joint {
-            sum += left[joint][row].powi(2);
-            count += 1.0;
-        }
-    }
-    (sum / count.max(1.0)).sqrt()
+    let own = rows(study, times, window).filter(|&(_, _, at)| at == joint);
+    rms(own.map(|(_, row, _)| left[joint][row])).unwrap_or(0.0)
 }
 
 /// The force that explains a window best, fitted to every other piece, and the part of the power it explains on the rest.
 fn force(study: &Study, times: &[f64], left: &[Vec<f64>], weights: &[f64], window: (f64, f64)) -> (Vector3<f64>, f64) {
     let columns = study.force();
-    let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
-    let mut tried: Vec<(f64, f64, Vector3<f64>)> = Vec::new();
+    let mut fit = ForceFit::default();
     for (_, row, joint) in rows(study, times, window) {
         let this = &study.table.joints[joint];
         let x = Vector3::from(
             columns.map(|column| study.table.place[joint][column].map_or(0.0, |place| this.x[place][row])),
         );
-        let (w, r) = (weights[joint], left[joint][row]);
-        if ((times[row] - window.0) / BURST_PIECE) as i64 % 2 == 0 {
-            matrix += w * x * x.transpose();
-            right += w * r * x;
-        } else {
-            tried.push((w, r, x));
-        }
+        let is_fitted = ((times[row] - window.0) / BURST_PIECE) as i64 % 2 == 0;
+        fit.add(is_fitted, weights[joint], left[joint][row], x);
     }
-    let ridge = (1e-6 * matrix.trace()).max(1e-300);
-    let Some(factor) = (matrix + Matrix3::identity() * ridge).cholesky() else {
+    let Some((force, [before, after])) = fit.solved() else {
         return (Vector3::zeros(), 0.0);
     };
-    let force = factor.solve(&right);
-    let (mut before, mut after) = (0.0, 0.0);
-    for (w, r, x) in tried {
-        before += w * r * r;
-        after += w * (r - force.dot(&x)).powi(2);
-    }
     (force, if before > 0.0 { 1.0 - after / before } else { 0.0 })
 }
 

@@ -211,9 +211,7 @@ fn systems(
 ) -> Vec<(DMatrix<f64>, DVector<f64>)> {
     let table = &study.table;
     let p = columns.len() + sizes.len();
-    let weights = study
-        .products(|r| study.fitted[r])
-        .evidence_weights(&chosen.fit.weights);
+    let weights = study.training_products().evidence_weights(&chosen.fit.weights);
     // The columns of each joint, the derivatives by the sizes last.
     let by_joint: Vec<Vec<Option<Vec<f64>>>> = (0..table.dof())
         .into_par_iter()

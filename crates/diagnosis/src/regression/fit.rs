@@ -78,6 +78,11 @@ impl Fit {
             .map_or(0.0, |k| self.coefficients[k])
     }
 
+    /// The coefficients of some columns; zero of those that are not in.
+    pub fn values(&self, columns: &[usize]) -> Vec<f64> {
+        columns.iter().map(|&column| self.coefficient(column)).collect()
+    }
+
     /// The columns that were chosen.
     pub fn chosen(&self) -> &[usize] {
         &self.columns[self.background..]
@@ -276,12 +281,7 @@ impl Products {
             }
         }
         let factor = cholesky(&matrix);
-        let reduced = factor
-            .solve_lower_triangular(&right)
-            .unwrap_or_else(|| DVector::zeros(p));
-        let scaled = factor
-            .tr_solve_lower_triangular(&reduced)
-            .unwrap_or_else(|| DVector::zeros(p));
+        let [reduced, scaled] = solved(&factor, &right);
         let mut coefficients: Vec<f64> = (0..p).map(|i| scaled[i] / scale[i]).collect();
         let mut all = columns.to_vec();
         let mut cost = 0.0;
@@ -366,6 +366,14 @@ impl Products {
             None => drop,
         }
     }
+}
+
+/// L⁻¹ b and (L Lᵀ)⁻¹ b of a lower Cholesky factor and a right side.
+fn solved(factor: &DMatrix<f64>, right: &DVector<f64>) -> [DVector<f64>; 2] {
+    let none = || DVector::zeros(right.len());
+    let reduced = factor.solve_lower_triangular(right).unwrap_or_else(none);
+    let solution = factor.tr_solve_lower_triangular(&reduced).unwrap_or_else(none);
+    [reduced, solution]
 }
 
 /// The lower Cholesky factor of a matrix of unit diagonal that is positive semidefinite but for rounding.

@@ -291,6 +291,14 @@ impl Table {
         self.joints[0].y.len()
     }
 
+    /// What `coefficients` on the columns `columns` leave of y on `joint`, on all rows (N m or N).
+    pub fn residual(&self, joint: usize, columns: &[usize], coefficients: &[f64]) -> Vec<f64> {
+        let mut residual = self.torque(joint, columns, coefficients);
+        let y = &self.joints[joint].y;
+        residual.iter_mut().zip(y).for_each(|(model, y)| *model = y - *model);
+        residual
+    }
+
     /// The torque on `joint` of `coefficients` on the columns `columns`, on all rows.
     pub fn torque(&self, joint: usize, columns: &[usize], coefficients: &[f64]) -> Vec<f64> {
         let mut torque = vec![0.0; self.len()];

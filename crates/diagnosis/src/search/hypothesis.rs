@@ -67,14 +67,14 @@ pub fn may_be(options: &Options, arm: &Arm, cause: Cause, joint: Option<usize>) 
 pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisError> {
     let mut waiting = check(study, wanted)?;
     let mut placed: Vec<Place<'_>> = Vec::new();
-    let products = study.products(|r| study.fitted[r]);
+    let products = study.training_products();
     let mut chosen = study.problem(&products).choose(Vec::new(), &products.first_weights());
     // When something set in, where a contact was and which period a ripple has is told by what the others leave.
     for suggest in [false, true] {
         if suggest {
             study.suggest(&chosen);
         }
-        let products = study.products(|r| study.fitted[r]);
+        let products = study.training_products();
         let problem = study.problem(&products);
         waiting.retain(|&place| {
             if !suggest && place.wanted.sets_in == Some(true) {
@@ -104,13 +104,13 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
         let formed_anew = study.relinearise(&chosen.fit, &chosen.set);
         let is_done = formed_anew.is_none();
         let set = formed_anew.unwrap_or_else(|| chosen.set.clone());
-        let products = study.products(|r| study.fitted[r]);
+        let products = study.training_products();
         chosen = study.problem(&products).choose(set, &chosen.fit.weights);
         if is_done {
             break;
         }
     }
-    let products = study.products(|r| study.fitted[r]);
+    let products = study.training_products();
     let members = judge::describe(study, &study.problem(&products), &chosen);
     Ok(Judged {
         named: chosen,

@@ -39,13 +39,7 @@ impl Fitted for InFit<'_> {
         let Some(joint) = self.candidate.joint else {
             return Vec::new();
         };
-        let model = self.table.torque(joint, &self.fit.columns, &self.fit.coefficients);
-        self.table.joints[joint]
-            .y
-            .iter()
-            .zip(&model)
-            .map(|(y, model)| y - model)
-            .collect()
+        self.table.residual(joint, &self.fit.columns, &self.fit.coefficients)
     }
 
     fn moving(&self) -> &[bool] {
@@ -84,12 +78,7 @@ pub fn is_at_its_size(candidate: &Candidate, fit: &Fit) -> bool {
 
 /// The root mean square of a candidate's torque over that of what it is to explain, on moving rows.
 fn torque_share(candidate: &Candidate, table: &Table, fit: &Fit, joint: usize) -> f64 {
-    let values: Vec<f64> = candidate
-        .columns
-        .iter()
-        .map(|&column| fit.coefficient(column))
-        .collect();
-    let torque = table.torque(joint, &candidate.columns, &values);
+    let torque = table.torque(joint, &candidate.columns, &fit.values(&candidate.columns));
     let this = &table.joints[joint];
     let power = |signal: &[f64]| -> f64 {
         signal

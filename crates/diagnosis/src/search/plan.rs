@@ -16,18 +16,17 @@ const LAST: usize = 3;
 
 /// Finds the candidates that together explain the training recordings. `progress` is told what is going on.
 pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
-    let fitted = study.fitted.clone();
     let ordinary: Vec<usize> = (0..study.candidates.len())
         .filter(|&c| study.candidates[c].cause.is_friction())
         .collect();
-    let products = study.products(|r| fitted[r]);
+    let products = study.training_products();
     let mut chosen = study.problem(&products).choose(ordinary, &products.first_weights());
     for round in 1..=SUGGESTIONS {
         progress(&format!("looking for causes, round {round}"));
         let before = chosen.set.clone();
         // What has no name must not hide what the residual suggests, nor what was suggested when little else was known: a
         // ripple's period, a push, an onset, of which the one may have stood for the beginning of the other.
-        let products = study.products(|r| fitted[r]);
+        let products = study.training_products();
         let named = before
             .iter()
             .copied()
@@ -41,7 +40,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
         study.note("looked for anew in this round", &chosen, &next);
         chosen = next;
         study.suggest(&chosen);
-        let products = study.products(|r| fitted[r]);
+        let products = study.training_products();
         let problem = study.problem(&products);
         let allowed = study.allowed();
         chosen = problem.choose(chosen.set, &chosen.fit.weights);
@@ -58,7 +57,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
         let formed_anew = study.relinearise(&chosen.fit, &chosen.set);
         let again = formed_anew.is_some();
         let set = formed_anew.unwrap_or_else(|| chosen.set.clone());
-        let products = study.products(|r| fitted[r]);
+        let products = study.training_products();
         let problem = study.problem(&products);
         let allowed = study.allowed();
         let before = set.clone();
@@ -66,7 +65,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
         let pruned = problem.prune(chosen.clone());
         study.note("does not pay its price", &chosen, &pruned);
         chosen = study.grown(pruned, &allowed);
-        let products = study.products(|r| fitted[r]);
+        let products = study.training_products();
         let swapped = study.problem(&products).swap(chosen.clone(), &allowed, SWAPS);
         study.note("explains more in its place", &chosen, &swapped);
         chosen = swapped;
@@ -78,7 +77,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
     }
     // With all sizes found, what did not pay before may do so, and with that what was not possible.
     for _ in 0..LAST {
-        let products = study.products(|r| fitted[r]);
+        let products = study.training_products();
         let allowed = study.allowed();
         let before = chosen.set.clone();
         chosen = study.problem(&products).choose(chosen.set, &chosen.fit.weights);

@@ -3,7 +3,7 @@
 use effects::{Size, Term};
 use rayon::prelude::*;
 
-use crate::data::measure::mean;
+use crate::data::statistics::mean;
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
 
@@ -126,7 +126,7 @@ pub fn refine(study: &mut Study, chosen: Chosen, again: bool) -> Chosen {
     let before = chosen.clone();
     let chosen = resize(study, chosen, again);
     study.note("a better size or form", &before, &chosen);
-    let products = study.products(|r| study.fitted[r]);
+    let products = study.training_products();
     let pruned = study.problem(&products).prune(chosen.clone());
     study.note("does not pay its price", &chosen, &pruned);
     pruned
@@ -134,7 +134,6 @@ pub fn refine(study: &mut Study, chosen: Chosen, again: bool) -> Chosen {
 
 /// Finds the sizes of what is in `chosen`, all of which stays, in its order.
 pub fn resize(study: &mut Study, mut chosen: Chosen, again: bool) -> Chosen {
-    let fitted = study.fitted.clone();
     for round in (if again { 2 } else { 0 })..ROUNDS.len() {
         let mut options: Vec<(usize, Vec<Vec<Term>>)> = Vec::new();
         let mut missing = Vec::new();
@@ -176,7 +175,7 @@ pub fn resize(study: &mut Study, mut chosen: Chosen, again: bool) -> Chosen {
                 (member, indices)
             })
             .collect();
-        let products = study.products(|r| fitted[r]);
+        let products = study.training_products();
         let problem = study.problem(&products);
         for (member, indices) in options {
             let best = indices

@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::data::motion::Motions;
 use crate::regression::fit::Fit;
+use crate::regression::small::{FORCE_RIDGE, ForceFit, explained};
 use crate::regression::table::Table;
 use crate::search::study::Study;
 use crate::thresholds::{
@@ -23,10 +24,7 @@ const MOST_SAMPLES: usize = 6000;
 /// What is left of every joint's y on all rows.
 pub fn residuals(table: &Table, fit: &Fit) -> Vec<Vec<f64>> {
     (0..table.dof())
-        .map(|joint| {
-            let model = table.torque(joint, &fit.columns, &fit.coefficients);
-            table.joints[joint].y.iter().zip(&model).map(|(y, m)| y - m).collect()
-        })
+        .map(|joint| table.residual(joint, &fit.columns, &fit.coefficients))
         .collect()
 }
 
@@ -104,13 +102,8 @@ pub fn contacts(
 
 fn force_gain(before: &[f64; 9], after: &[f64; 9]) -> f64 {
     let d: Vec<f64> = after.iter().zip(before).map(|(a, b)| a - b).collect();
-    let mut matrix = Matrix3::new(d[0], d[1], d[2], d[1], d[3], d[4], d[2], d[4], d[5]);
-    let right = Vector3::new(d[6], d[7], d[8]);
-    let ridge = 1e-6 * matrix.trace();
-    for k in 0..3 {
-        matrix[(k, k)] += ridge.max(1e-300);
-    }
-    matrix.cholesky().map_or(0.0, |factor| right.dot(&factor.solve(&right)))
+    let matrix = Matrix3::new(d[0], d[1], d[2], d[1], d[3], d[4], d[2], d[4], d[5]);
+    explained(matrix, &Vector3::new(d[6], d[7], d[8]), FORCE_RIDGE)
 }
 
 /// The periods (rad a rad) of a ripple on `joint` that explain most of its residual: peaks, best first.
@@ -183,11 +176,11 @@ fn power(samples: &[Sample], pair: impl Fn(&Sample) -> (f64, f64)) -> f64 {
         sr += s * sample.residual;
         cr += c * sample.residual;
     }
-    explained(ss, sc, cc, sr, cr)
+    explained_by_two(ss, sc, cc, sr, cr)
 }
 
 /// What two columns of these inner products explain.
-fn explained(ss: f64, sc: f64, cc: f64, sr: f64, cr: f64) -> f64 {
+fn explained_by_two(ss: f64, sc: f64, cc: f64, sr: f64, cr: f64) -> f64 {
     let determinant = ss * cc - sc * sc;
     if determinant <= 1e-9 * (ss + cc).powi(2) {
         return 0.0;
@@ -233,39 +226,24 @@ pub fn contact_gain(study: &Study, without: &Fit, columns: &[usize]) -> f64 {
     let table = &study.table;
     let residual = residuals(table, without);
     let times = study.motions.row_times();
-    let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
-    let mut tried: Vec<(f64, f64, [f64; 3])> = Vec::new();
+    let mut fit = ForceFit::default();
     for row in study.training() {
         let piece = (times[row] / CONTACT_PIECE).floor() as i64;
         for joint in 0..table.dof() {
             let this = &table.joints[joint];
-            let mut x = [0.0; 3];
+            let mut x = Vector3::zeros();
             for (value, &column) in x.iter_mut().zip(columns) {
                 *value = table.place[joint][column].map_or(0.0, |place| this.x[place][row]);
             }
             if !this.moving[row] || x.iter().all(|&v| v == 0.0) {
                 continue;
             }
-            let (w, r) = (without.weights[joint], residual[joint][row]);
-            if piece % 2 == 0 {
-                let x = Vector3::from(x);
-                matrix += w * x * x.transpose();
-                right += w * r * x;
-            } else {
-                tried.push((w, r, x));
-            }
+            fit.add(piece % 2 == 0, without.weights[joint], residual[joint][row], x);
         }
     }
-    let ridge = 1e-6 * matrix.trace();
-    let Some(factor) = (matrix + Matrix3::identity() * ridge.max(1e-300)).cholesky() else {
+    let Some((_, [before, after])) = fit.solved() else {
         return 0.0;
     };
-    let force = factor.solve(&right);
-    let (mut before, mut after) = (0.0, 0.0);
-    for (w, r, x) in tried {
-        before += w * r * r;
-        after += w * (r - force.dot(&Vector3::from(x))).powi(2);
-    }
     if before > 0.0 {
         1.0 - (after / before).sqrt()
     } else {

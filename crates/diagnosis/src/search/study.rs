@@ -5,9 +5,10 @@ use effects::arm::contact_columns;
 use effects::{Effect, Grounds, Scales, Term};
 
 use crate::data::Data;
-use crate::data::measure::{self, mean, spans};
+use crate::data::measure::{self, spans};
 use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
+use crate::data::statistics::mean;
 use crate::diagnose::Options;
 use crate::regression::background::{Background, Prior, Stated, Strengths};
 use crate::regression::fit::Products;

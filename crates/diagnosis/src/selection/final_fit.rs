@@ -58,7 +58,7 @@ pub fn as_given(study: &mut Study, judged: &mut Judged) -> Resampled {
 
 /// Takes one name out, or puts what it is a form of in its place, and fits the others anew.
 fn drop_name(study: &Study, judged: &mut Judged, candidate: usize, rule: &'static str) {
-    let products = study.products(|r| study.fitted[r]);
+    let products = study.training_products();
     let problem = study.problem(&products);
     let next = problem.without(&judged.named, candidate);
     study.note(rule, &judged.named, &next);
@@ -81,7 +81,7 @@ fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Judged, set: Vec<usi
 fn settle(study: &mut Study, judged: &mut Judged, as_given: bool) {
     let kept = study.settle(&judged.named.fit, &judged.candidates());
     let named = judged.named.set.len();
-    let products = study.products(|r| study.fitted[r]);
+    let products = study.training_products();
     let refitted = study
         .problem(&products)
         .choose(kept[..named].to_vec(), &judged.named.fit.weights);
@@ -90,7 +90,7 @@ fn settle(study: &mut Study, judged: &mut Judged, as_given: bool) {
     } else {
         study.with_best_strengths(refitted)
     };
-    let products = study.products(|r| study.fitted[r]);
+    let products = study.training_products();
     judged.members = judge::describe(study, &study.problem(&products), &judged.named);
     for (member, &number) in judged.nameless.iter_mut().zip(&kept[named..]) {
         member.candidate = number;
@@ -99,7 +99,7 @@ fn settle(study: &mut Study, judged: &mut Judged, as_given: bool) {
 
 /// Drops names that became impossible, until there are none.
 fn make_possible(study: &Study, judged: &mut Judged) {
-    let products = study.products(|r| study.fitted[r]);
+    let products = study.training_products();
     let problem = study.problem(&products);
     let impossible = |named: &Chosen| named.set.iter().copied().find(|&c| !problem.is_possible(c, &named.fit));
     while let Some(candidate) = impossible(&judged.named) {
@@ -109,12 +109,8 @@ fn make_possible(study: &Study, judged: &mut Judged) {
 
 /// Drops names that do not help to predict recordings they were not fitted to, until there are none.
 fn prove(study: &Study, judged: &mut Judged) {
-    let fitted = &study.fitted;
-    if fitted.iter().all(|&fitted| fitted) {
-        return;
-    }
-    let products = study.products(|r| fitted[r]);
-    let held = study.products(|r| !fitted[r]);
+    let Some(held) = study.held_products() else { return };
+    let products = study.training_products();
     while let Some(useless) = useless(study, &products, &held, judged) {
         drop_name(study, judged, useless, "predicts held-out recordings no better with it");
     }
@@ -140,7 +136,7 @@ fn give_up(study: &Study, judged: &mut Judged) {
     };
     let set: Vec<usize> = judged.named.set.iter().copied().filter(stays).collect();
     if set.len() < judged.named.set.len() {
-        let products = study.products(|r| study.fitted[r]);
+        let products = study.training_products();
         refit(study, &study.problem(&products), judged, set);
     }
 }
@@ -204,7 +200,7 @@ fn guard(study: &mut Study, judged: &mut Judged) {
             study.note_strengths(judge::HARMS, &judged.named, &next);
             judged.named = next;
         } else {
-            let products = study.products(|r| study.fitted[r]);
+            let products = study.training_products();
             let problem = study.problem(&products);
             let acts = |member: &&judge::Member| {
                 study.candidates[member.candidate].joint.is_some() && member.shares[joint] > 0.0
@@ -219,7 +215,7 @@ fn guard(study: &mut Study, judged: &mut Judged) {
             study.note(judge::HARMS, &judged.named, &next);
             judged.named = next;
         }
-        let products = study.products(|r| study.fitted[r]);
+        let products = study.training_products();
         judged.members = judge::describe(study, &study.problem(&products), &judged.named);
     }
 }
@@ -240,7 +236,7 @@ fn harmed(study: &Study, chosen: &Chosen) -> Option<usize> {
 
 /// The weaker background under which the held-out recordings of all joints are likeliest, if they are likelier than now.
 fn likelier_outside(study: &Study, chosen: &Chosen) -> Option<(Strengths, Chosen)> {
-    let held = study.products(|r| !study.fitted[r]);
+    let held = study.held_products()?;
     let loss = |chosen: &Chosen| held.loss(&held.rss(&study.table, &chosen.fit.columns, &chosen.fit.coefficients));
     let weaker = study.strengths.weaker().into_iter();
     let trials = weaker

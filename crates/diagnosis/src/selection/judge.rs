@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use crate::data::statistics::{moments, rms};
 use crate::regression::fit::Products;
 use crate::search::physics::is_at_its_size;
 use crate::search::problem::{Chosen, IMPOSSIBLE, Problem};
@@ -194,14 +195,12 @@ pub fn describe(study: &Study, problem: &Problem<'_>, chosen: &Chosen) -> Vec<Me
 /// nearly constant has none, so its size is taken.
 fn shares(study: &Study, chosen: &Chosen, candidate: usize) -> Vec<f64> {
     let columns = &study.candidates[candidate].columns;
-    let values: Vec<f64> = columns.iter().map(|&column| chosen.fit.coefficient(column)).collect();
+    let values = chosen.fit.values(columns);
     (0..study.motions.dof)
         .map(|joint| {
             let torque = study.table.torque(joint, columns, &values);
             let rows = study.training_rows(joint);
-            let n = rows.len().max(1) as f64;
-            let mean = rows.iter().map(|&r| torque[r]).sum::<f64>() / n;
-            let variance = rows.iter().map(|&r| (torque[r] - mean).powi(2)).sum::<f64>() / n;
+            let (mean, variance) = moments(rows.iter().map(|&row| torque[row]));
             let size = if variance < (NEARLY_CONSTANT * mean).powi(2) {
                 mean.hypot(variance.sqrt())
             } else {
@@ -215,17 +214,13 @@ fn shares(study: &Study, chosen: &Chosen, candidate: usize) -> Vec<f64> {
 /// Whether a candidate does nothing in the held-out recordings, so that they do not say whether it predicts.
 pub fn is_idle(study: &Study, chosen: &Chosen, candidate: usize) -> bool {
     let columns = &study.candidates[candidate].columns;
-    let values: Vec<f64> = columns.iter().map(|&column| chosen.fit.coefficient(column)).collect();
+    let values = chosen.fit.values(columns);
     let rows = crate::selection::predict::rows_of(study, |recording| !study.fitted[recording]);
     (0..study.motions.dof).all(|joint| {
         let torque = study.table.torque(joint, columns, &values);
         let moving = &study.table.joints[joint].moving;
-        let (mut power, mut count) = (0.0, 0.0);
-        for &row in rows.iter().filter(|&&row| moving[row]) {
-            power += torque[row] * torque[row];
-            count += 1.0;
-        }
-        (power / f64::max(count, 1.0)).sqrt() < IDLE_EFFECT * study.scales.torque[joint]
+        let on_rows = rows.iter().filter(|&&row| moving[row]).map(|&row| torque[row]);
+        rms(on_rows).unwrap_or(0.0) < IDLE_EFFECT * study.scales.torque[joint]
     })
 }
 

@@ -5,6 +5,7 @@ use std::ops::Range;
 use effects::background::{FRICTION_CURVE, GAIN, OWN_FRICTION};
 use effects::{Cone, Term};
 
+use crate::data::statistics::{self, rms};
 use crate::findings::report::JointFit;
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
@@ -32,8 +33,7 @@ fn residual(study: &Study, named: &Chosen, joint: usize, counts: impl Fn(&Term) 
         .zip(&fit.coefficients)
         .filter(|&(&column, _)| counts(&table.terms[column]))
         .unzip();
-    let model = table.torque(joint, &columns, &coefficients);
-    let mut residual: Vec<f64> = table.joints[joint].y.iter().zip(&model).map(|(y, m)| y - m).collect();
+    let mut residual = table.residual(joint, &columns, &coefficients);
     let dry: Vec<(usize, f64)> = fit
         .columns
         .iter()
@@ -69,20 +69,9 @@ fn is_dry(term: Term, joint: usize) -> bool {
     !matches!(term.law.cone, Cone::No) && term.onset().is_none() && term.joint() == Some(joint)
 }
 
-fn rms(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let (mut sum, mut count) = (0.0, 0);
-    for value in values {
-        sum += value * value;
-        count += 1;
-    }
-    (count > 0).then(|| (sum / f64::from(count)).sqrt())
-}
-
 /// The standard deviation of a signal on some rows.
 pub fn deviation(signal: &[f64], rows: &[usize]) -> f64 {
-    let n = rows.len().max(1) as f64;
-    let mean = rows.iter().map(|&row| signal[row]).sum::<f64>() / n;
-    (rows.iter().map(|&row| (signal[row] - mean).powi(2)).sum::<f64>() / n).sqrt()
+    statistics::deviation(rows.iter().map(|&row| signal[row]))
 }
 
 /// The rows of the recordings that `chosen` picks.

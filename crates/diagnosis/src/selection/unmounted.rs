@@ -37,7 +37,7 @@ pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
         study.strengths = before;
         return None;
     }
-    let products = study.products(|r| study.fitted[r]);
+    let products = study.training_products();
     judged.members = judge::describe(study, &study.problem(&products), &next);
     study.note_strengths(
         "one missing body does nearly all that the background does",
@@ -81,8 +81,7 @@ fn instead(study: &Study, chosen: &Chosen, body: usize) -> Option<(Strengths, Ch
     if next.score - chosen.score > allowance(explained) {
         return None;
     }
-    if study.fitted.contains(&false) {
-        let held = study.products(|r| !study.fitted[r]);
+    if let Some(held) = study.held_products() {
         let loss = |chosen: &Chosen| held.loss(&held.rss(&study.table, &chosen.fit.columns, &chosen.fit.coefficients));
         if loss(&next) - loss(chosen) > allowance(loss(&bare) - loss(chosen)) {
             return None;

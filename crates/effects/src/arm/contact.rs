@@ -1,5 +1,7 @@
 //! A force on the tool for a while.
 
+use ::arm::STANDARD_GRAVITY;
+
 use crate::fitted::moving_mass;
 use crate::{
     Against, Contact, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place,
@@ -100,8 +102,6 @@ pub fn window(term: &Term) -> Option<[f64; 2]> {
 
 /// The largest force of a contact as a multiple of the arm's weight: the drives could not hold against a larger one.
 const MOST_CONTACT: f64 = 4.0;
-/// Gravity on Earth (m/s²).
-const GRAVITY: f64 = 9.81;
 
 impl EffectKind for ExternalContact {
     fn spec(&self) -> &'static Spec {
@@ -121,7 +121,7 @@ impl EffectKind for ExternalContact {
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
         let force = (0..3).map(|k| fitted.value(k).powi(2)).sum::<f64>().sqrt();
-        force < MOST_CONTACT * (GRAVITY * moving_mass(fitted.arm()))
+        force < MOST_CONTACT * (STANDARD_GRAVITY * moving_mass(fitted.arm()))
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {

@@ -1,6 +1,6 @@
 //! A torque that repeats with the joint's angle.
 
-use crate::laws::wave;
+use crate::laws::{sine_and_cosine, wave};
 use crate::{
     Against, Effect, EffectKind, Estimate, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Size, Spec, State,
     Systematic, Term,
@@ -40,9 +40,7 @@ pub static RIPPLE: Law = Law {
 
 /// The columns of a ripple on a joint.
 pub fn columns(joint: usize, periods: f64) -> Vec<Term> {
-    [0, 1]
-        .map(|form| Term::on(&RIPPLE, joint).form(form).sized([periods]))
-        .to_vec()
+    sine_and_cosine(&RIPPLE, joint, periods)
 }
 
 /// A motor before a gear turns at least so many times in a turn of the joint, and its poles and teeth repeat more often still.

@@ -22,13 +22,10 @@ impl EffectKind for OtherPosition {
     }
 
     fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let mut forms = Vec::new();
-        for joint in grounds.moving() {
-            for other in grounds.moving().filter(|&other| other != joint) {
-                let terms = grounds.tents(joint, other, 8, Times::One);
-                forms.push(Form::on(Turn::Others, joint, terms).with(other));
-            }
-        }
-        forms
+        let form = |(joint, other)| {
+            let terms = grounds.tents(joint, other, 8, Times::One);
+            Form::on(Turn::Others, joint, terms).with(other)
+        };
+        grounds.pairs().map(form).collect()
     }
 }

@@ -40,14 +40,10 @@ impl EffectKind for OtherSpeed {
     }
 
     fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let mut forms = Vec::new();
-        for joint in grounds.moving() {
-            for other in grounds.moving().filter(|&other| other != joint) {
-                let term = |form| Term::on(&OTHER_SPEED, joint).of(other).form(form);
-                let terms = (0..4).map(term).collect();
-                forms.push(Form::on(Turn::Others, joint, terms).with(other));
-            }
-        }
-        forms
+        let form = |(joint, other)| {
+            let term = |form| Term::on(&OTHER_SPEED, joint).of(other).form(form);
+            Form::on(Turn::Others, joint, (0..4).map(term).collect()).with(other)
+        };
+        grounds.pairs().map(form).collect()
     }
 }

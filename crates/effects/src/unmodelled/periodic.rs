@@ -1,6 +1,6 @@
 //! A sinusoid in time.
 
-use crate::laws::wave;
+use crate::laws::{sine_and_cosine, wave};
 use crate::{EffectKind, Form, Grounds, Law, Spec, Term};
 
 /// A sinusoid in time.
@@ -25,9 +25,7 @@ static WAVE: Law = Law {
 
 /// The columns of a sinusoid of ω (rad/s) on a joint.
 pub fn columns(joint: usize, omega: f64) -> Vec<Term> {
-    [0, 1]
-        .map(|form| Term::on(&WAVE, joint).form(form).sized([omega]))
-        .to_vec()
+    sine_and_cosine(&WAVE, joint, omega)
 }
 
 impl EffectKind for Periodic {

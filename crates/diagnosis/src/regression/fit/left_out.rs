@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Products, cholesky};
+use super::{Products, cholesky, solved};
 use crate::regression::table::{Stretch, Table};
 use crate::thresholds::RECORDING_GROUPS;
 
@@ -161,13 +161,7 @@ fn solution(gram: &DMatrix<f64>, p: usize, prior: &DMatrix<f64>) -> DVector<f64>
     let scale: Vec<f64> = (0..p).map(|i| entry(i, i).max(0.0).sqrt().max(1e-150)).collect();
     let matrix = DMatrix::from_fn(p, p, |i, k| entry(i, k) / (scale[i] * scale[k]));
     let right = DVector::from_fn(p, |i, _| gram[(i, last)] / scale[i]);
-    let factor = cholesky(&matrix);
-    let reduced = factor
-        .solve_lower_triangular(&right)
-        .unwrap_or_else(|| DVector::zeros(p));
-    let scaled = factor
-        .tr_solve_lower_triangular(&reduced)
-        .unwrap_or_else(|| DVector::zeros(p));
+    let [_, scaled] = solved(&cholesky(&matrix), &right);
     DVector::from_fn(p, |i, _| scaled[i] / scale[i])
 }
 

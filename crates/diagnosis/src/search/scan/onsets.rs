@@ -4,6 +4,7 @@ use effects::{Kind, Scope, SetsIn, Term};
 use nalgebra::{Matrix4, Vector4};
 use rayon::prelude::*;
 
+use crate::regression::small::explained;
 use crate::regression::table::Table;
 use crate::search::candidate::Cause;
 use crate::search::study::Study;
@@ -125,7 +126,7 @@ impl Past<'_> {
         for &row in &self.rows {
             let time = times[row];
             while time < next && next >= from {
-                let gain = explained(&matrix, &right);
+                let gain = explained(matrix, &right, 1e-9);
                 if found.is_none_or(|(most, _)| gain > most) {
                     found = Some((gain, next));
                 }
@@ -148,14 +149,4 @@ impl Past<'_> {
         }
         found.map(|(_, from)| from)
     }
-}
-
-/// What columns of these inner products explain.
-fn explained(matrix: &Matrix4<f64>, right: &Vector4<f64>) -> f64 {
-    let mut matrix = *matrix;
-    let ridge = 1e-9 * matrix.trace();
-    for k in 0..4 {
-        matrix[(k, k)] += ridge.max(1e-300);
-    }
-    matrix.cholesky().map_or(0.0, |factor| right.dot(&factor.solve(right)))
 }

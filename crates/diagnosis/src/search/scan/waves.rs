@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
-use super::{explained, peaks, power, samples};
+use super::{explained_by_two, peaks, power, samples};
 use crate::data::motion::Motions;
 use crate::regression::table::Table;
 use crate::thresholds::{WAVE_CUTOFF, WAVE_FREQUENCIES};
@@ -55,7 +55,7 @@ pub fn waves(
         let (z, mirrored) = (bins[2 * k], bins[size - 2 * k].conj());
         let ones = (z - mirrored) / Complex::new(0.0, 2.0);
         let (ss, sc, cc) = ((n - ones.re) / 2.0, -ones.im / 2.0, (n + ones.re) / 2.0);
-        explained(ss, sc, cc, -residual.im, residual.re)
+        explained_by_two(ss, sc, cc, -residual.im, residual.re)
     };
     let from = ((low / step) as usize).max(1);
     let to = ((high / step).ceil() as usize).min(size / 2 - 1);

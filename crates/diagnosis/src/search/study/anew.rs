@@ -110,7 +110,7 @@ impl Study {
     pub fn restart(&mut self) {
         self.moving = Moving::Steadily;
         self.strengths = self.stated.first(self.arm.dof());
-        let products = self.products(|r| self.fitted[r]);
+        let products = self.training_products();
         let nothing = self.problem(&products).choose(Vec::new(), &products.first_weights());
         self.about(&nothing.fit, &[], true);
     }

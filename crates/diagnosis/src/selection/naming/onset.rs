@@ -48,9 +48,7 @@ impl Reader<'_> {
         let joints: Vec<(usize, Vec<f64>, Vec<f64>, f64)> = (0..table.dof())
             .filter(|&joint| fitted.count[joint] > 0.0)
             .map(|joint| {
-                let model = table.torque(joint, all, model);
-                let y = table.joints[joint].y.iter();
-                let left: Vec<f64> = y.zip(&model).map(|(y, m)| y - m).collect();
+                let left = table.residual(joint, all, model);
                 let rows = study.training_rows(joint);
                 let power = rows.iter().map(|&row| left[row].powi(2)).sum::<f64>() / rows.len().max(1) as f64;
                 let evidence = fitted.evidence[joint] / fitted.count[joint];

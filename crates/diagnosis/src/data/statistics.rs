@@ -1,0 +1,31 @@
+//! Mean, standard deviation and root mean square.
+
+use std::borrow::Borrow;
+
+/// The mean; zero of nothing.
+pub fn mean<T: Borrow<f64>>(values: impl IntoIterator<Item = T>) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for value in values {
+        sum += value.borrow();
+        count += 1.0;
+    }
+    if count > 0.0 { sum / count } else { 0.0 }
+}
+
+/// The mean and the variance about it; zero of nothing.
+pub fn moments<T: Borrow<f64>>(values: impl Iterator<Item = T> + Clone) -> (f64, f64) {
+    let middle = mean(values.clone());
+    (middle, mean(values.map(|value| (value.borrow() - middle).powi(2))))
+}
+
+/// The standard deviation; zero of nothing.
+pub fn deviation<T: Borrow<f64>>(values: impl Iterator<Item = T> + Clone) -> f64 {
+    moments(values).1.sqrt()
+}
+
+/// The root of the mean square; `None` of nothing.
+pub fn rms(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let mut values = values.into_iter().peekable();
+    values.peek()?;
+    Some(mean(values.map(|value| value * value)).sqrt())
+}
