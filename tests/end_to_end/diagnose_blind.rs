@@ -6,8 +6,8 @@ use crate::diagnose_made::names;
 use crate::support::{Sandbox, root};
 use serde_json::Value;
 
-/// What a URDF ordinarily leaves out; the cases have it on many joints.
-const ORDINARY: [&str; 3] = ["coulomb_friction", "viscous_friction", "rotor_inertia"];
+/// What a URDF usually omits; the cases have it on many joints.
+const BASELINE: [&str; 3] = ["coulomb_friction", "viscous_friction", "rotor_inertia"];
 
 /// The name that the catalogue has for what the truth calls otherwise.
 fn renamed(name: &str) -> &str {
@@ -54,7 +54,7 @@ pub fn compare(case: &str, truth: &Value, found: &Value) {
         )
     });
     let (unknown, known): (BTreeSet<_>, BTreeSet<_>) = concealed.partition(|(name, _)| name.ends_with("_unknown"));
-    let is_special = |(name, _): &&(String, String)| !ORDINARY.contains(&name.as_str());
+    let is_special = |(name, _): &&(String, String)| !BASELINE.contains(&name.as_str());
     let list = names(found);
     let named: Vec<_> = list.iter().filter(is_special).collect();
     let hidden: Vec<_> = known.iter().filter(is_special).collect();
@@ -79,7 +79,7 @@ pub fn compare(case: &str, truth: &Value, found: &Value) {
 
 #[test]
 #[ignore = "needs ../shared"]
-fn ordinary_friction_alone_is_left_at_that() {
+fn baseline_friction_alone_is_left_at_that() {
     check("case_024");
 }
 

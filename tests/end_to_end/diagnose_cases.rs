@@ -61,7 +61,7 @@ fn holds(found: &Value, effect: &str, key: &str, truth: f64) {
 }
 
 #[test]
-fn ordinary_friction_is_all_that_there_is() {
+fn baseline_friction_is_all_that_there_is() {
     let found = check("friction");
     assert_eq!(found["findings"].as_array().map(Vec::len), Some(6));
 }

@@ -4,7 +4,7 @@ mod support;
 
 use arm::{Arm, Vector3};
 use diagnosis::{Diagnosis, Verdict};
-use support::{Concealed, ELBOW, Motion, SHOULDER, diagnosed, motion, ordinary, sentences, trio};
+use support::{Concealed, ELBOW, Motion, SHOULDER, baseline_friction, diagnosed, motion, sentences, trio};
 
 /// What is found beside plain friction must be `effect` on `joint`, with parameters within a part `tolerance` of the truth.
 fn check(
@@ -90,7 +90,7 @@ const SAME_ERROR: f64 = 0.002;
 #[test]
 fn a_torque_scale_multiplies_the_friction_beside_it() {
     let concealed = |motion: &mut Motion, tau: &mut [f64]| {
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
         tau[ELBOW] += 1.5 * motion.qd[ELBOW].signum() + 1.1 * motion.qd[ELBOW];
         tau[ELBOW] *= 1.3;
     };
@@ -116,7 +116,7 @@ fn added(effect: &str, joint: usize, torque: impl Fn(&Motion) -> f64, truth: &[(
     let arm = trio();
     let name = arm.joints()[joint].name.clone();
     let concealed = |motion: &mut Motion, tau: &mut [f64]| {
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
         tau[joint] += torque(motion);
     };
     check(&arm, &concealed, effect, Some(&name), truth, tolerance);
@@ -195,7 +195,7 @@ fn spring() {
 fn load_dependent_friction() {
     let concealed = |motion: &mut Motion, tau: &mut [f64]| {
         let load = tau[SHOULDER].abs();
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
         tau[SHOULDER] += 0.15 * load * motion.qd[SHOULDER].signum();
     };
     check(
@@ -211,7 +211,7 @@ fn load_dependent_friction() {
 /// Gears that turn the elbow's drive and another's together act on both.
 fn coupled(other: usize) {
     let concealed = move |motion: &mut Motion, tau: &mut [f64]| {
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
         tau[ELBOW] += 1.1 * motion.qd[other] + 0.12 * motion.qdd[other];
         tau[other] += 1.1 * motion.qd[ELBOW] + 0.12 * motion.qdd[ELBOW];
     };
@@ -232,7 +232,7 @@ fn transmission_coupling_of_joints_one_apart() {
 #[test]
 fn torque_scale() {
     let concealed = |motion: &mut Motion, tau: &mut [f64]| {
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
         tau[SHOULDER] *= 1.15;
     };
     check(
@@ -249,14 +249,14 @@ fn torque_scale() {
 fn delayed(delay: f64) -> impl Fn(&mut Motion, &mut [f64]) {
     let arm = trio();
     move |now: &mut Motion, tau: &mut [f64]| {
-        ordinary(now, tau);
+        baseline_friction(now, tau);
         let is_this = |&variant: &usize| motion(3, now.time, variant).q == now.q;
         let variant = (0..3).find(is_this).expect("it is one of the three");
         let ahead = motion(3, now.time + delay, variant);
         let mut later = [0.0; 3];
         let mut workspace = arm::Workspace::new(&arm);
         arm.inverse_dynamics(&mut workspace, &ahead.q, &ahead.qd, &ahead.qdd, &mut later);
-        ordinary(&ahead, &mut later);
+        baseline_friction(&ahead, &mut later);
         tau[SHOULDER] = later[SHOULDER];
     }
 }
@@ -284,7 +284,7 @@ fn actuation_delay_has_its_size() {
 #[test]
 fn encoder_offset() {
     let concealed = |motion: &mut Motion, tau: &mut [f64]| {
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
         motion.q[ELBOW] += 0.06;
     };
     check(
@@ -302,7 +302,7 @@ fn link_inertial_error() {
     let robot = trio().with_scaled_link(SHOULDER, 1.2);
     check(
         &robot,
-        &|m, tau| ordinary(m, tau),
+        &|m, tau| baseline_friction(m, tau),
         "link_inertial_error",
         Some("shoulder"),
         &[("relative", 0.2)],
@@ -315,7 +315,7 @@ fn gravity_misalignment() {
     let robot = trio().with_turned_base(Vector3::new(1.0, 0.0, 0.0), 0.08);
     check(
         &robot,
-        &|m, tau| ordinary(m, tau),
+        &|m, tau| baseline_friction(m, tau),
         "gravity_misalignment",
         None,
         &[("angle", 0.08)],
@@ -328,7 +328,7 @@ fn joint_elasticity() {
     // The link follows the motion; the drive, which is what the encoder sees, is ahead by the spring's deflection.
     let concealed = |motion: &mut Motion, tau: &mut [f64]| {
         motion.q[ELBOW] += tau[ELBOW] / 250.0;
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
     };
     check(
         &trio(),
@@ -342,7 +342,7 @@ fn joint_elasticity() {
 
 #[test]
 fn plain_friction_on_every_joint_and_nothing_else() {
-    let diagnosis = diagnosed(&trio(), &trio(), &|m, tau| ordinary(m, tau), Vec::new());
+    let diagnosis = diagnosed(&trio(), &trio(), &|m, tau| baseline_friction(m, tau), Vec::new());
     let report = &diagnosis.report;
     assert_eq!(report.findings.len(), 6, "{:?}", sentences(&diagnosis));
     for finding in &report.findings {
@@ -360,7 +360,7 @@ fn plain_friction_on_every_joint_and_nothing_else() {
 #[test]
 fn a_constant_torque_is_no_torque() {
     let concealed = |motion: &mut Motion, tau: &mut [f64]| {
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
         tau[ELBOW] = 0.3;
     };
     let diagnosis = diagnosed(&trio(), &trio(), &concealed, Vec::new());

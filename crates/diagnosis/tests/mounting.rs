@@ -4,7 +4,7 @@ mod support;
 
 use arm::Vector3;
 use diagnosis::{Diagnosis, Options, diagnose};
-use support::{Motion, diagnosed, inputs, ordinary, recorded, regular, sentences, trio};
+use support::{Motion, baseline_friction, diagnosed, inputs, recorded, regular, sentences, trio};
 
 /// What is named beside the friction that every joint has.
 fn named(diagnosis: &Diagnosis) -> Vec<(&str, Option<&str>)> {
@@ -19,7 +19,12 @@ fn named(diagnosis: &Diagnosis) -> Vec<(&str, Option<&str>)> {
 /// The diagnosis of the trio's arm on a base turned by an angle (°) about an axis.
 fn mounted(degrees: f64) -> Diagnosis {
     let robot = trio().with_turned_base(Vector3::new(0.6, 0.8, 0.0), degrees.to_radians());
-    diagnosed(&trio(), &robot, &|motion, tau| ordinary(motion, tau), Vec::new())
+    diagnosed(
+        &trio(),
+        &robot,
+        &|motion, tau| baseline_friction(motion, tau),
+        Vec::new(),
+    )
 }
 
 #[test]
@@ -54,7 +59,7 @@ fn a_base_on_a_slope_a_wall_or_the_ceiling_is_found() {
 fn what_is_known_of_a_wall_is_not_found_again() {
     let robot = trio().with_turned_base(Vector3::new(0.6, 0.8, 0.0), 90.0_f64.to_radians());
     let known = mounted(90.0).effects;
-    let again = diagnosed(&trio(), &robot, &|motion, tau| ordinary(motion, tau), known);
+    let again = diagnosed(&trio(), &robot, &|motion, tau| baseline_friction(motion, tau), known);
     assert!(named(&again).is_empty(), "{:?}", sentences(&again));
     let worst = again
         .report
@@ -70,7 +75,7 @@ fn what_is_known_of_a_wall_is_not_found_again() {
 fn channels_without_torque_are_left_out() {
     let robot = trio();
     let concealed = |motion: &Motion, tau: &mut [f64]| {
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
         tau[2] = 0.0;
     };
     let recordings: Vec<_> = [16.0, 16.0, 10.0]

@@ -178,7 +178,7 @@ fn the_proposal_does_not_depend_on_the_threads() {
 #[test]
 fn no_motion_is_promised_to_tell_an_offset_that_sets_in() {
     let later = |motion: &mut Motion, tau: &mut [f64]| {
-        support::ordinary(motion, tau);
+        support::baseline_friction(motion, tau);
         if motion.clock >= 1006.0 {
             tau[ELBOW] += 0.4;
         }

@@ -4,7 +4,7 @@ mod support;
 
 use arm::Vector3;
 use diagnosis::{Options, Wanted};
-use support::{ELBOW, Motion, diagnosed, diagnosed_with, ordinary, sentences, trio};
+use support::{ELBOW, Motion, baseline_friction, diagnosed, diagnosed_with, sentences, trio};
 
 /// What sets in halfway is named with its onset, whatever it is.
 #[test]
@@ -17,7 +17,7 @@ fn what_sets_in_has_its_onset() {
     let effects: [(&str, Torque<'_>); 2] = [("torque_offset", &offset), ("spring", &spring)];
     for (effect, torque) in effects {
         let concealed = |motion: &mut Motion, tau: &mut [f64]| {
-            ordinary(motion, tau);
+            baseline_friction(motion, tau);
             if motion.clock >= onset {
                 tau[ELBOW] += torque(motion);
             }
@@ -57,7 +57,7 @@ fn a_payload_picked_up_has_its_onset() {
                 tau,
             );
         }
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
     };
     let diagnosis = diagnosed(&empty, &empty, &concealed, Vec::new());
     let plain = ["viscous_friction", "coulomb_friction"];

@@ -5,9 +5,11 @@ mod support;
 use arm::{Matrix6xX, Workspace};
 use diagnosis::{Options, diagnose};
 use recording::RegularRecording;
-use support::{Concealed, ELBOW, Motion, SHOULDER, diagnosed, inputs, ordinary, recorded, regular, sentences, trio};
+use support::{
+    Concealed, ELBOW, Motion, SHOULDER, baseline_friction, diagnosed, inputs, recorded, regular, sentences, trio,
+};
 
-/// What was found beside ordinary friction of the expected sizes: effects and joints.
+/// What was found beside baseline friction of the expected sizes: effects and joints.
 fn names(diagnosis: &diagnosis::Diagnosis) -> Vec<(&str, &str)> {
     let plain = ["viscous_friction", "coulomb_friction"];
     let findings = diagnosis.report.findings.iter();
@@ -43,7 +45,7 @@ fn is_sized(diagnosis: &diagnosis::Diagnosis, effect: &str, truth: &[(&str, f64)
 #[test]
 fn gravity_compensator() {
     let concealed = |motion: &mut Motion, tau: &mut [f64]| {
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
         tau[SHOULDER] += 14.0 * (motion.q[SHOULDER] + 1.5).sin();
     };
     let diagnosis = check(&concealed, &[("gravity_compensator", "shoulder")]);
@@ -59,7 +61,7 @@ fn gravity_compensator() {
 #[test]
 fn a_spring_against_the_weight_is_no_gravity_compensator() {
     let concealed = |motion: &mut Motion, tau: &mut [f64]| {
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
         tau[SHOULDER] += 9.0 * (motion.q[SHOULDER] + 1.5);
     };
     let diagnosis = check(&concealed, &[("spring", "shoulder")]);
@@ -75,7 +77,12 @@ fn a_payload_is_no_gravity_compensator() {
         tensor: arm::Matrix3::identity() * 2e-3,
     };
     let loaded = trio().with_payload(&body);
-    let diagnosis = diagnosed(&trio(), &loaded, &|motion, tau| ordinary(motion, tau), Vec::new());
+    let diagnosis = diagnosed(
+        &trio(),
+        &loaded,
+        &|motion, tau| baseline_friction(motion, tau),
+        Vec::new(),
+    );
     let found = names(&diagnosis);
     assert!(
         found.contains(&("payload", "the whole arm")),
@@ -104,7 +111,7 @@ fn in_a_row(concealed: impl Fn(f64, &mut Motion, &mut [f64])) -> diagnosis::Diag
 #[test]
 fn thermal_drift() {
     let diagnosis = in_a_row(|time, motion, tau| {
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
         tau[SHOULDER] += 2.0 * (1.0 + 1.2 * (-time / 25.0).exp()) * motion.qd[SHOULDER].signum();
     });
     assert_eq!(
@@ -113,7 +120,7 @@ fn thermal_drift() {
         "{:?}",
         sentences(&diagnosis)
     );
-    // With the ordinary 0.6 N m beneath.
+    // With the baseline 0.6 N m beneath.
     is_sized(
         &diagnosis,
         "thermal_drift",
@@ -126,7 +133,7 @@ fn thermal_drift() {
 #[test]
 fn dry_friction_that_stays_is_no_thermal_drift() {
     let diagnosis = in_a_row(|_, motion, tau| {
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
         tau[SHOULDER] += 3.0 * motion.qd[SHOULDER].signum();
     });
     assert!(names(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
@@ -136,7 +143,7 @@ fn dry_friction_that_stays_is_no_thermal_drift() {
 #[test]
 fn torque_saturation() {
     let concealed = |motion: &mut Motion, tau: &mut [f64]| {
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
         let missing = tau[SHOULDER] + 30.0;
         if missing < 0.0 {
             tau[SHOULDER] = -30.0 + 20.0 * missing;
@@ -150,7 +157,7 @@ fn torque_saturation() {
 #[test]
 fn a_scale_is_no_torque_saturation() {
     let concealed = |motion: &mut Motion, tau: &mut [f64]| {
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
         tau[SHOULDER] *= 1.3;
     };
     check(&concealed, &[("torque_scale", "shoulder")]);
@@ -161,7 +168,7 @@ fn a_scale_is_no_torque_saturation() {
 fn a_spring_in_the_drive_is_no_backlash() {
     let concealed = |motion: &mut Motion, tau: &mut [f64]| {
         motion.q[ELBOW] += tau[ELBOW] / 250.0;
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
     };
     check(&concealed, &[("joint_elasticity", "elbow")]);
 }
@@ -179,7 +186,7 @@ fn external_contact() {
                 *tau -= velocity.dot(&arm::Vector3::new(5.0, 2.0, 8.0));
             }
         }
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
     };
     let diagnosis = check(&concealed, &[("external_contact", "the whole arm")]);
     is_sized(
@@ -194,7 +201,7 @@ fn external_contact() {
 #[test]
 fn a_torque_offset_that_sets_in_is_no_external_contact() {
     let concealed = |motion: &mut Motion, tau: &mut [f64]| {
-        ordinary(motion, tau);
+        baseline_friction(motion, tau);
         if motion.clock >= 1006.0 {
             tau[ELBOW] += 1.5;
         }

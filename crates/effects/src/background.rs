@@ -1,6 +1,6 @@
 //! Laws of what a model is off by everywhere: no effects of their own, but columns under a prior in every fit.
 
-use crate::motion::Motion;
+use crate::signals::Signals;
 use crate::term::{Law, Term};
 
 /// Below this part of its largest speed a joint's friction bends.
@@ -28,7 +28,7 @@ pub static FRICTION_CURVE: Law = Law {
     ..Law::PLAIN
 };
 
-fn friction_curve(term: &Term, joint: usize, motion: &Motion<'_>) -> Option<Vec<f64>> {
+fn friction_curve(term: &Term, joint: usize, motion: &Signals<'_>) -> Option<Vec<f64>> {
     let slow = (SLOW * motion.scales.speed[joint]).max(motion.scales.rest[joint]);
     let qd = &motion.qd[joint];
     motion.map(|k| {

@@ -1,6 +1,6 @@
 //! The link behind a joint that gives: what its motion relative to the drive adds to the torques.
 
-use crate::motion::{Motion, Rigid};
+use crate::signals::{Rigid, Signals};
 
 /// The motion δ (link less drive) of the link behind a joint that gives, tick by tick.
 #[derive(Clone, Debug)]
@@ -40,7 +40,7 @@ pub fn sprung(
     halfgap: f64,
     stiffness: f64,
     damping: impl Fn(f64) -> f64,
-    motion: &Motion<'_>,
+    motion: &Signals<'_>,
 ) -> Vec<[f64; 3]> {
     let (h, rigid) = (motion.period, motion.rigid);
     let (mass, drag, slope) = (
@@ -81,7 +81,7 @@ pub fn sprung(
 
 /// δ behind a gap of ± `halfgap` with rigid ends: the link lies against one side while its torque presses it there, and
 /// moves freely from one to the other when the torque turns; impacts are inelastic.
-pub fn gap(at: usize, halfgap: f64, motion: &Motion<'_>) -> Vec<[f64; 3]> {
+pub fn gap(at: usize, halfgap: f64, motion: &Signals<'_>) -> Vec<[f64; 3]> {
     let (h, rigid) = (motion.period, motion.rigid);
     let tau = &rigid.tau[at];
     let ticks = motion.ticks();

@@ -1,6 +1,6 @@
 //! The forms that are tried of an effect.
 
-use crate::motion::Scales;
+use crate::signals::Scales;
 use crate::term::Term;
 
 /// What the recordings say before anything is fitted, of which forms are made.

@@ -1,7 +1,7 @@
 //! Laws that several effects share: the motion itself, its sign, constants and curves over a position.
 
 use crate::form::Times;
-use crate::motion::Motion;
+use crate::signals::Signals;
 use crate::term::{Cone, Law, Term};
 
 /// Sine (form 0) and cosine (form 1) of a law of waves on a joint, at one size.
@@ -90,6 +90,6 @@ pub fn wave(phase: f64, cosine: bool) -> f64 {
 }
 
 /// The position of joint `of` from −1 to 1 over its range.
-pub fn centred(motion: &Motion<'_>, of: usize, tick: usize) -> f64 {
+pub fn centred(motion: &Signals<'_>, of: usize, tick: usize) -> f64 {
     (motion.q[of][tick] - motion.scales.middle[of]) / (0.5 * motion.scales.range[of]).max(1e-9)
 }

@@ -16,8 +16,8 @@ mod kind;
 mod kinds;
 pub mod laws;
 mod machine;
-mod motion;
 mod quantity;
+mod signals;
 mod spec;
 mod term;
 #[cfg(test)]
@@ -32,8 +32,8 @@ pub use form::{Form, Grounds, SetsIn, Times, Turn};
 pub use kind::{EffectKind, check};
 pub use kinds::{Kind, NAMES, spec};
 pub use machine::{Circumstance, Contact, Dry, Machine, Place, Scaled, Smooth, Sprung, State, sign};
-pub use motion::{Motion, Rigid, Scales};
 pub use quantity::Quantity;
+pub use signals::{Rigid, Scales, Signals};
 pub use spec::{Against, Experiment, InUrdf, ONSET, Parameter, Range, Scope, Shape, Spec, Unseen};
 pub use term::{Carried, Column, Cone, Law, OtherForm, Size, Term};
 

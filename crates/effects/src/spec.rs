@@ -250,7 +250,7 @@ pub struct Spec {
     /// The evidence that it must bring beyond that of its coefficients (nats).
     pub prior: f64,
     /// Whether it is baseline: friction and rotor inertia, which a URDF usually omits, need less evidence.
-    pub is_ordinary: bool,
+    pub is_baseline: bool,
     /// Whether it is the friction that every drive has.
     pub is_friction: bool,
     /// Whether it is a baseline effect, or a constant beside one.
@@ -311,7 +311,7 @@ impl Spec {
         brings: None,
         excludes: &[],
         prior: 6.0,
-        is_ordinary: false,
+        is_baseline: false,
         is_friction: false,
         is_simple: false,
         is_certain_in_form: false,

@@ -5,7 +5,7 @@ use std::fmt;
 use arm::Arm;
 
 use crate::compliance::Behind;
-use crate::motion::Motion;
+use crate::signals::Signals;
 
 /// A size that a column is not linear in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +50,7 @@ pub struct Carried {
 }
 
 /// What makes a term's column on a joint of a motion.
-pub type Column = fn(&Term, usize, &Motion<'_>) -> Option<Vec<f64>>;
+pub type Column = fn(&Term, usize, &Signals<'_>) -> Option<Vec<f64>>;
 
 /// What makes another form of a term at a factor on its size, and whether it is another at all.
 pub type OtherForm = fn(&Term, f64) -> (Term, bool);
@@ -80,7 +80,7 @@ pub struct Law {
     /// What it is to dry friction.
     pub cone: Cone,
     /// The link's motion behind a joint that gives, simulated once for all joints.
-    pub behind: Option<fn(&Term, &Motion<'_>) -> Behind>,
+    pub behind: Option<fn(&Term, &Signals<'_>) -> Behind>,
     /// Puts what a fit found into the arm about which columns are formed.
     pub carry: Option<fn(&Term, f64, &mut Carried)>,
     /// Whether it is made of the measured torque: a motion on paper has that only once it is known.
@@ -216,7 +216,7 @@ impl Term {
     }
 
     /// The torque on `joint` at the ticks of a motion (N m or N); `None` if it has none there.
-    pub fn column(&self, joint: usize, motion: &Motion<'_>) -> Option<Vec<f64>> {
+    pub fn column(&self, joint: usize, motion: &Signals<'_>) -> Option<Vec<f64>> {
         if self.joint.is_some_and(|only| only != joint) {
             return None;
         }

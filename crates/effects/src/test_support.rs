@@ -4,7 +4,7 @@ use ::arm::{Arm, PARAMETERS_PER_LINK, Vector3, Workspace};
 use nalgebra::DMatrix;
 
 use crate::machine::Circumstance;
-use crate::{Effect, Machine, Motion, Rigid, Scales, State, Term, sign};
+use crate::{Effect, Machine, Rigid, Scales, Signals, State, Term, sign};
 
 /// Two axes, one after the other, the tool .5 m beyond.
 const URDF: &str = r#"<robot name="two"><link name="base"/>
@@ -64,7 +64,7 @@ fn derivative(change: &dyn Fn(f64, &mut [[f64; 2]; 3]) -> Arm, tick: usize) -> [
 }
 
 /// Calls `visit` with the motion of the test's arm and the model along it.
-fn along<T>(visit: impl FnOnce(&Motion<'_>) -> T) -> T {
+fn along<T>(visit: impl FnOnce(&Signals<'_>) -> T) -> T {
     let arm = arm();
     let nominal = arm.inertial_parameters();
     let tau = signals(|tick| torque(&arm, state(tick)));
@@ -158,7 +158,7 @@ fn along<T>(visit: impl FnOnce(&Motion<'_>) -> T) -> T {
         range: vec![2.0; 2],
         torque: vec![1.0; 2],
     };
-    visit(&Motion {
+    visit(&Signals {
         recording: 0,
         start: 0.0,
         period: PERIOD,

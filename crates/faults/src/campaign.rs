@@ -8,7 +8,7 @@ use crate::fault::{Fault, families, outside};
 use crate::robot::Robot;
 use crate::urdf_error::SIGMAS;
 
-/// Cases drawn from a seed: a third hold nothing but ordinary friction, a tenth something outside the catalogue, the others one to
+/// Cases drawn from a seed: a third hold nothing but baseline friction, a tenth something outside the catalogue, the others one to
 /// three effects of it, every family about as often; half are easy, half hard.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Campaign {
@@ -34,7 +34,7 @@ pub struct CasePlan {
     /// Whether it is of the harder kind: 100 to 500 Hz and sometimes 1 kHz, stamps that jitter, rows lost, functional forms that are not
     /// the textbook's, smaller effects, two training recordings instead of three.
     pub hard: bool,
-    /// Whether every joint has ordinary Coulomb and viscous friction.
+    /// Whether every joint has baseline Coulomb and viscous friction.
     pub background_friction: bool,
     /// Names of the effects.
     pub effects: Vec<String>,
@@ -56,7 +56,7 @@ impl Campaign {
     pub fn plans(&self) -> Vec<CasePlan> {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         let count = |part: f64| (self.cases as f64 * part).round() as usize;
-        let (ordinary, unknown) = (count(1.0 / 3.0), count(0.1));
+        let (baseline, unknown) = (count(1.0 / 3.0), count(0.1));
         let mut outside = Deck::new(outside());
         let mut families = Deck::new(families());
         let mut effects: Vec<(Vec<String>, bool)> = Vec::new();
@@ -64,8 +64,8 @@ impl Campaign {
         while effects.len() < self.cases {
             let lifelike = self.lifelike && effects.len() % 2 == 1;
             let names = match effects.len() {
-                number if number < ordinary => Vec::new(),
-                number if number < ordinary + unknown => vec![outside.next(&mut random).to_owned()],
+                number if number < baseline => Vec::new(),
+                number if number < baseline + unknown => vec![outside.next(&mut random).to_owned()],
                 _ => {
                     let sizes: &[usize] = if lifelike { &[1, 2, 2, 3, 3, 5] } else { &[1, 2, 2, 3] };
                     let size = sizes.choose(&mut random).copied().unwrap_or(1);

@@ -40,7 +40,7 @@ pub struct Settings {
     pub lost: bool,
     /// How many training recordings there are.
     pub training: usize,
-    /// Whether every joint has ordinary friction on top, drawn from the seed.
+    /// Whether every joint has baseline friction on top, drawn from the seed.
     pub background_friction: bool,
     /// Whether the case looks like reality beside the effects ([`CasePlan::lifelike`]).
     pub lifelike: bool,

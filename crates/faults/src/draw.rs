@@ -23,7 +23,7 @@ pub(crate) struct Scales<'a> {
     pub spreads: &'a [f64],
     /// Of each joint, the sizes of its torque in increasing order (N m or N).
     pub torques: &'a [Vec<f64>],
-    /// Ordinary dry friction (N m or N), 0 where there is none.
+    /// Baseline dry friction (N m or N), 0 where there is none.
     pub coulomb: &'a [f64],
     /// When the first training recording begins and the last ends (s).
     pub span: (f64, f64),
@@ -42,8 +42,8 @@ pub(crate) struct Site<'a> {
     pub joint: usize,
 }
 
-/// Ordinary friction of every joint: Coulomb level and viscous coefficient.
-pub(crate) fn ordinary_friction(spreads: &[f64], random: &mut ChaCha8Rng) -> Vec<(f64, f64)> {
+/// Baseline friction of every joint: Coulomb level and viscous coefficient.
+pub(crate) fn baseline_friction(spreads: &[f64], random: &mut ChaCha8Rng) -> Vec<(f64, f64)> {
     let of = |s: &f64| {
         let level = coulomb_friction::level(*s, random);
         (level, viscous_friction::coefficient(*s, random))
@@ -110,7 +110,7 @@ impl<'a> Site<'a> {
         self.robot.link_inertia(self.joint)
     }
 
-    /// The ordinary inertia of the joint's drive, 0 where it has none (kg m² or kg).
+    /// The baseline inertia of the joint's drive, 0 where it has none (kg m² or kg).
     pub(crate) fn rotor_inertia(&self) -> f64 {
         self.robot.rotor_inertias()[self.joint]
     }

@@ -48,7 +48,7 @@ mod torque_scale;
 mod transmission_coupling;
 pub(crate) mod viscous_friction;
 
-/// All faults. Draws depend on their order: the ordinary first, then the catalogue's, then those outside it.
+/// All faults. Draws depend on their order: the baseline ones first, then the catalogue's, then those outside it.
 pub(crate) static FAULTS: [Fault; 32] = [
     viscous_friction::FAULT,
     coulomb_friction::FAULT,
@@ -145,7 +145,7 @@ pub(crate) enum Alike {
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Leaves {
     Nothing,
-    /// The plain dry friction under a friction curve. It replaces the ordinary one of its joint.
+    /// The plain dry friction under a friction curve. It replaces the baseline friction of its joint.
     DryFriction,
     /// The rotor of a drive whose spring is rigid.
     Rotor,
@@ -219,7 +219,7 @@ impl Fault {
     }
 }
 
-/// The catalogue's names, what is ordinary first.
+/// The catalogue's names, the baseline effects first.
 pub fn catalogue() -> Vec<&'static str> {
     names(|fault| !fault.is_outside)
 }
@@ -229,7 +229,7 @@ pub fn outside() -> Vec<&'static str> {
     names(|fault| fault.is_outside)
 }
 
-/// The catalogue's families that are drawn, without the first two: plain viscous and Coulomb friction, which are ordinary.
+/// The catalogue's families that are drawn, without the first two: plain viscous and Coulomb friction, which are baseline effects.
 pub fn families() -> Vec<&'static str> {
     names(|fault| !fault.is_outside && fault.is_drawn).split_off(2)
 }

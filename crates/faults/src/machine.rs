@@ -9,20 +9,20 @@ use crate::part::{At, DryAt, resistance};
 use crate::robot::Robot;
 use crate::truth::Injected;
 
+mod control_law;
 mod drive;
 mod friction;
 mod inverse;
-mod law;
 mod parts;
 
+pub(crate) use control_law::Begin;
+pub use control_law::Seen;
+use control_law::{ControlLaw, PositionLoop};
 pub(crate) use drive::LONGEST_DELAY;
 pub use drive::VelocityFilter;
 use drive::{Drive, Rotor};
 use friction::Friction;
 pub use inverse::{Inverse, LinkMotion};
-pub(crate) use law::Begin;
-pub use law::Seen;
-use law::{Law, PositionLoop};
 use parts::Parts;
 
 /// The loop's period, and the plant's step (s).
@@ -103,7 +103,7 @@ impl<'a> Machine<'a> {
         begin: &Begin<'_>,
         quantum: f64,
         ticks: usize,
-        law: &mut dyn Law,
+        law: &mut dyn ControlLaw,
     ) -> Result<(Run, Vec<f64>), FaultError> {
         let mut simulation = Simulation::new(self, begin, quantum, ticks)?;
         let mut links = Vec::with_capacity(ticks * begin.q.len());
@@ -236,7 +236,7 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    fn tick(&mut self, tick: usize, time: f64, law: &mut dyn Law) -> Result<(), FaultError> {
+    fn tick(&mut self, tick: usize, time: f64, law: &mut dyn ControlLaw) -> Result<(), FaultError> {
         let n = self.drives.len();
         if time >= self.next_change {
             self.change(time, false)?;

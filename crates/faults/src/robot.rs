@@ -12,7 +12,7 @@ use crate::truth::Injected;
 /// At how many poses the mass matrix is looked at.
 const POSES: usize = 20;
 
-/// A robot: what its user believes, and which ordinary drive inertias the URDF leaves out.
+/// A robot: what its user believes, and which baseline drive inertias the URDF leaves out.
 #[derive(Clone, Debug)]
 pub struct Robot {
     urdf: String,
@@ -47,7 +47,7 @@ impl Robot {
         Ok(robot)
     }
 
-    /// With the ordinary inertias of its drives, seen at the joints (kg m² or kg), which its URDF leaves out.
+    /// With the baseline inertias of its drives, seen at the joints (kg m² or kg), which its URDF leaves out.
     ///
     /// # Errors
     /// [`FaultError::Setting`] if there is not one number a joint that is not negative.
@@ -75,7 +75,7 @@ impl Robot {
         &self.arm
     }
 
-    /// The drives' ordinary inertias (kg m² or kg), one a joint.
+    /// The drives' baseline inertias (kg m² or kg), one a joint.
     pub fn rotor_inertias(&self) -> &[f64] {
         &self.rotors
     }
@@ -85,7 +85,7 @@ impl Robot {
         self.rotors.iter().any(|&rotor| rotor > 0.0)
     }
 
-    /// Whether what a truth has is one of its drives' ordinary inertias, which the robot brings itself.
+    /// Whether what a truth has is one of its drives' baseline inertias, which the robot brings itself.
     pub(crate) fn brings(&self, effect: &Injected) -> bool {
         let joints = self.arm.joints().iter().zip(&self.rotors);
         effect.effect == "rotor_inertia"

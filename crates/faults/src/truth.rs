@@ -22,7 +22,7 @@ pub struct Truth {
     pub seed: u64,
     /// What the machine has and the URDF has not.
     pub concealed: Vec<Injected>,
-    /// Whether every joint has ordinary Coulomb and viscous friction; it is in `concealed`, too.
+    /// Whether every joint has baseline Coulomb and viscous friction; it is in `concealed`, too.
     pub background_friction: bool,
     /// Standard deviation of the noise on each torque (N m or N).
     pub torque_noise: Vec<f64>,
@@ -74,7 +74,7 @@ pub struct Injected {
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub minor: bool,
     /// The largest part of a joint's torque (in standard deviations, over the training recordings) that vanishes when the
-    /// machine is run without the effect; `None` for the ordinary friction of the background.
+    /// machine is run without the effect; `None` for the baseline friction of the background.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expressed_share: Option<f64>,
 }

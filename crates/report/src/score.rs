@@ -75,7 +75,7 @@ fn headline(score: &Score) -> String {
     let strict = &score.strict;
     format!(
         "**Strict macro F1 {}**: every concealed effect with an expressed share of at least {} is asked for, every name that is not true is false, and each is found \
-         only with its size within {} of the truth's, where the two can be compared. {} were found so, {} more with another size; {} false names, and {} of ordinary \
+         only with its size within {} of the truth's, where the two can be compared. {} were found so, {} more with another size; {} false names, and {} of baseline \
          friction and drive inertia. Beside it, macro F1 without sizes, which lets off what was declared not observable at its size and takes two names of one machine \
          for one: {}.",
         number(strict.macro_f1),
@@ -84,7 +84,7 @@ fn headline(score: &Score) -> String {
         counted(&strict.right),
         strict.wrong_size,
         strict.false_names,
-        strict.ordinary_false,
+        strict.baseline_false,
         number(score.macro_f1),
     )
 }

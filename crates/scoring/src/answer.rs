@@ -20,7 +20,7 @@ pub struct Answer {
     pub not_observable: Vec<DeclaredUnseen>,
     /// Errors of prediction, by joint.
     #[serde(default)]
-    pub fit: BTreeMap<String, Fit>,
+    pub fit: BTreeMap<String, JointErrors>,
     /// How far the simulated arm goes from the recorded motion, by joint.
     #[serde(default)]
     pub rollout: BTreeMap<String, Rollout>,
@@ -136,7 +136,7 @@ pub struct DeclaredUnseen {
 
 /// Errors of prediction of a joint (NRMSE).
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
-pub struct Fit {
+pub struct JointErrors {
     /// Standard deviation of the measured torque (N m or N).
     #[serde(default)]
     pub torque_std: f64,

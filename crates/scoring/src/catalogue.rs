@@ -1,10 +1,10 @@
 //! What the score knows of effects by name. It repeats the catalogue of effects: `effects::Spec` is to replace it.
 
 /// What every machine has and a URDF leaves out: it is scored apart.
-pub const ORDINARY: &[&str] = &["coulomb_friction", "viscous_friction"];
+pub const BASELINE: &[&str] = &["coulomb_friction", "viscous_friction"];
 
 /// The same where the robot's drives have inertia that its URDF leaves out.
-pub const ORDINARY_WITH_DRIVES: &[&str] = &["coulomb_friction", "viscous_friction", DRIVE_INERTIA];
+pub const BASELINE_WITH_DRIVES: &[&str] = &["coulomb_friction", "viscous_friction", DRIVE_INERTIA];
 
 /// The inertia of a drive.
 pub const DRIVE_INERTIA: &str = "rotor_inertia";

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::answer::{Answer, Fit};
+use crate::answer::{Answer, JointErrors};
 use crate::catalogue::{ON_A_JOINT, ON_THE_ARM, brings, parameters};
-use crate::rules::{Key, Name, is_ordinary};
+use crate::rules::{Key, Name, is_baseline};
 use crate::truth::Truth;
 
 /// The effects of the control "the true terms": all that is concealed and has a name, fitted by name, with no search.
@@ -23,12 +23,12 @@ pub struct WrongTerm {
     pub terms: Vec<Name>,
 }
 
-/// The true terms, with another name on the same joint in place of the most expressed one that is not ordinary; which, is
-/// told by `number`, the case's. `None` where nothing but the ordinary is concealed.
+/// The true terms, with another name on the same joint in place of the most expressed one that is not baseline; which, is
+/// told by `number`, the case's. `None` where nothing but baseline effects is concealed.
 pub fn wrong_term(truth: &Truth, number: usize) -> Option<WrongTerm> {
     let named = truth.of_note().filter(|concealed| {
         !concealed.is_outside_the_catalogue()
-            && !is_ordinary(truth, concealed.name())
+            && !is_baseline(truth, concealed.name())
             && !parameters(concealed.name()).is_empty()
     });
     let largest = named.max_by(|a, b| {
@@ -99,7 +99,7 @@ pub fn held_out(truth: &Truth, answer: &Answer, oracle: Option<&Answer>, wrong: 
             fit.is_some_and(|fit| fit.held_out_nrmse_augmented.is_some())
         })
     };
-    let over = |answer: Option<&Answer>, pick: &dyn Fn(&Fit) -> Option<f64>| -> Option<f64> {
+    let over = |answer: Option<&Answer>, pick: &dyn Fn(&JointErrors) -> Option<f64>| -> Option<f64> {
         let fits = answer?.fit.iter().filter(|(joint, _)| knows(joint));
         let squares: Option<Vec<f64>> = fits.map(|(_, fit)| pick(fit).map(|error| error * error)).collect();
         let squares = squares.filter(|squares| !squares.is_empty())?;

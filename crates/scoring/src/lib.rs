@@ -21,7 +21,7 @@ mod targets;
 mod truth;
 
 pub use answer::{
-    Answer, DeclaredUnseen, EffectOnJoint, Fit, Named, NextExperiment, NotSeparated, Number, Refused, Rollout,
+    Answer, DeclaredUnseen, EffectOnJoint, JointErrors, Named, NextExperiment, NotSeparated, Number, Refused, Rollout,
     Separated,
 };
 pub use calibration::{Bin, Calibration};

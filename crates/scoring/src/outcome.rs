@@ -6,7 +6,7 @@ use crate::answer::{Answer, EffectOnJoint, Named};
 use crate::intervals::quantile;
 use crate::numbers::{ScoredNumber, sized};
 use crate::rules::{
-    Key, LEAST_SHARE, Name, counted_findings, found, found_or_confusable, is_declared_unseen, is_ordinary, same_machine,
+    Key, LEAST_SHARE, Name, counted_findings, found, found_or_confusable, is_baseline, is_declared_unseen, same_machine,
 };
 use crate::score::Tried;
 use crate::truth::Injected;
@@ -29,7 +29,7 @@ pub enum Fate {
     Missed,
 }
 
-/// A concealed effect that is not ordinary.
+/// A concealed effect that is not baseline.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
     /// The case.
@@ -76,7 +76,7 @@ impl Outcome {
     }
 }
 
-/// A finding that is neither concealed nor brought by what is, nor ordinary.
+/// A finding that is neither concealed nor brought by what is, nor baseline.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FalseName {
     /// The case.
@@ -115,15 +115,15 @@ pub struct OutsideOutcome {
 /// All of a case.
 #[derive(Clone, Debug, Default)]
 pub struct CaseOutcome {
-    /// The concealed that is not ordinary and has a name.
+    /// What is concealed, is not baseline and has a name.
     pub concealed: Vec<Outcome>,
-    /// The false names that are not ordinary.
+    /// The false names that are not baseline.
     pub false_names: Vec<FalseName>,
-    /// Whether each of the ordinary that is concealed was found.
-    pub ordinary: Vec<bool>,
-    /// Ordinary names that are false.
-    pub ordinary_false: usize,
-    /// Whether nothing but the ordinary is concealed.
+    /// Whether each baseline effect that is concealed was found.
+    pub baseline_found: Vec<bool>,
+    /// Baseline names that are false.
+    pub baseline_false: usize,
+    /// Whether nothing but baseline effects is concealed.
     pub is_empty: bool,
     /// What is outside the catalogue.
     pub outside: Option<OutsideOutcome>,
@@ -131,7 +131,7 @@ pub struct CaseOutcome {
     pub refused_without_cause: Option<OutsideOutcome>,
     /// The numbers of right findings.
     pub sizes: Vec<ScoredNumber>,
-    /// Probabilities of findings that are not ordinary, and whether they are right.
+    /// Probabilities of findings that are not baseline, and whether they are right.
     pub said: Vec<(f64, bool)>,
     /// The same of all.
     pub said_of_all: Vec<(f64, bool)>,
@@ -139,8 +139,8 @@ pub struct CaseOutcome {
 }
 
 impl CaseOutcome {
-    /// Whether a number is of an ordinary effect.
-    pub fn is_ordinary(&self, sized: &ScoredNumber) -> bool {
+    /// Whether a number is of a baseline effect.
+    pub fn is_baseline(&self, sized: &ScoredNumber) -> bool {
         self.baseline.contains(&sized.effect.as_str())
     }
 }
@@ -153,7 +153,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
     let key = Key::new(truth);
     let named = found(answer);
     let covered = found_or_confusable(answer);
-    let ordinary = |name: &Name| is_ordinary(truth, &name.0);
+    let baseline = |name: &Name| is_baseline(truth, &name.0);
     // What is concealed by the name that it was given, where that is another of the same machine.
     let other_names: Vec<(Name, Name)> = truth
         .of_note()
@@ -173,7 +173,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
         .iter()
         .filter(|f| {
             let name = name_of(f);
-            !key.allows(&name) && !is_other_name(&name) && !is_ordinary(truth, &f.effect)
+            !key.allows(&name) && !is_other_name(&name) && !is_baseline(truth, &f.effect)
         })
         .collect();
     false_names.sort_by(|a, b| b.share.total_cmp(&a.share));
@@ -182,15 +182,15 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
         baseline: truth.baseline(),
         ..CaseOutcome::default()
     };
-    result.is_empty = key.unknown.is_empty() && key.known.iter().all(ordinary);
-    result.ordinary = key
+    result.is_empty = key.unknown.is_empty() && key.known.iter().all(baseline);
+    result.baseline_found = key
         .known
         .iter()
-        .filter(|k| ordinary(k))
+        .filter(|k| baseline(k))
         .map(|k| named.contains(k))
         .collect();
-    result.ordinary_false = named.iter().filter(|n| !key.allows(n) && ordinary(n)).count();
-    for name in key.known.iter().filter(|name| !ordinary(name)) {
+    result.baseline_false = named.iter().filter(|n| !key.allows(n) && baseline(n)).count();
+    for name in key.known.iter().filter(|name| !baseline(name)) {
         // Of several of one name, the most expressed.
         let same = truth.of_note().filter(|c| c.name() == name.0 && c.joint == name.1);
         let Some(concealed) = same.max_by(|a, b| share(a).total_cmp(&share(b))) else {
@@ -228,7 +228,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
     for finding in &false_names {
         let there = truth.of_note().filter(|c| {
             let name = (c.name().to_owned(), c.joint.clone());
-            !ordinary(&name) && (c.joint == finding.joint || c.joint.is_none() || finding.joint.is_none())
+            !baseline(&name) && (c.joint == finding.joint || c.joint.is_none() || finding.joint.is_none())
         });
         let admits = |other: &EffectOnJoint| key.known.contains(&(other.effect.clone(), other.joint.clone()));
         result.false_names.push(FalseName {
@@ -270,7 +270,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
         let right = key.known.contains(&name) || is_other_name(&name);
         if let Some(probability) = finding.probability {
             result.said_of_all.push((probability, right));
-            if !ordinary(&name) {
+            if !baseline(&name) {
                 result.said.push((probability, right));
             }
         }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::answer::Answer;
-use crate::rules::{Key, Name, counted_findings, found, found_or_confusable, is_ordinary};
+use crate::rules::{Key, Name, counted_findings, found, found_or_confusable, is_baseline};
 use crate::score::Tried;
 
 /// The numbers that the script prints.
@@ -14,17 +14,18 @@ use crate::score::Tried;
 pub struct Plain {
     /// Found and concealed, by family.
     pub families: BTreeMap<String, [usize; 2]>,
-    /// False names that are not ordinary, by family.
+    /// False names that are not baseline, by family.
     pub false_names: BTreeMap<String, usize>,
-    /// Ordinary effects concealed, found, named falsely.
-    pub ordinary: [usize; 3],
-    /// Injected effects, not ordinary.
+    /// Baseline effects concealed, found, named falsely.
+    #[serde(rename = "ordinary")]
+    pub baseline: [usize; 3],
+    /// Injected effects, not baseline.
     pub concealed: usize,
     /// Of these found.
     pub found: usize,
     /// Of these found or in a confusable set.
     pub covered: usize,
-    /// Cases with nothing but the ordinary.
+    /// Cases with nothing but baseline effects.
     pub empty: usize,
     /// Of these without another name.
     pub clean: usize,
@@ -61,12 +62,12 @@ pub fn plain(cases: &[Tried]) -> Plain {
         let answer = &counted_findings(&case.truth, case.answer.as_ref().unwrap_or(&empty));
         count.missing += usize::from(case.answer.is_none());
         let (named, sets) = (found(answer), found_or_confusable(answer));
-        let ordinary = |name: &Name| is_ordinary(&case.truth, &name.0);
+        let baseline = |name: &Name| is_baseline(&case.truth, &name.0);
         for name in &key.known {
             let is_found = usize::from(named.contains(name));
-            if ordinary(name) {
-                count.ordinary[0] += 1;
-                count.ordinary[1] += is_found;
+            if baseline(name) {
+                count.baseline[0] += 1;
+                count.baseline[1] += is_found;
                 continue;
             }
             let family = count.families.entry(name.0.clone()).or_default();
@@ -77,15 +78,15 @@ pub fn plain(cases: &[Tried]) -> Plain {
             count.covered += usize::from(sets.contains(name));
         }
         for name in named.iter().filter(|name| !key.allows(name)) {
-            if ordinary(name) {
-                count.ordinary[2] += 1;
+            if baseline(name) {
+                count.baseline[2] += 1;
             } else {
                 *count.false_names.entry(name.0.clone()).or_default() += 1;
             }
         }
-        if key.unknown.is_empty() && key.known.iter().all(ordinary) {
+        if key.unknown.is_empty() && key.known.iter().all(baseline) {
             count.empty += 1;
-            count.clean += usize::from(named.iter().all(ordinary));
+            count.clean += usize::from(named.iter().all(baseline));
         }
         let left: Vec<&String> = answer.unexplained.iter().map(|left| &left.joint).collect();
         if key.unknown.is_empty() {

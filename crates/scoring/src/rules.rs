@@ -1,4 +1,4 @@
-//! What counts as right: names, what an effect brings with it, what is ordinary, what cannot be seen.
+//! What counts as right: names, what an effect brings with it, what is baseline, what cannot be seen.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ pub type Name = (String, Option<String>);
 pub const LEAST_SHARE: f64 = 0.015;
 
 /// Whether it is in the machine's baseline, and scored apart.
-pub fn is_ordinary(truth: &Truth, effect: &str) -> bool {
+pub fn is_baseline(truth: &Truth, effect: &str) -> bool {
     truth.baseline().contains(&effect)
 }
 
@@ -123,7 +123,7 @@ pub fn found_or_confusable(answer: &Answer) -> BTreeSet<Name> {
 
 /// The findings of `answer` as they are counted: `inertial_parameters` stands for each wrong link of its joint (of any, on the whole arm)
 /// that is not named beside it. Where the URDF is wrong everywhere such a link is moved in other ways, too, and inertials that differ are
-/// as ordinary as friction; where it is exact, the name is right for a link that was moved in other ways, and false otherwise.
+/// as baseline as friction; where it is exact, the name is right for a link that was moved in other ways, and false otherwise.
 pub fn counted_findings(truth: &Truth, answer: &Answer) -> Answer {
     let mut counted = answer.clone();
     let names = found(answer);

@@ -46,7 +46,7 @@ pub struct Score {
     pub cases: usize,
     /// Cases that got no answer: nothing was found in them. In shares of names given, in errors and in intervals they do not count.
     pub unanswered: Vec<String>,
-    /// Cases with nothing but the ordinary.
+    /// Cases with nothing but baseline effects.
     pub empty: usize,
     /// The figures that were asked for, and whether they are reached.
     pub targets: Vec<Target>,
@@ -54,17 +54,19 @@ pub struct Score {
     pub strict: Strict,
     /// The same by how wrong the URDF was; groups without a case are left out.
     pub by_urdf: Vec<UrdfGroup>,
-    /// By family: the effects that are not ordinary, and have an expressed share above [`crate::LEAST_SHARE`].
+    /// By family: the effects that are not baseline, and have an expressed share above [`crate::LEAST_SHARE`].
     pub families: BTreeMap<String, Family>,
     /// F1 of each family, averaged over the families concealed.
     pub macro_f1: Option<f64>,
     /// The same if what was declared not observable counts as missed, and another name of the same machine as false.
     pub macro_f1_strict: Option<f64>,
-    /// Ordinary friction and drive inertia: found.
-    pub ordinary: Counted,
-    /// Ordinary effects named where they were not concealed.
-    pub ordinary_false: usize,
-    /// Cases with nothing but the ordinary in which something else was named, of those answered.
+    /// Baseline friction and drive inertia: found.
+    #[serde(rename = "ordinary")]
+    pub baseline: Counted,
+    /// Baseline effects named where they were not concealed.
+    #[serde(rename = "ordinary_false")]
+    pub baseline_false: usize,
+    /// Cases with nothing but baseline effects in which something else was named, of those answered.
     pub empty_with_a_false_name: Counted,
     /// Cases with something outside the catalogue that was refused on its joint.
     pub outside_refused: Counted,
@@ -80,7 +82,7 @@ pub struct Score {
     pub detection: Vec<Curve>,
     /// Errors of the parameters of effects found, by effect and parameter.
     pub parameters: Vec<ParameterScore>,
-    /// Of the main parameters of all effects that are not ordinary: relative errors.
+    /// Of the main parameters of all effects that are not baseline: relative errors.
     pub main_parameters: Errors,
     /// Of all scored parameters of these effects: intervals that hold the truth.
     pub intervals: Counted,
@@ -94,15 +96,15 @@ pub struct Score {
     pub tracking_over_exact_without_lag: Errors,
     /// What was concealed (rows) against what it was called (columns).
     pub confusion: BTreeMap<String, BTreeMap<String, usize>>,
-    /// Probability against outcome, of findings that are not ordinary.
+    /// Probability against outcome, of findings that are not baseline.
     pub calibration: Calibration,
     /// The same of all findings.
     pub calibration_of_all: Calibration,
     /// The count of the open cases' own script, without any of the distinctions above.
     pub plain: Plain,
-    /// Every concealed effect that is not ordinary, with its fate.
+    /// Every concealed effect that is not baseline, with its fate.
     pub concealed: Vec<Outcome>,
-    /// Every false name that is not ordinary.
+    /// Every false name that is not baseline.
     pub false_names: Vec<FalseName>,
     /// Every case with something outside the catalogue.
     pub outside: Vec<OutsideOutcome>,
@@ -164,7 +166,7 @@ pub fn score(cases: &[Tried]) -> Score {
     let sizes: Vec<ScoredNumber> = all.iter().flat_map(|case| case.sizes.clone()).collect();
     let special: Vec<&ScoredNumber> = all
         .iter()
-        .flat_map(|case| case.sizes.iter().filter(|s| !case.is_ordinary(s)))
+        .flat_map(|case| case.sizes.iter().filter(|s| !case.is_baseline(s)))
         .collect();
     let held: Vec<HeldOut> = cases
         .iter()
@@ -204,8 +206,8 @@ pub fn score(cases: &[Tried]) -> Score {
         macro_f1: mean(&families, |family| family.f1),
         macro_f1_strict: mean(&families, |family| family.f1_strict),
         families,
-        ordinary: Counted::of(all.iter().flat_map(|case| case.ordinary.iter().copied())),
-        ordinary_false: all.iter().map(|case| case.ordinary_false).sum(),
+        baseline: Counted::of(all.iter().flat_map(|case| case.baseline_found.iter().copied())),
+        baseline_false: all.iter().map(|case| case.baseline_false).sum(),
         empty_with_a_false_name: Counted::of(
             answered()
                 .filter(|case| case.is_empty)
@@ -325,7 +327,7 @@ fn by_joint(case: &Tried) -> Vec<f64> {
     if case.truth.has_a_wrong_urdf() || case.truth.concealed.iter().any(is_beside) {
         return Vec::new();
     }
-    let ratio = |(joint, fit): (&String, &crate::answer::Fit)| -> Option<f64> {
+    let ratio = |(joint, fit): (&String, &crate::answer::JointErrors)| -> Option<f64> {
         let best = oracle.fit.get(joint)?.held_out_nrmse_augmented?;
         Some(fit.held_out_nrmse_augmented? / best.max(1e-12))
     };

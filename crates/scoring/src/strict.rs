@@ -24,11 +24,12 @@ pub struct Strict {
     pub wrong_size: usize,
     /// Names that are not true.
     pub false_names: usize,
-    /// The same of ordinary effects; no family of theirs is in [`Self::macro_f1`].
-    pub ordinary_false: usize,
-    /// Cases with a false name that is not ordinary, of those answered.
+    /// The same of baseline effects; no family of theirs is in [`Self::macro_f1`].
+    #[serde(rename = "ordinary_false")]
+    pub baseline_false: usize,
+    /// Cases with a false name that is not baseline, of those answered.
     pub cases_with_a_false_name: Counted,
-    /// 95 % intervals that hold the truth, of effects that are not ordinary.
+    /// 95 % intervals that hold the truth, of effects that are not baseline.
     pub intervals: Counted,
     /// By family.
     pub families: BTreeMap<String, StrictFamily>,
@@ -52,9 +53,9 @@ pub struct StrictFamily {
 /// Counts cases, each with whether it was answered.
 pub fn strict<'a>(cases: impl Iterator<Item = (&'a CaseOutcome, bool)>) -> Strict {
     let mut families: BTreeMap<String, StrictFamily> = BTreeMap::new();
-    let (mut ordinary_false, mut clean, mut held) = (0, Vec::new(), Vec::new());
+    let (mut baseline_false, mut clean, mut held) = (0, Vec::new(), Vec::new());
     for (case, answered) in cases {
-        ordinary_false += case.ordinary_false;
+        baseline_false += case.baseline_false;
         let mut false_names: Vec<&str> = case.false_names.iter().map(|name| name.effect.as_str()).collect();
         for outcome in &case.concealed {
             if let Some((name, _)) = &outcome.found_as
@@ -92,7 +93,7 @@ pub fn strict<'a>(cases: impl Iterator<Item = (&'a CaseOutcome, bool)>) -> Stric
         held.extend(
             case.sizes
                 .iter()
-                .filter(|sized| !case.is_ordinary(sized))
+                .filter(|sized| !case.is_baseline(sized))
                 .map(|sized| sized.covered),
         );
     }
@@ -108,7 +109,7 @@ pub fn strict<'a>(cases: impl Iterator<Item = (&'a CaseOutcome, bool)>) -> Stric
         right: Counted::new(sum(|family| family.right), sum(|family| family.asked)),
         wrong_size: sum(|family| family.wrong_size),
         false_names: sum(|family| family.false_names),
-        ordinary_false,
+        baseline_false,
         cases_with_a_false_name: Counted::of(clean),
         intervals: Counted::of(held),
         families,

@@ -7,14 +7,14 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
-use crate::catalogue::{DRIVE_INERTIA, ORDINARY, ORDINARY_WITH_DRIVES, canonical, is_outside};
+use crate::catalogue::{BASELINE, BASELINE_WITH_DRIVES, DRIVE_INERTIA, canonical, is_outside};
 
 /// What a case's machine has and its URDF has not; what is not scored is not read.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct Truth {
     /// The case's name, that of its folder.
     pub case: String,
-    /// Everything that was injected, ordinary friction among it.
+    /// Everything that was injected, baseline friction among it.
     pub concealed: Vec<Injected>,
     /// Standard deviation of the noise on each torque (N m or N), base to tip.
     pub torque_noise: Vec<f64>,
@@ -59,18 +59,18 @@ impl Truth {
             .iter()
             .filter(|injected| injected.effect == DRIVE_INERTIA && !injected.minor);
         if joints > 1 && drives.count() == joints {
-            ORDINARY_WITH_DRIVES
+            BASELINE_WITH_DRIVES
         } else {
-            ORDINARY
+            BASELINE
         }
     }
 
-    /// Whether the URDF is wrong everywhere: inertials that differ from it are ordinary then.
+    /// Whether the URDF is wrong everywhere: inertials that differ from it are baseline then.
     pub fn has_a_wrong_urdf(&self) -> bool {
         self.urdf_sigma.is_some_and(|sigma| sigma > 0.0)
     }
 
-    /// What is injected and asked for, or ordinary: all but the small things of real joints.
+    /// What is injected and asked for, or baseline: all but the small things of real joints.
     pub fn of_note(&self) -> impl Iterator<Item = &Injected> {
         self.concealed.iter().filter(|injected| !injected.minor)
     }

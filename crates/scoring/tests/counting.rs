@@ -131,7 +131,7 @@ fn what_is_brought_is_neither_right_nor_wrong_and_the_rest_is_false() {
         finding("torque_offset", "a", json!([]))
     ]);
     let score = scored(stribeck, answer(list, json!([]), json!([])));
-    assert_eq!(score.ordinary_false, 1);
+    assert_eq!(score.baseline_false, 1);
     assert_eq!(score.false_names.len(), 1);
     assert_eq!(score.false_names[0].concealed_there, ["stribeck_friction"]);
     assert_eq!(score.confusion["stribeck_friction"]["torque_offset"], 1);
@@ -165,7 +165,7 @@ fn numbers_are_compared_in_parts_of_the_truth() {
     let concealed = json!([{"effect": "torque_scale", "joint": "a", "factor": 1.2, "expressed_share": 0.2}]);
     let wide = scored(concealed, answer(json!([open]), json!([]), json!([])));
     assert_eq!((wide.intervals.hits, wide.intervals.of), (0, 1));
-    // What is ordinary is not among the figures asked for.
+    // What is baseline is not among the figures asked for.
     assert_eq!((score.main_parameters.count, score.intervals.of), (1, 1));
 }
 
@@ -253,7 +253,7 @@ fn tried(name: &str, concealed: Value, sigma: f64, findings: Value) -> Tried {
     }
 }
 
-/// Where the URDF is wrong everywhere, inertials that differ are ordinary, and stand for the wrong link among them.
+/// Where the URDF is wrong everywhere, inertials that differ are baseline, and stand for the wrong link among them.
 #[test]
 fn inertials_stand_for_a_wrong_link() {
     let link = || json!([{"effect": "link_inertial_error", "joint": "a", "relative": 0.3, "expressed_share": 0.1}]);
@@ -306,7 +306,7 @@ fn minor_effects_are_not_scored() {
     ]);
     let scored = score(&[tried("case_000", small.clone(), 0.0, named)]);
     assert_eq!(
-        (scored.concealed.len(), scored.false_names.len(), scored.ordinary_false),
+        (scored.concealed.len(), scored.false_names.len(), scored.baseline_false),
         (1, 0, 0)
     );
     assert_eq!((scored.strict.macro_f1, scored.macro_f1), (Some(1.0), Some(1.0)));

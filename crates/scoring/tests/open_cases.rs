@@ -56,8 +56,8 @@ fn printed(cases: &[Tried]) -> Vec<String> {
         .map(|(name, [found, all])| format!("{name:26} {found:4} of {all:4}"))
         .collect();
     lines.push(format!(
-        "ordinary friction and drive inertia: {} of {}, {} false",
-        plain.ordinary[1], plain.ordinary[0], plain.ordinary[2]
+        "baseline friction and drive inertia: {} of {}, {} false",
+        plain.baseline[1], plain.baseline[0], plain.baseline[2]
     ));
     lines.push(format!(
         "found {} of {} (recall {recall:.3}, 95% [{low:.2}, {high:.2}]), false {} (precision {precision:.3}), covered by a finding or its confusable set {}",
@@ -67,7 +67,7 @@ fn printed(cases: &[Tried]) -> Vec<String> {
         plain.covered
     ));
     lines.push(format!(
-        "nothing but the ordinary concealed: {} of {} left clean; outside the catalogue: {} of {} refused on the right joint; refused for no reason: {}; no answer: {}",
+        "nothing but baseline effects concealed: {} of {} left clean; outside the catalogue: {} of {} refused on the right joint; refused for no reason: {}; no answer: {}",
         plain.clean, plain.empty, plain.refused, plain.outside, plain.refused_without_cause, plain.missing
     ));
     if let Some(ratio) = plain.held_out {

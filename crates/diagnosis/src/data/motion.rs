@@ -96,7 +96,7 @@ impl Chunk {
 
 /// What is known of one recording.
 #[derive(Clone, Debug)]
-pub struct Source {
+pub struct SourceRecording {
     /// As the user named it.
     pub name: String,
     /// Not to be fitted.
@@ -119,7 +119,7 @@ pub struct Motions {
     /// In order of the recordings and of time.
     pub chunks: Vec<Chunk>,
     /// One a recording.
-    pub sources: Vec<Source>,
+    pub sources: Vec<SourceRecording>,
     /// The half-power frequency of the second filter (Hz).
     pub cutoff: f64,
     /// The frequency of each joint's motion in the recordings to be fitted: that of a sinusoid with its speed and
@@ -316,7 +316,7 @@ impl Motions {
         let (smooth, second) = both.noise_gains();
         let slope = first.first_noise_gain();
         let noise = |signal: &Vec<f64>| white_noise(signal, recording);
-        self.sources.push(Source {
+        self.sources.push(SourceRecording {
             name: input.name.to_owned(),
             held_out: input.held_out,
             shift,

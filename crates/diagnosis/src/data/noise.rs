@@ -9,7 +9,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use crate::data::measure;
-use crate::data::motion::{Chunk, Motions, Source};
+use crate::data::motion::{Chunk, Motions, SourceRecording};
 use crate::thresholds::NOISE_BAND;
 
 /// Bins of a spectrum that a band needs.
@@ -41,7 +41,7 @@ impl Motions {
             if torque[joint] <= 0.0 || self.tempo[joint] == 0.0 {
                 return 0.0;
             }
-            let of = |source: &Source| -> f64 {
+            let of = |source: &SourceRecording| -> f64 {
                 let parts = (0..self.dof).map(|by| (largest[(joint, by)] * source.acceleration_noise[by]).powi(2));
                 parts.sum::<f64>().sqrt() / torque[joint]
             };

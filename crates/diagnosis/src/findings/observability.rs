@@ -51,7 +51,7 @@ pub fn unseen(study: &Study, products: &Products, chosen: &Chosen) -> Vec<NotObs
         if products.count[joint] > 0.0 {
             continue;
         }
-        for kind in in_turn().filter(|kind| kind.spec().is_ordinary) {
+        for kind in in_turn().filter(|kind| kind.spec().is_baseline) {
             list.push(NotObservable {
                 effect: kind.spec().name,
                 joint: Some(study.arm.joints()[joint].name.clone()),

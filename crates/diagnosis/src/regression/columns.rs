@@ -1,13 +1,13 @@
 //! Columns of the joint fit, evaluated on the ticks of a chunk.
 
-use effects::{Behind, Motion, Scales, Term};
+use effects::{Behind, Scales, Signals, Term};
 
 use crate::data::motion::Chunk;
 use crate::data::rigid::Rigid;
 
 /// A chunk as regressors see it.
-fn along<'a>(chunk: &'a Chunk, rigid: &'a Rigid, scales: &'a Scales) -> Motion<'a> {
-    Motion {
+fn along<'a>(chunk: &'a Chunk, rigid: &'a Rigid, scales: &'a Scales) -> Signals<'a> {
+    Signals {
         recording: chunk.recording,
         start: chunk.start,
         period: chunk.period,

@@ -49,15 +49,15 @@ impl Cause {
 
     /// Whether it is the inertia that every drive has.
     pub fn is_drive_inertia(self) -> bool {
-        self.is_ordinary() && !self.is_friction()
+        self.is_baseline() && !self.is_friction()
     }
 
-    /// Whether a URDF ordinarily leaves it out: friction and the drives' inertia need less evidence.
-    pub fn is_ordinary(self) -> bool {
-        self.spec().is_ordinary
+    /// Whether a URDF usually omits it: friction and the drives' inertia need less evidence.
+    pub fn is_baseline(self) -> bool {
+        self.spec().is_baseline
     }
 
-    /// Whether it is ordinary, or a constant beside that.
+    /// Whether it is baseline, or a constant beside that.
     pub fn is_simple(self) -> bool {
         self.spec().is_simple
     }

@@ -60,7 +60,7 @@ impl Fitted for InFit<'_> {
 pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bool {
     // What every drive has may well be hidden by masses that are wrong the other way.
     let cancels = |joint| torque_share(candidate, table, fit, joint) >= LARGEST_TORQUE_SHARE;
-    if !candidate.cause.is_ordinary() && candidate.joint.is_some_and(cancels) {
+    if !candidate.cause.is_baseline() && candidate.joint.is_some_and(cancels) {
         return false;
     }
     candidate.cause.kind.get().is_possible(&InFit {

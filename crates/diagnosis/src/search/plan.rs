@@ -16,11 +16,11 @@ const LAST: usize = 3;
 
 /// Finds the candidates that together explain the training recordings. `progress` is told what is going on.
 pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
-    let ordinary: Vec<usize> = (0..study.candidates.len())
+    let baseline: Vec<usize> = (0..study.candidates.len())
         .filter(|&c| study.candidates[c].cause.is_friction())
         .collect();
     let products = study.training_products();
-    let mut chosen = study.problem(&products).choose(ordinary, &products.first_weights());
+    let mut chosen = study.problem(&products).choose(baseline, &products.first_weights());
     for round in 1..=SUGGESTIONS {
         progress(&format!("looking for causes, round {round}"));
         let before = chosen.set.clone();

@@ -231,7 +231,7 @@ impl Problem<'_> {
         None
     }
 
-    /// `set` and, last, `candidate`. Structure without a name comes with ordinary friction: every drive has it, and a curve
+    /// `set` and, last, `candidate`. Structure without a name comes with baseline friction: every drive has it, and a curve
     /// over position or time must not stand for it.
     fn with(&self, set: &[usize], candidate: usize) -> Vec<usize> {
         let mut set = set.to_vec();
@@ -257,7 +257,7 @@ impl Problem<'_> {
         self.candidates[candidate].cause.name().is_none()
     }
 
-    /// Whether a member of `set` may be taken out for its price: ordinary friction may not, beside what has no name.
+    /// Whether a member of `set` may be taken out for its price: baseline friction may not, beside what has no name.
     fn may_go(&self, set: &[usize], member: usize) -> bool {
         let this = &self.candidates[member];
         !this.cause.is_friction()
@@ -275,7 +275,7 @@ impl Problem<'_> {
     /// Whether `candidate` helps to predict what it was not fitted to.
     fn predicts(&self, chosen: &Chosen, candidate: usize) -> bool {
         let candidate = &self.candidates[candidate];
-        if candidate.cause.is_passing() || candidate.cause.is_ordinary() || self.is_background_too(candidate) {
+        if candidate.cause.is_passing() || candidate.cause.is_baseline() || self.is_background_too(candidate) {
             return true;
         }
         let columns = &chosen.fit.columns;

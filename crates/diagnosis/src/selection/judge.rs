@@ -102,7 +102,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
             .map(|member| candidates[member.candidate].joint)
             .collect();
         let mut allowed = simple;
-        allowed.retain(|&c| candidates[c].cause.is_ordinary() || !left.contains(&candidates[c].joint));
+        allowed.retain(|&c| candidates[c].cause.is_baseline() || !left.contains(&candidates[c].joint));
         let next = problem.forward(kept.clone(), &allowed);
         study.note("stands in for what has no name", &kept, &next);
         kept = next;
@@ -228,7 +228,7 @@ pub fn is_idle(study: &Study, chosen: &Chosen, candidate: usize) -> bool {
 fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
     let cause = |member: &Member| study.candidates[member.candidate].cause;
     let is_named = |member: &Member| cause(member).name().is_some();
-    // On each joint, the largest nameless structure and the largest of the effects that are not ordinary.
+    // On each joint, the largest nameless structure and the largest of the effects that are not baseline.
     let dof = study.motions.dof;
     let largest = |wanted: &dyn Fn(&Member) -> bool, joint: usize| -> f64 {
         members
@@ -243,13 +243,13 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             .max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b]))
             .unwrap_or(0);
         if !is_named(member) {
-            let named = largest(&|m| is_named(m) && !cause(m).is_ordinary(), at);
+            let named = largest(&|m| is_named(m) && !cause(m).is_baseline(), at);
             return share < study.thresholds.least_unmodelled_share
                 || member.evidence < study.thresholds.least_unmodelled_evidence
                 || share < study.thresholds.beside_a_larger * named;
         }
         let nameless = largest(&|m| !is_named(m), at);
-        if cause(member).is_ordinary() {
+        if cause(member).is_baseline() {
             // Beside larger structure without a name a drive's inertia may be a part of that.
             return cause(member).is_drive_inertia() && share < nameless.max(LEAST_DRIVE);
         }
@@ -263,7 +263,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             let others = |certain: bool| {
                 let is_other = |m: &Member| {
                     let cause = cause(m);
-                    let is_known = is_named(m) && !cause.is_ordinary() && cause.is_certain_in_form() == certain;
+                    let is_known = is_named(m) && !cause.is_baseline() && cause.is_certain_in_form() == certain;
                     m.candidate != member.candidate && is_known
                 };
                 largest(&is_other, joint)

@@ -168,7 +168,7 @@ pub fn inputs(recordings: &[RegularRecording]) -> Vec<Input<'_>> {
 }
 
 /// Friction of every joint, which every robot has.
-pub fn ordinary(motion: &Motion, tau: &mut [f64]) {
+pub fn baseline_friction(motion: &Motion, tau: &mut [f64]) {
     for joint in 0..3 {
         let speed = motion.qd[joint];
         tau[joint] += 0.6 * speed.signum() + 0.4 * speed;

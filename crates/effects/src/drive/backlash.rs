@@ -5,8 +5,8 @@ use crate::compliance::{Behind, gap, sprung};
 use crate::fitted::is_near_one;
 use crate::laws::ACCELERATION;
 use crate::{
-    Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Motion, Parameter, Place, Quantity, Range, Size,
-    Spec, Systematic, Term, Turn, Unseen,
+    Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range, Signals,
+    Size, Spec, Systematic, Term, Turn, Unseen,
 };
 
 /// The rotor drives the link through a gap of ± halfgap; q is the rotor's.
@@ -57,7 +57,7 @@ pub static GAP: Law = Law {
     ..Law::PLAIN
 };
 
-fn behind(term: &Term, motion: &Motion<'_>) -> Behind {
+fn behind(term: &Term, motion: &Signals<'_>) -> Behind {
     let (joint, [halfgap, stop, ratio, _]) = (term.of[0], term.sizes);
     let ticks = if stop.is_finite() {
         let damping = |mass: f64| 2.0 * ratio * (stop * mass.max(0.0)).sqrt();

@@ -50,7 +50,7 @@ pub static ELASTIC: Law = Law {
     ..Law::PLAIN
 };
 
-fn behind(term: &Term, motion: &crate::Motion<'_>) -> Behind {
+fn behind(term: &Term, motion: &crate::Signals<'_>) -> Behind {
     let (joint, [stiffness, damping, ..]) = (term.of[0], term.sizes);
     Behind::new(joint, sprung(joint, 0.0, stiffness, |_| damping, motion))
 }

@@ -20,7 +20,7 @@ static SPEC: Spec = Spec {
     parameters: &[Parameter::new("inertia", Quantity::Inertia).within(Range::NotNegative)],
     main: &["inertia"],
     prior: 4.0,
-    is_ordinary: true,
+    is_baseline: true,
     is_simple: true,
     least_beside_residual: Some(1.25),
     against: Against::Acceleration,

@@ -20,7 +20,7 @@ static SPEC: Spec = Spec {
     parameters: &[Parameter::new("coefficient", Quantity::Damping).within(Range::NotNegative)],
     main: &["coefficient"],
     prior: 2.0,
-    is_ordinary: true,
+    is_baseline: true,
     is_friction: true,
     is_simple: true,
     in_urdf: InUrdf::Damping,

@@ -24,7 +24,7 @@ const SHARES: (f64, f64) = (0.01, 1.2);
 /// How much of a recording tells sizes (s); shares are those of whole recordings.
 const TRIAL: f64 = 12.0;
 
-/// What effects are measured against: the machine with its ordinary friction.
+/// What effects are measured against: the machine with its baseline friction.
 struct Base {
     /// The beginning of the first recording.
     trial: Reference,
@@ -214,7 +214,7 @@ fn fit(stage: &Stage<'_>, fault: &Fault, effect: &mut Injected, target: f64, bas
     Ok(shows)
 }
 
-/// Whether the machine without the effect is not the one with ordinary friction alone.
+/// Whether the machine without the effect is not the one with baseline friction alone.
 fn leaves_more_than_the_base(effect: &Injected) -> bool {
     effect.leaves() != Leaves::Nothing
 }

@@ -1,4 +1,4 @@
-//! A case under way: motions, ordinary friction and sensors, drawn before any effect.
+//! A case under way: motions, baseline friction and sensors, drawn before any effect.
 
 use arm::{Inertia, Matrix3, Vector3};
 use rand::seq::IndexedRandom;
@@ -8,7 +8,7 @@ use recording::Recording;
 
 use super::Concealment;
 use super::real_life::RealLife;
-use crate::draw::{log_uniform, ordinary_friction};
+use crate::draw::{baseline_friction, log_uniform};
 use crate::error::FaultError;
 use crate::expressed_share::{Torques, deviation, share, smooth};
 use crate::fault::Leaves;
@@ -37,7 +37,7 @@ pub(crate) struct Stage<'a> {
     pub robot: &'a Robot,
     pub training: Vec<Reference>,
     pub held_out: Reference,
-    /// Ordinary friction: Coulomb level and viscous coefficient of every joint, and the exponent of the latter.
+    /// Baseline friction: Coulomb level and viscous coefficient of every joint, and the exponent of the latter.
     pub friction: Option<(Vec<(f64, f64)>, f64)>,
     /// Standard deviation of the torque that the training motions cost nominally (N m or N).
     pub spreads: Vec<f64>,
@@ -55,7 +55,7 @@ pub(crate) struct Kind {
     pub hard: bool,
     /// How many training recordings there are.
     pub training: usize,
-    /// Whether every joint has ordinary friction.
+    /// Whether every joint has baseline friction.
     pub friction: bool,
     /// Whether it is to look like reality.
     pub lifelike: bool,
@@ -97,7 +97,7 @@ impl<'a> Stage<'a> {
         let held_out = pick_and_place(robot, start(training.len()), &mut motion);
         let spreads: Vec<f64> = (0..n).map(|j| spread(robot, &training, j)).collect();
         let mut draw = random(seed, Stream::Friction);
-        let levels = ordinary_friction(&spreads, &mut draw);
+        let levels = baseline_friction(&spreads, &mut draw);
         let exponent = if hard && draw.random_bool(0.3) { 0.7 } else { 1.0 };
         let mut sensors = random(seed, Stream::Sensors);
         let noise = log_uniform(NOISE.0, NOISE.1, &mut sensors);
@@ -159,14 +159,14 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// Ordinary friction as effects, of joints where `effects` bring no dry friction of their own; and the small things of real joints.
+    /// Baseline friction as effects, of joints where `effects` bring no dry friction of their own; and the small things of real joints.
     pub(crate) fn background(&self, effects: &[Injected]) -> Vec<Injected> {
-        let mut background = self.ordinary(effects);
+        let mut background = self.baseline(effects);
         background.extend(self.real.iter().flat_map(|real| real.beside(effects)));
         background
     }
 
-    fn ordinary(&self, effects: &[Injected]) -> Vec<Injected> {
+    fn baseline(&self, effects: &[Injected]) -> Vec<Injected> {
         let Some((levels, exponent)) = &self.friction else {
             return Vec::new();
         };

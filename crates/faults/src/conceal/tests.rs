@@ -28,13 +28,13 @@ fn a_case_is_the_same_every_time() {
     assert_eq!(first, conceal_case(&robot, &plan).expect("it comes out"));
     assert_eq!((first.train.len(), first.truth.case.as_str()), (2, "case_007"));
 
-    // Ordinary friction is on every joint, without a share; what was drawn is there, with one within bounds.
-    let ordinary = first
+    // Baseline friction is on every joint, without a share; what was drawn is there, with one within bounds.
+    let baseline = first
         .truth
         .concealed
         .iter()
         .filter(|effect| effect.expressed_share.is_none());
-    assert_eq!(ordinary.count(), 14);
+    assert_eq!(baseline.count(), 14);
     let effect = first
         .truth
         .concealed

@@ -1,4 +1,4 @@
-//! Coulomb friction: the same dry friction at every speed. Ordinary: it is drawn for the background of a case, not as its fault.
+//! Coulomb friction: the same dry friction at every speed. Baseline: it is drawn for the background of a case, not as its fault.
 
 use super::prelude::*;
 
@@ -11,7 +11,7 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::ON_A_JOINT
 };
 
-/// The ordinary level of a joint whose torque has the standard deviation `spread` (N m or N).
+/// The baseline level of a joint whose torque has the standard deviation `spread` (N m or N).
 pub(crate) fn level(spread: f64, random: &mut ChaCha8Rng) -> f64 {
     spread * log_uniform(0.06, 0.35, random)
 }

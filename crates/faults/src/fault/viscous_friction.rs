@@ -1,4 +1,4 @@
-//! Viscous friction: a torque against the motion, in proportion to the speed or to another power of it. Ordinary: it is drawn for the
+//! Viscous friction: a torque against the motion, in proportion to the speed or to another power of it. Baseline: it is drawn for the
 //! background of a case, not as its fault.
 
 use super::prelude::*;
@@ -18,7 +18,7 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::ON_A_JOINT
 };
 
-/// The ordinary coefficient of a joint whose torque has the standard deviation `spread` (N m or N).
+/// The baseline coefficient of a joint whose torque has the standard deviation `spread` (N m or N).
 pub(crate) fn coefficient(spread: f64, random: &mut ChaCha8Rng) -> f64 {
     spread * log_uniform(0.1, 0.5, random)
 }

@@ -47,8 +47,8 @@ pub fn found(score: &Score) -> Vec<Block> {
              excludes effects that a diagnosis declares not testable at their size. It treats asymmetric friction, and a torque offset beside Coulomb friction, \
              as equivalent if the diagnosis lists each as an alternative of the other, because both give the same recording in simulation. If the former count \
              as missed and the latter as false, macro F1 is {} instead of {}.",
-            counted(&score.ordinary),
-            score.ordinary_false,
+            counted(&score.baseline),
+            score.baseline_false,
             number(score.macro_f1_strict),
             number(score.macro_f1),
         )),

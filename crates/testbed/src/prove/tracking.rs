@@ -199,8 +199,8 @@ impl Case<'_> {
             .iter()
             .zip(pairs)
             .map(|(&model, (run, other))| run.tracked(model, other, &course));
-        let ordinary = |effect: &faults::Injected| effect.expressed_share.is_none();
-        let concealed = self.truth.concealed.iter().filter(|effect| !ordinary(effect));
+        let baseline = |effect: &faults::Injected| effect.expressed_share.is_none();
+        let concealed = self.truth.concealed.iter().filter(|effect| !baseline(effect));
         Ok(CaseTracking {
             case: case.clone(),
             made_of,

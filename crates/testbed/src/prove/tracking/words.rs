@@ -10,7 +10,7 @@ use scoring::{Name, quantile};
 use super::{CaseTracking, Model};
 
 /// The baseline effects, which are in every case of the robot and not required to be found.
-const ORDINARY: [&str; 3] = ["coulomb_friction", "viscous_friction", "rotor_inertia"];
+const BASELINE: [&str; 3] = ["coulomb_friction", "viscous_friction", "rotor_inertia"];
 /// The target for the tracking error with a diagnosed model over that with the exact one.
 const WANTED: f64 = 1.5;
 
@@ -99,7 +99,7 @@ fn row(case: &CaseTracking) -> Vec<String> {
             .map_or_else(String::new, |onset| format!(" from {onset:.0} s"));
         format!("{}{onset}", name(&(cause.effect.clone(), cause.joint.clone())))
     });
-    let named = case.named.iter().filter(|named| !ORDINARY.contains(&named.0.as_str()));
+    let named = case.named.iter().filter(|named| !BASELINE.contains(&named.0.as_str()));
     let or_nothing = |words: Vec<String>| {
         if words.is_empty() {
             "baseline effects only".to_owned()
@@ -148,7 +148,7 @@ fn why(case: &CaseTracking) -> String {
         .map(|cause| name(&(cause.effect.clone(), cause.joint.clone())))
         .collect();
     let is_there = |named: &&Name| {
-        ORDINARY.contains(&named.0.as_str())
+        BASELINE.contains(&named.0.as_str())
             || case
                 .concealed
                 .iter()

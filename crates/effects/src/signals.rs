@@ -53,7 +53,7 @@ pub struct Rigid<'a> {
 
 /// A stretch of motion on even ticks, joint by joint, with the rigid model along it.
 #[derive(Clone, Copy, Debug)]
-pub struct Motion<'a> {
+pub struct Signals<'a> {
     /// The number of the recording that it is of.
     pub recording: usize,
     /// The time of the first tick (s).
@@ -74,7 +74,7 @@ pub struct Motion<'a> {
     pub scales: &'a Scales,
 }
 
-impl Motion<'_> {
+impl Signals<'_> {
     /// The number of ticks.
     pub fn ticks(&self) -> usize {
         self.q[0].len()

@@ -32,12 +32,12 @@ pub struct Seen<'a> {
 }
 
 /// Finds the drives' torques, once a tick.
-pub(crate) trait Law {
+pub(crate) trait ControlLaw {
     /// The torques commanded for the coming tick, into `torque` (N m or N).
     fn command(&mut self, seen: &Seen<'_>, torque: &mut [f64]);
 }
 
-impl<F: FnMut(&Seen<'_>, &mut [f64])> Law for F {
+impl<F: FnMut(&Seen<'_>, &mut [f64])> ControlLaw for F {
     fn command(&mut self, seen: &Seen<'_>, torque: &mut [f64]) {
         self(seen, torque);
     }
@@ -59,7 +59,7 @@ impl<'a> PositionLoop<'a> {
     }
 }
 
-impl Law for PositionLoop<'_> {
+impl ControlLaw for PositionLoop<'_> {
     fn command(&mut self, seen: &Seen<'_>, torque: &mut [f64]) {
         for (j, torque) in torque.iter_mut().enumerate() {
             let at = seen.tick * self.gains.len() + j;
