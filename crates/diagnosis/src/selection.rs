@@ -19,7 +19,7 @@ pub mod unmounted;
 /// The last fit: what is named, how certain it is, and what it leaves.
 pub struct FinalFit {
     /// The names, and the forms without one.
-    pub judged: judge::Judged,
+    pub judged: judge::Selection,
     /// The named effects' coefficients, resampled.
     pub resampled: Resampled,
     /// Inner products over the recordings that were fitted.
@@ -60,7 +60,7 @@ impl FinalFit {
 }
 
 /// Searches and judges until the final fit refuses no name that it has not refused before.
-fn selected(study: &mut Study, progress: &dyn Fn(&str)) -> (judge::Judged, Resampled) {
+fn selected(study: &mut Study, progress: &dyn Fn(&str)) -> (judge::Selection, Resampled) {
     loop {
         let refused = study.refused();
         let chosen = plan::search(study, progress);

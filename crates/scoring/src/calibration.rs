@@ -21,9 +21,9 @@ pub struct Calibration {
 /// Findings of about one probability.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bin {
-    /// Probabilities from …
+    /// The lower end of the bin.
     pub from: f64,
-    /// … to.
+    /// The upper end of the bin.
     pub to: f64,
     /// Their mean.
     pub said: f64,

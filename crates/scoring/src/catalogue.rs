@@ -3,7 +3,7 @@
 /// What every machine has and a URDF leaves out: it is scored apart.
 pub const BASELINE: &[&str] = &["coulomb_friction", "viscous_friction"];
 
-/// The same where the robot's drives have inertia that its URDF leaves out.
+/// The baseline effects where the robot's drives have inertia that its URDF omits.
 pub const BASELINE_WITH_DRIVES: &[&str] = &["coulomb_friction", "viscous_friction", DRIVE_INERTIA];
 
 /// The inertia of a drive.

@@ -81,7 +81,7 @@ pub struct Experiments {
     pub confusions: Vec<Confusion>,
     /// Of those for which a motion was proposed and made: resolved.
     pub resolved: Counted,
-    /// The same of those in the cases tried again for which none was proposed.
+    /// Of those in the cases tried again for which no motion was proposed: resolved.
     pub resolved_unasked: Counted,
     /// Of all in the cases tried again, whether a motion was proposed for them or not: resolved. The diagnosis chooses what it
     /// proposes for; this is without its choice.

@@ -133,7 +133,7 @@ pub struct CaseOutcome {
     pub sizes: Vec<ScoredNumber>,
     /// Probabilities of findings that are not baseline, and whether they are right.
     pub said: Vec<(f64, bool)>,
-    /// The same of all.
+    /// Probabilities of all findings, and whether they are right.
     pub said_of_all: Vec<(f64, bool)>,
     baseline: &'static [&'static str],
 }

@@ -78,7 +78,7 @@ pub struct Denied {
 pub enum SaidFate {
     /// Named, on its joint.
     Named,
-    /// The same torque was named in other words: asymmetric friction is Coulomb friction and an offset, a friction curve holds
+    /// Other words for the torque were used: asymmetric friction is Coulomb friction and an offset, a friction curve holds
     /// Coulomb friction, a coupling acts on both its joints.
     SameTorque,
     /// In the confusable set of a finding.

@@ -33,7 +33,7 @@ pub struct Tried {
     pub wrong_term: Option<Answer>,
     /// The tracking error of a task with the diagnosed causes over that with the exact model, where a task was tracked.
     pub tracking_over_exact: Option<f64>,
-    /// The same in a loop where nothing but the model is left between the two: without the velocity filter's lag.
+    /// The tracking error over that with the exact model in a loop without the velocity filter's lag, where nothing but the model differs.
     pub tracking_over_exact_without_lag: Option<f64>,
     /// A second diagnosis, with the experiment that the first proposed; `None` if it was not tried.
     pub again: Option<Again>,
@@ -52,13 +52,13 @@ pub struct Score {
     pub targets: Vec<Target>,
     /// The headline: everything asked for, every name that is not true false, sizes within 20 %.
     pub strict: Strict,
-    /// The same by how wrong the URDF was; groups without a case are left out.
+    /// The strict figures by how wrong the URDF was; groups without a case are left out.
     pub by_urdf: Vec<UrdfGroup>,
     /// By family: the effects that are not baseline, and have an expressed share above [`crate::LEAST_SHARE`].
     pub families: BTreeMap<String, Family>,
     /// F1 of each family, averaged over the families concealed.
     pub macro_f1: Option<f64>,
-    /// The same if what was declared not observable counts as missed, and another name of the same machine as false.
+    /// Macro F1 if what was declared not observable counts as missed, and another name of the same machine as false.
     pub macro_f1_strict: Option<f64>,
     /// Baseline friction and drive inertia: found.
     #[serde(rename = "ordinary")]
@@ -76,7 +76,7 @@ pub struct Score {
     pub refused_without_cause: Counted,
     /// Injected effects that are a finding or in a finding's confusable set.
     pub covered: Counted,
-    /// The same if what was declared not observable counts as not covered.
+    /// Effects covered if what was declared not observable counts as not covered.
     pub covered_strict: Counted,
     /// Detection against the effect's size.
     pub detection: Vec<Curve>,
@@ -88,17 +88,17 @@ pub struct Score {
     pub intervals: Counted,
     /// Errors of prediction on the recording held out, over the true terms', case by case.
     pub over_true_terms: Errors,
-    /// The same over joints instead of cases.
+    /// The ratio of held-out errors over joints instead of cases.
     pub over_true_terms_by_joint: Errors,
     /// Tracking error with the diagnosed causes over the exact model's, of the cases in which a task was tracked.
     pub tracking_over_exact: Errors,
-    /// The same without the velocity filter's lag.
+    /// Tracking errors over those with the exact model, without the velocity filter's lag.
     pub tracking_over_exact_without_lag: Errors,
     /// What was concealed (rows) against what it was called (columns).
     pub confusion: BTreeMap<String, BTreeMap<String, usize>>,
     /// Probability against outcome, of findings that are not baseline.
     pub calibration: Calibration,
-    /// The same of all findings.
+    /// Probability against outcome of all findings.
     pub calibration_of_all: Calibration,
     /// The count of the open cases' own script, without any of the distinctions above.
     pub plain: Plain,
@@ -141,7 +141,7 @@ pub struct Family {
     pub false_names: usize,
     /// 2 found over (asked for + found + false); what was declared not observable is not asked for.
     pub f1: Option<f64>,
-    /// The same if that is asked for, too, and another name of the same machine is false.
+    /// F1 if that is asked for, too, and another name of the same machine is false.
     pub f1_strict: Option<f64>,
 }
 

@@ -24,7 +24,7 @@ pub struct Strict {
     pub wrong_size: usize,
     /// Names that are not true.
     pub false_names: usize,
-    /// The same of baseline effects; no family of theirs is in [`Self::macro_f1`].
+    /// False names of baseline effects; no family of theirs is in [`Self::macro_f1`].
     #[serde(rename = "ordinary_false")]
     pub baseline_false: usize,
     /// Cases with a false name that is not baseline, of those answered.

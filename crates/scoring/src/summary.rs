@@ -20,9 +20,9 @@ pub struct Curve {
 /// Effects of about one size.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SizeBin {
-    /// Sizes from …
+    /// The lower end of the bin.
     pub from: f64,
-    /// … to; `None` has no end.
+    /// The upper end of the bin; `None` has no end.
     pub to: Option<f64>,
     /// Those found.
     pub found: Counted,

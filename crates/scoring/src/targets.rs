@@ -41,13 +41,13 @@ pub struct Target {
     /// Which it is.
     #[serde(skip)]
     pub id: Figure,
-    /// The same in words.
+    /// The value in words.
     pub what: String,
     /// The figure; `None` if nothing was there to count.
     pub figure: Option<f64>,
-    /// At least this …
+    /// The smallest value that meets it.
     pub at_least: Option<f64>,
-    /// … and at most that.
+    /// The largest value that meets it.
     pub at_most: Option<f64>,
     /// What it was counted from, where it is a share.
     pub counted: Option<Counted>,

@@ -19,9 +19,9 @@ const FINE: f64 = 8.0;
 const ROWS: f64 = 2.5;
 /// Longer stretches are cut, so that memory is bounded (s).
 const LONGEST: f64 = 60.0;
-/// Of longer recordings to be fitted, or held out, stretches spread evenly are used (s) …
+/// Of longer recordings to be fitted, or held out, stretches spread evenly are used, so long together (s).
 const MOST_SECONDS: f64 = 900.0;
-/// … so long, if the recording allows (s).
+/// The length of the stretches that are used of long recordings, if the recording allows (s).
 const WINDOW: f64 = 20.0;
 /// Multiples of it, less their whole parts, are spread evenly.
 const GOLDEN: f64 = 0.618_033_988_749_895;

@@ -63,7 +63,7 @@ impl Rigid {
         }
     }
 
-    /// The same; without `derivatives` those by position and velocity stay zero.
+    /// As [`Self::new`]; without `derivatives` those by position and velocity stay zero.
     pub fn with_derivatives(arm: &Arm, nominal: &[f64], offset: &[f64], chunk: &Chunk, derivatives: bool) -> Self {
         let n = arm.dof();
         let ticks = chunk.ticks();

@@ -89,7 +89,7 @@ impl Kernel {
         (norm(&self.smooth), norm(&self.second))
     }
 
-    /// The same for the first derivative.
+    /// The root mean square of the first derivative of white noise of unit strength, behind the filter.
     pub fn first_noise_gain(&self) -> f64 {
         self.first.iter().map(|w| w * w).sum::<f64>().sqrt()
     }

@@ -11,7 +11,7 @@ use super::locate::locate;
 use super::observability::unseen;
 use super::report::{Finding, JointFit, Located, NotObservable, RecordingNames, Report, Traces, Unexplained};
 use super::traces::traces;
-use super::verdict::{leftover, not_enough, unexplained, verdict};
+use super::verdict::{not_enough, poorly_predicted, unexplained, verdict};
 use super::{dual_sensor, sentences, transients};
 use crate::data::motion::Input;
 use crate::diagnose::{Diagnosis, Options};
@@ -71,7 +71,7 @@ impl Conclusion {
         }
         let fit = fit(study, last, identified);
         let mut unexplained = unexplained(study, judged, &bursts, residual);
-        leftover(study, &fit, &mut unexplained);
+        poorly_predicted(study, &fit, &mut unexplained);
         findings.sort_by(|(a, _), (b, _)| {
             b.share
                 .total_cmp(&a.share)

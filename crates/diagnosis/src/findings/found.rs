@@ -12,7 +12,7 @@ use crate::regression::fit::{Fit, Products};
 use crate::search::candidate::Cause;
 use crate::search::problem::Problem;
 use crate::search::study::Study;
-use crate::selection::judge::{Judged, Member};
+use crate::selection::judge::{Member, Selection};
 use crate::selection::naming::name;
 use crate::thresholds::{AS_WELL, GAIN_PIECE};
 
@@ -21,7 +21,7 @@ pub fn findings(
     study: &Study,
     products: &Products,
     held: Option<&Products>,
-    judged: &Judged,
+    judged: &Selection,
     resampled: &Resampled,
 ) -> Vec<(Finding, Option<usize>)> {
     let problem = study.problem(products);
@@ -39,7 +39,7 @@ pub fn findings(
 }
 
 /// The member of `judged` that helps least on recordings it was not fitted to, if it does not help at all.
-pub fn useless(study: &Study, products: &Products, held: &Products, judged: &Judged) -> Option<usize> {
+pub fn useless(study: &Study, products: &Products, held: &Products, judged: &Selection) -> Option<usize> {
     let problem = study.problem(products);
     let gains: Vec<(f64, usize)> = judged
         .members
@@ -65,7 +65,7 @@ fn finding(
     study: &Study,
     problem: &Problem<'_>,
     held: Option<&Products>,
-    judged: &Judged,
+    judged: &Selection,
     resampled: &Resampled,
     member: &Member,
     standing: &Standing,
@@ -132,7 +132,7 @@ fn finding(
 }
 
 /// The share of the drive's inertia that comes with a spring or a gap.
-fn rotor_share(study: &Study, judged: &Judged, candidate: usize) -> f64 {
+fn rotor_share(study: &Study, judged: &Selection, candidate: usize) -> f64 {
     let columns = &study.candidates[candidate].columns;
     let Some(joint) = study.candidates[candidate].joint else {
         return 0.0;
@@ -152,7 +152,7 @@ fn held_out_gain(
     study: &Study,
     problem: &Problem<'_>,
     held: Option<&Products>,
-    judged: &Judged,
+    judged: &Selection,
     member: &Member,
 ) -> Option<f64> {
     let table = &study.table;

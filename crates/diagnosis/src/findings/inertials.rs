@@ -13,7 +13,7 @@ use crate::regression::bodies::{PER_LINK, physical};
 use crate::regression::bootstrap::Resampled;
 use crate::regression::fit::Products;
 use crate::search::study::{About, Study};
-use crate::selection::judge::Judged;
+use crate::selection::judge::Selection;
 use crate::selection::predict::{augmented, deviation, errors};
 use crate::thresholds::{LINK_STANDS_OUT, PARTLY, SYSTEMATIC};
 
@@ -71,7 +71,7 @@ pub fn inertials(
     study: &Study,
     products: &Products,
     held: Option<&Products>,
-    judged: &Judged,
+    judged: &Selection,
     resampled: &Resampled,
 ) -> Inertials {
     let strengths = &study.strengths;
@@ -167,7 +167,7 @@ pub fn inertials(
     let mut add = |joint: Option<usize>, shares: &[f64], parameters: BTreeMap<&'static str, Parameter>| {
         // Beside structure without a name they may be a part of that.
         let stands_out = |joint: usize| {
-            let unnamed = judged.nameless.iter().map(|member| member.shares[joint]);
+            let unnamed = judged.unmodelled.iter().map(|member| member.shares[joint]);
             explained[joint]
                 && shares[joint]
                     >= study

@@ -5,10 +5,10 @@ use rayon::prelude::*;
 
 use crate::findings::report::{Finding, Trace, Traces};
 use crate::search::study::Study;
-use crate::selection::judge::Judged;
+use crate::selection::judge::Selection;
 
 /// All signals on the rows; `left` is the augmented residual.
-pub fn traces(study: &Study, judged: &Judged, findings: &[(Finding, Option<usize>)], left: &[Vec<f64>]) -> Traces {
+pub fn traces(study: &Study, judged: &Selection, findings: &[(Finding, Option<usize>)], left: &[Vec<f64>]) -> Traces {
     let dof = study.motions.dof;
     let table = &study.table;
     let torques: Vec<Vec<Vec<f64>>> = findings

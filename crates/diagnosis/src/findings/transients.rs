@@ -11,7 +11,7 @@ use crate::findings::report::{Finding, Parameter, Place, TimeWindow};
 use crate::regression::small::ForceFit;
 use crate::search::scan;
 use crate::search::study::Study;
-use crate::selection::judge::Judged;
+use crate::selection::judge::Selection;
 use crate::thresholds::{BURST_PIECE, BURST_STRETCH, LEAST_BURST_ROWS, MOST_BURSTS, ONE_FORCE, OVER_THE_REST};
 
 /// Bursts looked for, at most.
@@ -40,7 +40,7 @@ struct Push {
 }
 
 /// Looks for bursts in what the named effects leave (`[joint][row]`) of the held-out recordings.
-pub fn bursts(study: &Study, judged: &Judged, left: &[Vec<f64>]) -> Bursts {
+pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
     let mut bursts = Bursts::default();
     let held: Vec<bool> = study.fitted.iter().map(|fitted| !fitted).collect();
     if !held.contains(&true) {

@@ -8,13 +8,13 @@ use crate::findings::sentences;
 use crate::findings::transients::Bursts;
 use crate::regression::fit::Products;
 use crate::search::study::Study;
-use crate::selection::judge::Judged;
+use crate::selection::judge::Selection;
 use crate::thresholds::{LEAST_MOTION, POOR, POOR_ABOVE_NOISE, REMEMBERS, STRUCTURED, STRUCTURED_ABOVE_NOISE};
 
 /// The structured residuals that no effect in the catalogue explains, on each joint.
-pub fn unexplained(study: &Study, judged: &Judged, bursts: &Bursts, left: &[Vec<f64>]) -> Vec<Unexplained> {
+pub fn unexplained(study: &Study, judged: &Selection, bursts: &Bursts, left: &[Vec<f64>]) -> Vec<Unexplained> {
     let mut by_joint: BTreeMap<usize, (f64, Vec<(f64, String)>)> = BTreeMap::new();
-    for member in &judged.nameless {
+    for member in &judged.unmodelled {
         let candidate = &study.candidates[member.candidate];
         let Some(joint) = candidate.joint else { continue };
         let on = match (candidate.cause.spec().depends_on, candidate.cause.other) {
@@ -72,7 +72,7 @@ pub fn structured(fit: &JointFit) -> Option<f64> {
 }
 
 /// Adds the joints that are poorly predicted with the findings.
-pub fn leftover(study: &Study, fit: &BTreeMap<String, JointFit>, unexplained: &mut Vec<Unexplained>) {
+pub fn poorly_predicted(study: &Study, fit: &BTreeMap<String, JointFit>, unexplained: &mut Vec<Unexplained>) {
     for (joint, name) in study.arm.joints().iter().map(|joint| &joint.name).enumerate() {
         let Some(this) = fit.get(name) else { continue };
         let error = this.held_out_nrmse_augmented.unwrap_or(this.train_nrmse_augmented);

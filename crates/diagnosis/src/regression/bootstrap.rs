@@ -25,7 +25,7 @@ pub struct Resampled {
     pub columns: Vec<usize>,
     /// The estimate of each column's coefficient, then of each size's correction.
     pub estimate: Vec<f64>,
-    /// The same for each draw.
+    /// The coefficients and corrections of each draw.
     pub draws: Vec<Vec<f64>>,
     /// The draws as they would be if the background's strength held in every direction alike.
     even: Vec<Vec<f64>>,
@@ -55,7 +55,7 @@ impl Resampled {
         (value, [value - half, value + half])
     }
 
-    /// The same with intervals for a background whose strength holds in every direction alike: for what must be told from
+    /// These resamplings with intervals for a background whose strength holds in every direction alike: for what must be told from
     /// nothing, not for what is reported.
     pub fn evenly(&self) -> Self {
         Self {
@@ -295,7 +295,7 @@ fn solve(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
     solution
 }
 
-/// The same for two right sides.
+/// Least squares with two right sides, as [`solve`].
 fn solve_both(a: &DMatrix<f64>, b: &DVector<f64>, c: &DVector<f64>) -> [DVector<f64>; 2] {
     let p = b.len();
     let scale: Vec<f64> = (0..p)

@@ -121,7 +121,7 @@ impl Products {
         }
     }
 
-    /// The same with another background.
+    /// These products with another background.
     pub fn with_background(&self, background: Option<Background>) -> Self {
         Self {
             background: background.map(Arc::new),

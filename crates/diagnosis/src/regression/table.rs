@@ -173,7 +173,7 @@ impl Table {
         }
     }
 
-    /// The same terms for another arm along the same motions; what depends on the motion alone is taken from `self`.
+    /// `terms` for another arm along these motions; what depends on the motion alone is taken from `self`.
     pub fn formed_anew(
         &self,
         motions: &Motions,

@@ -10,7 +10,7 @@ use crate::search::candidate::Cause;
 use crate::search::problem::{Chosen, Problem};
 use crate::search::refine::resize;
 use crate::search::study::Study;
-use crate::selection::judge::{self, Judged};
+use crate::selection::judge::{self, Selection};
 
 /// Sweeps over the forms of all effects, at most.
 const SWEEPS: usize = 4;
@@ -64,7 +64,7 @@ pub fn may_be(options: &Options, arm: &Arm, cause: Cause, joint: Option<usize>) 
 ///
 /// # Errors
 /// [`DiagnosisError::Wanted`], if one is given twice, is not in the catalogue, or not on such a joint.
-pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisError> {
+pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Selection, DiagnosisError> {
     let mut waiting = check(study, wanted)?;
     let mut placed: Vec<Place<'_>> = Vec::new();
     let products = study.training_products();
@@ -112,10 +112,10 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
     }
     let products = study.training_products();
     let members = judge::describe(study, &study.problem(&products), &chosen);
-    Ok(Judged {
+    Ok(Selection {
         named: chosen,
         members,
-        nameless: Vec::new(),
+        unmodelled: Vec::new(),
     })
 }
 

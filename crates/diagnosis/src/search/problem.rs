@@ -16,7 +16,7 @@ mod exclusion;
 
 /// So many of the most promising candidates are fitted in full each round.
 const TRIED: usize = 8;
-/// … and of one cause on one joint so many, before others have been.
+/// Forms of one effect on one joint that are fitted in full before other effects have been.
 const AT_ONCE: usize = 3;
 /// More candidates than this are not taken.
 pub const MOST: usize = 60;
@@ -100,7 +100,7 @@ impl Problem<'_> {
         Chosen { set, fit, score }
     }
 
-    /// The same choice with the joints weighted by what it leaves on each.
+    /// `chosen`, with the joints weighted by its residual on each.
     pub fn reweighted(&self, chosen: Chosen) -> Chosen {
         let fit = self.products.reweighted(self.table, chosen.fit);
         let score = fit.loss + self.cost(&chosen.set) + self.misfit(&chosen.set, &fit);
@@ -235,7 +235,7 @@ impl Problem<'_> {
     /// over position or time must not stand for it.
     fn with(&self, set: &[usize], candidate: usize) -> Vec<usize> {
         let mut set = set.to_vec();
-        if self.is_nameless(candidate) {
+        if self.is_unmodelled(candidate) {
             let is_friction = |c: &usize| {
                 let other = &self.candidates[*c];
                 other.joint == self.candidates[candidate].joint && other.cause.is_friction()
@@ -253,7 +253,7 @@ impl Problem<'_> {
         set
     }
 
-    fn is_nameless(&self, candidate: usize) -> bool {
+    fn is_unmodelled(&self, candidate: usize) -> bool {
         self.candidates[candidate].cause.name().is_none()
     }
 
@@ -263,7 +263,7 @@ impl Problem<'_> {
         !this.cause.is_friction()
             || !set
                 .iter()
-                .any(|&c| self.is_nameless(c) && self.candidates[c].joint == this.joint)
+                .any(|&c| self.is_unmodelled(c) && self.candidates[c].joint == this.joint)
     }
 
     /// Whether an effect says what the background could say in its place, at a higher price: then it does not predict more, but

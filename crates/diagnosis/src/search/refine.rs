@@ -26,12 +26,12 @@ pub fn sizes(terms: &[Term]) -> Vec<Size> {
         .collect()
 }
 
-/// The same terms with one size times `factor`.
+/// `terms` with one size times `factor`.
 pub fn varied(terms: &[Term], size: Size, factor: f64) -> Vec<Term> {
     terms.iter().map(|term| term.varied(size, factor)).collect()
 }
 
-/// The same terms with their main size, or exponent, times `factor`; empty if they have none.
+/// `terms` with their main size, or exponent, times `factor`; empty if they have none.
 fn resized(terms: &[Term], factor: f64) -> Vec<Term> {
     let new = varied(&varied(terms, Size::Main, factor), Size::Exponent, factor);
     if new == terms { Vec::new() } else { new }
@@ -60,7 +60,7 @@ fn forms(terms: &[Term]) -> Vec<Vec<Term>> {
     list
 }
 
-/// The same terms with ends that give, where they were rigid; `mass` is of the link (kg m²).
+/// `terms` with ends that give, where they were rigid; `mass` is of the link (kg m²).
 fn softened(terms: &[Term], mass: f64) -> Vec<Vec<Term>> {
     let soft = |term: &Term| (term.law.softened)(term, mass);
     let Some((at, soft)) = terms.iter().map(soft).enumerate().find(|(_, soft)| !soft.is_empty()) else {

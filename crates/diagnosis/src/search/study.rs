@@ -203,7 +203,7 @@ impl Study {
         self.prior.at(&self.strengths)
     }
 
-    /// The same without background.
+    /// Inner products over the recordings that `chosen` picks, without background.
     fn bare_products(&self, chosen: impl Fn(usize) -> bool) -> Products {
         Products::new(&self.table, chosen, &self.seconds, &self.motions.tempo, &self.floor)
     }

@@ -12,14 +12,14 @@ use crate::regression::background::Strengths;
 use crate::regression::bootstrap::{Resampled, resample};
 use crate::search::problem::{Chosen, IMPOSSIBLE, Problem};
 use crate::search::study::Study;
-use crate::selection::judge::{self, Judged};
+use crate::selection::judge::{self, Selection};
 use crate::selection::naming::{Named, name};
 use crate::selection::predict::{augmented, errors};
 use crate::thresholds::{HOPELESS, PARTLY};
 
 /// Fits the named effects for the last time: about the arm that they make, with the rows near reversals; drops what makes a
 /// joint's held-out error grow, what does not help there, and what might be zero.
-pub fn settled(study: &mut Study, judged: &mut Judged) -> Resampled {
+pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
     loop {
         settle(study, judged, false);
         make_possible(study, judged);
@@ -51,13 +51,13 @@ pub fn settled(study: &mut Study, judged: &mut Judged) -> Resampled {
 }
 
 /// Fits the named effects for the last time, about the arm that they make, whatever comes of them.
-pub fn as_given(study: &mut Study, judged: &mut Judged) -> Resampled {
+pub fn as_given(study: &mut Study, judged: &mut Selection) -> Resampled {
     settle(study, judged, true);
     resample(study, &judged.named)
 }
 
 /// Takes one name out, or puts what it is a form of in its place, and fits the others anew.
-fn drop_name(study: &Study, judged: &mut Judged, candidate: usize, rule: &'static str) {
+fn drop_name(study: &Study, judged: &mut Selection, candidate: usize, rule: &'static str) {
     let products = study.training_products();
     let problem = study.problem(&products);
     let next = problem.without(&judged.named, candidate);
@@ -66,7 +66,7 @@ fn drop_name(study: &Study, judged: &mut Judged, candidate: usize, rule: &'stati
     judged.members = judge::describe(study, &problem, &judged.named);
 }
 
-fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Judged, set: Vec<usize>) {
+fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Selection, set: Vec<usize>) {
     let next = problem.choose(set, &judged.named.fit.weights);
     study.note(
         "its joint is still predicted worse than by a constant",
@@ -78,7 +78,7 @@ fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Judged, set: Vec<usi
 }
 
 /// Forms everything about the arm that the named effects make, and no other, with the rows near reversals, and fits anew.
-fn settle(study: &mut Study, judged: &mut Judged, as_given: bool) {
+fn settle(study: &mut Study, judged: &mut Selection, as_given: bool) {
     let kept = study.settle(&judged.named.fit, &judged.candidates());
     let named = judged.named.set.len();
     let products = study.training_products();
@@ -92,13 +92,13 @@ fn settle(study: &mut Study, judged: &mut Judged, as_given: bool) {
     };
     let products = study.training_products();
     judged.members = judge::describe(study, &study.problem(&products), &judged.named);
-    for (member, &number) in judged.nameless.iter_mut().zip(&kept[named..]) {
+    for (member, &number) in judged.unmodelled.iter_mut().zip(&kept[named..]) {
         member.candidate = number;
     }
 }
 
 /// Drops names that became impossible, until there are none.
-fn make_possible(study: &Study, judged: &mut Judged) {
+fn make_possible(study: &Study, judged: &mut Selection) {
     let products = study.training_products();
     let problem = study.problem(&products);
     let impossible = |named: &Chosen| named.set.iter().copied().find(|&c| !problem.is_possible(c, &named.fit));
@@ -108,7 +108,7 @@ fn make_possible(study: &Study, judged: &mut Judged) {
 }
 
 /// Drops names that do not help to predict recordings they were not fitted to, until there are none.
-fn prove(study: &Study, judged: &mut Judged) {
+fn prove(study: &Study, judged: &mut Selection) {
     let Some(held) = study.held_products() else { return };
     let products = study.training_products();
     while let Some(useless) = useless(study, &products, &held, judged) {
@@ -118,7 +118,7 @@ fn prove(study: &Study, judged: &mut Judged) {
 
 /// Drops the names on joints that, for all of them, are still predicted worse than by a constant: what is measured there is
 /// something else.
-fn give_up(study: &Study, judged: &mut Judged) {
+fn give_up(study: &Study, judged: &mut Selection) {
     let left: Vec<JointFit> = (0..study.motions.dof)
         .map(|joint| errors(study, joint, &augmented(study, &judged.named, joint)))
         .collect();
@@ -142,7 +142,7 @@ fn give_up(study: &Study, judged: &mut Judged) {
 }
 
 /// The weakest of the names whose size might be zero, or is none that physics has, and whether it is that.
-fn unclear(study: &Study, judged: &Judged, resampled: &Resampled) -> Option<(usize, bool)> {
+fn unclear(study: &Study, judged: &Selection, resampled: &Resampled) -> Option<(usize, bool)> {
     let resampled = &resampled.evenly();
     let contradicted = |member: &judge::Member| {
         let named = name(study, resampled, member.candidate);
@@ -181,19 +181,19 @@ fn may_be_nothing(spec: &Spec, parameters: &BTreeMap<&'static str, Parameter>) -
 }
 
 /// Whether it is a constant or a drive's inertia no larger than what is left beside it with structure.
-fn is_part_of_the_rest(study: &Study, judged: &Judged, member: &judge::Member) -> bool {
+fn is_part_of_the_rest(study: &Study, judged: &Selection, member: &judge::Member) -> bool {
     let candidate = &study.candidates[member.candidate];
     let Some(factor) = candidate.cause.spec().least_beside_residual else {
         return false;
     };
     let Some(joint) = candidate.joint else { return false };
-    let nameless = judged.nameless.iter().map(|member| member.shares[joint]);
+    let unmodelled = judged.unmodelled.iter().map(|member| member.shares[joint]);
     let left = structured(&errors(study, joint, &augmented(study, &judged.named, joint)));
-    factor * nameless.chain(left).fold(0.0, f64::max) > member.shares[joint]
+    factor * unmodelled.chain(left).fold(0.0, f64::max) > member.shares[joint]
 }
 
 /// Takes back the background, and drops findings, until no joint's held-out error is larger than the nominal model's.
-fn guard(study: &mut Study, judged: &mut Judged) {
+fn guard(study: &mut Study, judged: &mut Selection) {
     while let Some(joint) = harmed(study, &judged.named) {
         if let Some((strengths, next)) = likelier_outside(study, &judged.named) {
             study.strengths = strengths;

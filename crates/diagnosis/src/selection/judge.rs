@@ -36,27 +36,27 @@ impl Member {
     }
 }
 
-/// Names and nameless.
+/// What is named, and the unmodelled forms.
 #[derive(Clone, Debug)]
-pub struct Judged {
+pub struct Selection {
     /// The named candidates, refitted together.
     pub named: Chosen,
     /// What they do.
     pub members: Vec<Member>,
-    /// What has structure and no name.
-    pub nameless: Vec<Member>,
+    /// The unmodelled forms that are left.
+    pub unmodelled: Vec<Member>,
 }
 
-impl Judged {
-    /// The named candidates, then the nameless.
+impl Selection {
+    /// The named candidates, then the unmodelled forms.
     pub fn candidates(&self) -> Vec<usize> {
-        let nameless = self.nameless.iter().map(|member| member.candidate);
-        self.named.set.iter().copied().chain(nameless).collect()
+        let unmodelled = self.unmodelled.iter().map(|member| member.candidate);
+        self.named.set.iter().copied().chain(unmodelled).collect()
     }
 }
 
 /// Judges `chosen`; `held` are the products of the held-out recordings, if there are any.
-pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut chosen: Chosen) -> Judged {
+pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut chosen: Chosen) -> Selection {
     let problem = study.problem(products);
     let off = |chosen: &Chosen| -> Option<usize> {
         let is_off = |&c: &usize| !is_at_its_size(&study.candidates[c], &chosen.fit);
@@ -87,17 +87,17 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
         study.note("too small, or too little evidence, for a name", &chosen, &next);
         chosen = next;
     }
-    let (nameless, named): (Vec<Member>, Vec<Member>) = members
+    let (unmodelled, named): (Vec<Member>, Vec<Member>) = members
         .into_iter()
         .partition(|member| study.candidates[member.candidate].cause.name().is_none());
     let mut kept = problem.choose(named.iter().map(|m| m.candidate).collect(), &chosen.fit.weights);
-    if !nameless.is_empty() {
+    if !unmodelled.is_empty() {
         // What has no name may have stood for something simple: for a constant only if nothing else is left.
         let candidates = &study.candidates;
         let simple: Vec<usize> = (0..candidates.len())
             .filter(|&c| candidates[c].cause.is_simple())
             .collect();
-        let left: Vec<Option<usize>> = beside(study, &problem, &problem.forward(kept.clone(), &simple), &nameless)
+        let left: Vec<Option<usize>> = beside(study, &problem, &problem.forward(kept.clone(), &simple), &unmodelled)
             .iter()
             .map(|member| candidates[member.candidate].joint)
             .collect();
@@ -110,18 +110,18 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
     if let Some(held) = held {
         kept = out_of_sample(study, &problem, held, kept);
     }
-    // Without the nameless and the refused the rest may have become impossible.
+    // Without the unmodelled forms and the refused names the rest may have become impossible.
     while let Some(&bad) = kept.set.iter().find(|&&c| !problem.is_possible(c, &kept.fit)) {
         let next = problem.choose(kept.others(bad), &kept.fit.weights);
         study.note(IMPOSSIBLE, &kept, &next);
         kept = next;
     }
     let members = describe(study, &problem, &kept);
-    let nameless = beside(study, &problem, &kept, &nameless);
-    Judged {
+    let unmodelled = beside(study, &problem, &kept, &unmodelled);
+    Selection {
         named: kept,
         members,
-        nameless,
+        unmodelled,
     }
 }
 
@@ -141,10 +141,10 @@ fn lasting(study: &Study, chosen: &Chosen) -> Option<usize> {
         .map(|(c, _)| *c)
 }
 
-/// The nameless that are still there beside what was `kept`, as large as they are beside it.
-fn beside(study: &Study, problem: &Problem<'_>, kept: &Chosen, nameless: &[Member]) -> Vec<Member> {
+/// The unmodelled forms that are still there beside what was `kept`, as large as they are beside it.
+fn beside(study: &Study, problem: &Problem<'_>, kept: &Chosen, unmodelled: &[Member]) -> Vec<Member> {
     let mut set = kept.set.clone();
-    set.extend(nameless.iter().map(|member| member.candidate));
+    set.extend(unmodelled.iter().map(|member| member.candidate));
     loop {
         let all = problem.choose(set.clone(), &kept.fit.weights);
         let mut members = describe(study, problem, &all);
@@ -228,7 +228,7 @@ pub fn is_idle(study: &Study, chosen: &Chosen, candidate: usize) -> bool {
 fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
     let cause = |member: &Member| study.candidates[member.candidate].cause;
     let is_named = |member: &Member| cause(member).name().is_some();
-    // On each joint, the largest nameless structure and the largest of the effects that are not baseline.
+    // On each joint, the largest unmodelled form and the largest of the effects that are not baseline.
     let dof = study.motions.dof;
     let largest = |wanted: &dyn Fn(&Member) -> bool, joint: usize| -> f64 {
         members
@@ -248,10 +248,10 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
                 || member.evidence < study.thresholds.least_unmodelled_evidence
                 || share < study.thresholds.beside_a_larger * named;
         }
-        let nameless = largest(&|m| !is_named(m), at);
+        let unmodelled = largest(&|m| !is_named(m), at);
         if cause(member).is_baseline() {
             // Beside larger structure without a name a drive's inertia may be a part of that.
-            return cause(member).is_drive_inertia() && share < nameless.max(LEAST_DRIVE);
+            return cause(member).is_drive_inertia() && share < unmodelled.max(LEAST_DRIVE);
         }
         let needed = if cause(member).plain().is_some() {
             study.thresholds.least_beyond

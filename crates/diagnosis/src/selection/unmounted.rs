@@ -12,13 +12,13 @@ use crate::regression::bodies::PER_LINK;
 use crate::regression::bootstrap::{Resampled, resample};
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
-use crate::selection::judge::{self, Judged};
+use crate::selection::judge::{self, Selection};
 use crate::selection::naming::name;
 use crate::thresholds::NEARLY_ALL;
 
 /// Names a body that is missing at the tool, if the background stands for one; the new resamplings. Other payloads stay what
 /// they are: a part of the background, or named by the search.
-pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
+pub fn unmounted(study: &mut Study, judged: &mut Selection) -> Option<Resampled> {
     let is_payload = |c: usize| study.candidates[c].cause.is(&Payload);
     if study.strengths.links.last().is_none_or(|&rho| rho == 0.0) || judged.named.set.iter().any(|&c| is_payload(c)) {
         return None;

@@ -28,7 +28,8 @@ fn rows(source: &str) -> String {
         let field = line.strip_suffix(',').and_then(|line| line.split_once(": "));
         let entry = constant.map(|(head, value)| (head.split(':').next().unwrap_or(head), value.trim_end_matches(';')));
         let field = field.filter(|(_, value)| value.parse::<f64>().is_ok());
-        if let Some((name, value)) = entry.or(field) {
+        let is_number = |(_, value): &(&str, &str)| !value.starts_with('&');
+        if let Some((name, value)) = entry.or(field).filter(is_number) {
             assert!(!words.is_empty(), "{name} says what it decides");
             let decides = words.join(" ").replace("[`", "`").replace("`]", "`");
             writeln!(rows, "| `{name}` | {value} | {decides} |").expect("a string takes everything");

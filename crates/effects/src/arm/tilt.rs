@@ -55,9 +55,9 @@ pub static GRAVITY: Law = Law {
     ..Law::PLAIN
 };
 
-/// Small turns are steps about the base as it is, up to this angle (rad) …
+/// Small turns are steps about the base as it is, up to this angle (rad).
 const MOST_TURNED: f64 = 0.4;
-/// … and gravity that points elsewhere is found by its three columns from this angle on (rad).
+/// Gravity that points elsewhere is found by its three columns from this angle on (rad).
 const LEAST_TURNED: f64 = 0.3;
 /// Gravity is as large on a wall as on the floor; its columns say so up to this factor, beside masses that are not the URDF's.
 const AS_LARGE: f64 = 1.3;

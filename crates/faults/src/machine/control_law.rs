@@ -27,7 +27,7 @@ pub struct Seen<'a> {
     pub tick: usize,
     /// Encoder positions (rad or m).
     pub q: &'a [f64],
-    /// The same through a [`crate::VelocityFilter`] (rad/s or m/s).
+    /// Velocities from the encoders through a [`crate::VelocityFilter`] (rad/s or m/s).
     pub qd: &'a [f64],
 }
 

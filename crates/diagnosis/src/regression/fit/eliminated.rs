@@ -19,7 +19,7 @@ const KEPT: usize = 12;
 pub struct Eliminated {
     /// Of the joints' rows: one over their variance.
     weights: Vec<f64>,
-    /// The same where rows count as evidence.
+    /// The weights of the joints' rows where rows count as evidence.
     scaled: Vec<f64>,
     /// The rows of L.
     lower: Vec<Vec<f64>>,

@@ -43,7 +43,7 @@ impl Products {
         (gain(&inside), gain(&outside))
     }
 
-    /// The same for columns that act on several joints, where they were not fitted; `weights` are those of the joints.
+    /// What `added` columns that act on several joints bring where they were not fitted (nats); `weights` are those of the joints.
     pub fn arm_gain(&self, table: &Table, columns: &[usize], added: &[usize], weights: &[f64]) -> f64 {
         let mut all: Vec<usize> = columns.to_vec();
         all.extend(added.iter().filter(|column| !columns.contains(column)));

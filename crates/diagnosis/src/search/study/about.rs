@@ -14,7 +14,7 @@ pub struct About {
     pub arm: Arm,
     /// How far the joints stand beyond their encoders (rad or m).
     pub offset: Vec<f64>,
-    /// The same without what the background changes in the links' inertial parameters; `None` if it changes nothing.
+    /// The arm without what the background changes in the links' inertial parameters; `None` if it changes nothing.
     pub bare: Option<Arm>,
     /// The terms that are in it, by their coefficients.
     pub carried: Vec<(Term, f64)>,

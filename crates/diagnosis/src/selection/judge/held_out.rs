@@ -7,7 +7,7 @@ use crate::regression::fit::Products;
 use crate::search::problem::{Chosen, Problem};
 use crate::search::study::Study;
 
-/// `chosen` without the nameless that do not predict recordings they were not fitted to. They may have stood for
+/// `chosen` without the unmodelled forms that do not predict recordings they were not fitted to. They may have stood for
 /// something simple, which is then looked for again.
 pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen: Chosen) -> Chosen {
     let cause = |c: usize| study.candidates[c].cause;
