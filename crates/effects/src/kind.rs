@@ -47,6 +47,16 @@ pub trait EffectKind: Debug + Sync {
         true
     }
 
+    /// Whether what else was found, `beside` it, cannot be with it.
+    fn is_contradicted(&self, _effect: &Effect, _beside: &[Effect]) -> bool {
+        false
+    }
+
+    /// The level of the dry friction that it stands for (N m or N), if it is one.
+    fn dry_friction(&self, _effect: &Effect) -> Option<f64> {
+        None
+    }
+
     /// The effect with its parameters, each noted with its interval; `None` if it cannot be read, or has no name.
     fn read(&self, _estimate: &mut dyn Estimate) -> Option<Effect> {
         None

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use effects::Spec;
+use effects::{Effect, Spec};
 use torque::Corrected;
 
 use crate::findings::found::useless;
@@ -10,7 +10,7 @@ use crate::findings::report::{JointFit, Parameter};
 use crate::findings::verdict::structured;
 use crate::regression::background::Strengths;
 use crate::regression::bootstrap::{Resampled, resample};
-use crate::search::problem::{Chosen, IMPOSSIBLE, Problem};
+use crate::search::problem::{Chosen, Growth, IMPOSSIBLE, Problem};
 use crate::search::study::Study;
 use crate::selection::judge::{self, Selection};
 use crate::selection::naming::{Named, name};
@@ -25,7 +25,11 @@ pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
         make_possible(study, judged);
         let before = judged.named.set.len();
 
+        let friction = study.strengths.friction;
         guard(study, judged);
+        if study.strengths.friction < friction {
+            add_friction(study, judged);
+        }
         prove(study, judged);
 
         give_up(study, judged);
@@ -144,6 +148,9 @@ fn give_up(study: &Study, judged: &mut Selection) {
 /// The weakest of the names whose size might be zero, or is none that physics has, and whether it is that.
 fn unclear(study: &Study, judged: &Selection, resampled: &Resampled) -> Option<(usize, bool)> {
     let resampled = &resampled.evenly();
+    let names = |member: &judge::Member| name(study, resampled, member.candidate);
+    let all = judged.members.iter().flat_map(names).map(|named| named.effect);
+    let all: Vec<Effect> = all.collect();
     let contradicted = |member: &judge::Member| {
         let named = name(study, resampled, member.candidate);
         // With its sizes corrected it may be no physics any more: a level below zero.
@@ -151,7 +158,8 @@ fn unclear(study: &Study, judged: &Selection, resampled: &Resampled) -> Option<(
         // Its own rows contradict it.
         let is_contradicted = |named: &Named| {
             let interval = |key: &str| named.parameters.get(key).map(|parameter| parameter.ci95);
-            !named.effect.kind().get().is_certain(&named.effect, &interval)
+            let kind = named.effect.kind().get();
+            !kind.is_certain(&named.effect, &interval) || kind.is_contradicted(&named.effect, &all)
         };
         named.iter().any(|named| is_impossible(named) || is_contradicted(named))
     };
@@ -218,6 +226,25 @@ fn guard(study: &mut Study, judged: &mut Selection) {
         let products = study.training_products();
         judged.members = judge::describe(study, &study.problem(&products), &judged.named);
     }
+}
+
+/// Names the baseline friction for which the background of friction stood, once that was taken back.
+fn add_friction(study: &Study, judged: &mut Selection) {
+    let is_friction = |&c: &usize| {
+        let cause = study.candidates[c].cause;
+        cause.is_baseline() && cause.is_friction()
+    };
+    let mut allowed = study.allowed();
+    allowed.retain(is_friction);
+    let products = study.training_products();
+    let problem = study.problem(&products);
+    let mut growth = Growth::default();
+    while let Some(next) = problem.grow(&judged.named, &allowed, &mut growth) {
+        let next = problem.reweighted(next);
+        study.note("the background of friction was taken back", &judged.named, &next);
+        judged.named = next;
+    }
+    judged.members = judge::describe(study, &problem, &judged.named);
 }
 
 /// The held-out error of `joint`, of the model as it was given and with what is `chosen`.

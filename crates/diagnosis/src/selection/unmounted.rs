@@ -14,7 +14,7 @@ use crate::search::problem::Chosen;
 use crate::search::study::Study;
 use crate::selection::judge::{self, Selection};
 use crate::selection::naming::name;
-use crate::thresholds::NEARLY_ALL;
+use crate::thresholds::{LEAST_OF_THE_LINK, NEARLY_ALL};
 
 /// Names a body that is missing at the tool, if the background stands for one; the new resamplings. Other payloads stay what
 /// they are: a part of the background, or named by the search.
@@ -29,10 +29,11 @@ pub fn unmounted(study: &mut Study, judged: &mut Selection) -> Option<Resampled>
     let (strengths, next) = instead(study, &judged.named, body)?;
     let before = std::mem::replace(&mut study.strengths, strengths);
     let resampled = resample(study, &next);
+    let drawn = study.arm.inertial_parameters()[(study.arm.dof() - 1) * PER_LINK];
     let is_missing = name(study, &resampled.evenly(), body)
         .first()
         .and_then(|named| named.parameters.get("mass"))
-        .is_some_and(|mass| mass.ci95[1] < 0.0);
+        .is_some_and(|mass| mass.ci95[1] < 0.0 && -mass.value >= LEAST_OF_THE_LINK * drawn);
     if !is_missing {
         study.strengths = before;
         return None;

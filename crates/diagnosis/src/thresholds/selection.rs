@@ -35,3 +35,6 @@ pub const ONSET_INTERVAL: f64 = 2.0 * 1.92;
 pub const PUSH_START: f64 = 0.1;
 /// The part of what the background of all links explains (nats) that one missing body must explain alone.
 pub const NEARLY_ALL: f64 = 0.7;
+/// The part of the last link's mass in the URDF, its tool included, that a missing tool has at least: a URDF may be off by less
+/// without one.
+pub const LEAST_OF_THE_LINK: f64 = 0.3;

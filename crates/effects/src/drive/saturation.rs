@@ -52,6 +52,9 @@ const MOST_LEFT: f64 = 0.5;
 const MOST_CLIPPED: f64 = 0.45;
 /// A torque limit is at least this part of what the motion needs, by a model that may be wrong.
 const BELOW_NEED: f64 = 0.7;
+/// A drive gives at least this multiple of its joint's dry friction: with less it could hardly move the joint, and a torque that is
+/// little more than dry friction looks clipped at the level of that.
+const LEAST_OVER_FRICTION: f64 = 1.3;
 
 impl EffectKind for TorqueSaturation {
     fn spec(&self) -> &'static Spec {
@@ -80,6 +83,15 @@ impl EffectKind for TorqueSaturation {
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
         // A drive spends no more than part of its time at its limit.
         CUT_OFF.contains(&fitted.value(0)) && acting(fitted) < MOST_CLIPPED && cuts(fitted)
+    }
+
+    fn is_contradicted(&self, effect: &Effect, beside: &[Effect]) -> bool {
+        let is_here = |other: &&Effect| other.joint() == effect.joint();
+        let friction = beside.iter().filter(is_here);
+        let friction: f64 = friction
+            .filter_map(|other| other.kind().get().dry_friction(other))
+            .sum();
+        effect.number("limit") < LEAST_OVER_FRICTION * friction
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
@@ -124,7 +136,18 @@ fn acting(fitted: &dyn Fitted) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::friction::CoulombFriction;
     use crate::test_support::{column, machine};
+
+    /// The torque of a slow joint with dry friction alone is flat at the level of that friction.
+    #[test]
+    fn a_limit_hardly_above_the_dry_friction_is_none() {
+        let limit = |limit: f64| Effect::of(&TorqueSaturation).on("a").with("limit", limit);
+        let friction = |joint: &str| Effect::of(&CoulombFriction).on(joint).with("level", 3.3);
+        assert!(TorqueSaturation.is_contradicted(&limit(3.4), &[friction("a")]));
+        assert!(!TorqueSaturation.is_contradicted(&limit(3.4), &[friction("b")]));
+        assert!(!TorqueSaturation.is_contradicted(&limit(6.6), &[friction("a")]));
+    }
 
     #[test]
     fn it_cuts_what_its_column_takes_off() {

@@ -71,6 +71,10 @@ impl EffectKind for FrictionAsymmetry {
         (sum < 0.0).then_some(("positive + negative", sum, "finite and not negative"))
     }
 
+    fn dry_friction(&self, effect: &Effect) -> Option<f64> {
+        Some(0.5 * (effect.number("positive") + effect.number("negative")))
+    }
+
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
         let (positive, negative) = (effect.number("positive"), effect.number("negative"));
         let dry = Dry::new(move |_, _| 0.5 * (positive + negative)).biased(0.5 * (positive - negative));

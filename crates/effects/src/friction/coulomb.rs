@@ -48,6 +48,10 @@ impl EffectKind for CoulombFriction {
         Some(Effect::of(&Self).on(estimate.joint_name()).with("level", level))
     }
 
+    fn dry_friction(&self, effect: &Effect) -> Option<f64> {
+        Some(effect.number("level"))
+    }
+
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
         let level = effect.number("level");
         machine.dry.push((at.joint, Dry::new(move |_, _| level)));

@@ -100,6 +100,10 @@ impl EffectKind for StribeckFriction {
         Some(effect.with("velocity", velocity).with("exponent", exponent))
     }
 
+    fn dry_friction(&self, effect: &Effect) -> Option<f64> {
+        Some(effect.number("coulomb"))
+    }
+
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
         let [coulomb, breakaway, velocity, exponent] =
             ["coulomb", "breakaway", "velocity", "exponent"].map(|key| effect.number(key));

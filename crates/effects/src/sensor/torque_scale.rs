@@ -44,6 +44,9 @@ static SPEC: Spec = Spec {
 const KNOWN_BODY: &str = "attach a body of known mass to the tool and record the same motion: a torque scale changes its apparent weight, \
      wrong link masses do not";
 
+/// A torque constant is seldom known better than this: a scale within it is no fault of this joint.
+const USUAL_ACCURACY: f64 = 0.04;
+
 impl EffectKind for TorqueScale {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -67,6 +70,10 @@ impl EffectKind for TorqueScale {
         (-0.7..2.0).contains(&fitted.value(0))
     }
 
+    fn is_certain(&self, effect: &Effect, _interval: &dyn Fn(&str) -> Option<[f64; 2]>) -> bool {
+        (effect.number("factor") - 1.0).abs() >= USUAL_ACCURACY
+    }
+
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let at = estimate.place(0)?;
         let factor = estimate.note("factor", |draw| 1.0 + draw[at]);
@@ -87,6 +94,16 @@ impl EffectKind for TorqueScale {
 mod tests {
     use super::*;
     use crate::test_support::{column, machine};
+
+    #[test]
+    fn a_scale_within_the_usual_accuracy_of_torque_constants_is_none() {
+        let is_certain = |factor: f64| {
+            let effect = Effect::of(&TorqueScale).on("a").with("factor", factor);
+            TorqueScale.is_certain(&effect, &|_| None)
+        };
+        assert!(!is_certain(0.966));
+        assert!(is_certain(0.94) && is_certain(1.05));
+    }
 
     /// Its column is the rigid torque: what it adds for a factor of 1.5 is half of that.
     #[test]
