@@ -20,6 +20,7 @@ use crate::thresholds::{HOPELESS, PARTLY};
 /// Fits the named effects for the last time: about the arm that they make, with the rows near reversals; drops what makes a
 /// joint's held-out error grow, what does not help there, and what might be zero.
 pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
+    let mut has_friction = false;
     loop {
         settle(study, judged, false);
         make_possible(study, judged);
@@ -27,7 +28,8 @@ pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
 
         let friction = study.strengths.friction;
         guard(study, judged);
-        if study.strengths.friction < friction {
+        // Once: what is dropped afterwards must not come back without end.
+        if study.strengths.friction < friction && !std::mem::replace(&mut has_friction, true) {
             add_friction(study, judged);
         }
         prove(study, judged);
