@@ -65,7 +65,7 @@ decisive! {
     least_share: 0.012,
     /// The evidence that a named effect must bring (nats).
     least_evidence: 25.0,
-    /// The evidence that a named effect must bring over the baseline effect that it is a form of (nats).
+    /// The evidence that a named effect must bring over the simpler effect that it is a form of (nats).
     least_beyond: 15.0,
     /// The part of a larger effect on the same joint that an effect must exceed: what is smaller may be an error of that one's form.
     beside_a_larger: 0.1,

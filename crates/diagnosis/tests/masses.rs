@@ -8,12 +8,8 @@ use support::{Concealed, diagnosed, sentences, trio};
 /// What is named beside plain friction: effect and joint.
 fn named(robot: &Arm, concealed: Concealed<'_>) -> Vec<(String, Option<String>)> {
     let diagnosis = diagnosed(&trio(), robot, concealed, Vec::new());
-    let plain = ["viscous_friction", "coulomb_friction"];
-    let special = diagnosis.report.findings.iter();
-    let mut special: Vec<_> = special
-        .filter(|finding| !plain.contains(&finding.effect))
-        .map(|finding| (finding.effect.to_owned(), finding.joint.clone()))
-        .collect();
+    let owned = |(effect, joint)| of(effect, joint);
+    let mut special: Vec<_> = support::named(&diagnosis).into_iter().map(owned).collect();
     special.sort();
     assert!(diagnosis.report.unexplained.is_empty(), "{:?}", sentences(&diagnosis));
     special

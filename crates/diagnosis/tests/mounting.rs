@@ -4,17 +4,7 @@ mod support;
 
 use arm::Vector3;
 use diagnosis::{Diagnosis, Options, diagnose};
-use support::{Motion, baseline_friction, diagnosed, inputs, recorded, regular, sentences, trio};
-
-/// What is named beside the friction that every joint has.
-fn named(diagnosis: &Diagnosis) -> Vec<(&str, Option<&str>)> {
-    let plain = ["viscous_friction", "coulomb_friction"];
-    let findings = diagnosis.report.findings.iter();
-    findings
-        .filter(|finding| !plain.contains(&finding.effect))
-        .map(|finding| (finding.effect, finding.joint.as_deref()))
-        .collect()
-}
+use support::{Motion, baseline_friction, diagnosed, inputs, named, recorded, regular, sentences, trio};
 
 /// The diagnosis of the trio's arm on a base turned by an angle (°) about an axis.
 fn mounted(degrees: f64) -> Diagnosis {

@@ -11,12 +11,8 @@ use support::{
 
 /// What was found beside baseline friction of the expected sizes: effects and joints.
 fn names(diagnosis: &diagnosis::Diagnosis) -> Vec<(&str, &str)> {
-    let plain = ["viscous_friction", "coulomb_friction"];
-    let findings = diagnosis.report.findings.iter();
-    findings
-        .filter(|finding| !plain.contains(&finding.effect))
-        .map(|finding| (finding.effect, finding.joint.as_deref().unwrap_or("the whole arm")))
-        .collect()
+    let place = |(effect, joint): (_, Option<_>)| (effect, joint.unwrap_or("the whole arm"));
+    support::named(diagnosis).into_iter().map(place).collect()
 }
 
 /// What is found of `concealed` must be these names, and nothing may stay unexplained; the diagnosis.

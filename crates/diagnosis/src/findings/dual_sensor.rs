@@ -273,23 +273,16 @@ fn finding(
     gain: Option<f64>,
     place: &str,
 ) -> Finding {
+    let state = Some(place.to_owned());
     Finding {
-        effect: effect.name(),
-        joint: Some(joint.to_owned()),
-        other: None,
         parameters,
-        probability: None,
         share,
         share_by_joint: BTreeMap::from([(joint.to_owned(), share)]),
         held_out_gain: gain,
-        confusable_with: Vec::new(),
         place: Place {
-            state: Some(place.to_owned()),
+            state,
             ..Place::default()
         },
-        sentence: String::new(),
-        since_before: false,
-        corrects: false,
-        as_effect: effect,
+        ..Finding::of(effect)
     }
 }

@@ -89,8 +89,6 @@ fn finding(
             rotor_share(study, judged, member.candidate)
         };
         list.push(Finding {
-            effect: named.effect.name(),
-            joint: named.effect.joint().map(str::to_owned),
             other: named.other,
             parameters: named.parameters,
             probability: Some(standing.probability(member.evidence)),
@@ -121,11 +119,10 @@ fn finding(
                 Vec::new()
             },
             place: place.clone(),
-            sentence: String::new(),
             since_before: study.motions.changed_at.is_some()
                 && study.terms(member.candidate).iter().any(|term| term.onset().is_some()),
             corrects: true,
-            as_effect: named.effect,
+            ..Finding::of(named.effect)
         });
     }
     list

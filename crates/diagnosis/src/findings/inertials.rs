@@ -7,7 +7,7 @@ use effects::Effect;
 use effects::arm::{INERTIAL_PARAMETER, InertialParameters, body};
 use serde::Serialize;
 
-use crate::findings::report::{Confusable, Finding, Parameter, Place};
+use crate::findings::report::{Finding, Parameter};
 use crate::findings::rivals::probability;
 use crate::regression::bodies::{PER_LINK, physical};
 use crate::regression::bootstrap::Resampled;
@@ -179,20 +179,12 @@ pub fn inertials(
             return;
         }
         list.findings.push(Finding {
-            effect: "inertial_parameters",
             joint: joint.map(|joint| study.arm.joints()[joint].name.clone()),
-            other: None,
             parameters,
             probability: Some(probability(evidence)),
             share: largest(shares),
             share_by_joint: by_joint(shares),
-            held_out_gain: None,
-            confusable_with: Vec::<Confusable>::new(),
-            place: Place::default(),
-            sentence: String::new(),
-            since_before: false,
-            corrects: false,
-            as_effect: list.effects[joint.unwrap_or(0)].clone(),
+            ..Finding::of(list.effects[joint.unwrap_or(0)].clone())
         });
     };
     for link in (0..dof).filter(|&link| strengths.links[link] > LINK_STANDS_OUT * common) {

@@ -107,6 +107,28 @@ pub struct Finding {
     pub as_effect: Effect,
 }
 
+impl Finding {
+    /// A finding of `effect`, of which nothing more is known.
+    pub fn of(effect: Effect) -> Self {
+        Self {
+            effect: effect.name(),
+            joint: effect.joint().map(str::to_owned),
+            other: None,
+            parameters: BTreeMap::new(),
+            probability: None,
+            share: 0.0,
+            share_by_joint: BTreeMap::new(),
+            held_out_gain: None,
+            confusable_with: Vec::new(),
+            place: Place::default(),
+            sentence: String::new(),
+            since_before: false,
+            corrects: false,
+            as_effect: effect,
+        }
+    }
+}
+
 /// A number with its interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Parameter {

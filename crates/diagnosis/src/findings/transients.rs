@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use effects::Effect;
 use effects::arm::ExternalContact;
-use effects::{Effect, EffectKind};
 use nalgebra::Vector3;
 
 use crate::data::statistics::rms;
@@ -228,31 +228,24 @@ fn contact(study: &Study, left: &[Vec<f64>], pushes: &[Push]) -> Option<Finding>
             )
         })
         .collect();
+    let effect = Effect::of(&ExternalContact)
+        .with("start", from)
+        .with("duration", to - from)
+        .with("force", [force.x, force.y, force.z]);
     Some(Finding {
-        effect: ExternalContact.spec().name,
-        joint: None,
-        other: None,
         parameters: BTreeMap::from([
             ("force", exactly(force.norm(), spread, "N")),
             ("start", exactly(from, 0.1, "s")),
             ("duration", exactly(to - from, 0.2, "s")),
         ]),
-        probability: None,
         share: share_by_joint.values().copied().fold(0.0, f64::max),
         share_by_joint,
         held_out_gain: Some(1.0 - (1.0 - explained).max(0.0).sqrt()),
-        confusable_with: Vec::new(),
         place: Place {
             time: same,
             recording: Some(recording),
             state: None,
         },
-        sentence: String::new(),
-        since_before: false,
-        corrects: false,
-        as_effect: Effect::of(&ExternalContact)
-            .with("start", from)
-            .with("duration", to - from)
-            .with("force", [force.x, force.y, force.z]),
+        ..Finding::of(effect)
     })
 }

@@ -175,6 +175,16 @@ pub fn baseline_friction(motion: &Motion, tau: &mut [f64]) {
     }
 }
 
+/// What is named beside plain friction: effects and joints.
+pub fn named(diagnosis: &Diagnosis) -> Vec<(&str, Option<&str>)> {
+    let plain = ["viscous_friction", "coulomb_friction"];
+    let findings = diagnosis.report.findings.iter();
+    let special = findings.filter(|finding| !plain.contains(&finding.effect));
+    special
+        .map(|finding| (finding.effect, finding.joint.as_deref()))
+        .collect()
+}
+
 /// What was found, in words.
 pub fn sentences(diagnosis: &Diagnosis) -> Vec<&str> {
     diagnosis
