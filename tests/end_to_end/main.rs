@@ -8,6 +8,7 @@ mod diagnose_made;
 mod diagnose_mistakes;
 mod diagnose_next;
 mod diagnose_refusals;
+mod diagnose_takeaways;
 mod diagnose_terminal;
 mod formats;
 mod inspect;

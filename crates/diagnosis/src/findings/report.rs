@@ -112,7 +112,7 @@ pub struct Finding {
 pub struct Parameter {
     /// The estimate.
     pub value: f64,
-    /// Its 95 % interval.
+    /// Its 95 % interval; `null` where it is open.
     pub ci95: [f64; 2],
     /// SI unit at the joint.
     pub unit: &'static str,
@@ -281,6 +281,9 @@ pub struct Trace {
     pub residual: Vec<Vec<f64>>,
     /// Measured less nominal less named effects (N m or N).
     pub residual_augmented: Vec<Vec<f64>>,
+    /// Measured less the corrected model that is exported: the links' inertial parameters and the named effects, without the
+    /// background's friction and torque constants (N m or N).
+    pub residual_exported: Vec<Vec<f64>>,
     /// The torque of each finding (N m or N), as its column says.
     pub effects: Vec<Vec<Vec<f64>>>,
     /// Whether the joint moves: rows at rest were not fitted.
