@@ -100,3 +100,31 @@ fn residuals_of_another_ending_are_refused() {
     let message = refused(&case(), &["--residuals", "r.xlsx"]);
     says(&message, &["--residuals r.xlsx", ".csv or .parquet"]);
 }
+
+#[test]
+fn the_findings_are_markdown() {
+    let case = Case::new(&trio(), &friction);
+    let printed = case.diagnose(&["--markdown", "d.md"]);
+    assert!(printed.contains("written: d.md"), "{printed}");
+    let text = case.text("d.md");
+    for part in [
+        "# Diagnosis of trio\n",
+        "**The model omits 2 effects on shoulder. With these effects, the model explains the recordings.**",
+        "Held-out recordings: `c.csv`.",
+        "| `shoulder` | viscous friction |",
+        "| `shoulder` | `coulomb_friction` | `level` | N m |",
+        "## Torque error of each joint",
+        "## Simulated motion",
+        "## Not testable with these recordings",
+        "schema `testbed.diagnosis/1`.\n",
+    ] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+    // All rows of a table have as many cells as its head.
+    let cells = |line: &str| line.replace("\\|", "").matches('|').count();
+    for pair in text.lines().collect::<Vec<_>>().windows(2) {
+        if pair.iter().all(|line| line.starts_with('|')) {
+            assert_eq!(cells(pair[0]), cells(pair[1]), "{pair:?}");
+        }
+    }
+}

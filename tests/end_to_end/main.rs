@@ -19,5 +19,6 @@ mod prove_published;
 mod refusals;
 mod robots;
 mod runs;
+mod schema;
 mod support;
 mod tidy;

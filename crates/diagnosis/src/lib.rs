@@ -16,6 +16,7 @@ pub use data::motion::Input;
 pub use diagnose::{Diagnosis, Options, diagnose};
 pub use error::DiagnosisError;
 pub use findings::report::*;
+pub use findings::schema::json_schema;
 pub use findings::sentences::described;
 pub use next::{JointLimits, NextExperiment, NotSeparated, Obstacle, Separation, Shows};
 pub use search::hypothesis::Wanted;

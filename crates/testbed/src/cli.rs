@@ -48,6 +48,8 @@ pub enum Command {
     Prove(ProveArgs),
     /// Make recordings of a simulated robot with injected faults, and the ground truth in a separate file
     Conceal(ConcealArgs),
+    /// Print the JSON Schema of what diagnose --json writes
+    Schema,
 }
 
 /// Run one scenario in closed loop.

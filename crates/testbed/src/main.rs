@@ -52,6 +52,7 @@ fn main() -> ExitCode {
         },
         (Some(cli::Command::Prove(args)), _) => prove::run(args),
         (Some(cli::Command::Conceal(args)), _) => conceal::run(args),
+        (Some(cli::Command::Schema), _) => diagnose::print_schema(),
         (None, Some(args)) => run::run(args, &cli.chain),
         (None, None) => {
             let mut command = cli::Cli::command();

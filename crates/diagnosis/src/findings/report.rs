@@ -2,16 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use effects::Effect;
+use effects::{CATALOGUE, Effect};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use crate::findings::inertials::LinkInertials;
 use crate::next::NextExperiment;
 
 /// What was found. Maps are keyed by the URDF joint's name.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[schemars(title = "testbed.diagnosis/1")]
 pub struct Report {
     /// `testbed.diagnosis/1`.
+    #[schemars(extend("const" = "testbed.diagnosis/1"))]
     pub schema: &'static str,
     /// The robot's name in its URDF.
     pub robot: String,
@@ -45,7 +48,7 @@ pub struct Report {
 }
 
 /// Paths as given on the command line.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, JsonSchema)]
 pub struct RecordingNames {
     /// Fitted.
     pub train: Vec<String>,
@@ -53,8 +56,13 @@ pub struct RecordingNames {
     pub held_out: Vec<String>,
 }
 
+/// The names of all effects.
+fn effect_names() -> Vec<&'static str> {
+    CATALOGUE.iter().map(|kind| kind.spec().name).collect()
+}
+
 /// The diagnosis in one word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// The model explains the recordings.
@@ -70,9 +78,10 @@ pub enum Verdict {
 }
 
 /// One effect named.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Finding {
     /// The catalogue's name.
+    #[schemars(extend("examples" = effect_names()))]
     pub effect: &'static str,
     /// The joint, or `None` for the whole arm.
     pub joint: Option<String>,
@@ -108,18 +117,19 @@ pub struct Finding {
 }
 
 /// A number with its interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Parameter {
     /// The estimate.
     pub value: f64,
     /// Its 95 % interval; `null` where it is open.
+    #[schemars(with = "[Option<f64>; 2]")]
     pub ci95: [f64; 2],
     /// SI unit at the joint.
     pub unit: &'static str,
 }
 
 /// An alternative of a finding.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Confusable {
     /// The catalogue's name.
     pub effect: &'static str,
@@ -128,7 +138,7 @@ pub struct Confusable {
 }
 
 /// Where a finding acts.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, JsonSchema)]
 pub struct Place {
     /// Stretches of time (s); all of it where empty.
     pub time: Vec<[f64; 2]>,
@@ -141,7 +151,7 @@ pub struct Place {
 }
 
 /// A structured residual that no effect in the catalogue explains.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Unexplained {
     /// The joint.
     pub joint: String,
@@ -156,9 +166,10 @@ pub struct Unexplained {
 }
 
 /// An effect that is not testable with the recordings.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct NotObservable {
     /// The catalogue's name.
+    #[schemars(extend("examples" = effect_names()))]
     pub effect: &'static str,
     /// The joint, or `None` for the whole arm.
     pub joint: Option<String>,
@@ -172,7 +183,7 @@ pub struct NotObservable {
 }
 
 /// Where a joint's nominal residual is larger than noise and filtering explain.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Located {
     /// The joint.
     pub joint: String,
@@ -187,7 +198,7 @@ pub struct Located {
 }
 
 /// A stretch of one recording.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct TimeWindow {
     /// The recording, as it was named.
     pub recording: String,
@@ -198,7 +209,7 @@ pub struct TimeWindow {
 }
 
 /// A region of state.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Region {
     /// `near_reversal`, `speed`, `load`, `angle`, `elapsed_time`.
     pub axis: &'static str,
@@ -211,7 +222,7 @@ pub struct Region {
 }
 
 /// How well one joint's torque is predicted. NRMSE: RMS error over the standard deviation of the measured torque.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, JsonSchema)]
 pub struct JointFit {
     /// Of the measured torque, training recordings (N m or N).
     pub torque_std: f64,
@@ -245,7 +256,7 @@ pub struct JointFit {
 }
 
 /// How the simulated joint follows the recorded one.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, JsonSchema)]
 pub struct JointRollout {
     /// RMS distance, nominal model (rad or m).
     pub nominal_rms_rad: f64,

@@ -209,6 +209,9 @@ fn write<'a>(
     if let Some(path) = &args.report {
         output::write_text(path, &report::page(&diagnosis.report, &diagnosis.traces, arm))?;
     }
+    if let Some(path) = &args.markdown {
+        output::write_text(path, &report::diagnosis_markdown(&diagnosis.report, arm))?;
+    }
     if let Some(path) = args.json_file() {
         output::write_json(path, &diagnosis.report)?;
     }
