@@ -12,6 +12,7 @@ mod diagnose_takeaways;
 mod diagnose_terminal;
 mod formats;
 mod inspect;
+mod manual;
 mod paper;
 mod prove;
 mod prove_paper;

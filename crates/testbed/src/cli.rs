@@ -50,6 +50,17 @@ pub enum Command {
     Conceal(ConcealArgs),
     /// Print the JSON Schema of what diagnose --json writes
     Schema,
+    /// Print a script that completes commands and options in a shell
+    Completions(CompletionsArgs),
+    /// Print the manual page, for man -l - or a file testbed.1
+    Man,
+}
+
+#[derive(Debug, Args)]
+pub struct CompletionsArgs {
+    /// The shell that reads the script
+    #[arg(value_enum)]
+    pub shell: clap_complete::Shell,
 }
 
 /// Run one scenario in closed loop.

@@ -15,11 +15,3 @@ pub mod urdf_file;
 mod urdf_friction;
 
 pub use command::run;
-
-/// Prints the JSON Schema of `testbed diagnose --json`.
-///
-/// # Errors
-/// If it cannot be printed.
-pub fn print_schema() -> anyhow::Result<()> {
-    crate::output::print(&(serde_json::to_string_pretty(&diagnosis::json_schema())? + "\n"))
-}

@@ -6,6 +6,7 @@ mod diagnose;
 mod inspect;
 mod interrupt;
 mod library;
+mod manual;
 mod models;
 mod output;
 mod paper;
@@ -52,7 +53,9 @@ fn main() -> ExitCode {
         },
         (Some(cli::Command::Prove(args)), _) => prove::run(args),
         (Some(cli::Command::Conceal(args)), _) => conceal::run(args),
-        (Some(cli::Command::Schema), _) => diagnose::print_schema(),
+        (Some(cli::Command::Schema), _) => manual::schema(),
+        (Some(cli::Command::Completions(args)), _) => manual::completions(args.shell),
+        (Some(cli::Command::Man), _) => manual::page(),
         (None, Some(args)) => run::run(args, &cli.chain),
         (None, None) => {
             let mut command = cli::Cli::command();
