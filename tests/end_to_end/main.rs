@@ -10,6 +10,7 @@ mod diagnose_next;
 mod diagnose_refusals;
 mod diagnose_takeaways;
 mod diagnose_terminal;
+mod excite;
 mod formats;
 mod inspect;
 mod manual;

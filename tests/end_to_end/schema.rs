@@ -149,7 +149,7 @@ fn diagnoses_are_as_the_schema_says() {
             ".verdict",
             ".fit.elbow.noise",
             ".robot",
-            "located is missing",
+            "\"located\" is missing",
             ".colour",
         ] {
             assert!(said.contains(place), "{place} is not in {said}");

@@ -3,6 +3,7 @@
 mod cli;
 mod conceal;
 mod diagnose;
+mod excite;
 mod inspect;
 mod interrupt;
 mod library;
@@ -51,6 +52,7 @@ fn main() -> ExitCode {
             Ok(status) => return status,
             Err(error) => Err(error),
         },
+        (Some(cli::Command::Excite(args)), _) => excite::run(args),
         (Some(cli::Command::Prove(args)), _) => prove::run(args),
         (Some(cli::Command::Conceal(args)), _) => conceal::run(args),
         (Some(cli::Command::Schema), _) => manual::schema(),
