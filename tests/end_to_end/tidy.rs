@@ -144,3 +144,18 @@ fn the_catalogues_table_is_the_catalogue() {
     }
     assert_eq!(&page[start..end], table, "UPDATE_DOCS=1 writes the table anew");
 }
+
+/// `UPDATE_DOCS=1` writes the schema anew.
+#[test]
+fn the_published_schema_is_that_of_the_program() {
+    let path = crate::support::root().join("docs/diagnosis.schema.json");
+    let schema = crate::support::Sandbox::new().succeed(&["schema"]);
+    if std::env::var_os("UPDATE_DOCS").is_some() {
+        std::fs::write(&path, schema).expect("the schema can be written");
+        return;
+    }
+    assert!(
+        read(&path) == schema,
+        "UPDATE_DOCS=1 writes docs/diagnosis.schema.json anew"
+    );
+}

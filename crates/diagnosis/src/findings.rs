@@ -9,6 +9,7 @@ pub mod locate;
 pub mod observability;
 pub mod report;
 pub mod rivals;
+pub mod schema;
 pub mod sentences;
 pub mod traces;
 pub mod transients;

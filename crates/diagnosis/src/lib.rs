@@ -4,6 +4,7 @@
 mod data;
 mod diagnose;
 mod error;
+mod excitation;
 mod findings;
 mod next;
 mod regression;
@@ -15,7 +16,11 @@ mod trace;
 pub use data::motion::Input;
 pub use diagnose::{Diagnosis, Options, diagnose};
 pub use error::DiagnosisError;
+pub use excitation::{
+    Determined, Excitation, ExcitationError, ExcitationOptions, JointUse, MotionLimits, Quality, excite, quality_of,
+};
 pub use findings::report::*;
+pub use findings::schema::json_schema;
 pub use findings::sentences::described;
 pub use next::{JointLimits, NextExperiment, NotSeparated, Obstacle, Separation, Shows};
 pub use search::hypothesis::Wanted;

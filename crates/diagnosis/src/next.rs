@@ -19,8 +19,8 @@ use crate::search::problem::Chosen;
 use crate::search::study::Study;
 
 mod advice;
-mod designs;
-mod limits;
+pub(crate) mod designs;
+pub(crate) mod limits;
 mod prospect;
 mod report;
 

@@ -1,11 +1,13 @@
 //! What people read of a diagnosis and of a proof: blocks, charts, pages, Markdown, terminal. It returns strings and writes no files.
 //!
-//! A diagnosis is a [`page`](page()) with figures of its own and a text for the [`terminal`]. Any other report is a list of
+//! A diagnosis is a [`page`](page()) with figures of its own, a text for the [`terminal`], and
+//! [Markdown](diagnosis_markdown()). Any other report is a list of
 //! [`block`]s, which [`block_page`] and [`markdown`] both render; [`score`] has those that say what a proof is worth.
 
 pub mod block;
 mod block_page;
 pub mod chart;
+mod diagnosis_markdown;
 mod markdown;
 pub mod next_words;
 pub mod numbers;
@@ -17,5 +19,6 @@ pub mod terminal;
 pub mod words;
 
 pub use block_page::block_page;
+pub use diagnosis_markdown::diagnosis_markdown;
 pub use markdown::markdown;
 pub use page::page;

@@ -270,6 +270,22 @@ pub fn probability(value: Option<f64>) -> String {
     }
 }
 
+/// Five significant digits without prefix or unit, as a program reads them.
+pub fn for_programs(value: f64) -> String {
+    if !value.is_finite() {
+        return "–".into();
+    }
+    if value == 0.0 {
+        return "0".into();
+    }
+    let magnitude = value.abs().log10().floor() as i32;
+    if (-4..6).contains(&magnitude) {
+        format!("{value:.*}", (4 - magnitude).max(0) as usize)
+    } else {
+        format!("{value:.4e}")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

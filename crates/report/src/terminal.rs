@@ -283,8 +283,8 @@ fn rollout(report: &Report) -> String {
     )
 }
 
-/// Breaks `text` between words; the first line begins with `start`, the others are indented as far.
-fn wrapped(text: &str, start: &str) -> String {
+/// Breaks `text` between words; the first line begins with `start`, the others are indented as far. It ends with a newline.
+pub fn wrapped(text: &str, start: &str) -> String {
     let indent = " ".repeat(start.chars().count());
     let mut lines = String::new();
     let mut line = start.to_owned();

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use diagnosis::{Finding, JointFit, Parameter, Report, Verdict};
+use arm::JointKind;
+use diagnosis::{Finding, JointFit, NotObservable, Parameter, Report, Verdict};
 
 use crate::numbers;
 use crate::statistics::rms;
@@ -201,4 +202,16 @@ fn remaining(report: &Report) -> Option<[f64; 2]> {
 pub fn count(number: usize, what: &str) -> String {
     let ending = if number == 1 { "" } else { "s" };
     format!("{number} {what}{ending}")
+}
+
+/// The sizes from which an effect on a joint of `kind` is detectable, with the units of its parameters: `halfgap above 2 mrad`.
+pub fn detectable_sizes(entry: &NotObservable, kind: JointKind) -> String {
+    let above = entry.would_be_seen_above.iter().map(|size| ("above", size));
+    let below = entry.would_be_seen_below.iter().map(|size| ("below", size));
+    let sizes = above.chain(below).map(|(side, (name, size))| {
+        let unit = effects::spec(entry.effect).and_then(|spec| spec.unit(name, kind));
+        let size = numbers::round_quantity(*size, unit.filter(|unit| *unit != "1").unwrap_or_default());
+        format!("{} {side} {size}", name.replace('_', " "))
+    });
+    sizes.collect::<Vec<_>>().join(", ")
 }

@@ -7,6 +7,7 @@ use torque::{LengthScales, TrainingOptions};
 
 mod chain;
 mod diagnose;
+mod excite;
 mod numbers;
 mod rerun;
 
@@ -14,6 +15,7 @@ use crate::models::ModelKind;
 use crate::prove::Shard;
 pub use chain::ChainArgs;
 pub use diagnose::{DiagnoseArgs, UrdfFriction};
+pub use excite::{ExciteArgs, Limit};
 use numbers::parse_urdf_error;
 pub use rerun::Rerun;
 use rerun::parse_rerun;
@@ -42,12 +44,27 @@ pub enum Command {
     Tables(TablesArgs),
     /// Find the physical effects that a robot's model omits, from recordings
     Diagnose(DiagnoseArgs),
+    /// Propose the motion of the first recording: the one from which inertial parameters and friction are estimated best
+    Excite(ExciteArgs),
     /// Check the quality of recordings before anything is fitted to them
     Inspect(InspectArgs),
     /// Test the diagnosis blind: inject faults, seal the ground truth, diagnose, open the seal and score
     Prove(ProveArgs),
     /// Make recordings of a simulated robot with injected faults, and the ground truth in a separate file
     Conceal(ConcealArgs),
+    /// Print the JSON Schema of what diagnose --json writes
+    Schema,
+    /// Print a script that completes commands and options in a shell
+    Completions(CompletionsArgs),
+    /// Print the manual page, for man -l - or a file testbed.1
+    Man,
+}
+
+#[derive(Debug, Args)]
+pub struct CompletionsArgs {
+    /// The shell that reads the script
+    #[arg(value_enum)]
+    pub shell: clap_complete::Shell,
 }
 
 /// Run one scenario in closed loop.

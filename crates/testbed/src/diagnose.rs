@@ -9,6 +9,7 @@ mod next_file;
 mod notes;
 #[cfg(feature = "viewer")]
 mod rerun;
+mod residuals_file;
 mod trace_file;
 pub mod urdf_file;
 mod urdf_friction;

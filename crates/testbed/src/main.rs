@@ -3,9 +3,11 @@
 mod cli;
 mod conceal;
 mod diagnose;
+mod excite;
 mod inspect;
 mod interrupt;
 mod library;
+mod manual;
 mod models;
 mod output;
 mod paper;
@@ -50,8 +52,12 @@ fn main() -> ExitCode {
             Ok(status) => return status,
             Err(error) => Err(error),
         },
+        (Some(cli::Command::Excite(args)), _) => excite::run(args),
         (Some(cli::Command::Prove(args)), _) => prove::run(args),
         (Some(cli::Command::Conceal(args)), _) => conceal::run(args),
+        (Some(cli::Command::Schema), _) => manual::schema(),
+        (Some(cli::Command::Completions(args)), _) => manual::completions(args.shell),
+        (Some(cli::Command::Man), _) => manual::page(),
         (None, Some(args)) => run::run(args, &cli.chain),
         (None, None) => {
             let mut command = cli::Cli::command();

@@ -2,6 +2,7 @@
 
 mod raw;
 mod validate;
+pub mod written;
 
 use std::path::PathBuf;
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use arm::Arm;
 use effects::Effect;
+use rayon::prelude::*;
 
 use super::found::findings;
 use super::inertials::{Inertials, inertials};
@@ -69,7 +70,11 @@ impl Conclusion {
             // So little data does not support any finding.
             findings.clear();
         }
-        let fit = fit(study, last, identified);
+        let by_exported: Vec<Vec<f64>> = (0..study.motions.dof)
+            .into_par_iter()
+            .map(|joint| exported(study, &judged.named, joint))
+            .collect();
+        let fit = fit(study, [residual, &by_exported], identified);
         let mut unexplained = unexplained(study, judged, &bursts, residual);
         poorly_predicted(study, &fit, &mut unexplained);
         findings.sort_by(|(a, _), (b, _)| {
@@ -87,7 +92,7 @@ impl Conclusion {
         }
         Self {
             located: locate(study, residual),
-            traces: traces(study, judged, &findings, residual),
+            traces: traces(study, judged, &findings, [residual, &by_exported]),
             not_observable: unseen(study, products, &judged.named),
             findings,
             inertials,
@@ -178,10 +183,10 @@ impl Conclusion {
     }
 }
 
-/// How well each joint's torque is predicted.
-fn fit(study: &Study, last: &FinalFit, identified: &[Option<f64>]) -> BTreeMap<String, JointFit> {
+/// How well each joint's torque is predicted; `left` is the residual of the augmented model, and of the one that is exported.
+fn fit(study: &Study, left: [&[Vec<f64>]; 2], identified: &[Option<f64>]) -> BTreeMap<String, JointFit> {
     let of = |(joint, residual): (usize, &Vec<f64>)| {
-        let of_exported = errors(study, joint, &exported(study, &last.judged.named, joint));
+        let of_exported = errors(study, joint, &left[1][joint]);
         let errors = JointFit {
             held_out_nrmse_identified: identified[joint],
             held_out_nrmse_exported: of_exported.held_out_nrmse_augmented,
@@ -189,5 +194,5 @@ fn fit(study: &Study, last: &FinalFit, identified: &[Option<f64>]) -> BTreeMap<S
         };
         (study.arm.joints()[joint].name.clone(), errors)
     };
-    last.residual.iter().enumerate().map(of).collect()
+    left[0].iter().enumerate().map(of).collect()
 }

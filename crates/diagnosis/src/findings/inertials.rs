@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use arm::Inertia;
 use effects::Effect;
 use effects::arm::{INERTIAL_PARAMETER, InertialParameters, body};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::findings::report::{Finding, Parameter};
@@ -18,7 +19,7 @@ use crate::selection::predict::{augmented, deviation, errors};
 use crate::thresholds::{LINK_STANDS_OUT, PARTLY, SYSTEMATIC};
 
 /// What the recordings say of a link's inertial parameters.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct LinkInertials {
     /// The URDF's mass (kg).
     pub nominal_mass: f64,

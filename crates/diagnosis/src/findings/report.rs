@@ -2,16 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use effects::Effect;
+use effects::{CATALOGUE, Effect};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use crate::findings::inertials::LinkInertials;
 use crate::next::NextExperiment;
 
 /// What was found. Maps are keyed by the URDF joint's name.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[schemars(title = "testbed.diagnosis/1")]
 pub struct Report {
     /// `testbed.diagnosis/1`.
+    #[schemars(extend("const" = "testbed.diagnosis/1"))]
     pub schema: &'static str,
     /// The robot's name in its URDF.
     pub robot: String,
@@ -45,7 +48,7 @@ pub struct Report {
 }
 
 /// Paths as given on the command line.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, JsonSchema)]
 pub struct RecordingNames {
     /// Fitted.
     pub train: Vec<String>,
@@ -53,8 +56,13 @@ pub struct RecordingNames {
     pub held_out: Vec<String>,
 }
 
+/// The names of all effects.
+fn effect_names() -> Vec<&'static str> {
+    CATALOGUE.iter().map(|kind| kind.spec().name).collect()
+}
+
 /// The diagnosis in one word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// The model explains the recordings.
@@ -70,9 +78,10 @@ pub enum Verdict {
 }
 
 /// One effect named.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Finding {
     /// The catalogue's name.
+    #[schemars(extend("examples" = effect_names()))]
     pub effect: &'static str,
     /// The joint, or `None` for the whole arm.
     pub joint: Option<String>,
@@ -130,18 +139,19 @@ impl Finding {
 }
 
 /// A number with its interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Parameter {
     /// The estimate.
     pub value: f64,
-    /// Its 95 % interval.
+    /// Its 95 % interval; `null` where it is open.
+    #[schemars(with = "[Option<f64>; 2]")]
     pub ci95: [f64; 2],
     /// SI unit at the joint.
     pub unit: &'static str,
 }
 
 /// An alternative of a finding.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Confusable {
     /// The catalogue's name.
     pub effect: &'static str,
@@ -150,7 +160,7 @@ pub struct Confusable {
 }
 
 /// Where a finding acts.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, JsonSchema)]
 pub struct Place {
     /// Stretches of time (s); all of it where empty.
     pub time: Vec<[f64; 2]>,
@@ -163,7 +173,7 @@ pub struct Place {
 }
 
 /// A structured residual that no effect in the catalogue explains.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Unexplained {
     /// The joint.
     pub joint: String,
@@ -178,9 +188,10 @@ pub struct Unexplained {
 }
 
 /// An effect that is not testable with the recordings.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct NotObservable {
     /// The catalogue's name.
+    #[schemars(extend("examples" = effect_names()))]
     pub effect: &'static str,
     /// The joint, or `None` for the whole arm.
     pub joint: Option<String>,
@@ -194,7 +205,7 @@ pub struct NotObservable {
 }
 
 /// Where a joint's nominal residual is larger than noise and filtering explain.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Located {
     /// The joint.
     pub joint: String,
@@ -209,7 +220,7 @@ pub struct Located {
 }
 
 /// A stretch of one recording.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct TimeWindow {
     /// The recording, as it was named.
     pub recording: String,
@@ -220,7 +231,7 @@ pub struct TimeWindow {
 }
 
 /// A region of state.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Region {
     /// `near_reversal`, `speed`, `load`, `angle`, `elapsed_time`.
     pub axis: &'static str,
@@ -233,7 +244,7 @@ pub struct Region {
 }
 
 /// How well one joint's torque is predicted. NRMSE: RMS error over the standard deviation of the measured torque.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, JsonSchema)]
 pub struct JointFit {
     /// Of the measured torque, training recordings (N m or N).
     pub torque_std: f64,
@@ -267,7 +278,7 @@ pub struct JointFit {
 }
 
 /// How the simulated joint follows the recorded one.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, JsonSchema)]
 pub struct JointRollout {
     /// RMS distance, nominal model (rad or m).
     pub nominal_rms_rad: f64,
@@ -303,6 +314,9 @@ pub struct Trace {
     pub residual: Vec<Vec<f64>>,
     /// Measured less nominal less named effects (N m or N).
     pub residual_augmented: Vec<Vec<f64>>,
+    /// Measured less the corrected model that is exported: the links' inertial parameters and the named effects, without the
+    /// background's friction and torque constants (N m or N).
+    pub residual_exported: Vec<Vec<f64>>,
     /// The torque of each finding (N m or N), as its column says.
     pub effects: Vec<Vec<Vec<f64>>>,
     /// Whether the joint moves: rows at rest were not fitted.

@@ -7,8 +7,13 @@ use crate::findings::report::{Finding, Trace, Traces};
 use crate::search::study::Study;
 use crate::selection::judge::Selection;
 
-/// All signals on the rows; `left` is the augmented residual.
-pub fn traces(study: &Study, judged: &Selection, findings: &[(Finding, Option<usize>)], left: &[Vec<f64>]) -> Traces {
+/// All signals on the rows; `left` is the residual of the augmented model, and of the one that is exported.
+pub fn traces(
+    study: &Study,
+    judged: &Selection,
+    findings: &[(Finding, Option<usize>)],
+    left: [&[Vec<f64>]; 2],
+) -> Traces {
     let dof = study.motions.dof;
     let table = &study.table;
     let torques: Vec<Vec<Vec<f64>>> = findings
@@ -92,7 +97,8 @@ pub fn traces(study: &Study, judged: &Selection, findings: &[(Finding, Option<us
                 qdd: cut(&qdd),
                 tau: cut(&study.measured),
                 residual: cut(&study.nominal),
-                residual_augmented: cut(left),
+                residual_augmented: cut(left[0]),
+                residual_exported: cut(left[1]),
                 effects: torques.iter().map(|torque| cut(torque)).collect(),
                 moving: table
                     .joints

@@ -24,7 +24,8 @@ const STRONGER_UNLIMITED: f64 = 1.5;
 
 /// What each joint may do.
 pub struct Limits {
-    names: Vec<String>,
+    /// The joints.
+    pub names: Vec<String>,
     /// The middle of the motion (rad or m).
     pub middle: Vec<f64>,
     /// How far from there (rad or m).
@@ -33,7 +34,8 @@ pub struct Limits {
     pub speed: Vec<f64>,
     /// N m or N.
     pub torque: Vec<f64>,
-    model: Corrected,
+    /// Whose torques count.
+    pub model: Corrected,
 }
 
 impl Limits {

@@ -1,11 +1,12 @@
 //! The next experiment as others read it: the field `next_experiment` of a diagnosis.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::findings::report::Confusable;
 
 /// The proposed motion, and what it distinguishes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct NextExperiment {
     /// How long the motion takes (s); `None` if none would tell more.
     pub duration: Option<f64>,
@@ -21,7 +22,7 @@ pub struct NextExperiment {
 
 /// The evidence (nats) for a finding against an alternative, before and after the motion. Above `needed`, the two are
 /// distinguished.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Separation {
     /// The finding.
     pub finding: Confusable,
@@ -36,7 +37,7 @@ pub struct Separation {
 }
 
 /// A finding and an alternative that the motion does not distinguish.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct NotSeparated {
     /// The finding.
     pub finding: Confusable,
@@ -55,7 +56,7 @@ pub struct NotSeparated {
 }
 
 /// Why a motion does not distinguish two effects.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Obstacle {
     /// The two are the same torque in every motion.
@@ -71,7 +72,7 @@ pub enum Obstacle {
 }
 
 /// An effect that the motion shows at a smaller size than the recordings do.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Shows {
     /// The catalogue's name.
     pub effect: &'static str,
@@ -87,7 +88,7 @@ pub struct Shows {
 
 /// What the motion needs of a joint, and what it may: the URDF's limits with a margin, or where it has none a multiple of
 /// what the joint went through in the recordings.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct JointLimits {
     /// The joint.
     pub joint: String,

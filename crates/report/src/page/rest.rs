@@ -78,9 +78,9 @@ impl Page<'_> {
                                     td.name { (words::joint(finding.joint.as_deref())) }
                                     td { code { (finding.effect) } }
                                     td { code { (name) } }
-                                    td.n { (plain(parameter.value)) }
-                                    td.n { (plain(parameter.ci95[0])) }
-                                    td.n { (plain(parameter.ci95[1])) }
+                                    td.n { (numbers::for_programs(parameter.value)) }
+                                    td.n { (numbers::for_programs(parameter.ci95[0])) }
+                                    td.n { (numbers::for_programs(parameter.ci95[1])) }
                                     td.nowrap { (parameter.unit) }
                                 }
                             }
@@ -151,29 +151,6 @@ impl Page<'_> {
     fn sizes(&self, entry: &NotObservable) -> String {
         let joint = entry.joint.as_deref().and_then(|name| self.index(name));
         let kind = joint.map_or(JointKind::Revolute, |joint| self.figures.arm.joints()[joint].kind);
-        let above = entry.would_be_seen_above.iter().map(|size| ("above", size));
-        let below = entry.would_be_seen_below.iter().map(|size| ("below", size));
-        let sizes = above.chain(below).map(|(side, (name, size))| {
-            let unit = effects::spec(entry.effect).and_then(|spec| spec.unit(name, kind));
-            let size = numbers::round_quantity(*size, unit.filter(|unit| *unit != "1").unwrap_or_default());
-            format!("{} {side} {size}", name.replace('_', " "))
-        });
-        sizes.collect::<Vec<_>>().join(", ")
-    }
-}
-
-/// Five significant digits, as a program reads them.
-fn plain(value: f64) -> String {
-    if !value.is_finite() {
-        return "–".into();
-    }
-    if value == 0.0 {
-        return "0".into();
-    }
-    let magnitude = value.abs().log10().floor() as i32;
-    if (-4..6).contains(&magnitude) {
-        format!("{value:.*}", (4 - magnitude).max(0) as usize)
-    } else {
-        format!("{value:.4e}")
+        words::detectable_sizes(entry, kind)
     }
 }

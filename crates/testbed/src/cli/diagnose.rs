@@ -70,6 +70,15 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "OUT")]
     pub report: Option<PathBuf>,
 
+    /// Write the findings to this file as Markdown (.md)
+    #[arg(long, value_name = "OUT")]
+    pub markdown: Option<PathBuf>,
+
+    /// Write measured torques, the nominal and the corrected model's predictions and the residuals, row by row, to this file
+    /// (.csv or .parquet)
+    #[arg(long, value_name = "OUT")]
+    pub residuals: Option<PathBuf>,
+
     /// Write the corrected model to this file (.toml): the known effects and the effects found
     #[arg(long, value_name = "OUT")]
     pub model: Option<PathBuf>,
@@ -134,6 +143,8 @@ impl DiagnoseArgs {
         };
         let files = [
             &self.report,
+            &self.markdown,
+            &self.residuals,
             &self.model,
             &self.urdf,
             &self.trace,

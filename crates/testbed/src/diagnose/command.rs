@@ -12,7 +12,7 @@ use super::effect_file::EffectFile;
 use super::inputs::{Files, Role};
 use super::notes::Notes;
 use super::urdf_friction::{known_friction, summed};
-use super::{inputs, mjcf_file, next_file, trace_file, urdf_file};
+use super::{inputs, mjcf_file, next_file, residuals_file, trace_file, urdf_file};
 use crate::cli::DiagnoseArgs;
 use crate::library::{self, RobotFile};
 use crate::output;
@@ -203,8 +203,14 @@ fn write<'a>(
     if let Some(path) = &args.trace {
         trace_file::write(path, &diagnosis.trace)?;
     }
+    if let Some(path) = &args.residuals {
+        residuals_file::write(path, arm, &diagnosis.traces)?;
+    }
     if let Some(path) = &args.report {
         output::write_text(path, &report::page(&diagnosis.report, &diagnosis.traces, arm))?;
+    }
+    if let Some(path) = &args.markdown {
+        output::write_text(path, &report::diagnosis_markdown(&diagnosis.report, arm))?;
     }
     if let Some(path) = args.json_file() {
         output::write_json(path, &diagnosis.report)?;

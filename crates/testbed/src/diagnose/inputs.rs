@@ -15,6 +15,7 @@ use self::joints::{order, reordered};
 use super::effect_file::EffectFile;
 use super::next_file;
 use super::notes::Notes;
+use super::residuals_file::Kind;
 use crate::cli::{DiagnoseArgs, Rerun};
 use crate::inspect::{model_check, shortened};
 use crate::{output, recordings};
@@ -61,6 +62,9 @@ pub fn check_outputs(args: &DiagnoseArgs) -> anyhow::Result<()> {
         output::check_writable(path)?;
     }
     args.next.as_deref().map_or(Ok(()), next_file::check_replaceable)?;
+    args.residuals
+        .as_deref()
+        .map_or(Ok(()), |path| Kind::of(path).map(drop))?;
     let robot = Path::new(&args.robot);
     for output in &outputs {
         // A model of effects may be read, added to and written in one go.

@@ -4,13 +4,13 @@ use std::fmt::Write;
 use std::path::Path;
 
 use anyhow::{Context, ensure};
-use arm::{Arm, FixedBecause, FixedJoint};
+use arm::Arm;
 use diagnosis::NextExperiment;
 use report::next_words::name;
 use report::{numbers, words};
 use torque::Reference;
 
-use crate::library;
+use crate::scenario::written;
 
 /// How a file begins that is ours to replace and to remove.
 const FIRST_LINE: &str = "# The next experiment, proposed by testbed diagnose.\n";
@@ -58,23 +58,10 @@ pub fn write(
     next: &NextExperiment,
     motion: &Reference,
 ) -> anyhow::Result<()> {
-    let robot = if library::is_built_in(robot) {
-        robot.to_owned()
-    } else {
-        beside(path, urdf)?
-    };
+    let robot = written::robot_from(path, robot, urdf)?;
     let text = text(&robot, arm, next, motion);
     recording::write_whole(path, |file| file.write_all(text.as_bytes()))?;
     Ok(())
-}
-
-/// Where `urdf` is, seen from the folder of `path`: its name alone if it is there, too; else from the root.
-fn beside(path: &Path, urdf: &Path) -> anyhow::Result<String> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let absolute = |path: &Path| path.canonicalize().with_context(|| path.display().to_string());
-    let (folder, urdf) = (absolute(folder.unwrap_or(Path::new(".")))?, absolute(urdf)?);
-    let place = urdf.strip_prefix(&folder).unwrap_or(&urdf);
-    Ok(place.display().to_string())
 }
 
 fn text(robot: &str, arm: &Arm, next: &NextExperiment, motion: &Reference) -> String {
@@ -126,51 +113,8 @@ fn text(robot: &str, arm: &Arm, next: &NextExperiment, motion: &Reference) -> St
     }
     line("Collisions with the environment are not checked: run the motion slowly first.");
     line("On a robot, follow the columns reference_<joint> of the recording that this scenario writes.");
-    let list = |values: &[f64]| {
-        let words: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
-        format!("[{}]", words.join(", "))
-    };
-    let _ = writeln!(
-        text,
-        "\ntitle = \"The next experiment\"\nrobot = {}\nduration = {:?}\n{}\n[model]\nkind = \"rigid-body\"\n\n[controller]\nkp = 10000.0\nkd = 200.0\n\n[reference]\ncentre = {}",
-        toml::Value::String(robot.to_owned()),
-        next.duration.unwrap_or_default(),
-        chain(arm),
-        list(&motion.centre)
-    );
-    if let Some(fade) = &motion.fade {
-        let _ = writeln!(text, "fade = {:?}", fade.seconds);
-    }
-    for sine in &motion.sines {
-        let [amplitude, frequency, phase] = [&sine.amplitude, &sine.frequency, &sine.phase].map(|values| list(values));
-        let _ = writeln!(
-            text,
-            "\n[[reference.sines]]\namplitude = {amplitude}\nfrequency = {frequency}\nphase = {phase}"
-        );
-    }
-    text
-}
-
-/// The table that chooses the arm among the robot's joints; nothing where the whole robot is the arm.
-fn chain(arm: &Arm) -> String {
-    if arm.fixed_joints().is_empty() {
-        return String::new();
-    }
-    let word = |text: &str| toml::Value::String(text.to_owned()).to_string();
-    // The others are fixed there by default, beside the tip.
-    let is_asked = |joint: &&FixedJoint| matches!(joint.reason, FixedBecause::Locked | FixedBecause::NotRecorded);
-    let locks: Vec<String> = arm
-        .fixed_joints()
-        .iter()
-        .filter(is_asked)
-        .map(|joint| format!("{} = {:?}", word(&joint.name), joint.position))
-        .collect();
-    format!(
-        "\n[chain]\nbase = {}\ntip = {}\nlock = {{ {} }}\n",
-        word(arm.base_link()),
-        word(&arm.tool_frame().name),
-        locks.join(", ")
-    )
+    let duration = next.duration.unwrap_or_default();
+    text + &written::scenario("The next experiment", robot, arm, duration, motion)
 }
 
 #[cfg(test)]

@@ -163,6 +163,7 @@ pub fn trace(name: &str, start: f64, held_out: bool, joints: usize, found: &[Row
         tau: zeros(),
         residual: zeros(),
         residual_augmented: zeros(),
+        residual_exported: zeros(),
         moving: vec![vec![true; rows]; joints],
         effects: vec![vec![Vec::new(); joints]; found.len()],
         time,
@@ -216,6 +217,7 @@ pub fn trace(name: &str, start: f64, held_out: bool, joints: usize, found: &[Row
             trace.tau[j][k] = nominal + named + left;
             trace.residual[j][k] = named + left;
             trace.residual_augmented[j][k] = left;
+            trace.residual_exported[j][k] = left;
             trace.moving[j][k] = v[j].abs() > 0.02;
         }
     }

@@ -1,0 +1,266 @@
+//! What a motion may ask of the joints.
+
+use arm::{Arm, JointKind, Workspace};
+use rand::Rng;
+use torque::{Motion, Reference};
+
+use super::ExcitationError;
+
+/// The part of a joint's range that is kept free at either end.
+const MARGIN: f64 = 0.05;
+/// The part of a velocity, an acceleration and an effort limit that a motion may take: the controller needs the rest.
+const WITHIN: f64 = 0.8;
+/// The part of the allowed torque that holding the arm may need where the search starts, and the places that are looked at.
+const HELD: f64 = 0.8;
+const PLACES: usize = 2000;
+/// How far a revolute joint without position limits may turn to either side (rad).
+const HALF_TURN: f64 = std::f64::consts::PI;
+
+/// What a joint can do; what is not limited is infinite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionLimits {
+    /// Lowest and highest position (rad or m).
+    pub position: [f64; 2],
+    /// Largest speed (rad/s or m/s).
+    pub velocity: f64,
+    /// Largest acceleration (rad/s² or m/s²).
+    pub acceleration: f64,
+    /// Largest torque (N m) or force (N).
+    pub effort: f64,
+}
+
+impl MotionLimits {
+    /// Those of the URDF, one a joint; a URDF has none for the acceleration.
+    pub fn of(arm: &Arm) -> Vec<Self> {
+        let of = |joint: &arm::Joint| Self {
+            position: [joint.limits.lower, joint.limits.upper],
+            velocity: joint.limits.velocity,
+            acceleration: f64::INFINITY,
+            effort: joint.limits.effort,
+        };
+        arm.joints().iter().map(of).collect()
+    }
+}
+
+/// What a motion may do, joint by joint: the limits less a margin.
+#[derive(Clone, Debug)]
+pub struct Allowed {
+    names: Vec<String>,
+    /// The middle between the position limits (rad or m).
+    pub middle: Vec<f64>,
+    /// How far from there (rad or m).
+    pub room: Vec<f64>,
+    /// rad/s or m/s.
+    pub velocity: Vec<f64>,
+    /// rad/s² or m/s²; infinite where it is not limited.
+    pub acceleration: Vec<f64>,
+    /// N m or N; infinite where it is not limited.
+    pub torque: Vec<f64>,
+}
+
+/// What a motion needs of a joint, and what it may.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointUse {
+    /// The joint.
+    pub joint: String,
+    /// Lowest and highest position (rad or m).
+    pub position: [f64; 2],
+    /// Where it may be (rad or m).
+    pub position_allowed: [f64; 2],
+    /// Largest speed (rad/s or m/s).
+    pub velocity: f64,
+    /// The speed that it may have (rad/s or m/s).
+    pub velocity_allowed: f64,
+    /// Largest acceleration (rad/s² or m/s²).
+    pub acceleration: f64,
+    /// The acceleration that it may have (rad/s² or m/s²); infinite where it is not limited.
+    pub acceleration_allowed: f64,
+    /// Largest torque by the nominal model (N m or N).
+    pub torque: f64,
+    /// The torque that it may need (N m or N); infinite where it is not limited.
+    pub torque_allowed: f64,
+}
+
+impl JointUse {
+    /// The factor by which position (about `centre`), velocity or acceleration is beyond what is allowed; at most 1 within.
+    pub fn beyond_motion(&self, centre: f64) -> f64 {
+        let [low, high] = self.position;
+        let [least, most] = self.position_allowed;
+        let above = (high - centre) / (most - centre);
+        let below = (centre - low) / (centre - least);
+        let fast = self.velocity / self.velocity_allowed;
+        let quick = self.acceleration / self.acceleration_allowed;
+        above.max(below).max(fast).max(quick)
+    }
+}
+
+impl Allowed {
+    /// Of the joints of `arm` with `limits`.
+    ///
+    /// # Errors
+    /// If a limit that is needed is missing, or leaves no room.
+    pub fn new(arm: &Arm, limits: &[MotionLimits]) -> Result<Self, ExcitationError> {
+        let mut allowed = Self {
+            names: arm.joints().iter().map(|joint| joint.name.clone()).collect(),
+            middle: Vec::new(),
+            room: Vec::new(),
+            velocity: Vec::new(),
+            acceleration: Vec::new(),
+            torque: Vec::new(),
+        };
+        for (joint, limits) in arm.joints().iter().zip(limits) {
+            let unlimited = |what| ExcitationError::Unlimited {
+                joint: joint.name.clone(),
+                what,
+            };
+            let no_room = |what, value: String| ExcitationError::NoRoom {
+                joint: joint.name.clone(),
+                what,
+                value,
+            };
+            let [mut lower, mut upper] = limits.position;
+            if joint.kind == JointKind::Revolute && lower == f64::NEG_INFINITY && upper == f64::INFINITY {
+                (lower, upper) = (-HALF_TURN, HALF_TURN);
+            }
+            if !(lower.is_finite() && upper.is_finite()) {
+                return Err(unlimited("position"));
+            }
+            if lower >= upper {
+                return Err(no_room("position", format!("{lower}:{upper}")));
+            }
+            if !limits.velocity.is_finite() {
+                return Err(unlimited("velocity"));
+            }
+            for (what, value) in [
+                ("velocity", limits.velocity),
+                ("acceleration", limits.acceleration),
+                ("effort", limits.effort),
+            ] {
+                if value.is_nan() || value <= 0.0 {
+                    return Err(no_room(what, value.to_string()));
+                }
+            }
+            allowed.middle.push(0.5 * (lower + upper));
+            allowed.room.push((0.5 - MARGIN) * (upper - lower));
+            allowed.velocity.push(WITHIN * limits.velocity);
+            allowed.acceleration.push(WITHIN * limits.acceleration);
+            allowed.torque.push(WITHIN * limits.effort);
+        }
+        Ok(allowed)
+    }
+
+    /// What `reference` needs of each joint over `duration` (s) by the model of `arm`, looked at `hertz` times a second.
+    pub fn needed(
+        &self,
+        arm: &Arm,
+        workspace: &mut Workspace,
+        reference: &Reference,
+        duration: f64,
+        hertz: f64,
+    ) -> Vec<JointUse> {
+        let dof = arm.dof();
+        let mut needed: Vec<JointUse> = (0..dof)
+            .map(|j| JointUse {
+                joint: self.names[j].clone(),
+                position: [f64::INFINITY, f64::NEG_INFINITY],
+                position_allowed: [self.middle[j] - self.room[j], self.middle[j] + self.room[j]],
+                velocity: 0.0,
+                velocity_allowed: self.velocity[j],
+                acceleration: 0.0,
+                acceleration_allowed: self.acceleration[j],
+                torque: 0.0,
+                torque_allowed: self.torque[j],
+            })
+            .collect();
+        let mut motion = Motion::new(dof);
+        let mut torque = vec![0.0; dof];
+        for k in 0..=(duration * hertz) as usize {
+            reference.at(k as f64 / hertz, &mut motion);
+            arm.inverse_dynamics(workspace, &motion.q, &motion.qd, &motion.qdd, &mut torque);
+            for (j, needed) in needed.iter_mut().enumerate() {
+                needed.position[0] = needed.position[0].min(motion.q[j]);
+                needed.position[1] = needed.position[1].max(motion.q[j]);
+                needed.velocity = needed.velocity.max(motion.qd[j].abs());
+                needed.acceleration = needed.acceleration.max(motion.qdd[j].abs());
+                needed.torque = needed.torque.max(torque[j].abs());
+            }
+        }
+        needed
+    }
+
+    /// A place at which no joint needs more than [`HELD`] of its torque to hold the arm, in parts of the room about the middle: the
+    /// middle itself, or a random place.
+    ///
+    /// # Errors
+    /// If none of many places is one.
+    pub fn holdable(&self, arm: &Arm, random: &mut impl Rng) -> Result<Vec<f64>, ExcitationError> {
+        let mut workspace = Workspace::new(arm);
+        let mut place = vec![0.0; arm.dof()];
+        for _ in 0..PLACES {
+            let torque = self.static_torque(arm, &mut workspace, &self.at(&place));
+            if torque
+                .iter()
+                .zip(&self.torque)
+                .all(|(torque, most)| torque.abs() <= HELD * most)
+            {
+                return Ok(place);
+            }
+            place.fill_with(|| random.random_range(-0.9..0.9));
+        }
+        Err(self.too_weak(arm, &mut workspace, &self.middle))
+    }
+
+    /// Positions (rad or m) at a place in parts of the room.
+    fn at(&self, place: &[f64]) -> Vec<f64> {
+        let parts = self.middle.iter().zip(&self.room).zip(place);
+        parts.map(|((middle, room), part)| middle + room * part).collect()
+    }
+
+    fn static_torque(&self, arm: &Arm, workspace: &mut Workspace, q: &[f64]) -> Vec<f64> {
+        let still = vec![0.0; q.len()];
+        let mut torque = vec![0.0; q.len()];
+        arm.inverse_dynamics(workspace, q, &still, &still, &mut torque);
+        torque
+    }
+
+    /// Which joint is too weak to hold the arm at the positions `q`.
+    pub fn too_weak(&self, arm: &Arm, workspace: &mut Workspace, q: &[f64]) -> ExcitationError {
+        let torque = self.static_torque(arm, workspace, q);
+        let part = |j: &usize| torque[*j].abs() / self.torque[*j];
+        let weakest = (0..q.len()).max_by(|a, b| part(a).total_cmp(&part(b))).unwrap_or(0);
+        ExcitationError::TooWeak {
+            joint: self.names[weakest].clone(),
+            torque: torque[weakest].abs(),
+            allowed: self.torque[weakest],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+
+    /// An arm that cannot be held at the middle of its ranges is held elsewhere; one that is held nowhere is refused.
+    #[test]
+    fn a_place_is_found_at_which_the_arm_can_be_held() {
+        let text = include_str!("../../../../assets/puma560.urdf");
+        let arm = Arm::from_urdf_text(text, "puma560.urdf").expect("an arm");
+        let free = Allowed::new(&arm, &MotionLimits::of(&arm)).expect("limits");
+        let mut workspace = Workspace::new(&arm);
+        let at_the_middle = free.static_torque(&arm, &mut workspace, &free.middle)[1].abs();
+        assert!(at_the_middle > 1.0, "{at_the_middle} N m");
+        let mut with = |part: f64| {
+            let mut allowed = free.clone();
+            allowed.torque[1] = part * at_the_middle;
+            let place = allowed.holdable(&arm, &mut ChaCha8Rng::seed_from_u64(0))?;
+            Ok::<f64, ExcitationError>(allowed.static_torque(&arm, &mut workspace, &allowed.at(&place))[1].abs())
+        };
+        let held = with(0.6).expect("a place");
+        assert!(held <= HELD * 0.6 * at_the_middle, "{held} of {at_the_middle} N m");
+        let refusal = with(1e-7).expect_err("no joint is that weak").to_string();
+        assert!(refusal.contains("joint2"), "{refusal}");
+    }
+}

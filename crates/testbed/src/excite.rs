@@ -1,0 +1,297 @@
+//! `testbed excite`: the motion from which a robot's parameters are estimated best, before the first recording.
+
+mod compare;
+mod limits;
+mod progress;
+
+use std::fmt::Write;
+use std::path::Path;
+
+use anyhow::Context;
+use arm::{Arm, JointKind};
+use diagnosis::{Excitation, ExcitationError, ExcitationOptions, JointUse, Quality};
+use recording::Recording;
+use report::terminal::{table, wrapped};
+use report::{numbers, words};
+use torque::Motion;
+
+use crate::cli::ExciteArgs;
+use crate::library::{self, RobotFile};
+use crate::output;
+use crate::scenario::written;
+
+/// Proposes a motion for the robot that `args` name.
+///
+/// # Errors
+/// If an input cannot be used, a limit is missing, or an output cannot be written; nothing is written then.
+pub fn run(args: &ExciteArgs) -> anyhow::Result<()> {
+    let outputs = args.outputs();
+    for path in &outputs {
+        output::check_writable(path)?;
+        let inputs = args.compare.iter().map(std::path::PathBuf::as_path);
+        output::check_is_no_input(path, inputs.chain([Path::new(&args.robot)]))?;
+    }
+    if let [a, b] = outputs[..] {
+        anyhow::ensure!(
+            !output::is_same(a, b),
+            "{}: is given for two outputs; give each output its own file",
+            a.display()
+        );
+    }
+    let robot = library::named_robot(&args.robot)?;
+    let arm = robot
+        .arm(&args.chain.options(&[]))
+        .with_context(|| format!("--robot {}", args.robot))?;
+    for warning in arm.warnings() {
+        eprintln!("note: {}: {warning}", robot.path.display());
+    }
+    let limits = limits::of(args, &arm)?;
+    let recordings = compare::read(&args.compare, &arm)?;
+    let options = ExcitationOptions {
+        duration: args.duration,
+        seed: args.seed,
+    };
+    let progress = progress::Progress::new("searching");
+    let found = diagnosis::excite(&arm, &limits, &options, &|part| progress.set(part));
+    progress.finish();
+    let found = found.map_err(|error| explained(error, &robot, &arm))?;
+    let compared = compare::qualities(&recordings, &arm, &limits, &found)?;
+    if let Some(path) = &args.scenario {
+        let robot = written::robot_from(path, &args.robot, &robot.path)?;
+        output::write_text(path, &scenario(&robot, &arm, &found))?;
+    }
+    if let Some(path) = &args.csv {
+        references(&arm, &found, args.rate).write_csv(path)?;
+    }
+    output::print(&text(&arm, &found, &compared))?;
+    for path in outputs {
+        output::print(&format!("written: {}\n", path.display()))?;
+    }
+    Ok(())
+}
+
+/// An error with the flag that mends it.
+fn explained(error: ExcitationError, robot: &RobotFile, arm: &Arm) -> anyhow::Error {
+    let kind = |name: &str| {
+        arm.joints()
+            .iter()
+            .find(|joint| joint.name == name)
+            .map(|joint| joint.kind)
+    };
+    let remedy = match &error {
+        ExcitationError::Unlimited {
+            joint,
+            what: "position",
+        } => format!("; give them: --position-limit {joint}=LOW:HIGH"),
+        ExcitationError::Unlimited { joint, what } => {
+            let unit = if kind(joint) == Some(JointKind::Prismatic) {
+                "m/s"
+            } else {
+                "rad/s"
+            };
+            format!("; give one: --{what}-limit {joint}=VALUE ({unit})")
+        }
+        ExcitationError::NoRoom { joint, what, .. } => format!("; give another: --{what}-limit {joint}=…"),
+        ExcitationError::TooWeak { joint, .. } => {
+            format!("; check masses and effort limit, or give the limit: --effort-limit {joint}=VALUE")
+        }
+        ExcitationError::Search(_) => String::new(),
+    };
+    anyhow::anyhow!("{}: {error}{remedy}", robot.path.display())
+}
+
+/// The references, row by row at `rate` (Hz), from the first to the last moment.
+fn references(arm: &Arm, found: &Excitation, rate: f64) -> Recording {
+    let dof = arm.dof();
+    let signal = || vec![Vec::new(); dof];
+    let (mut time, mut q, mut qd, mut qdd) = (Vec::new(), signal(), signal(), signal());
+    let mut motion = Motion::new(dof);
+    for k in 0..=(found.duration * rate).round() as usize {
+        time.push(k as f64 / rate);
+        found.reference.at(k as f64 / rate, &mut motion);
+        for j in 0..dof {
+            q[j].push(motion.q[j]);
+            qd[j].push(motion.qd[j]);
+            qdd[j].push(motion.qdd[j]);
+        }
+    }
+    Recording {
+        joints: arm.joints().iter().map(|joint| joint.name.clone()).collect(),
+        time,
+        q,
+        qd: Some(qd),
+        qdd: Some(qdd),
+        ..Recording::default()
+    }
+}
+
+/// What the motion determines, in a sentence or two.
+fn determined(found: &Excitation) -> String {
+    let of = &found.determined;
+    let mut text = format!(
+        "It determines {} base parameters: {} combinations of the {} inertial parameters of the links, {} friction parameters \
+         (viscous and Coulomb) and {}.",
+        of.total(),
+        of.inertial,
+        of.of_inertial,
+        of.friction,
+        if of.drive == 1 {
+            "1 drive inertia".to_owned()
+        } else {
+            format!("{} drive inertias", of.drive)
+        }
+    );
+    if !of.drive_with_link.is_empty() {
+        let _ = write!(
+            text,
+            " No motion distinguishes the drive inertia of {} from the inertia of the links.",
+            words::list(&of.drive_with_link)
+        );
+    }
+    text
+}
+
+/// A row of the table of motions.
+fn row(name: &str, quality: &Quality) -> Vec<String> {
+    let number = |value: f64| {
+        if value.is_finite() {
+            numbers::short(value)
+        } else {
+            "∞".to_owned()
+        }
+    };
+    vec![
+        name.to_owned(),
+        number(quality.condition),
+        number(quality.scaled_condition),
+        number(quality.deviation),
+    ]
+}
+
+fn text(arm: &Arm, found: &Excitation, compared: &[(String, Quality)]) -> String {
+    let mut text = wrapped(
+        &format!(
+            "A motion of {} s for {}: {} harmonics with a period of {} s, at rest at its start and at its end. {}",
+            numbers::trimmed(found.duration),
+            arm.name(),
+            found.harmonics,
+            numbers::trimmed(found.period),
+            determined(found)
+        ),
+        "",
+    );
+    let mut joints = table(["joint", "start", "position", "speed", "torque"].map(str::to_owned));
+    let mut start = Motion::new(arm.dof());
+    found.reference.at(0.0, &mut start);
+    for ((joint, needed), start) in arm.joints().iter().zip(&found.needed).zip(&start.q) {
+        joints.add_row(joint_row(joint.kind, needed, *start));
+    }
+    let mut motions = table(["motion", "condition number", "scaled", "deviations"].map(str::to_owned));
+    motions.add_row(row("proposed", &found.quality));
+    if let Some(naive) = &found.naive {
+        motions.add_row(row("one sine per joint", naive));
+    }
+    for (name, quality) in compared {
+        motions.add_row(row(name, quality));
+    }
+    let _ = write!(text, "\n{joints}\n\n{motions}\n\n");
+    text += &wrapped(
+        "speed, torque: the largest, and its part of what is allowed, which is 80 % of the limit; condition number: of the base \
+         regressor with the columns of friction and drive inertia; scaled: with all columns scaled to one norm; deviations: the \
+         standard deviations of the parameters for the same duration, geometric mean, relative to the proposed motion",
+        "",
+    );
+    text += &wrapped(
+        "Collisions of the arm with itself and with its surroundings are not checked: run the motion slowly first.",
+        "",
+    );
+    text
+}
+
+fn joint_row(kind: JointKind, needed: &JointUse, start: f64) -> Vec<String> {
+    let (place, torque) = match kind {
+        JointKind::Revolute => ("rad", "N m"),
+        JointKind::Prismatic => ("m", "N"),
+    };
+    let part = |value: f64, allowed: f64, unit: &str| {
+        let of = if allowed.is_finite() {
+            numbers::percent(value / allowed)
+        } else {
+            "no limit".to_owned()
+        };
+        format!("{} {unit} ({of})", numbers::short(value))
+    };
+    let [low, high] = needed.position.map(|value| numbers::fixed(value, 2));
+    vec![
+        needed.joint.clone(),
+        numbers::fixed(start, 3),
+        format!("{low} … {high} {place}"),
+        part(needed.velocity, needed.velocity_allowed, &format!("{place}/s")),
+        part(needed.torque, needed.torque_allowed, torque),
+    ]
+}
+
+/// The motion as a scenario, with what it is for in comments.
+fn scenario(robot: &str, arm: &Arm, found: &Excitation) -> String {
+    let mut text = String::from("# A motion for the first recording, proposed by testbed excite.\n#\n");
+    let _ = writeln!(text, "# {}", determined(found));
+    let _ = writeln!(
+        text,
+        "# Condition number of the base regressor: {} ({} with all columns scaled to one norm).",
+        numbers::short(found.quality.condition),
+        numbers::short(found.quality.scaled_condition)
+    );
+    text += "# Position, velocity, acceleration and torque of each joint, and what is allowed (the limits with a margin):\n";
+    for joint in &found.needed {
+        let [low, high] = joint.position.map(numbers::short);
+        let [least, most] = joint.position_allowed.map(numbers::short);
+        let of = |value: f64, allowed: f64| {
+            let allowed = if allowed.is_finite() {
+                numbers::short(allowed)
+            } else {
+                "any".to_owned()
+            };
+            format!("{} of {allowed}", numbers::short(value))
+        };
+        let _ = writeln!(
+            text,
+            "#   {}: {low} to {high} of {least} to {most} rad or m; {} rad/s or m/s; {} rad/s2 or m/s2; {} N m or N",
+            joint.joint,
+            of(joint.velocity, joint.velocity_allowed),
+            of(joint.acceleration, joint.acceleration_allowed),
+            of(joint.torque, joint.torque_allowed)
+        );
+    }
+    text +=
+        "# Collisions of the arm with itself and with its surroundings are not checked: run the motion slowly first.\n";
+    text += "# On a robot, follow the references that --csv writes; the motion begins and ends at rest.\n";
+    text + &written::scenario("Excitation", robot, arm, found.duration, &found.reference)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The scenario is what the motion was, to the last bit.
+    #[test]
+    fn the_scenario_loads_as_the_motion_it_was() {
+        let robot = library::named_robot("puma560").expect("it comes with testbed");
+        let arm = robot.arm(&arm::ChainOptions::default()).expect("an arm");
+        let options = ExcitationOptions {
+            duration: 10.0,
+            seed: 1,
+        };
+        let limits = diagnosis::MotionLimits::of(&arm);
+        let found = diagnosis::excite(&arm, &limits, &options, &|_| {}).expect("a motion");
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("excite.toml");
+        std::fs::write(&path, scenario("puma560", &arm, &found)).expect("it writes");
+        let loaded = crate::scenario::Scenario::load(&path.display().to_string()).expect("it loads");
+        assert_eq!(loaded.reference, found.reference);
+        assert_eq!(loaded.duration, 10.0);
+        assert!(!loaded.model.learns(), "it runs without training");
+        let rows = references(&arm, &found, 100.0);
+        assert_eq!((rows.time.len(), rows.q.len()), (1001, 6));
+        assert_eq!(rows.time[1000], 10.0);
+    }
+}
