@@ -10,8 +10,6 @@ use report::next_words::name;
 use report::{numbers, words};
 use torque::Reference;
 
-use crate::library;
-
 /// How a file begins that is ours to replace and to remove.
 const FIRST_LINE: &str = "# The next experiment, proposed by testbed diagnose.\n";
 
@@ -58,7 +56,7 @@ pub fn write(
     next: &NextExperiment,
     motion: &Reference,
 ) -> anyhow::Result<()> {
-    let robot = if library::is_built_in(robot) {
+    let robot = if study::robot::is_built_in(robot) {
         robot.to_owned()
     } else {
         beside(path, urdf)?
