@@ -74,16 +74,19 @@ fn the_architecture_page_names_the_crates_there_are() {
 
 #[test]
 fn every_scenario_and_robot_comes_with_the_program() {
-    let library = read(&crate::support::root().join("crates/testbed/src/library.rs"));
-    for folder in ["scenarios", "assets"] {
+    for (folder, library) in [
+        ("scenarios", "crates/testbed/src/library.rs"),
+        ("assets", "crates/study/src/robot.rs"),
+    ] {
+        let list = read(&crate::support::root().join(library));
         for entry in std::fs::read_dir(crate::support::root().join(folder))
             .expect("the folder can be read")
             .flatten()
         {
             let name = format!("{folder}/{}", entry.file_name().to_string_lossy());
             assert!(
-                entry.path().is_dir() || library.contains(&name),
-                "{name} is not in library.rs"
+                entry.path().is_dir() || list.contains(&name),
+                "{name} is not in {library}"
             );
         }
     }

@@ -13,7 +13,7 @@ use std::path::Path;
 
 use crate::input::Input;
 use crate::rows::Rows;
-use crate::table::Table;
+use crate::table::{Column, Table};
 use crate::{ColumnMap, Recording, RecordingError, dialect, header};
 
 /// Of a file with more values, means over longer times are kept (1 GiB).
@@ -83,7 +83,36 @@ impl Recording {
             path: path.to_owned(),
             reason: std::io::Error::other("it is a folder"),
         })?;
-        let mut table = format.read(input, &options)?;
+        let table = format.read(input, &options)?;
+        Self::of_table(table, path, map, most)
+    }
+
+    /// The recording whose columns a program has in memory, named and read as those of a file: see [`Self::read_with`].
+    /// `name` is what errors call it.
+    ///
+    /// # Errors
+    /// As [`Self::read_with`], and if the columns are not of one length.
+    pub fn of_columns(
+        name: &str,
+        columns: Vec<(String, Column)>,
+        map: Option<&ColumnMap>,
+    ) -> Result<Self, RecordingError> {
+        let length = columns.first().map_or(0, |(_, column)| column.len());
+        if let Some((header, column)) = columns.iter().find(|(_, column)| column.len() != length) {
+            return Err(RecordingError::Header {
+                path: name.into(),
+                reason: format!(
+                    "column \"{header}\" has {} values, column \"{}\" has {length}; give one value a sample in each",
+                    column.len(),
+                    columns[0].0
+                ),
+            });
+        }
+        Self::of_table(Table::of_columns(columns), Path::new(name), map, MOST_VALUES)
+    }
+
+    fn of_table(mut table: Table, path: &Path, map: Option<&ColumnMap>, most: usize) -> Result<Self, RecordingError> {
+        let topics = map.map_or(&[] as &[String], ColumnMap::topics);
         let header_error = |reason: String| RecordingError::Header {
             path: path.to_owned(),
             reason,
@@ -91,7 +120,7 @@ impl Recording {
         let mut warnings = std::mem::take(&mut table.warnings);
         let plan = match map.filter(|map| map.has_joints()) {
             Some(map) => map.plan(&table.headers, &table.first, path)?,
-            None => match dialect::of(&table.headers, options.topics) {
+            None => match dialect::of(&table.headers, topics) {
                 Some(ready) => {
                     let (plan, note) = dialect::plan(&ready, &table.headers, &table.first, path)?;
                     warnings.push(note);

@@ -36,7 +36,7 @@ pub use column_map::ColumnMap;
 pub use error::{RecordingError, write_remedy};
 pub use quality::{Finding, FindingKind, JointQuality, Quality};
 pub use regular::{RegularRecording, Segment};
-pub use table::Place;
+pub use table::{Column, Place};
 pub use toml_error::{nearest, toml_reason};
 pub use warning::{Quantity, Warning};
 pub use whole_file::write_whole;

@@ -115,8 +115,13 @@ impl Column {
         }
     }
 
+    /// Whether there are no values.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
     /// The values at these places.
-    pub fn picked(&self, places: impl Iterator<Item = usize>) -> Self {
+    pub(crate) fn picked(&self, places: impl Iterator<Item = usize>) -> Self {
         match self {
             Self::Numbers(values) => Self::Numbers(places.map(|place| values[place]).collect()),
             Self::Integers(values) => Self::Integers(places.map(|place| values[place]).collect()),

@@ -14,7 +14,7 @@ mod rerun;
 use crate::models::ModelKind;
 use crate::prove::Shard;
 pub use chain::ChainArgs;
-pub use diagnose::{DiagnoseArgs, UrdfFriction};
+pub use diagnose::DiagnoseArgs;
 pub use excite::{ExciteArgs, Limit};
 use numbers::parse_urdf_error;
 pub use rerun::Rerun;

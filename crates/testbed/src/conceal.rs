@@ -7,6 +7,7 @@ use std::path::Path;
 use anyhow::{Context, ensure};
 use faults::{Campaign, Concealment, FaultError, Robot, Settings, conceal_case, conceal_effects, write_case};
 use rayon::prelude::*;
+use study::robot;
 
 use crate::cli::{ChainArgs, ConcealArgs};
 use crate::library;
@@ -47,14 +48,14 @@ pub fn robots(names: &[String], chain: &ChainArgs) -> anyhow::Result<Vec<Robot>>
         "{}: chooses the arm of one robot; name it, and no other, with --robot",
         chain.to_string().trim_start()
     );
-    let all: Vec<String> = library::built_in().map(str::to_owned).collect();
+    let all: Vec<String> = robot::built_in().map(str::to_owned).collect();
     let names = if names.is_empty() { &all } else { names };
     names.iter().map(|name| robot(name, chain)).collect()
 }
 
 fn robot(name: &str, chain: &ChainArgs) -> anyhow::Result<Robot> {
     let doing = || format!("--robot {name}");
-    let file = library::named_robot(name)?;
+    let file = robot::named_robot(name)?;
     let arm = file.arm(&chain.options(&[])).with_context(doing)?;
     // The cases are diagnosed without flags, as their recordings are of the arm alone.
     let text = library::serial_urdf(&file.text, &arm).with_context(doing)?;

@@ -16,9 +16,9 @@ use report::{numbers, words};
 use torque::Motion;
 
 use crate::cli::ExciteArgs;
-use crate::library::{self, RobotFile};
 use crate::output;
 use crate::scenario::written;
+use study::robot::{RobotFile, named_robot};
 
 /// Proposes a motion for the robot that `args` name.
 ///
@@ -33,12 +33,12 @@ pub fn run(args: &ExciteArgs) -> anyhow::Result<()> {
     }
     if let [a, b] = outputs[..] {
         anyhow::ensure!(
-            !output::is_same(a, b),
+            !study::is_same(a, b),
             "{}: is given for two outputs; give each output its own file",
             a.display()
         );
     }
-    let robot = library::named_robot(&args.robot)?;
+    let robot = named_robot(&args.robot)?;
     let arm = robot
         .arm(&args.chain.options(&[]))
         .with_context(|| format!("--robot {}", args.robot))?;
@@ -275,7 +275,7 @@ mod tests {
     /// The scenario is what the motion was, to the last bit.
     #[test]
     fn the_scenario_loads_as_the_motion_it_was() {
-        let robot = library::named_robot("puma560").expect("it comes with testbed");
+        let robot = named_robot("puma560").expect("it comes with testbed");
         let arm = robot.arm(&arm::ChainOptions::default()).expect("an arm");
         let options = ExcitationOptions {
             duration: 10.0,

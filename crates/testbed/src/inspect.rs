@@ -1,11 +1,5 @@
 //! `testbed inspect FILE…`: what recordings are worth, before anything is fitted to them.
 
-mod column_map;
-pub mod model_check;
-mod smooth;
-mod supposition;
-mod torque_unit;
-
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -13,10 +7,12 @@ use anyhow::{Context, bail};
 use arm::Arm;
 use recording::{ColumnMap, Quality, Recording, Warning};
 use serde::Serialize;
+use study::notes::shortened;
+use study::robot::{self, RobotFile};
+use study::{check, named};
 
 use crate::cli::InspectArgs;
-use crate::library::{self, RobotFile};
-use crate::{output, recordings};
+use crate::output;
 
 /// What `--json` holds.
 #[derive(Serialize)]
@@ -33,7 +29,7 @@ struct FileReport<'a> {
     #[serde(flatten)]
     quality: Quality,
     /// What does not fit the robot's model.
-    against_robot: Vec<model_check::Misfit>,
+    against_robot: Vec<check::Misfit>,
     /// The column map (TOML) that mends it.
     column_map: Option<String>,
     warnings: Vec<Told>,
@@ -58,7 +54,7 @@ pub fn run(args: &InspectArgs) -> anyhow::Result<()> {
         let inputs = args.files.iter().chain(&args.map).map(PathBuf::as_path);
         output::check_is_no_input(path, inputs.chain(args.robot.as_deref().map(Path::new)))?;
     }
-    let robot = args.robot.as_deref().map(library::named_robot).transpose()?;
+    let robot = args.robot.as_deref().map(robot::named_robot).transpose()?;
     let map = args.map.as_deref().map(ColumnMap::load).transpose()?;
     let arm = robot.map(|robot| load_arm(args, &robot, map.as_ref())).transpose()?;
     let mut files = Vec::new();
@@ -97,7 +93,7 @@ fn load_arm(args: &InspectArgs, robot: &RobotFile, map: Option<&ColumnMap>) -> a
         .filter_map(|file| Recording::read_with(file, map).ok());
     let first = readable.next().unwrap_or_default();
     let arm = robot
-        .arm(&args.chain.options(recordings::named_joints(&first)))
+        .arm(&args.chain.options(named::named_joints(&first)))
         .context("--robot")?;
     for warning in arm.warnings() {
         eprintln!("note: {}: {warning}", robot.path.display());
@@ -106,11 +102,11 @@ fn load_arm(args: &InspectArgs, robot: &RobotFile, map: Option<&ColumnMap>) -> a
 }
 
 fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> anyhow::Result<FileReport<'a>> {
-    let recording = recordings::read(file, map, arm)?;
+    let recording = named::read(file, map, arm)?;
     let (regular, found) = recording.regular().with_context(|| file.display().to_string())?;
     let quality = Quality::of(&recording, &regular);
-    let against_robot = arm.map_or(Vec::new(), |arm| model_check::check(arm, &regular, &quality));
-    let column_map = model_check::column_map(&against_robot, &recording, map.is_some());
+    let against_robot = arm.map_or(Vec::new(), |arm| check::check(arm, &regular, &quality));
+    let column_map = check::column_map(&against_robot, &recording, map.is_some());
     let warnings = recording.warnings.iter().cloned().chain(found);
     Ok(FileReport {
         file,
@@ -124,21 +120,6 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
             })
             .collect(),
     })
-}
-
-/// More gaps than this are counted on the terminal, and not listed.
-const MOST_GAPS: usize = 3;
-
-/// The warnings to show of a list, and the number of gaps that are omitted.
-pub fn shortened<T>(list: impl Iterator<Item = T>, warning: impl Fn(&T) -> &Warning) -> (Vec<T>, usize) {
-    let mut gaps = 0;
-    let told = list.filter(|item| {
-        let is_gap = matches!(warning(item), Warning::Gap { .. });
-        gaps += usize::from(is_gap);
-        !is_gap || gaps <= MOST_GAPS
-    });
-    let told = told.collect();
-    (told, gaps.saturating_sub(MOST_GAPS))
 }
 
 fn shown(report: &FileReport<'_>) -> String {

@@ -12,7 +12,6 @@ mod models;
 mod output;
 mod paper;
 mod prove;
-mod recordings;
 mod run;
 mod scenario;
 mod sensors;
@@ -26,17 +25,6 @@ mod viewer;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser};
-
-/// The error and its causes in one line; a cause that its error has quoted already is not repeated.
-fn chain(error: &anyhow::Error) -> String {
-    let mut line = error.to_string();
-    for cause in error.chain().skip(1).map(ToString::to_string) {
-        if !line.contains(&cause) {
-            line = format!("{line}: {cause}");
-        }
-    }
-    line
-}
 
 fn main() -> ExitCode {
     let cli = cli::Cli::parse();
@@ -68,7 +56,7 @@ fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {}", chain(&error));
+            eprintln!("error: {}", study::sentence(&error));
             if interrupt::requested() {
                 ExitCode::from(interrupt::EXIT_CODE)
             } else {

@@ -105,7 +105,7 @@ pub fn check_writable(path: &Path) -> anyhow::Result<()> {
 /// If it is.
 pub fn check_is_no_input<'a>(path: &Path, inputs: impl Iterator<Item = &'a Path>) -> anyhow::Result<()> {
     for input in inputs {
-        if is_same(path, input) {
+        if study::is_same(path, input) {
             bail!(
                 "{}: is read as {}; write to another file",
                 path.display(),
@@ -114,16 +114,4 @@ pub fn check_is_no_input<'a>(path: &Path, inputs: impl Iterator<Item = &'a Path>
         }
     }
     Ok(())
-}
-
-/// Whether two paths are one file, which need not be there yet.
-pub fn is_same(a: &Path, b: &Path) -> bool {
-    let place = |path: &Path| {
-        path.canonicalize().or_else(|_| {
-            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-            let folder = folder.unwrap_or_else(|| Path::new(".")).canonicalize()?;
-            std::io::Result::Ok(folder.join(path.file_name().unwrap_or_default()))
-        })
-    };
-    matches!((place(a), place(b)), (Ok(a), Ok(b)) if a == b)
 }

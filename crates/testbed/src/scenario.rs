@@ -80,7 +80,7 @@ impl Scenario {
         Self::read(&source, &ChainArgs::default())
     }
 
-    fn read(source: &crate::library::Source, chain: &ChainArgs) -> anyhow::Result<Self> {
+    fn read(source: &study::Source, chain: &ChainArgs) -> anyhow::Result<Self> {
         let raw = raw::parse(source)?;
         validate::scenario(source, raw, chain)
     }

@@ -8,9 +8,9 @@ use recording::Recording;
 use torque::{Motion, Reference, Samples};
 
 use crate::cli::ChainArgs;
-use crate::recordings;
 use crate::scenario::Scenario;
 use crate::sensors::Sensors;
+use study::named;
 
 /// The sensors' noise in the training samples, apart from that in the loop.
 const TRAINING_STREAM: u64 = 2;
@@ -121,7 +121,7 @@ pub fn training_samples(
         let path = Path::new(source);
         let ends = |end: &str| path.extension().is_some_and(|extension| extension == end);
         if ends("csv") || (path.exists() && !ends("toml")) {
-            let recording = recordings::read(path, None, Some(&scenario.arm)).with_context(of_source)?;
+            let recording = named::read(path, None, Some(&scenario.arm)).with_context(of_source)?;
             recording_samples(scenario, &recording, &mut samples).with_context(of_source)?;
         } else {
             let task = Scenario::load_chain(source, chain).with_context(of_source)?;

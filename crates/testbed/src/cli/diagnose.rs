@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use study::inputs::{Given, Recordings};
+use study::{Known, Request};
 
 use super::chain::ChainArgs;
 use super::numbers::{parse_accuracy, parse_frequency};
@@ -134,6 +136,29 @@ pub struct DiagnoseArgs {
 }
 
 impl DiagnoseArgs {
+    /// What is to be diagnosed.
+    pub fn request(&self) -> Request {
+        let files = |paths: &[PathBuf]| paths.iter().cloned().map(Given::File).collect();
+        Request {
+            robot: self.robot.clone(),
+            chain: self.chain.options(&[]),
+            recordings: Recordings {
+                before: files(&self.before),
+                train: files(&self.train),
+                held_out: files(&self.held_out),
+                map: self.map.clone(),
+            },
+            known: self.known.clone().map(Known::File),
+            only: self.only.clone(),
+            urdf_friction: self.urdf_friction.into(),
+            cutoff: self.cutoff,
+            urdf_accuracy: self.urdf_accuracy,
+            torque_accuracy: self.torque_accuracy,
+            torques_only: self.torques_only,
+            next: self.next.is_some(),
+        }
+    }
+
     /// The files that will be written.
     pub fn outputs(&self) -> Vec<&Path> {
         let rerun = match &self.rerun {
@@ -175,4 +200,14 @@ pub enum UrdfFriction {
     Known,
     /// None
     Ignored,
+}
+
+impl From<UrdfFriction> for study::urdf_friction::UrdfFriction {
+    fn from(which: UrdfFriction) -> Self {
+        match which {
+            UrdfFriction::Diagnosed => Self::Diagnosed,
+            UrdfFriction::Known => Self::Known,
+            UrdfFriction::Ignored => Self::Ignored,
+        }
+    }
 }

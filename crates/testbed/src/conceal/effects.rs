@@ -6,8 +6,8 @@ use anyhow::{Context, anyhow};
 use arm::Arm;
 use faults::{Injected, form_parameters};
 
-use crate::diagnose::effect_file;
-use crate::library::Source;
+use study::Source;
+use study::effect_file;
 
 /// Reads the effects at `path`, which must fit `arm`.
 ///

@@ -5,16 +5,15 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use arm::Arm;
-use diagnosis::{Diagnosis, Input, Options, Verdict};
+use diagnosis::{Diagnosis, Verdict};
 use indicatif::ProgressBar;
+use study::effect_file::EffectFile;
+use study::notes::Notes;
+use study::robot::RobotFile;
+use study::{Diagnosed, Listener, mjcf_file, urdf_file};
 
-use super::effect_file::EffectFile;
-use super::inputs::{Files, Role};
-use super::notes::Notes;
-use super::urdf_friction::{known_friction, summed};
-use super::{inputs, mjcf_file, next_file, residuals_file, trace_file, urdf_file};
+use super::{next_file, outputs, residuals_file, trace_file};
 use crate::cli::DiagnoseArgs;
-use crate::library::{self, RobotFile};
 use crate::output;
 
 /// The exit status of `--fail-on-mismatch` where the model alone does not explain the recordings.
@@ -25,7 +24,7 @@ const MISMATCH: u8 = 3;
 /// # Errors
 /// If an input cannot be used or an output cannot be written; nothing is written then.
 pub fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
-    inputs::check_outputs(args)?;
+    outputs::check(args)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(args.jobs.map_or(0, usize::from))
         .build()
@@ -34,70 +33,22 @@ pub fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
 }
 
 fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
-    let robot = library::named_robot(&args.robot)?;
-    let files = Files::open(args)?;
-    let note = |text: &str| {
-        if !args.quiet {
-            eprintln!("note: {text}");
-        }
-    };
-    let arm = load_arm(args, &robot, files.joints(), &note)?;
-    let mut known = inputs::known(args, &arm)?;
-    let (friction, remark) = known_friction(&robot, &arm, args.urdf_friction, &known)?;
-    known.splice(0..0, friction);
-    if let Some(remark) = remark {
-        note(&format!("{}: {remark}", robot.path.display()));
-    }
-    let only = inputs::only(args, &arm)?;
     let spinner = if args.quiet {
         ProgressBar::hidden()
     } else {
         output::spinner("reading")
     };
-    let mut notes = Notes::default();
-    let recordings = inputs::read(files, &arm, &spinner, &mut notes);
-    if !args.quiet {
-        let joints: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
-        for line in notes.lines(&joints, !args.verbose) {
-            spinner.suspend(|| eprintln!("{line}"));
-        }
-    }
-    let recordings = recordings?;
-    let list: Vec<Input<'_>> = recordings
-        .iter()
-        .map(|recording| Input {
-            name: &recording.name,
-            recording: &recording.regular,
-            held_out: recording.role == Role::HeldOut,
-            before: recording.role == Role::Before,
-        })
-        .collect();
-    let options = Options {
-        cutoff: args.cutoff,
-        urdf_accuracy: args.urdf_accuracy,
-        torque_accuracy: args.torque_accuracy,
-        known,
-        only,
-        next: args.next.is_some(),
-        ..Options::default()
-    };
-    let mut diagnosis = diagnosis::diagnose(&arm, &list, &options, &|doing| spinner.set_message(doing.to_owned()))?;
-    for remark in &diagnosis.remarks {
-        spinner.suspend(|| note(remark));
-    }
-    let mut remarks = Vec::new();
-    if !args.torques_only {
-        let complete = validate::complete(&arm, &options.known, &diagnosis, &list, &|doing| {
-            spinner.set_message(doing);
-        })?;
-        (diagnosis.report, remarks) = (complete.report, complete.remarks);
-    }
+    let study = args.request().run(&Terminal {
+        args,
+        spinner: &spinner,
+    });
     spinner.finish_and_clear();
-    for remark in remarks {
-        note(&format!("simulation: {remark}"));
-    }
-    // The known effects are a part of the model that the findings correct.
-    let effects = summed(&options.known, &diagnosis.effects);
+    let Diagnosed {
+        robot,
+        arm,
+        diagnosis,
+        effects,
+    } = study?;
     let written = write(args, &arm, &robot, &diagnosis, effects)?;
     tell(args, &diagnosis, &written)?;
     let explains = diagnosis.report.verdict == Verdict::NoMismatch && diagnosis.report.findings.is_empty();
@@ -106,6 +57,33 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     } else {
         ExitCode::SUCCESS
     })
+}
+
+/// Tells what is done and noted on standard error.
+struct Terminal<'a> {
+    args: &'a DiagnoseArgs,
+    spinner: &'a ProgressBar,
+}
+
+impl Listener for Terminal<'_> {
+    fn doing(&self, what: &str) {
+        self.spinner.set_message(what.to_owned());
+    }
+
+    fn note(&self, text: &str) {
+        if !self.args.quiet {
+            self.spinner.suspend(|| eprintln!("note: {text}"));
+        }
+    }
+
+    fn recordings(&self, notes: &Notes, joints: &[&str]) {
+        if self.args.quiet {
+            return;
+        }
+        for line in notes.lines(joints, !self.args.verbose) {
+            self.spinner.suspend(|| eprintln!("{line}"));
+        }
+    }
 }
 
 /// Prints the result and the files written. JSON on standard output has it for itself.
@@ -142,16 +120,6 @@ fn tell(args: &DiagnoseArgs, diagnosis: &Diagnosis, written: &Written<'_>) -> an
         ))?;
     }
     Ok(())
-}
-
-fn load_arm(args: &DiagnoseArgs, robot: &RobotFile, recorded: &[String], note: &dyn Fn(&str)) -> anyhow::Result<Arm> {
-    let arm = robot
-        .arm(&args.chain.options(recorded))
-        .with_context(|| format!("--robot {}", args.robot))?;
-    for warning in arm.warnings() {
-        note(&format!("{}: {warning}", robot.path.display()));
-    }
-    Ok(arm)
 }
 
 /// What there is to say of the files that were written.

@@ -7,7 +7,7 @@ use arm::Arm;
 use diagnosis::{Excitation, Input, MotionLimits, Quality};
 use recording::{RegularRecording, Signal};
 
-use crate::recordings;
+use study::named;
 
 /// The recordings at `paths` with their names, joints in the order of `arm`.
 ///
@@ -16,7 +16,7 @@ use crate::recordings;
 pub fn read(paths: &[PathBuf], arm: &Arm) -> anyhow::Result<Vec<(String, RegularRecording)>> {
     let read = |path: &PathBuf| {
         let name = path.display().to_string();
-        let recording = recordings::read(path, None, Some(arm))?;
+        let recording = named::read(path, None, Some(arm))?;
         let (regular, _) = recording.regular().with_context(|| name.clone())?;
         let place = |joint: &arm::Joint| regular.joints.iter().position(|known| *known == joint.name);
         let lacking = arm.joints().iter().find(|joint| place(joint).is_none());

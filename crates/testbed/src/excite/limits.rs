@@ -5,7 +5,7 @@ use arm::Arm;
 use diagnosis::MotionLimits;
 
 use crate::cli::{ExciteArgs, Limit};
-use crate::library::nearest;
+use recording::nearest;
 
 /// The limits of the joints of `arm`, one a joint.
 ///

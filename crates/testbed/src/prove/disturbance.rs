@@ -14,10 +14,10 @@ use serde::Serialize;
 use torque::{Corrected, RigidBody, TorqueModel, TrainingOptions};
 
 use super::rows::Row;
-use crate::diagnose::urdf_file::changed_urdf;
 use crate::models::ModelKind;
 use crate::scenario::Scenario;
-use crate::{library, paper, simulation, tables, training};
+use crate::{paper, simulation, tables, training};
+use study::urdf_file::changed_urdf;
 
 /// The case's name; those drawn begin with `case_`.
 pub const CASE: &str = "paper";
@@ -135,7 +135,7 @@ pub fn conceal() -> anyhow::Result<Concealment> {
 
 /// The URDF as the paper's controller believes it: [`Scenario::nominal_arm`], in the words of the robot's own file.
 fn heavy_urdf(scenario: &Scenario) -> anyhow::Result<String> {
-    let urdf = library::named_robot(scenario.arm.name())?.text;
+    let urdf = study::robot::named_robot(scenario.arm.name())?.text;
     let heavier = Effect::of(&InertialScale).with("factor", scenario.inertia_scale);
     changed_urdf(&urdf, &scenario.arm, &[heavier])
 }

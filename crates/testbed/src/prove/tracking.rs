@@ -22,8 +22,8 @@ use self::closed_loop::Rate;
 use self::course::Course;
 use self::plan::Plan;
 use super::cases::Files;
-use crate::diagnose::effect_file::EffectFile;
 use crate::scenario::Scenario;
+use study::effect_file::EffectFile;
 
 pub use self::choice::chosen;
 

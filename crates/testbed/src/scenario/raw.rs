@@ -7,7 +7,7 @@ use anyhow::anyhow;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::library::Source;
+use study::Source;
 
 /// One number for all joints, or a list with one a joint.
 #[derive(Clone, Debug, Deserialize)]

@@ -1,14 +1,16 @@
 //! From what is written to what can be run.
 
+use std::path::Path;
+
 use anyhow::{Context, anyhow, bail, ensure};
 use arm::Arm;
+use study::{Source, robot};
 use toml::Spanned;
 use torque::{Fade, Feedback, Reference, Sine};
 
 use super::Scenario;
 use super::raw::{PerJoint, RawReference, RawScenario};
 use crate::cli::ChainArgs;
-use crate::library::{self, Source};
 use crate::models::ModelKind;
 use crate::sensors::SensorNoise;
 
@@ -35,7 +37,8 @@ pub fn scenario(source: &Source, raw: RawScenario, chosen: &ChainArgs) -> anyhow
         let (place, robot) = (source.place(raw.robot.span()), raw.robot.get_ref());
         format!("{place}: robot = \"{robot}\"")
     };
-    let robot = library::find_robot(raw.robot.get_ref(), source).with_context(of_robot)?;
+    let robot =
+        robot::find_robot(raw.robot.get_ref(), source.path.parent().unwrap_or(Path::new(""))).with_context(of_robot)?;
     let written = ChainArgs {
         base: raw.chain.base,
         tip: raw.chain.tip,
@@ -99,7 +102,7 @@ pub fn scenario(source: &Source, raw: RawScenario, chosen: &ChainArgs) -> anyhow
     if raw.plant.coulomb_friction.is_none() {
         coulomb_friction = arm.joints().iter().map(|joint| joint.friction).collect();
     }
-    let built_in = library::is_built_in(raw.robot.get_ref());
+    let built_in = robot::is_built_in(raw.robot.get_ref());
     let notes = if built_in { Vec::new() } else { arm.warnings().to_vec() };
     let notes = notes.iter().map(|note| format!("{}: {note}", urdf.display())).collect();
     let true_arm = arm.clone().with_rotor_inertias(&rotor_inertia);

@@ -7,14 +7,14 @@ use anyhow::Context;
 use arm::{Arm, FixedBecause, FixedJoint};
 use torque::Reference;
 
-use crate::library;
+use study::robot;
 
 /// The robot as a scenario at `path` names it: `robot` if it comes with testbed, else where `urdf` is, seen from the scenario.
 ///
 /// # Errors
 /// If the URDF or the scenario's folder is not there.
 pub fn robot_from(path: &Path, robot: &str, urdf: &Path) -> anyhow::Result<String> {
-    if library::is_built_in(robot) {
+    if robot::is_built_in(robot) {
         Ok(robot.to_owned())
     } else {
         beside(path, urdf)

@@ -14,7 +14,7 @@ use toml::Spanned;
 
 use super::ensure_some;
 use super::quantities::{is_on_the_arm, si};
-use crate::library::Source;
+use study::Source;
 
 /// What the `schema` line says.
 const SCHEMA: &str = "testbed.published/1";

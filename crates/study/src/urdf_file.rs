@@ -14,7 +14,7 @@ use effects::drive::RotorInertia;
 use torque::Corrected;
 
 use self::scan::{JointPlaces, LinkPlaces, Place, Places};
-use super::held::{self, Export, Held};
+use crate::held::{self, Export, Held};
 
 /// The attribute of a `<dynamics>` whose friction a diagnosis found; other programs do not read it.
 const SOURCE: (&str, &str) = ("source", "testbed");

@@ -2,11 +2,20 @@
 
 use std::collections::BTreeSet;
 
+use recording::Warning;
+
+/// More gaps than this are counted, and not listed.
+const MOST_GAPS: usize = 3;
+
 /// One note: how serious it is, what it is about, and what it says.
-struct Note {
-    weight: &'static str,
-    file: String,
-    text: String,
+#[derive(Clone, Debug)]
+pub struct Note {
+    /// `note` or `warning`.
+    pub weight: &'static str,
+    /// The recording.
+    pub file: String,
+    /// What there is to say about it.
+    pub text: String,
 }
 
 /// Notes in the order in which they were made.
@@ -25,6 +34,11 @@ impl Notes {
         });
     }
 
+    /// The notes one by one.
+    pub fn iter(&self) -> impl Iterator<Item = &Note> {
+        self.list.iter()
+    }
+
     /// One line for each note, or (`is_short`) for all notes that only differ in file, numbers and `joints`: the first of them, and
     /// how many more there are.
     pub fn lines(&self, joints: &[&str], is_short: bool) -> Vec<String> {
@@ -38,6 +52,18 @@ impl Notes {
         }
         groups.iter().map(|(_, group)| line(group)).collect()
     }
+}
+
+/// The warnings to show of a list, and the number of gaps that are omitted.
+pub fn shortened<T>(list: impl Iterator<Item = T>, warning: impl Fn(&T) -> &Warning) -> (Vec<T>, usize) {
+    let mut gaps = 0;
+    let told = list.filter(|item| {
+        let is_gap = matches!(warning(item), Warning::Gap { .. });
+        gaps += usize::from(is_gap);
+        !is_gap || gaps <= MOST_GAPS
+    });
+    let told = told.collect();
+    (told, gaps.saturating_sub(MOST_GAPS))
 }
 
 fn line(group: &[&Note]) -> String {

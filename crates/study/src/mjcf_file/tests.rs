@@ -11,9 +11,9 @@ use torque::{Prediction, TorqueModel, Workspace};
 
 use super::*;
 
-const PUMA: &str = include_str!("../../../../../assets/puma560.urdf");
-const SEVEN: &str = include_str!("../../../../arm/tests/robots/seven_axis.urdf");
-const PRISMATIC: &str = include_str!("../../../../arm/tests/robots/prismatic.urdf");
+const PUMA: &str = include_str!("../../../../assets/puma560.urdf");
+const SEVEN: &str = include_str!("../../../arm/tests/robots/seven_axis.urdf");
+const PRISMATIC: &str = include_str!("../../../arm/tests/robots/prismatic.urdf");
 
 fn read(urdf: &str) -> Arm {
     Arm::from_urdf_text(urdf, "test.urdf").expect("it is an arm")

@@ -1,17 +1,21 @@
 //! What in a recording does not fit the robot's URDF: names, limits, signs, order, motor side.
 
+mod column_map;
+mod smooth;
+mod supposition;
+mod torque_unit;
+
 use std::f64::consts::TAU;
 
 use arm::{Arm, Joint, JointKind};
-use recording::{FindingKind, JointQuality, Quality, Recording, RegularRecording, Warning};
+use recording::{FindingKind, JointQuality, Quality, Recording, RegularRecording, Warning, nearest};
 use report::numbers::rounded;
 use serde::Serialize;
 
-use super::column_map::{self, Change, Value};
-use super::smooth::Smooth;
-use super::supposition::{EXPLAINED, Fit, Supposition, fit};
-use super::torque_unit::{self, MOTOR_SIDE};
-use crate::library::nearest;
+use self::column_map::{Change, Value};
+use self::smooth::Smooth;
+use self::supposition::{EXPLAINED, Fit, Supposition, fit};
+use self::torque_unit::MOTOR_SIDE;
 
 /// An assumption must reduce the mean log residual of the joints by at least this much.
 const GAIN: f64 = 2.0;

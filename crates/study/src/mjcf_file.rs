@@ -13,7 +13,7 @@ use quick_xml::Writer;
 use quick_xml::events::{BytesEnd, BytesStart, BytesText, Event};
 use torque::Corrected;
 
-use super::held::{self, Export, Held};
+use crate::held::{self, Export, Held};
 
 /// MuJoCo wants a mass and moments of inertia above 1e-15; what a URDF leaves massless gets these (kg, kg m²).
 const LEAST_MASS: f64 = 1e-12;

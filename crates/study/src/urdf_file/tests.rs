@@ -105,7 +105,7 @@ fn all_else_stays_as_it_was() {
 
 #[test]
 fn the_puma_goes_round() {
-    let urdf = include_str!("../../../../../assets/puma560.urdf");
+    let urdf = include_str!("../../../../assets/puma560.urdf");
     let arm = read(urdf);
     let joint = |j: usize| arm.joints()[j].name.clone();
     let effects = [

@@ -4,21 +4,62 @@ mod joints;
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, bail};
 use arm::Arm;
-use diagnosis::Wanted;
-use effects::Effect;
-use indicatif::ProgressBar;
-use recording::{ColumnMap, FindingKind, Quality, Recording, RegularRecording};
+use recording::{Column, ColumnMap, FindingKind, Quality, Recording, RecordingError, RegularRecording};
 
 use self::joints::{order, reordered};
-use super::effect_file::EffectFile;
-use super::next_file;
-use super::notes::Notes;
-use super::residuals_file::Kind;
-use crate::cli::{DiagnoseArgs, Rerun};
-use crate::inspect::{model_check, shortened};
-use crate::{output, recordings};
+use crate::notes::{Notes, shortened};
+use crate::{check, named};
+
+/// A recording that a diagnosis is to read.
+#[derive(Clone, Debug)]
+pub enum Given {
+    /// A file of any format that `recording` reads.
+    File(PathBuf),
+    /// Columns in memory, named as those of a file.
+    Columns {
+        /// What messages and the report call the recording.
+        name: String,
+        /// The columns with their headers.
+        columns: Vec<(String, Column)>,
+    },
+}
+
+impl Given {
+    /// What messages and the report call it.
+    pub fn name(&self) -> String {
+        match self {
+            Self::File(path) => path.display().to_string(),
+            Self::Columns { name, .. } => name.clone(),
+        }
+    }
+
+    fn read(&self, map: Option<&ColumnMap>) -> Result<Recording, RecordingError> {
+        match self {
+            Self::File(path) => Recording::read_with(path, map),
+            Self::Columns { name, columns } => Recording::of_columns(name, columns.clone(), map),
+        }
+    }
+
+    /// Whether both are one file. Columns in memory are compared when they are read.
+    fn is_same(&self, other: &Self) -> bool {
+        matches!((self, other), (Self::File(a), Self::File(b)) if crate::is_same(a, b))
+    }
+}
+
+/// The recordings of a diagnosis.
+#[derive(Clone, Debug, Default)]
+pub struct Recordings {
+    /// Those of before something happened.
+    pub before: Vec<Given>,
+    /// Those that the effects are fitted to.
+    pub train: Vec<Given>,
+    /// Those that the fit is validated on.
+    pub held_out: Vec<Given>,
+    /// The column map of files and columns with other headers or units.
+    pub map: Option<PathBuf>,
+}
 
 /// A recording ready to be diagnosed.
 pub struct Prepared {
@@ -29,7 +70,7 @@ pub struct Prepared {
     /// What it is for.
     pub role: Role,
     /// The column map that mends what does not fit the arm.
-    pub column_map: Option<String>,
+    column_map: Option<String>,
 }
 
 /// What a recording is for.
@@ -47,91 +88,6 @@ impl Role {
     fn is_fitted(self) -> bool {
         self != Self::HeldOut
     }
-}
-
-/// Checks where `args` write to, before anything is read.
-///
-/// # Errors
-/// If an output cannot be written, is an input, or is another output.
-pub fn check_outputs(args: &DiagnoseArgs) -> anyhow::Result<()> {
-    if cfg!(not(feature = "viewer")) && !matches!(args.rerun, None | Some(Rerun::Off)) {
-        bail!("this testbed was built without the viewer; build it with `--features viewer`, or leave --rerun out");
-    }
-    let outputs = args.outputs();
-    for path in &outputs {
-        output::check_writable(path)?;
-    }
-    args.next.as_deref().map_or(Ok(()), next_file::check_replaceable)?;
-    args.residuals
-        .as_deref()
-        .map_or(Ok(()), |path| Kind::of(path).map(drop))?;
-    let robot = Path::new(&args.robot);
-    for output in &outputs {
-        // A model of effects may be read, added to and written in one go.
-        let known = args.known.iter().filter(|_| args.model.as_deref() != Some(output));
-        let recordings = args
-            .train
-            .iter()
-            .chain(&args.before)
-            .chain(&args.held_out)
-            .chain(&args.map);
-        let inputs = recordings.chain(known).map(PathBuf::as_path).chain([robot]);
-        output::check_is_no_input(output, inputs)?;
-    }
-    for (k, path) in outputs.iter().enumerate() {
-        if let Some(other) = outputs[..k].iter().find(|other| output::is_same(other, path)) {
-            bail!(
-                "{}: is given for two outputs; give each output its own file",
-                other.display()
-            );
-        }
-    }
-    Ok(())
-}
-
-/// The effects that `args` say are known.
-///
-/// # Errors
-/// If the file cannot be used.
-pub fn known(args: &DiagnoseArgs, arm: &Arm) -> anyhow::Result<Vec<Effect>> {
-    let Some(path) = &args.known else { return Ok(Vec::new()) };
-    Ok(EffectFile::load(path, arm)?.effects)
-}
-
-/// The effects that `args` ask for, if they ask for some and no others.
-///
-/// # Errors
-/// If the file cannot be used; whether the catalogue has the effects is seen when they are fitted.
-pub fn only(args: &DiagnoseArgs, arm: &Arm) -> anyhow::Result<Option<Vec<Wanted>>> {
-    let Some(only) = &args.only else { return Ok(None) };
-    let path = Path::new(only);
-    if path.extension().is_some_and(|extension| extension == "toml") {
-        let effects = EffectFile::load(path, arm)?.effects;
-        let wanted = effects.iter().map(|effect| Wanted {
-            effect: effect.name().to_owned(),
-            joint: effect.joint().map(str::to_owned),
-            other: effect.other().map(str::to_owned),
-            sets_in: Some(effect.onset().is_some()),
-        });
-        return Ok(Some(wanted.collect()));
-    }
-    let wanted = only.split(',').filter(|word| !word.is_empty()).map(|word| {
-        let (effect, joint) = match word.split_once(':') {
-            Some((effect, joint)) => (effect, Some(joint.to_owned())),
-            None => (word, None),
-        };
-        Wanted {
-            effect: effect.to_owned(),
-            joint,
-            ..Wanted::default()
-        }
-    });
-    let wanted: Vec<Wanted> = wanted.collect();
-    ensure!(
-        !wanted.is_empty(),
-        "--only {only:?}: names no effect; give effect:joint, or a file that --model wrote"
-    );
-    Ok(Some(wanted))
 }
 
 /// Whether a moving stretch of `b` is in `a`, sample for sample: a part of a recording under another name.
@@ -153,61 +109,68 @@ fn overlap(a: &RegularRecording, b: &RegularRecording) -> bool {
 }
 
 /// The recordings that a diagnosis is to read, of which the first was read already: its joints choose the arm.
-pub struct Files<'a> {
+pub struct Opened<'a> {
     map: Option<(&'a Path, ColumnMap)>,
-    files: Vec<(&'a PathBuf, Role)>,
+    list: Vec<(&'a Given, Role)>,
     first: Option<Recording>,
 }
 
-impl<'a> Files<'a> {
-    /// Opens the recordings that `args` name, those for training first.
+impl<'a> Opened<'a> {
+    /// Opens `recordings`, those of before first, then those for training.
     ///
     /// # Errors
-    /// If one is named twice, or the map or the first recording cannot be read.
-    pub fn open(args: &'a DiagnoseArgs) -> anyhow::Result<Self> {
+    /// If one is given twice, or the map or the first recording cannot be read.
+    pub fn new(recordings: &'a Recordings) -> anyhow::Result<Self> {
         let load = |path: &'a PathBuf| anyhow::Ok((path.as_path(), ColumnMap::load(path)?));
-        let map = args.map.as_ref().map(load).transpose()?;
+        let map = recordings.map.as_ref().map(load).transpose()?;
         let roles = [
-            (&args.before, Role::Before),
-            (&args.train, Role::Train),
-            (&args.held_out, Role::HeldOut),
+            (&recordings.before, Role::Before),
+            (&recordings.train, Role::Train),
+            (&recordings.held_out, Role::HeldOut),
         ];
-        let files: Vec<(&PathBuf, Role)> = roles
+        let list: Vec<(&Given, Role)> = roles
             .into_iter()
-            .flat_map(|(paths, role)| paths.iter().map(move |path| (path, role)))
+            .flat_map(|(given, role)| given.iter().map(move |given| (given, role)))
             .collect();
-        refuse_twice(&files)?;
-        let first = files
+        refuse_twice(&list)?;
+        let first = list
             .first()
-            .map(|(path, _)| Recording::read_with(path, map.as_ref().map(|(_, map)| map)));
+            .map(|(given, _)| given.read(map.as_ref().map(|(_, map)| map)));
         let first = first.transpose()?;
-        Ok(Self { map, files, first })
+        Ok(Self { map, list, first })
     }
 
     /// The joints of the first recording; none if it only numbers them.
     pub fn joints(&self) -> &[String] {
-        self.first.as_ref().map_or(&[], recordings::named_joints)
+        self.first.as_ref().map_or(&[], named::named_joints)
     }
 }
 
-/// Reads and checks the recordings of `files`; what is doubtful is added to `notes`, also before an error.
+/// Reads and checks the recordings of `opened`; what is doubtful is added to `notes`, also before an error.
 ///
 /// # Errors
 /// If one cannot be read, does not fit the arm, holds no motion or no torque, or is both fitted and held out.
-pub fn read(files: Files<'_>, arm: &Arm, progress: &ProgressBar, notes: &mut Notes) -> anyhow::Result<Vec<Prepared>> {
-    let Files { map, files, mut first } = files;
-    let choosing = files
-        .first()
-        .map_or_else(String::new, |(path, _)| path.display().to_string());
+pub fn read(
+    opened: Opened<'_>,
+    arm: &Arm,
+    progress: &dyn Fn(&str),
+    notes: &mut Notes,
+) -> anyhow::Result<Vec<Prepared>> {
+    let Opened {
+        map,
+        list: given,
+        mut first,
+    } = opened;
+    let choosing = given.first().map_or_else(String::new, |(given, _)| given.name());
     let mut list: Vec<Prepared> = Vec::new();
-    for (path, role) in files {
-        progress.set_message(format!("reading {}", path.display()));
+    for (given, role) in given {
+        let name = given.name();
+        progress(&format!("reading {name}"));
         let mut recording = match first.take() {
             Some(first) => first,
-            None => Recording::read_with(path, map.as_ref().map(|(_, map)| map))?,
+            None => given.read(map.as_ref().map(|(_, map)| map))?,
         };
-        recordings::name_joints(&mut recording, arm);
-        let name = path.display().to_string();
+        named::name_joints(&mut recording, arm);
         let map = map.as_ref().map(|(path, _)| *path);
         let order = order(&recording, arm, &name, &choosing, map)?;
         let prepared = prepare(recording, name, &order, role, arm, map.is_some(), notes)?;
@@ -254,16 +217,16 @@ pub fn read(files: Files<'_>, arm: &Arm, progress: &ProgressBar, notes: &mut Not
     Ok(list)
 }
 
-fn refuse_twice(files: &[(&PathBuf, Role)]) -> anyhow::Result<()> {
-    for (k, (path, role)) in files.iter().enumerate() {
-        let same = |other: &&(&PathBuf, Role)| output::is_same(path, other.0);
-        if let Some((_, other)) = files[..k].iter().find(same) {
+fn refuse_twice(list: &[(&Given, Role)]) -> anyhow::Result<()> {
+    for (k, (given, role)) in list.iter().enumerate() {
+        let same = |other: &&(&Given, Role)| given.is_same(other.0);
+        if let Some((_, other)) = list[..k].iter().find(same) {
             match (other.is_fitted(), role.is_fitted()) {
                 (false, true) | (true, false) => bail!(
                     "{}: is given as a training and as a held-out recording; a held-out recording must be independent",
-                    path.display()
+                    given.name()
                 ),
-                _ => bail!("{}: is given twice", path.display()),
+                _ => bail!("{}: is given twice", given.name()),
             }
         }
     }
@@ -281,8 +244,8 @@ fn prepare(
 ) -> anyhow::Result<Prepared> {
     let (regular, warnings) = recording.regular().with_context(|| name.clone())?;
     let quality = Quality::of(&recording, &regular);
-    let misfits = model_check::check(arm, &regular, &quality);
-    let column_map = model_check::column_map(&misfits, &recording, mapped);
+    let misfits = check::check(arm, &regular, &quality);
+    let column_map = check::column_map(&misfits, &recording, mapped);
     let (told, gaps) = shortened(recording.warnings.iter().chain(&warnings), |warning| warning);
     for warning in told {
         notes.add("note", &name, warning.to_string());

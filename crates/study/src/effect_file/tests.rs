@@ -13,7 +13,7 @@ use effects::joint::Spring;
 use effects::sensor::{EncoderOffset, TorqueOffset, TorqueScale};
 
 fn arm() -> Arm {
-    Arm::from_urdf_text(include_str!("../../../../../assets/puma560.urdf"), "puma560.urdf").expect("it is an arm")
+    Arm::from_urdf_text(include_str!("../../../../assets/puma560.urdf"), "puma560.urdf").expect("it is an arm")
 }
 
 /// One effect of each kind.

@@ -4,10 +4,21 @@ use arm::Arm;
 use effects::friction::{CoulombFriction, ViscousFriction};
 use effects::{Effect, InUrdf};
 
-use super::held;
-use super::urdf_file::diagnosed_joints;
-use crate::cli::UrdfFriction;
-use crate::library::RobotFile;
+use crate::held;
+use crate::robot::RobotFile;
+use crate::urdf_file::diagnosed_joints;
+
+/// Which friction in a URDF is known friction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum UrdfFriction {
+    /// That which a diagnosis wrote.
+    #[default]
+    Diagnosed,
+    /// All.
+    Known,
+    /// None.
+    Ignored,
+}
 
 /// The friction in the `<dynamics>` of `robot` that `which` takes as known, beside the effects `known`: what those say of
 /// a joint's friction takes its place. A second value says what was not taken.
@@ -89,7 +100,7 @@ pub fn summed(known: &[Effect], found: &[Effect]) -> Vec<Effect> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::urdf_file::corrected_urdf;
+    use crate::urdf_file::corrected_urdf;
 
     const TWO: &str = r#"<robot name="two"><link name="base"/>
 <joint name="a" type="continuous"><parent link="base"/><child link="upper"/><dynamics damping="10" friction="0.1"/></joint>

@@ -11,7 +11,7 @@ use serde::Deserialize;
 use toml::Spanned;
 use torque::{Corrected, TorqueError};
 
-use crate::library::Source;
+use crate::source::Source;
 
 /// What the `schema` line says.
 const SCHEMA: &str = "testbed.model/1";

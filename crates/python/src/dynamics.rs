@@ -1,0 +1,154 @@
+//! Rigid-body dynamics of an arm, row by row.
+
+use arm::{Arm, ChainOptions, DMatrix, PARAMETERS_PER_LINK, Workspace};
+use numpy::{PyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use study::robot;
+
+use crate::error::{JointwiseError, in_python, raised};
+use crate::rows::{each_row, each_row_of, flat, rows};
+
+/// The arm of a URDF. Results are flat arrays, row by row.
+#[pyclass(frozen, module = "jointwise._core")]
+pub struct Dynamics {
+    pub(crate) arm: Arm,
+}
+
+#[pymethods]
+impl Dynamics {
+    /// Reads the arm among the robot's joints.
+    #[new]
+    #[pyo3(signature = (urdf, base, tip, locks))]
+    fn new(urdf: &str, base: Option<String>, tip: Option<String>, locks: Vec<(String, f64)>) -> PyResult<Self> {
+        let options = ChainOptions {
+            base,
+            tip,
+            locks,
+            recorded: Vec::new(),
+        };
+        let arm = robot::named_robot(urdf)
+            .and_then(|robot| robot.arm(&options))
+            .map_err(|error| raised(&error))?;
+        Ok(Self { arm })
+    }
+
+    /// The robot's name.
+    #[getter]
+    fn name(&self) -> &str {
+        self.arm.name()
+    }
+
+    /// The joints, base to tip.
+    #[getter]
+    fn joints(&self) -> Vec<&str> {
+        self.arm.joints().iter().map(|joint| joint.name.as_str()).collect()
+    }
+
+    /// What in the URDF is doubtful, and which joints were fixed.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.arm.warnings().iter().map(|warning| in_python(warning)).collect()
+    }
+
+    /// Ten numbers a link: what the regressor multiplies.
+    fn inertial_parameters<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        flat(py, self.arm.inertial_parameters())
+    }
+
+    /// Inverse dynamics.
+    fn torque<'py>(
+        &self,
+        py: Python<'py>,
+        q: PyReadonlyArray2<'py, f64>,
+        qd: PyReadonlyArray2<'py, f64>,
+        qdd: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let arm = &self.arm;
+        let [q, qd, qdd] = rows(arm, [("q", &q), ("qd", &qd), ("qdd", &qdd)])?;
+        let values = py.detach(|| {
+            each_row_of(arm, q.len(), arm.dof(), |workspace, k, tau| {
+                arm.inverse_dynamics(workspace, q.row(k), qd.row(k), qdd.row(k), tau);
+            })
+        });
+        Ok(flat(py, values))
+    }
+
+    /// The torque that holds the arm at rest.
+    fn gravity<'py>(&self, py: Python<'py>, q: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let arm = &self.arm;
+        let [q] = rows(arm, [("q", &q)])?;
+        let values = py.detach(|| {
+            each_row_of(arm, q.len(), arm.dof(), |workspace, k, tau| {
+                arm.gravity_torque(workspace, q.row(k), tau);
+            })
+        });
+        Ok(flat(py, values))
+    }
+
+    /// Forward dynamics.
+    fn forward<'py>(
+        &self,
+        py: Python<'py>,
+        q: PyReadonlyArray2<'py, f64>,
+        qd: PyReadonlyArray2<'py, f64>,
+        tau: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let arm = &self.arm;
+        if let Some(joint) = arm.massless_joint() {
+            return Err(JointwiseError::new_err(format!(
+                "joint \"{}\" of {} moves no mass and no rotor, so that its acceleration is not defined; give its link an \
+                 <inertial>",
+                arm.joints()[joint].name,
+                arm.name()
+            )));
+        }
+        let [q, qd, tau] = rows(arm, [("q", &q), ("qd", &qd), ("tau", &tau)])?;
+        let values = py.detach(|| {
+            each_row_of(arm, q.len(), arm.dof(), |workspace, k, qdd| {
+                arm.forward_dynamics(workspace, q.row(k), qd.row(k), tau.row(k), qdd);
+            })
+        });
+        Ok(flat(py, values))
+    }
+
+    /// The joint-space mass matrix.
+    fn mass_matrix<'py>(&self, py: Python<'py>, q: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let arm = &self.arm;
+        let dof = arm.dof();
+        let [q] = rows(arm, [("q", &q)])?;
+        let scratch = || (Workspace::new(arm), DMatrix::zeros(dof, dof));
+        let values = py.detach(|| {
+            each_row(q.len(), dof * dof, scratch, |(workspace, matrix), k, row| {
+                arm.mass_matrix(workspace, q.row(k), matrix);
+                // It is symmetric: the order of its columns is that of its rows.
+                row.copy_from_slice(matrix.as_slice());
+            })
+        });
+        Ok(flat(py, values))
+    }
+
+    /// The torque regressor.
+    fn regressor<'py>(
+        &self,
+        py: Python<'py>,
+        q: PyReadonlyArray2<'py, f64>,
+        qd: PyReadonlyArray2<'py, f64>,
+        qdd: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let arm = &self.arm;
+        let (dof, columns) = (arm.dof(), arm.dof() * PARAMETERS_PER_LINK);
+        let [q, qd, qdd] = rows(arm, [("q", &q), ("qd", &qd), ("qdd", &qdd)])?;
+        let scratch = || (Workspace::new(arm), DMatrix::zeros(dof, columns));
+        let values = py.detach(|| {
+            each_row(q.len(), dof * columns, scratch, |(workspace, matrix), k, row| {
+                arm.torque_regressor(workspace, q.row(k), qd.row(k), qdd.row(k), matrix);
+                for (joint, row) in row.chunks_exact_mut(columns).enumerate() {
+                    for (column, value) in row.iter_mut().enumerate() {
+                        *value = matrix[(joint, column)];
+                    }
+                }
+            })
+        });
+        Ok(flat(py, values))
+    }
+}

@@ -1,0 +1,101 @@
+//! Arrays with a row a sample, and what is computed row by row.
+
+use arm::{Arm, Workspace};
+use numpy::{PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+use crate::error::JointwiseError;
+
+/// Rows that one thread computes in one go.
+const BLOCK: usize = 256;
+
+/// A copy of an array of `n` rows, one column a joint.
+pub struct Rows {
+    /// Row by row.
+    pub values: Vec<f64>,
+    columns: usize,
+}
+
+impl Rows {
+    /// The rows of `array`, called `what` in messages, which must have `columns` columns.
+    ///
+    /// # Errors
+    /// If it has others, or is not C-contiguous.
+    pub fn of(array: &PyReadonlyArray2<'_, f64>, what: &str, columns: usize) -> PyResult<Self> {
+        let found = array.shape()[1];
+        if found != columns {
+            return Err(JointwiseError::new_err(format!(
+                "{what} has {found} columns, and the arm has {columns} joints; give one column a joint"
+            )));
+        }
+        let values = array.as_slice()?.to_vec();
+        Ok(Self { values, columns })
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.values.len() / self.columns
+    }
+
+    /// One of them.
+    pub fn row(&self, row: usize) -> &[f64] {
+        &self.values[row * self.columns..][..self.columns]
+    }
+}
+
+/// All of `given` as rows of the arm's joints, of which there must be as many in each.
+///
+/// # Errors
+/// If the columns are not the joints, or the numbers of rows differ.
+pub fn rows<const N: usize>(arm: &Arm, given: [(&str, &PyReadonlyArray2<'_, f64>); N]) -> PyResult<[Rows; N]> {
+    let mut list = Vec::with_capacity(N);
+    for (what, array) in given {
+        let rows = Rows::of(array, what, arm.dof())?;
+        if let Some((first, other)) = list.first().map(|first: &Rows| (first.len(), given[0].0))
+            && first != rows.len()
+        {
+            return Err(JointwiseError::new_err(format!(
+                "{what} has {} rows, and {other} has {first}; give one row a sample in each",
+                rows.len()
+            )));
+        }
+        list.push(rows);
+    }
+    list.try_into()
+        .map_err(|_| JointwiseError::new_err("arrays were lost on the way"))
+}
+
+/// `width` numbers for each of `count` rows, which `of` writes for a row. A row's numbers do not depend on the other rows.
+pub fn each_row<W: Send>(
+    count: usize,
+    width: usize,
+    workspace: impl Fn() -> W + Sync + Send,
+    of: impl Fn(&mut W, usize, &mut [f64]) + Sync + Send,
+) -> Vec<f64> {
+    let mut values = vec![0.0; count * width];
+    values
+        .par_chunks_mut(BLOCK * width.max(1))
+        .enumerate()
+        .for_each_init(workspace, |workspace, (block, values)| {
+            for (k, row) in values.chunks_exact_mut(width.max(1)).enumerate() {
+                of(workspace, block * BLOCK + k, row);
+            }
+        });
+    values
+}
+
+/// As [`each_row`], with the arm's workspace.
+pub fn each_row_of(
+    arm: &Arm,
+    count: usize,
+    width: usize,
+    of: impl Fn(&mut Workspace, usize, &mut [f64]) + Sync + Send,
+) -> Vec<f64> {
+    each_row(count, width, || Workspace::new(arm), of)
+}
+
+/// `values` as a flat NumPy array, which the Python side gives its shape.
+pub fn flat(py: Python<'_>, values: Vec<f64>) -> Bound<'_, PyArray1<f64>> {
+    PyArray1::from_vec(py, values)
+}

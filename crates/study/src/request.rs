@@ -1,0 +1,192 @@
+//! What to diagnose, and the way from there to a complete report.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, ensure};
+use arm::{Arm, ChainOptions};
+use diagnosis::{Diagnosis, Input, Options, Wanted};
+use effects::Effect;
+
+use crate::effect_file::EffectFile;
+use crate::inputs::{self, Opened, Recordings, Role};
+use crate::notes::Notes;
+use crate::robot::{self, RobotFile};
+use crate::urdf_friction::{UrdfFriction, known_friction, summed};
+
+/// Effects that the model is known to omit.
+#[derive(Clone, Debug)]
+pub enum Known {
+    /// A file that a diagnosis wrote.
+    File(PathBuf),
+    /// The text of such a file.
+    Text(String),
+}
+
+/// What to diagnose, and how.
+#[derive(Clone, Debug, Default)]
+pub struct Request {
+    /// The path of the robot's URDF, or the name of a robot that comes with testbed.
+    pub robot: String,
+    /// The arm among the robot's joints, as far as the user chooses it; `recorded` is filled in.
+    pub chain: ChainOptions,
+    /// The recordings.
+    pub recordings: Recordings,
+    /// Effects that are not to be reported again.
+    pub known: Option<Known>,
+    /// The hypothesis to fit in place of a search: `effect:joint,…`, or a file that a diagnosis wrote.
+    pub only: Option<String>,
+    /// Which friction in the URDF is known.
+    pub urdf_friction: UrdfFriction,
+    /// Half-power frequency of the low-pass filter (Hz); `None` lets the data decide.
+    pub cutoff: Option<f64>,
+    /// How far the URDF's inertial parameters may be off, relative; `None` lets the recordings decide.
+    pub urdf_accuracy: Option<f64>,
+    /// The relative standard deviation of the torque constants; `None` if nobody knows.
+    pub torque_accuracy: Option<f64>,
+    /// Whether to leave out the simulation and the learned correction.
+    pub torques_only: bool,
+    /// Whether to propose the next experiment.
+    pub next: bool,
+}
+
+/// Who hears what a study does.
+pub trait Listener {
+    /// What is being done.
+    fn doing(&self, what: &str);
+
+    /// A note on the robot or the result.
+    fn note(&self, text: &str);
+
+    /// The notes on the recordings of an arm with these joints, also where an error follows.
+    fn recordings(&self, notes: &Notes, joints: &[&str]);
+}
+
+/// A complete diagnosis.
+pub struct Diagnosed {
+    /// The robot as it was read.
+    pub robot: RobotFile,
+    /// Its arm.
+    pub arm: Arm,
+    /// The diagnosis, whose report has the comparisons.
+    pub diagnosis: Diagnosis,
+    /// The corrected model: the known effects and those found.
+    pub effects: Vec<Effect>,
+}
+
+impl Request {
+    /// Reads, checks, diagnoses and compares. The result does not depend on the number of threads.
+    ///
+    /// # Errors
+    /// If an input cannot be used, with place, reason and remedy; or if nothing can be fitted.
+    pub fn run(&self, listener: &dyn Listener) -> anyhow::Result<Diagnosed> {
+        let robot = robot::named_robot(&self.robot)?;
+        let opened = Opened::new(&self.recordings)?;
+        let arm = self.arm(&robot, opened.joints(), listener)?;
+        let mut known = self.known(&arm)?;
+        let (friction, remark) = known_friction(&robot, &arm, self.urdf_friction, &known)?;
+        known.splice(0..0, friction);
+        if let Some(remark) = remark {
+            listener.note(&format!("{}: {remark}", robot.path.display()));
+        }
+        let only = self.only.as_deref().map(|only| wanted(only, &arm)).transpose()?;
+        listener.doing("reading");
+        let mut notes = Notes::default();
+        let recordings = inputs::read(opened, &arm, &|doing| listener.doing(doing), &mut notes);
+        let joints: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
+        listener.recordings(&notes, &joints);
+        let recordings = recordings?;
+        let list: Vec<Input<'_>> = recordings
+            .iter()
+            .map(|recording| Input {
+                name: &recording.name,
+                recording: &recording.regular,
+                held_out: recording.role == Role::HeldOut,
+                before: recording.role == Role::Before,
+            })
+            .collect();
+        let options = Options {
+            cutoff: self.cutoff,
+            urdf_accuracy: self.urdf_accuracy,
+            torque_accuracy: self.torque_accuracy,
+            known,
+            only,
+            next: self.next,
+            ..Options::default()
+        };
+        let mut diagnosis = diagnosis::diagnose(&arm, &list, &options, &|doing| listener.doing(doing))?;
+        for remark in &diagnosis.remarks {
+            listener.note(remark);
+        }
+        if !self.torques_only {
+            let complete = validate::complete(&arm, &options.known, &diagnosis, &list, &|doing| listener.doing(doing))?;
+            diagnosis.report = complete.report;
+            for remark in complete.remarks {
+                listener.note(&format!("simulation: {remark}"));
+            }
+        }
+        // The known effects are a part of the model that the findings correct.
+        let effects = summed(&options.known, &diagnosis.effects);
+        Ok(Diagnosed {
+            robot,
+            arm,
+            diagnosis,
+            effects,
+        })
+    }
+
+    fn arm(&self, robot: &RobotFile, recorded: &[String], listener: &dyn Listener) -> anyhow::Result<Arm> {
+        let options = ChainOptions {
+            recorded: recorded.to_vec(),
+            ..self.chain.clone()
+        };
+        let arm = robot.arm(&options).with_context(|| format!("--robot {}", self.robot))?;
+        for warning in arm.warnings() {
+            listener.note(&format!("{}: {warning}", robot.path.display()));
+        }
+        Ok(arm)
+    }
+
+    fn known(&self, arm: &Arm) -> anyhow::Result<Vec<Effect>> {
+        let file = match &self.known {
+            None => return Ok(Vec::new()),
+            Some(Known::File(path)) => EffectFile::load(path, arm)?,
+            Some(Known::Text(text)) => EffectFile::parse(text.clone(), Path::new("known"), arm)?,
+        };
+        Ok(file.effects)
+    }
+}
+
+/// The effects that `only` asks for: `effect:joint,…`, or a file that a diagnosis wrote.
+///
+/// # Errors
+/// If the file cannot be used; whether the catalogue has the effects is seen when they are fitted.
+pub fn wanted(only: &str, arm: &Arm) -> anyhow::Result<Vec<Wanted>> {
+    let path = Path::new(only);
+    if path.extension().is_some_and(|extension| extension == "toml") {
+        let effects = EffectFile::load(path, arm)?.effects;
+        let wanted = effects.iter().map(|effect| Wanted {
+            effect: effect.name().to_owned(),
+            joint: effect.joint().map(str::to_owned),
+            other: effect.other().map(str::to_owned),
+            sets_in: Some(effect.onset().is_some()),
+        });
+        return Ok(wanted.collect());
+    }
+    let wanted = only.split(',').filter(|word| !word.is_empty()).map(|word| {
+        let (effect, joint) = match word.split_once(':') {
+            Some((effect, joint)) => (effect, Some(joint.to_owned())),
+            None => (word, None),
+        };
+        Wanted {
+            effect: effect.to_owned(),
+            joint,
+            ..Wanted::default()
+        }
+    });
+    let wanted: Vec<Wanted> = wanted.collect();
+    ensure!(
+        !wanted.is_empty(),
+        "--only {only:?}: names no effect; give effect:joint, or a file that --model wrote"
+    );
+    Ok(wanted)
+}

@@ -1,0 +1,32 @@
+//! A text file whose errors say the line.
+
+use std::ops::Range;
+use std::path::PathBuf;
+
+/// The text of a file and where it came from.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// The name of what it describes.
+    pub name: String,
+    /// Its file, or where it would be if it did not come with the program.
+    pub path: PathBuf,
+    /// What it says.
+    pub text: String,
+}
+
+impl Source {
+    /// `file:line` of a range of bytes of the text.
+    pub fn place(&self, span: Range<usize>) -> String {
+        let before = &self.text.as_bytes()[..span.start.min(self.text.len())];
+        let line = before.iter().filter(|byte| **byte == b'\n').count() + 1;
+        format!("{}:{line}", self.path.display())
+    }
+
+    /// The line of the text that holds byte `position`, without its comment.
+    pub fn line(&self, position: usize) -> &str {
+        let position = self.text.floor_char_boundary(position.min(self.text.len()));
+        let start = self.text[..position].rfind('\n').map_or(0, |newline| newline + 1);
+        let line = self.text[start..].lines().next().unwrap_or_default();
+        line.split('#').next().unwrap_or_default().trim()
+    }
+}

@@ -1,0 +1,50 @@
+//! Where a diagnosis writes to, checked before anything is read.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::bail;
+
+use super::next_file;
+use super::residuals_file::Kind;
+use crate::cli::{DiagnoseArgs, Rerun};
+use crate::output;
+
+/// Checks where `args` write to, before anything is read.
+///
+/// # Errors
+/// If an output cannot be written, is an input, or is another output.
+pub fn check(args: &DiagnoseArgs) -> anyhow::Result<()> {
+    if cfg!(not(feature = "viewer")) && !matches!(args.rerun, None | Some(Rerun::Off)) {
+        bail!("this testbed was built without the viewer; build it with `--features viewer`, or leave --rerun out");
+    }
+    let outputs = args.outputs();
+    for path in &outputs {
+        output::check_writable(path)?;
+    }
+    args.next.as_deref().map_or(Ok(()), next_file::check_replaceable)?;
+    args.residuals
+        .as_deref()
+        .map_or(Ok(()), |path| Kind::of(path).map(drop))?;
+    let robot = Path::new(&args.robot);
+    for output in &outputs {
+        // A model of effects may be read, added to and written in one go.
+        let known = args.known.iter().filter(|_| args.model.as_deref() != Some(output));
+        let recordings = args
+            .train
+            .iter()
+            .chain(&args.before)
+            .chain(&args.held_out)
+            .chain(&args.map);
+        let inputs = recordings.chain(known).map(PathBuf::as_path).chain([robot]);
+        output::check_is_no_input(output, inputs)?;
+    }
+    for (k, path) in outputs.iter().enumerate() {
+        if let Some(other) = outputs[..k].iter().find(|other| study::is_same(other, path)) {
+            bail!(
+                "{}: is given for two outputs; give each output its own file",
+                other.display()
+            );
+        }
+    }
+    Ok(())
+}
