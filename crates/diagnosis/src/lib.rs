@@ -13,7 +13,7 @@ mod thresholds;
 mod trace;
 
 pub use data::motion::Input;
-pub use diagnose::{Diagnosis, Options, diagnose};
+pub use diagnose::{Diagnosis, Options, Step, diagnose};
 pub use error::DiagnosisError;
 pub use findings::report::*;
 pub use findings::sentences::described;

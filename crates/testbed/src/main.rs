@@ -9,6 +9,7 @@ mod library;
 mod models;
 mod output;
 mod paper;
+mod progress;
 mod prove;
 mod recordings;
 mod run;

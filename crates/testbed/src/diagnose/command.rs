@@ -5,8 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use arm::Arm;
-use diagnosis::{Diagnosis, Input, Options, Verdict};
-use indicatif::ProgressBar;
+use diagnosis::{Diagnosis, Input, Options, Step, Verdict};
 
 use super::effect_file::EffectFile;
 use super::inputs::{Files, Role};
@@ -16,6 +15,7 @@ use super::{inputs, mjcf_file, next_file, trace_file, urdf_file};
 use crate::cli::DiagnoseArgs;
 use crate::library::{self, RobotFile};
 use crate::output;
+use crate::progress::Progress;
 
 /// The exit status of `--fail-on-mismatch` where the model alone does not explain the recordings.
 const MISMATCH: u8 = 3;
@@ -49,17 +49,17 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
         note(&format!("{}: {remark}", robot.path.display()));
     }
     let only = inputs::only(args, &arm)?;
-    let spinner = if args.quiet {
-        ProgressBar::hidden()
+    let progress = if args.quiet {
+        Progress::hidden()
     } else {
-        output::spinner("reading")
+        Progress::new("reading")
     };
     let mut notes = Notes::default();
-    let recordings = inputs::read(files, &arm, &spinner, &mut notes);
+    let recordings = inputs::read(files, &arm, &progress, &mut notes);
     if !args.quiet {
         let joints: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
         for line in notes.lines(&joints, !args.verbose) {
-            spinner.suspend(|| eprintln!("{line}"));
+            progress.suspend(|| eprintln!("{line}"));
         }
     }
     let recordings = recordings?;
@@ -81,18 +81,17 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
         next: args.next.is_some(),
         ..Options::default()
     };
-    let mut diagnosis = diagnosis::diagnose(&arm, &list, &options, &|doing| spinner.set_message(doing.to_owned()))?;
+    let say = |step: Step<'_>| progress.done(step.done, step.doing);
+    let mut diagnosis = diagnosis::diagnose(&arm, &list, &options, &say)?;
     for remark in &diagnosis.remarks {
-        spinner.suspend(|| note(remark));
+        progress.suspend(|| note(remark));
     }
     let mut remarks = Vec::new();
     if !args.torques_only {
-        let complete = validate::complete(&arm, &options.known, &diagnosis, &list, &|doing| {
-            spinner.set_message(doing);
-        })?;
+        let complete = validate::complete(&arm, &options.known, &diagnosis, &list, &say)?;
         (diagnosis.report, remarks) = (complete.report, complete.remarks);
     }
-    spinner.finish_and_clear();
+    progress.finish();
     for remark in remarks {
         note(&format!("simulation: {remark}"));
     }

@@ -8,7 +8,6 @@ use anyhow::{Context, bail, ensure};
 use arm::Arm;
 use diagnosis::Wanted;
 use effects::Effect;
-use indicatif::ProgressBar;
 use recording::{ColumnMap, FindingKind, Quality, Recording, RegularRecording};
 
 use self::joints::{order, reordered};
@@ -17,6 +16,7 @@ use super::next_file;
 use super::notes::Notes;
 use crate::cli::{DiagnoseArgs, Rerun};
 use crate::inspect::{model_check, shortened};
+use crate::progress::Progress;
 use crate::{output, recordings};
 
 /// A recording ready to be diagnosed.
@@ -190,14 +190,14 @@ impl<'a> Files<'a> {
 ///
 /// # Errors
 /// If one cannot be read, does not fit the arm, holds no motion or no torque, or is both fitted and held out.
-pub fn read(files: Files<'_>, arm: &Arm, progress: &ProgressBar, notes: &mut Notes) -> anyhow::Result<Vec<Prepared>> {
+pub fn read(files: Files<'_>, arm: &Arm, progress: &Progress, notes: &mut Notes) -> anyhow::Result<Vec<Prepared>> {
     let Files { map, files, mut first } = files;
     let choosing = files
         .first()
         .map_or_else(String::new, |(path, _)| path.display().to_string());
     let mut list: Vec<Prepared> = Vec::new();
     for (path, role) in files {
-        progress.set_message(format!("reading {}", path.display()));
+        progress.doing(format!("reading {}", path.display()));
         let mut recording = match first.take() {
             Some(first) => first,
             None => Recording::read_with(path, map.as_ref().map(|(_, map)| map))?,
