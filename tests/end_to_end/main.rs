@@ -15,6 +15,7 @@ mod paper;
 mod prove;
 mod prove_paper;
 mod prove_published;
+mod readme;
 mod refusals;
 mod robots;
 mod runs;
