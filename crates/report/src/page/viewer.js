@@ -146,7 +146,8 @@
       const room = ends[1] - ends[0];
       const span = Math.min(Math.max(to - from, room / 1000), room);
       from = Math.min(Math.max(from, ends[0]), ends[1] - span);
-      for (const one of plots) one.setScale("x", { min: from, max: from + span });
+      const [first, last] = span === room ? ends : [from, from + span];
+      for (const one of plots) one.setScale("x", { min: first, max: last });
       if (span === room && plots.length > 1) {
         const [min, max] = heights(all);
         for (const one of plots) one.setScale("y", { min, max });
