@@ -18,6 +18,7 @@ mod paper;
 mod prove;
 mod prove_paper;
 mod prove_published;
+mod readme;
 mod refusals;
 mod robots;
 mod runs;

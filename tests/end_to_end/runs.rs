@@ -45,6 +45,43 @@ fn the_main_job_leaves_a_recording_and_a_summary() {
 }
 
 #[test]
+fn joints_that_hardly_learn_are_named_and_length_scales_are_chosen() {
+    let sandbox = Sandbox::new();
+    let scenario = |model: &str| short_scenario("").replace("[model]\n", &format!("[model]\n{model}"));
+    // Half a second of another motion teaches nothing about this one.
+    sandbox.write(
+        "other.toml",
+        &short_scenario("").replace("frequency_1 = 0.4", "frequency_1 = 3.0"),
+    );
+    sandbox.write("one.toml", &scenario("kind = \"gp\"\n"));
+    let run = |file: &str, more: &[&str]| {
+        let usual = ["--scenario", file, "--rerun", "off", "--json", "s.json"];
+        sandbox.succeed(&[&usual[..], more].concat())
+    };
+    let printed = run("one.toml", &["--train", "other.toml"]);
+    assert!(
+        printed.contains("The learned torque hardly reduces the rigid body's"),
+        "{printed}"
+    );
+    assert!(printed.contains("--length-scales per-input"), "{printed}");
+    let scales = || {
+        let summary = sandbox.json("s.json");
+        summary["regressions"][0]["length_scales"].as_array().map(Vec::len)
+    };
+    assert_eq!(scales(), Some(1));
+    sandbox.write("each.toml", &scenario("kind = \"gp\"\nlength_scales = \"per-input\"\n"));
+    run("each.toml", &["--train", "other.toml"]);
+    assert_eq!(scales(), Some(18));
+    run("each.toml", &["--train", "other.toml", "--length-scales", "one"]);
+    assert_eq!(scales(), Some(1));
+    let printed = run("one.toml", &["--train", "one.toml"]);
+    assert!(!printed.contains("hardly reduces"), "{printed}");
+    sandbox.write("wrong.toml", &scenario("length_scales = \"two\"\n"));
+    let message = sandbox.refuse(&["--scenario", "wrong.toml"]);
+    assert!(message.contains("known: one, per-input"), "{message}");
+}
+
+#[test]
 fn the_same_seed_gives_the_same_bytes_whatever_the_threads() {
     let sandbox = Sandbox::new();
     let noisy = short_scenario("[sensors]\nposition_noise = 1e-4\nvelocity_noise = 1e-3\ntorque_noise = 0.1\n");

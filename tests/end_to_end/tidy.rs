@@ -162,3 +162,84 @@ fn the_published_schema_is_that_of_the_program() {
         "UPDATE_DOCS=1 writes docs/diagnosis.schema.json anew"
     );
 }
+
+/// The documentation's pages, by name.
+fn pages() -> Vec<String> {
+    let entries = std::fs::read_dir(crate::support::root().join("docs")).expect("the folder can be read");
+    let names = entries
+        .flatten()
+        .map(|entry| entry.file_name().to_string_lossy().into_owned());
+    let mut names: Vec<String> = names
+        .filter(|name| name.ends_with(".md") && name != "SUMMARY.md")
+        .collect();
+    names.sort();
+    names
+}
+
+/// The targets of the links of a page, without those of the web.
+fn links(text: &str) -> Vec<String> {
+    let mut in_code = false;
+    let mut targets = Vec::new();
+    for line in text.lines() {
+        in_code ^= line.starts_with("```");
+        if in_code {
+            continue;
+        }
+        let parts = line.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+        targets.extend(parts.filter(|target| !target.contains("://")).map(str::to_owned));
+    }
+    targets
+}
+
+#[test]
+fn the_books_contents_name_every_page() {
+    let summary = read(&crate::support::root().join("docs/SUMMARY.md"));
+    let mut named = links(&summary);
+    named.sort();
+    assert_eq!(named, pages());
+}
+
+/// The name under which a heading can be linked to.
+fn anchor(heading: &str) -> String {
+    let kept = heading.to_lowercase();
+    let kept = kept
+        .chars()
+        .filter(|&c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+    kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+}
+
+#[test]
+fn no_link_is_dead() {
+    let root = crate::support::root();
+    let mut files = vec![
+        "README.md".to_owned(),
+        "ARCHITECTURE.md".into(),
+        "examples/README.md".into(),
+    ];
+    files.extend(pages().into_iter().map(|page| format!("docs/{page}")));
+    for file in files {
+        let path = root.join(&file);
+        let text = read(&path);
+        let folder = path.parent().expect("a file is in a folder");
+        for target in links(&text) {
+            let (name, part) = target.split_once('#').unwrap_or((&target, ""));
+            let to = if name.is_empty() {
+                path.clone()
+            } else {
+                folder.join(name)
+            };
+            assert!(to.exists(), "{file} links to {target}, which is not there");
+            // The book has no page outside its folder.
+            assert!(
+                !file.starts_with("docs/") || !name.starts_with(".."),
+                "{file} links to {target}"
+            );
+            if !part.is_empty() {
+                let page = read(&to);
+                let mut headings = page.lines().filter_map(|line| line.strip_prefix('#'));
+                let found = headings.any(|line| anchor(line.trim_start_matches('#').trim()) == part);
+                assert!(found, "{file} links to {target}, but there is no such heading");
+            }
+        }
+    }
+}

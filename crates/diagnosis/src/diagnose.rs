@@ -54,7 +54,23 @@ pub struct Diagnosis {
     pub trace: Vec<Decision>,
 }
 
-/// Diagnoses where and why `inputs` differ from `arm`. `progress` receives the current step.
+/// A step of a diagnosis, as it begins.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<'a> {
+    /// What is being done.
+    pub doing: &'a str,
+    /// The part of the computing time that has usually passed by then; a repeated search begins again with a smaller one.
+    pub done: f64,
+}
+
+impl<'a> Step<'a> {
+    /// The step of that name, after that part of the time.
+    pub fn new(done: f64, doing: &'a str) -> Self {
+        Self { doing, done }
+    }
+}
+
+/// Diagnoses where and why `inputs` differ from `arm`. `progress` receives each step as it begins.
 ///
 /// The result depends on the inputs and options alone, not on the number of threads.
 ///
@@ -64,15 +80,15 @@ pub fn diagnose(
     arm: &Arm,
     inputs: &[Input<'_>],
     options: &Options,
-    progress: &dyn Fn(&str),
+    progress: &dyn Fn(Step<'_>),
 ) -> Result<Diagnosis, DiagnosisError> {
     check(arm, inputs, options.cutoff.unwrap_or(CUTOFF))?;
-    progress("filtering, rigid-body torques");
+    progress(Step::new(0.08, "filtering, rigid-body torques"));
     let data = Data::new(arm, inputs, options)?;
     let mut study = Study::new(data, options);
     let identified = identified(&study);
     let last = FinalFit::new(&mut study, options, progress)?;
-    progress("alternatives of the findings");
+    progress(Step::new(0.78, "alternatives of the findings"));
     let conclusion = Conclusion::new(&study, &last, &identified, inputs, options);
     let next = conclusion.next(&mut study, &last, (arm, options), progress)?;
     Ok(conclusion.diagnosis(arm, study, next))

@@ -14,7 +14,7 @@ mod thresholds;
 mod trace;
 
 pub use data::motion::Input;
-pub use diagnose::{Diagnosis, Options, diagnose};
+pub use diagnose::{Diagnosis, Options, Step, diagnose};
 pub use error::DiagnosisError;
 pub use excitation::{
     Determined, Excitation, ExcitationError, ExcitationOptions, JointUse, MotionLimits, Quality, excite, quality_of,

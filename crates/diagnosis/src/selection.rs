@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::diagnose::Options;
+use crate::diagnose::{Options, Step};
 use crate::error::DiagnosisError;
 use crate::regression::bootstrap::Resampled;
 use crate::regression::fit::Products;
@@ -35,10 +35,10 @@ impl FinalFit {
     ///
     /// # Errors
     /// [`DiagnosisError::Wanted`], if an effect that was asked for cannot be fitted.
-    pub fn new(study: &mut Study, options: &Options, progress: &dyn Fn(&str)) -> Result<Self, DiagnosisError> {
+    pub fn new(study: &mut Study, options: &Options, progress: &dyn Fn(Step<'_>)) -> Result<Self, DiagnosisError> {
         let (judged, resampled) = match &options.only {
             Some(wanted) => {
-                progress("fitting the requested effects");
+                progress(Step::new(0.3, "fitting the requested effects"));
                 let mut judged = hypothesis::fit(study, wanted)?;
                 let resampled = final_fit::as_given(study, &mut judged);
                 (judged, resampled)
@@ -60,14 +60,14 @@ impl FinalFit {
 }
 
 /// Searches and judges until the final fit refuses no name that it has not refused before.
-fn selected(study: &mut Study, progress: &dyn Fn(&str)) -> (judge::Selection, Resampled) {
+fn selected(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> (judge::Selection, Resampled) {
     loop {
         let refused = study.refused();
         let chosen = plan::search(study, progress);
-        progress("testing the selected effects");
+        progress(Step::new(0.6, "testing the selected effects"));
         let (products, held) = (study.training_products(), study.held_products());
         let mut judged = judge::judge(study, &products, held.as_ref(), chosen);
-        progress("final fit and intervals");
+        progress(Step::new(0.61, "final fit and intervals"));
         let resampled = final_fit::settled(study, &mut judged);
         // What turns out not to be may have kept something else from being found.
         if study.refused() == refused || refused > MOST_REFUSED {

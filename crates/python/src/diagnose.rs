@@ -15,7 +15,7 @@ use study::effect_file::EffectFile;
 use study::inputs::{Given, Recordings};
 use study::notes::Notes;
 use study::urdf_friction::UrdfFriction;
-use study::{Diagnosed, Known, Listener, Request, mjcf_file, urdf_file};
+use study::{Diagnosed, Known, Listener, Request, Step, mjcf_file, urdf_file};
 
 use crate::error::{JointwiseError, in_python, raised};
 
@@ -84,8 +84,8 @@ impl Ears {
 }
 
 impl Listener for Ears {
-    fn doing(&self, what: &str) {
-        self.tell(Told::Doing(what.to_owned()));
+    fn doing(&self, step: Step<'_>) {
+        self.tell(Told::Doing(step.doing.to_owned()));
     }
 
     fn note(&self, text: &str) {

@@ -67,6 +67,15 @@ impl Svg {
         Self { text }
     }
 
+    /// An empty one as wide as the page, of a fixed height: places across are percentages.
+    pub fn stretched(height: f64, label: &str) -> Self {
+        let mut text =
+            format!("<svg class=\"stretched\" width=\"100%\" height=\"{height}\" role=\"img\" aria-label=\"");
+        let _ = Escaper::new(&mut text).write_str(label);
+        text.push_str("\">");
+        Self { text }
+    }
+
     /// The finished element.
     pub fn finish(mut self) -> String {
         self.text.push_str("</svg>");

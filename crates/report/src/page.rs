@@ -1,4 +1,4 @@
-//! The diagnosis as one self-contained HTML page: no network, no scripts, the same bytes for the same input.
+//! The diagnosis as one self-contained HTML page: no network, complete without scripts, the same bytes for the same input.
 
 mod against;
 mod arm_view;
@@ -9,6 +9,8 @@ mod findings;
 mod overview;
 mod place;
 mod rest;
+mod table;
+mod zoom;
 
 use arm::Arm;
 use diagnosis::{Report, Traces};
@@ -17,10 +19,28 @@ use maud::{Markup, PreEscaped, html};
 use crate::shell::shell;
 use crate::words;
 use figures::Figures;
+use table::name;
 
 /// Points that all figures of a page share, and the most that one line or cloud has.
 const ALL_POINTS: usize = 80_000;
 const MOST_POINTS: usize = 1500;
+/// Rows that all figures in time share where they can be zoomed, and the fewest that one has.
+const ALL_ROWS: usize = 60_000;
+const FEWEST_ROWS: usize = 2000;
+
+/// A part of the page with a heading, which the contents list.
+struct Section {
+    id: String,
+    title: Markup,
+    body: Markup,
+}
+
+impl Section {
+    fn new(id: impl Into<String>, title: Markup, body: Markup) -> Self {
+        let id = id.into();
+        Self { id, title, body }
+    }
+}
 
 /// The data that the parts of a page are drawn from.
 struct Page<'a> {
@@ -37,29 +57,52 @@ impl<'a> Page<'a> {
     fn new(report: &'a Report, traces: &'a Traces, arm: &'a Arm) -> Self {
         let series = 2 * arm.dof() + 4 * report.findings.len();
         let points = (ALL_POINTS / series.max(1)).clamp(250, MOST_POINTS);
-        let figures = Figures { traces, arm, points };
+        let rows = (ALL_ROWS / arm.dof().max(1)).max(FEWEST_ROWS);
+        let figures = Figures {
+            traces,
+            arm,
+            points,
+            rows,
+        };
         Self { report, figures }
     }
 
     fn whole(&self) -> String {
         let arm_view = arm_view::draw(self.report, self.figures.traces, self.figures.arm);
+        let joints = (0..self.figures.arm.dof()).map(|joint| self.joint(joint));
+        let all = [self.overview(), self.next_steps(), self.whole_arm()];
+        let rest = [
+            self.quiet_joints(),
+            self.errors(),
+            self.rollout(),
+            self.not_observable(),
+            self.all_parameters(),
+            Some(self.provenance()),
+        ];
+        let sections: Vec<Section> = all.into_iter().chain(joints).chain(rest).flatten().collect();
         let body = html! {
-            p.eyebrow { "testbed diagnosis · " (self.report.robot) " · " (self.recordings_in_short()) }
-            h1 { (words::verdict(self.report)) }
-            (self.lead())
-            figure.hero { (PreEscaped(arm_view)) }
-            (self.overview())
-            (self.whole_arm())
-            @for joint in 0..self.figures.arm.dof() { (self.joint(joint)) }
-            (self.quiet_joints())
-            (self.errors())
-            (self.rollout())
-            (self.not_observable())
-            (self.next_experiment())
-            (self.all_parameters())
-            (self.provenance())
+            header {
+                p.eyebrow { "testbed diagnosis · " (name(&self.report.robot)) " · " (self.recordings_in_short()) }
+                h1 { (words::verdict(self.report)) }
+                (self.lead())
+            }
+            nav aria-label="Contents" {
+                ol { @for section in &sections { li { a href={ "#" (section.id) } { (section.title) } } } }
+            }
+            main {
+                figure.hero { (PreEscaped(arm_view)) figcaption { (arm_view::legend()) } }
+                @for section in sections { section {
+                    h2 id=(section.id) { (section.title) }
+                    (section.body)
+                } }
+            }
         };
-        shell(&format!("Diagnosis of {}", self.report.robot), "", body)
+        shell(
+            &format!("Diagnosis of {}", self.report.robot),
+            "",
+            body,
+            &[UPLOT, VIEWER],
+        )
     }
 
     /// The joint's number in the arm, by name.
@@ -71,15 +114,24 @@ impl<'a> Page<'a> {
     fn link(&self, joint: Option<&str>) -> Markup {
         match joint {
             None => html! { a href="#whole-arm" { "whole arm" } },
-            Some(name) => match self.index(name) {
+            Some(joint) => match self.index(joint) {
                 Some(index) if self.has_section(index) => {
-                    html! { a href={ "#joint-" (index + 1) } { (name) } }
+                    html! { a href={ "#joint-" (index + 1) } { (name(joint)) } }
                 }
-                _ => html! { (name) },
+                _ => name(joint),
             },
         }
     }
 }
+
+/// The library that draws the figures that can be zoomed, with its licence; then what gives it their data.
+const UPLOT: &str = concat!(
+    "/*\n",
+    include_str!("../../../assets/uplot/LICENSE"),
+    "*/\n",
+    include_str!("../../../assets/uplot/uPlot.iife.min.js")
+);
+const VIEWER: &str = include_str!("page/viewer.js");
 
 /// A legend's entry: a swatch and its meaning.
 fn key(class: &str, what: &str) -> Markup {

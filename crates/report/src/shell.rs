@@ -1,22 +1,30 @@
-//! What every page has around its body: no network, no scripts, one style.
+//! What every page has around its body: one style, no network, and scripts only as an addition.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// The style of all pages.
-const STYLE: &str = include_str!("page/style.css");
+const STYLE: &str = concat!(
+    include_str!("../../../assets/uplot/uPlot.min.css"),
+    "\n",
+    include_str!("page/style.css")
+);
 
-/// A whole page; `more_style` comes after [`STYLE`].
-pub(crate) fn shell(title: &str, more_style: &str, body: Markup) -> String {
+/// What a browser may load and run: nothing that is not in the page.
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
+
+/// A whole page; `more_style` comes after [`STYLE`], `scripts` after `body`.
+pub(crate) fn shell(title: &str, more_style: &str, body: Markup, scripts: &[&str]) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
                 title { (title) }
                 style { (PreEscaped(STYLE)) (PreEscaped(more_style)) }
             }
-            body { (body) }
+            body { (body) @for script in scripts { script { (PreEscaped(script)) } } }
         }
     };
     page.into_string()

@@ -9,7 +9,7 @@ use diagnosis::{Finding, NotObservable, Report, Unexplained};
 use crate::statistics::rms;
 use crate::{next_words, numbers, words};
 
-mod steps;
+pub(crate) mod steps;
 
 /// The width of lines in characters; a single longer word exceeds it.
 const WIDTH: usize = 80;

@@ -211,7 +211,11 @@ pub fn detectable_sizes(entry: &NotObservable, kind: JointKind) -> String {
     let sizes = above.chain(below).map(|(side, (name, size))| {
         let unit = effects::spec(entry.effect).and_then(|spec| spec.unit(name, kind));
         let size = numbers::round_quantity(*size, unit.filter(|unit| *unit != "1").unwrap_or_default());
-        format!("{} {side} {size}", name.replace('_', " "))
+        match name.strip_suffix("factor") {
+            // A factor shows by what it differs from one.
+            Some(_) => format!("{} off by more than {size}", name.replace('_', " ")),
+            None => format!("{} {side} {size}", name.replace('_', " ")),
+        }
     });
     sizes.collect::<Vec<_>>().join(", ")
 }

@@ -19,6 +19,7 @@ pub mod urdf_friction;
 
 use std::path::Path;
 
+pub use diagnosis::Step;
 pub use request::{Diagnosed, Known, Listener, Request, wanted};
 pub use source::Source;
 

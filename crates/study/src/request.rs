@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
 use arm::{Arm, ChainOptions};
-use diagnosis::{Diagnosis, Input, Options, Wanted};
+use diagnosis::{Diagnosis, Input, Options, Step, Wanted};
 use effects::Effect;
 
 use crate::effect_file::EffectFile;
@@ -52,7 +52,7 @@ pub struct Request {
 /// Who hears what a study does.
 pub trait Listener {
     /// What is being done.
-    fn doing(&self, what: &str);
+    fn doing(&self, step: Step<'_>);
 
     /// A note on the robot or the result.
     fn note(&self, text: &str);
@@ -89,9 +89,9 @@ impl Request {
             listener.note(&format!("{}: {remark}", robot.path.display()));
         }
         let only = self.only.as_deref().map(|only| wanted(only, &arm)).transpose()?;
-        listener.doing("reading");
+        listener.doing(Step::new(0.0, "reading"));
         let mut notes = Notes::default();
-        let recordings = inputs::read(opened, &arm, &|doing| listener.doing(doing), &mut notes);
+        let recordings = inputs::read(opened, &arm, &|doing| listener.doing(Step::new(0.0, doing)), &mut notes);
         let joints: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
         listener.recordings(&notes, &joints);
         let recordings = recordings?;
@@ -113,12 +113,12 @@ impl Request {
             next: self.next,
             ..Options::default()
         };
-        let mut diagnosis = diagnosis::diagnose(&arm, &list, &options, &|doing| listener.doing(doing))?;
+        let mut diagnosis = diagnosis::diagnose(&arm, &list, &options, &|step| listener.doing(step))?;
         for remark in &diagnosis.remarks {
             listener.note(remark);
         }
         if !self.torques_only {
-            let complete = validate::complete(&arm, &options.known, &diagnosis, &list, &|doing| listener.doing(doing))?;
+            let complete = validate::complete(&arm, &options.known, &diagnosis, &list, &|step| listener.doing(step))?;
             diagnosis.report = complete.report;
             for remark in complete.remarks {
                 listener.note(&format!("simulation: {remark}"));

@@ -82,9 +82,10 @@ pub struct RunArgs {
     #[arg(long, value_name = "A,B,…", value_delimiter = ',')]
     pub train: Option<Vec<String>>,
 
-    /// The length scales of the regressions: one for all inputs, as in the paper, or one per input
-    #[arg(long, value_enum, default_value = "one")]
-    pub length_scales: LengthScalesArg,
+    /// The length scales of the regressions: one for all inputs, as in the paper, or one per input [default: the scenario's,
+    /// otherwise one]
+    #[arg(long, value_enum)]
+    pub length_scales: Option<LengthScalesArg>,
 
     /// Output to Rerun: off, save[=FILE], spawn or connect[=URL] [default: save in the run's folder]
     #[cfg_attr(not(feature = "viewer"), arg(hide = true))]

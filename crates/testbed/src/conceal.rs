@@ -3,6 +3,7 @@
 mod effects;
 
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::{Context, ensure};
 use faults::{Campaign, Concealment, FaultError, Robot, Settings, conceal_case, conceal_effects, write_case};
@@ -12,6 +13,7 @@ use study::robot;
 use crate::cli::{ChainArgs, ConcealArgs};
 use crate::library;
 use crate::output;
+use crate::progress::Progress;
 
 /// Conceals what `args` ask for.
 ///
@@ -100,17 +102,20 @@ fn drawn(args: &ConcealArgs, robots: &[Robot], truths: &Path) -> anyhow::Result<
     for plan in &plans {
         refuse_existing(&args.out.join(&plan.name))?;
     }
-    let bar = output::spinner("concealing");
+    let progress = Progress::new("concealing");
+    let count = AtomicUsize::new(0);
     let made: Vec<anyhow::Result<String>> = plans
         .par_iter()
         .map(|plan| {
             let concealment = conceal_case(plan.robot(robots), plan)?;
-            bar.set_message(format!("{} is concealed", plan.name));
             let folder = write_case(&concealment, &args.out, truths)?;
+            let done = 1 + count.fetch_add(1, Ordering::Relaxed);
+            let share = done as f64 / plans.len() as f64;
+            progress.done(share, format!("{done} of {} cases are concealed", plans.len()));
             Ok(format!("written: {}\n", folder.display()))
         })
         .collect();
-    bar.finish_and_clear();
+    progress.finish();
     let mut failed = Vec::new();
     for made in made {
         match made {

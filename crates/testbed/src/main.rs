@@ -11,6 +11,7 @@ mod manual;
 mod models;
 mod output;
 mod paper;
+mod progress;
 mod prove;
 mod run;
 mod scenario;

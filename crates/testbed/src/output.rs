@@ -2,10 +2,8 @@
 
 use std::io::Write;
 use std::path::Path;
-use std::time::Duration;
 
 use anyhow::bail;
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use crate::models::ModelKind;
@@ -45,17 +43,6 @@ pub fn print(text: &str) -> anyhow::Result<()> {
         }
         _ => Ok(()),
     }
-}
-
-/// A progress line on standard error, hidden where that is no terminal.
-pub fn spinner(message: &'static str) -> ProgressBar {
-    let progress = ProgressBar::new_spinner();
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {
-        progress.set_style(style);
-    }
-    progress.set_message(message);
-    progress.enable_steady_tick(Duration::from_millis(100));
-    progress
 }
 
 /// Writes `value` as JSON to `path`, whole or not at all.

@@ -9,17 +9,18 @@ use anyhow::{Context, bail};
 use report::numbers::rounded;
 use report::terminal::table;
 use serde::Serialize;
-use torque::{Gp, Lengths, Samples, TorqueModel};
+use torque::{Gp, Lengths, RigidBody, Samples, TorqueModel};
 
-use crate::cli::{ChainArgs, RunArgs};
+use crate::cli::{ChainArgs, LengthScalesArg, RunArgs};
 use crate::interrupt;
 use crate::models::ModelKind;
 use crate::output::{self, Tracking};
+use crate::progress::Progress;
 use crate::scenario::Scenario;
 use crate::simulation::{self, Observer, Outcome};
 use crate::training;
 use folder::RunFolder;
-use observers::{Progress, View};
+use observers::{Simulating, View};
 
 /// The number of samples from which a note announces a long training.
 const MANY_SAMPLES: usize = 8000;
@@ -90,22 +91,23 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     let samples = training::training_samples(&scenario, &sources, chain, args.seed)?;
     notes(args, kind, &scenario, &samples);
 
-    let options = args.length_scales.training_options();
+    let length_scales = args.length_scales.unwrap_or(scenario.length_scales);
+    let options = length_scales.training_options();
     let model = {
-        let progress = output::spinner("training");
+        let progress = Progress::new("training");
         if kind.learns() {
             let (title, sources) = (kind.title(), sources.join(", "));
-            progress.set_message(format!("training {title} on {sources} ({} samples)", samples.len()));
+            progress.doing(format!("training {title} on {sources} ({} samples)", samples.len()));
         }
         let model = kind.build(&scenario.arm, &scenario.nominal_arm(), &samples, &options);
-        progress.finish_and_clear();
+        progress.finish();
         model.context("training failed")?
     };
     let deferred = interrupt::Deferred::start();
     let folder = RunFolder::create(out, &format!("{}-{}", scenario.name, kind.flag()))?;
     let rerun_file = observers::rerun_file(args, &folder.path);
     let mut viewer = View::open(args, kind, &scenario, rerun_file.as_deref())?;
-    let mut progress = Progress::new(scenario.duration);
+    let mut progress = Simulating::new(scenario.duration);
     let outcome = simulation::run(
         &scenario,
         kind,
@@ -113,7 +115,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
         args.seed,
         &mut [&mut progress as &mut dyn Observer, &mut viewer],
     );
-    progress.bar.finish_and_clear();
+    progress.finish();
     let outcome = outcome?;
 
     let summary = Summary {
@@ -145,6 +147,9 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     }
     drop(deferred);
     let mut text = text(&scenario, kind, &sources, &summary, &outcome);
+    if kind.learns() {
+        text += &hardly_learned(&scenario, &summary.torque_mse, length_scales)?;
+    }
     for path in &written {
         text += &format!("written: {}\n", path.display());
     }
@@ -184,6 +189,39 @@ fn check_outputs(args: &RunArgs, scenario: &Scenario, sources: &[String]) -> any
 /// The model's torque error against the truth on the reference, as the paper measures it.
 fn torque_error(scenario: &Scenario, model: &dyn TorqueModel) -> anyhow::Result<Vec<f64>> {
     Ok(model.mean_squared_error(&training::own_samples(scenario)?))
+}
+
+/// The part of the rigid body's RMS torque error from which what is left of it is too much for a learned torque to be worth it.
+const HARDLY_LEARNED: f64 = 0.5;
+
+/// A sentence on the joints whose torque error, with the model's `errors` ((N m)²), is hardly below that of the rigid body alone.
+///
+/// # Errors
+/// If the reference cannot be sampled.
+fn hardly_learned(scenario: &Scenario, errors: &[f64], length_scales: LengthScalesArg) -> anyhow::Result<String> {
+    let rigid = torque_error(scenario, &RigidBody::new(scenario.nominal_arm()))?;
+    let left = |joint: usize| (errors[joint] / rigid[joint]).sqrt();
+    let joints: Vec<String> = (0..errors.len())
+        .filter(|&joint| rigid[joint] > 0.0 && left(joint) > HARDLY_LEARNED)
+        .map(|joint| {
+            let name = &scenario.arm.joints()[joint].name;
+            format!("{name} ({:.0} % of it remains)", 100.0 * left(joint))
+        })
+        .collect();
+    if joints.is_empty() {
+        return Ok(String::new());
+    }
+    let advice = match length_scales {
+        LengthScalesArg::One => {
+            "; one length scale for all inputs can hide small torques: compare with --length-scales per-input"
+        }
+        LengthScalesArg::PerInput => "",
+    };
+    Ok(format!(
+        "The learned torque hardly reduces the rigid body's RMS torque error on {}. Compare the tracking there with --model \
+         rigid-body{advice}.\n",
+        report::words::list(&joints)
+    ))
 }
 
 fn regression(gp: &Gp) -> Regression {

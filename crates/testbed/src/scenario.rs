@@ -10,7 +10,7 @@ use anyhow::Context;
 use arm::Arm;
 use torque::{Feedback, Reference};
 
-use crate::cli::ChainArgs;
+use crate::cli::{ChainArgs, LengthScalesArg};
 use crate::models::ModelKind;
 use crate::sensors::SensorNoise;
 
@@ -31,6 +31,8 @@ pub struct Scenario {
     pub duration: f64,
     /// The torque model that is run unless another is asked for.
     pub model: ModelKind,
+    /// The length scales of its regressions, unless others are asked for.
+    pub length_scales: LengthScalesArg,
     /// The factor on the masses and inertia tensors of the controller's model.
     pub inertia_scale: f64,
     /// The motion to follow.

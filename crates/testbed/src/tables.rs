@@ -12,6 +12,7 @@ use torque::{Samples, TorqueModel, TrainingOptions};
 use crate::cli::ChainArgs;
 use crate::models::ModelKind;
 use crate::output::{self, Tracking};
+use crate::progress::Progress;
 use crate::scenario::Scenario;
 use crate::{paper, simulation, training};
 
@@ -96,7 +97,7 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions) -> anyhow::Result<()>
         output::check_writable(path)?;
     }
     let started = Instant::now();
-    let progress = output::spinner("training 2 × 4 models of 6 joints");
+    let progress = Progress::new("training 2 × 4 models of 6 joints");
     let test = Scenario::load("taskD")?;
     let nominal = test.nominal_arm();
     let test_samples = training::own_samples(&test)?;
@@ -121,7 +122,7 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions) -> anyhow::Result<()>
         index.map(|index| models[index].as_ref())
     };
 
-    progress.set_message("predicting task D");
+    progress.done(0.8, "predicting task D");
     let mut tables = Vec::new();
     for (set, tasks) in TRAINING.iter().enumerate() {
         let row = |&kind: &ModelKind| Some(Row::new(kind, model_of(set, kind)?, &test_samples, set + 1));
@@ -132,7 +133,7 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions) -> anyhow::Result<()>
         });
     }
 
-    progress.set_message("tracking task D with six models");
+    progress.done(0.82, "tracking task D with six models");
     let exact = ModelKind::True.build(&test.arm, &nominal, &test_samples, options)?;
     let track = |&kind: &ModelKind| -> anyhow::Result<Tracking> {
         let model = model_of(TRAINING.len() - 1, kind).unwrap_or(exact.as_ref());
@@ -140,7 +141,7 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions) -> anyhow::Result<()>
         Ok(Tracking::new(kind, &outcome))
     };
     let tracking = ModelKind::ALL.par_iter().map(track).collect::<anyhow::Result<_>>()?;
-    progress.finish_and_clear();
+    progress.finish();
 
     let report = Report { tables, tracking };
     if let Some(path) = json {

@@ -1,7 +1,7 @@
 //! The report, completed: what `diagnosis` cannot know without a learned model and a simulated arm.
 
 use arm::Arm;
-use diagnosis::{Diagnosis, Input, JointRollout, Report, Trace};
+use diagnosis::{Diagnosis, Input, JointRollout, Report, Step, Trace};
 use effects::Effect;
 use recording::RegularRecording;
 
@@ -23,7 +23,7 @@ pub struct Complete {
 ///
 /// A correction is learned from the training traces and held against the held-out ones. The plant, with and without the
 /// effects named, is driven by the torques of the last recording held out, or of the last there is; where nothing was named
-/// there is nothing to compare. `progress` receives the current step.
+/// there is nothing to compare. `progress` receives each step as it begins.
 ///
 /// # Errors
 /// [`ValidateError::Learning`]. An arm that cannot be simulated (a link without mass) is a remark: a diagnosis in torque is of use
@@ -33,12 +33,12 @@ pub fn complete(
     known: &[Effect],
     diagnosis: &Diagnosis,
     recordings: &[Input<'_>],
-    progress: &dyn Fn(&'static str),
+    progress: &dyn Fn(Step<'_>),
 ) -> Result<Complete, ValidateError> {
     let mut report = diagnosis.report.clone();
-    progress("learned correction, for comparison");
+    progress(Step::new(0.86, "learned correction, for comparison"));
     learn(arm, &diagnosis.traces.recordings, &mut report)?;
-    progress("simulation");
+    progress(Step::new(0.93, "simulation"));
     let simulated = recordings
         .iter()
         .rfind(|input| input.held_out)

@@ -335,6 +335,17 @@ impl Motions {
         time - self.sources[recording].shift
     }
 
+    /// The first and the last time of a recording with rows, on the diagnosis' clock (s).
+    pub fn span(&self, recording: usize) -> [f64; 2] {
+        let chunks = self.chunks.iter().filter(|chunk| chunk.recording == recording);
+        chunks.fold([f64::INFINITY, f64::NEG_INFINITY], |[first, last], chunk| {
+            [
+                first.min(chunk.start),
+                last.max(chunk.time(chunk.ticks().saturating_sub(1))),
+            ]
+        })
+    }
+
     /// The training recording that a time of the diagnosis' clock is in.
     pub fn recording_at(&self, time: f64) -> Option<usize> {
         let inside = |chunk: &&Chunk| {

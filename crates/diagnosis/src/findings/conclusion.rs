@@ -15,7 +15,7 @@ use super::traces::traces;
 use super::verdict::{not_enough, poorly_predicted, unexplained, verdict};
 use super::{dual_sensor, sentences, transients};
 use crate::data::motion::Input;
-use crate::diagnose::{Diagnosis, Options};
+use crate::diagnose::{Diagnosis, Options, Step};
 use crate::error::DiagnosisError;
 use crate::next::{self, Next};
 use crate::search::study::Study;
@@ -112,7 +112,7 @@ impl Conclusion {
         study: &mut Study,
         last: &FinalFit,
         (arm, options): (&Arm, &Options),
-        progress: &dyn Fn(&str),
+        progress: &dyn Fn(Step<'_>),
     ) -> Result<Option<Next>, DiagnosisError> {
         if !options.next {
             return Ok(None);
@@ -122,7 +122,7 @@ impl Conclusion {
             study.motions.remarks.push(remark.to_owned());
             return Ok(None);
         }
-        progress("next experiment");
+        progress(Step::new(0.8, "next experiment"));
         let effects: Vec<Effect> = options.known.iter().cloned().chain(self.effects()).collect();
         let next = next::propose(
             study,

@@ -200,7 +200,13 @@ fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joi
 fn place(study: &Study, cause: Cause, candidate: usize) -> Place {
     if let Some([from, to]) = study.window(candidate) {
         let at = study.motions.recording_at(0.5 * (from + to));
-        let own = |time: f64| at.map_or(time, |at| study.motions.own_time(at, time));
+        // Refinement may have put an end just beyond the recording's.
+        let own = |time: f64| {
+            at.map_or(time, |at| {
+                let [first, last] = study.motions.span(at);
+                study.motions.own_time(at, time.clamp(first, last))
+            })
+        };
         let recording = at.map(|at| study.motions.sources[at].name.clone());
         return Place {
             time: vec![[own(from), own(to)]],

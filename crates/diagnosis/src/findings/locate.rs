@@ -117,27 +117,29 @@ fn on_joint(study: &Study, state: &State, joint: usize, nominal: &[f64], augment
 
 /// The stretches of time with the largest residual, the worst three.
 fn windows(study: &Study, state: &State, rows: &[usize], nominal: &[f64], all: f64) -> Vec<TimeWindow> {
-    let mut stretches: Vec<(f64, usize, f64)> = Vec::new();
+    let mut stretches: Vec<(f64, usize, [f64; 2])> = Vec::new();
     let mut from = 0;
     while from < rows.len() {
         let (recording, start) = (state.recording[rows[from]], state.time[rows[from]]);
         let inside = |&&row: &&usize| state.recording[row] == recording && state.time[row] < start + WINDOW;
         let length = rows[from..].iter().take_while(inside).count().max(1);
         let residual = root_mean_square(rows[from..from + length].iter().map(|&row| nominal[row]));
+        // A stretch ends with its last row: the recording may end before the window does.
+        let end = state.time[rows[from + length - 1]];
         if length >= 5 {
-            stretches.push((residual, recording, start));
+            stretches.push((residual, recording, [start, end]));
         }
         from += length;
     }
-    stretches.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.2.total_cmp(&b.2)));
+    stretches.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.2[0].total_cmp(&b.2[0])));
     let mut list: Vec<TimeWindow> = stretches
         .into_iter()
         .take_while(|(residual, ..)| *residual > WINDOW_STANDS_OUT * all)
         .take(3)
-        .map(|(_, recording, start)| TimeWindow {
+        .map(|(_, recording, [start, end])| TimeWindow {
             recording: study.motions.sources[recording].name.clone(),
             start: study.motions.own_time(recording, start),
-            end: study.motions.own_time(recording, start) + WINDOW,
+            end: study.motions.own_time(recording, end),
         })
         .collect();
     list.sort_by(|a, b| a.recording.cmp(&b.recording).then(a.start.total_cmp(&b.start)));

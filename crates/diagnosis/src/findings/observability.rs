@@ -8,10 +8,11 @@ use rayon::prelude::*;
 use crate::findings::report::NotObservable;
 use crate::regression::fit::Products;
 use crate::search::candidate::Candidate;
+use crate::search::physics::is_beyond_physics;
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
 use crate::selection::predict::deviation;
-use crate::thresholds::HIDDEN;
+use crate::thresholds::{BEYOND, HIDDEN};
 
 /// How well a column shows on a joint.
 pub struct Visibility {
@@ -145,6 +146,11 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
                 };
                 if share > HIDDEN {
                     let because = "the effects found explain the same torque in these motions";
+                    let (table, arm) = (&study.table, &study.arm);
+                    if share > BEYOND || is_beyond_physics(least, column, candidate, table, &chosen.fit, arm) {
+                        add(because, None, None);
+                        continue;
+                    }
                     let size = if is_of_first {
                         least / chosen.fit.coefficient(candidate.columns[0]).max(0.0)
                     } else {

@@ -31,8 +31,8 @@ pub struct Bursts {
 struct Push {
     /// From when to when (s).
     window: [f64; 2],
-    /// In which recording.
-    recording: String,
+    /// In which recording, by its number.
+    source: usize,
     /// In the base (N).
     force: Vector3<f64>,
     /// The part of the burst's power that it explains.
@@ -73,7 +73,7 @@ pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
         if explained > ONE_FORCE && !already {
             pushes.push(Push {
                 window: [from, to],
-                recording: name,
+                source: recording,
                 force,
                 explained,
             });
@@ -199,15 +199,15 @@ fn contact(study: &Study, left: &[Vec<f64>], pushes: &[Push]) -> Option<Finding>
     let strongest = pushes.iter().max_by(|a, b| a.force.norm().total_cmp(&b.force.norm()))?;
     let Push {
         window: [from, to],
-        recording,
+        source,
         force,
         explained,
     } = strongest.clone();
     let same: Vec<[f64; 2]> = {
         let mut list: Vec<[f64; 2]> = pushes
             .iter()
-            .filter(|push| push.recording == recording)
-            .map(|push| push.window)
+            .filter(|push| push.source == source)
+            .map(|push| push.window.map(|time| study.motions.own_time(source, time)))
             .collect();
         list.sort_by(|a, b| a[0].total_cmp(&b[0]));
         list
@@ -243,7 +243,7 @@ fn contact(study: &Study, left: &[Vec<f64>], pushes: &[Push]) -> Option<Finding>
         held_out_gain: Some(1.0 - (1.0 - explained).max(0.0).sqrt()),
         place: Place {
             time: same,
-            recording: Some(recording),
+            recording: Some(study.motions.sources[source].name.clone()),
             state: None,
         },
         ..Finding::of(effect)

@@ -63,12 +63,35 @@ pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -
     if !candidate.cause.is_baseline() && candidate.joint.is_some_and(cancels) {
         return false;
     }
+    is_physical(candidate, table, fit, arm)
+}
+
+/// Whether the effect of `candidate` exists at the coefficients of `fit`, whatever it is to explain.
+fn is_physical(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bool {
     candidate.cause.kind.get().is_possible(&InFit {
         candidate,
         table,
         fit,
         arm,
     })
+}
+
+/// Whether no effect of `candidate` has the coefficient `size` or minus `size` on `column`, although one has a thousandth of it.
+pub fn is_beyond_physics(size: f64, column: usize, candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bool {
+    let is_possible = |size: f64| {
+        [size, -size].into_iter().any(|size| {
+            let mut other = fit.clone();
+            match other.columns.iter().position(|&known| known == column) {
+                Some(at) => other.coefficients[at] = size,
+                None => {
+                    other.columns.push(column);
+                    other.coefficients.push(size);
+                }
+            }
+            is_physical(candidate, table, &other, arm)
+        })
+    };
+    is_possible(1e-3 * size) && !is_possible(size)
 }
 
 /// Whether what is simulated at its size comes out with a coefficient near one.

@@ -1,5 +1,6 @@
 //! The order of the search: suggest, grow, refine, relinearise, swap.
 
+use crate::diagnose::Step;
 use crate::search::problem::Chosen;
 use crate::search::refine::refine;
 use crate::search::study::Study;
@@ -15,14 +16,17 @@ const SWAPS: usize = 4;
 const LAST: usize = 3;
 
 /// Finds the candidates that together explain the training recordings. `progress` is told what is going on.
-pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
+pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
     let baseline: Vec<usize> = (0..study.candidates.len())
         .filter(|&c| study.candidates[c].cause.is_friction())
         .collect();
     let products = study.training_products();
     let mut chosen = study.problem(&products).choose(baseline, &products.first_weights());
     for round in 1..=SUGGESTIONS {
-        progress(&format!("looking for causes, round {round}"));
+        progress(Step::new(
+            0.12 + 0.08 * round as f64,
+            &format!("looking for causes, round {round}"),
+        ));
         let before = chosen.set.clone();
         // What has no name must not hide what the residual suggests, nor what was suggested when little else was known: a
         // ripple's period, a push, an onset, of which the one may have stood for the beginning of the other.
@@ -52,7 +56,10 @@ pub fn search(study: &mut Study, progress: &dyn Fn(&str)) -> Chosen {
         }
     }
     for round in 1..=REFINEMENTS {
-        progress(&format!("refining sizes, round {round}"));
+        progress(Step::new(
+            0.32 + 0.1 * round as f64,
+            &format!("refining sizes, round {round}"),
+        ));
         chosen = refine(study, chosen, round > 1);
         let formed_anew = study.relinearise(&chosen.fit, &chosen.set);
         let again = formed_anew.is_some();

@@ -10,6 +10,8 @@ pub const MARGIN_SCALE: f64 = 8.0;
 pub const SUREST: f64 = 0.985;
 /// A linear effect is listed as not testable if it could reach this part of the joint's torque undetected.
 pub const HIDDEN: f64 = 0.06;
+/// An effect is detectable at no size if it would need so many times the standard deviation of the joint's torque.
+pub const BEYOND: f64 = 3.0;
 /// A link's strength must be this multiple of that of most links to be named for itself.
 pub const LINK_STANDS_OUT: f64 = 2.0;
 /// A burst exceeds the median of all windows of its length, and the residual of the model itself, by this factor.

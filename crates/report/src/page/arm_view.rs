@@ -3,11 +3,14 @@
 use arm::{Arm, Vector3, Workspace};
 use diagnosis::{Report, Traces};
 
+use maud::{Markup, html};
+
+use super::key;
 use crate::chart::Svg;
 use crate::{numbers, words};
 
 const WIDTH: f64 = 800.0;
-const HEIGHT: f64 = 430.0;
+const HEIGHT: f64 = 396.0;
 /// The arm's own part of the picture: left, top, right, bottom.
 const BOX: [f64; 4] = [270.0, 34.0, 530.0, 372.0];
 /// Height of the camera above the horizon (rad).
@@ -86,7 +89,9 @@ pub fn draw(report: &Report, traces: &Traces, arm: &Arm) -> String {
     }
     let joints = spread_out(&placed[1..=arm.dof()]);
     let tool = placed[arm.dof() + 1];
+    svg.raw(format_args!("<g class=\"labels\">"));
     labels(&mut svg, report, arm, &joints, tool);
+    svg.raw(format_args!("</g>"));
     for (i, [x, y]) in joints.iter().enumerate() {
         let [from_x, from_y] = placed[i + 1];
         if (x - from_x).hypot(y - from_y) > 2.0 {
@@ -103,7 +108,6 @@ pub fn draw(report: &Report, traces: &Traces, arm: &Arm) -> String {
             &(i + 1).to_string(),
         );
     }
-    legend(&mut svg);
     svg.finish()
 }
 
@@ -317,26 +321,15 @@ fn clipped(text: &str, longest: usize) -> String {
     text.chars().take(longest - 1).collect::<String>() + "…"
 }
 
-fn legend(svg: &mut Svg) {
-    let y = HEIGHT - 16.0;
-    svg.text(
-        [WIDTH - 470.0, y + 4.0],
-        "tick",
-        "end",
-        "model's torque error over the torque's std",
-    );
-    let mut from = 0.0;
-    for class in 0..=CLASSES.len() {
-        let x = WIDTH - 450.0 + 92.0 * class as f64;
-        svg.raw(format_args!(
-            "<circle class=\"joint m{class}\" cx=\"{x}\" cy=\"{y}\" r=\"7\"/>"
-        ));
-        let words = match CLASSES.get(class) {
-            Some(end) if class == 0 => format!("below {:.0} %", 100.0 * end),
-            Some(end) => format!("{:.0} to {:.0} %", 100.0 * from, 100.0 * end),
-            None => format!("over {:.0} %", 100.0 * from),
-        };
-        svg.text([x + 12.0, y + 4.0], "tick", "start", &words);
-        from = CLASSES.get(class).copied().unwrap_or(from);
+/// What the joints' colours mean.
+pub fn legend() -> Markup {
+    let words = |class: usize| match (class.checked_sub(1).map(|k| CLASSES[k]), CLASSES.get(class)) {
+        (None, Some(end)) => format!("below {:.0} %", 100.0 * end),
+        (Some(from), Some(end)) => format!("{:.0} to {:.0} %", 100.0 * from, 100.0 * end),
+        (from, None) => format!("over {:.0} %", 100.0 * from.unwrap_or_default()),
+    };
+    html! {
+        "The model's torque error over the torque's standard deviation: "
+        @for class in 0..=CLASSES.len() { (key(&format!("dot b{class}"), &words(class))) }
     }
 }

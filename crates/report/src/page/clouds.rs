@@ -4,18 +4,26 @@ use diagnosis::{Finding, Trace};
 
 use super::against::Against;
 use super::figures::{Figures, LEFT};
+use super::zoom::{Axis, Cell, Data, Series, differences};
 use crate::chart::{Scale, Svg, sampled};
 use crate::numbers;
 use crate::statistics::quantile;
 
 const PANEL: [f64; 2] = [530.0, 300.0];
 
+/// Residuals against a state: the drawings before and after, and the data of both.
+pub struct Cloud {
+    pub before: String,
+    pub after: String,
+    pub data: Data,
+}
+
 /// One point of a state figure: state, before, after, the effect; all torques turned along the motion if need be.
 type Point = [f64; 4];
 
 impl Figures<'_> {
     /// The residuals before and after, against the state that shows finding number `index`, with its effect drawn through them.
-    pub fn against_state(&self, finding: &Finding, index: usize, joint: usize) -> Option<[String; 2]> {
+    pub fn against_state(&self, finding: &Finding, index: usize, joint: usize) -> Option<Cloud> {
         let against = Against::of(finding, self.arm);
         let mut points = self.points_of(index, joint, against);
         if let (Against::Time, Some(first), Some(last)) =
@@ -34,7 +42,7 @@ impl Figures<'_> {
     }
 
     /// The residual of a joint with all effects found, against a state that it depends on.
-    pub fn unexplained(&self, joint: usize, against: Against) -> Option<String> {
+    pub fn unexplained(&self, joint: usize, against: Against) -> Option<Cloud> {
         let mut points = Vec::new();
         for trace in &self.traces.recordings {
             for (row, residual) in trace.residual_augmented.get(joint).into_iter().flatten().enumerate() {
@@ -47,11 +55,16 @@ impl Figures<'_> {
                 }
             }
         }
-        let [_, after] = self.cloud(joint, against, &points, 1.0)?;
-        Some(after)
+        let mut cloud = self.cloud(joint, against, &points, 1.0)?;
+        // There is one figure, of what is left.
+        cloud.data.series.retain(|series| series.colour == "after");
+        for series in &mut cloud.data.series {
+            series.on = vec![0];
+        }
+        Some(cloud)
     }
 
-    fn cloud(&self, joint: usize, against: Against, points: &[Point], bins: f64) -> Option<[String; 2]> {
+    fn cloud(&self, joint: usize, against: Against, points: &[Point], bins: f64) -> Option<Cloud> {
         if points.len() < 8 {
             return None;
         }
@@ -112,7 +125,21 @@ impl Figures<'_> {
             }
             svg.finish()
         };
-        Some([panel(1, "before"), panel(2, "after")])
+        let label = format!("residual{along} ({})", unit.unit);
+        let largest = |[low, high]: [f64; 2]| high.abs().max(low.abs());
+        let x_axis = Axis::new(format!("{title} ({})", x_unit.unit), largest(x.range()), x_unit.factor);
+        let y_axis = Axis::new(label, largest(y.range()), unit.factor);
+        let data = data(
+            &few,
+            &effect,
+            [(x_axis, x_unit.factor), (y_axis, unit.factor)],
+            [x.range(), y.range()],
+        );
+        Some(Cloud {
+            before: panel(1, "before"),
+            after: panel(2, "after"),
+            data,
+        })
     }
 
     /// Whether other findings act on the joint too.
@@ -152,6 +179,65 @@ impl Figures<'_> {
             }
         }
         points
+    }
+}
+
+/// The points before (figure 0) and after (figure 1), and the effect (figure 0), on axes with their units; what is outside of
+/// the ends is left out, as in the drawing.
+fn data(
+    points: &[Point],
+    effect: &[Bin],
+    [(x, x_unit), (y, y_unit)]: [(Axis, f64); 2],
+    [x_ends, y_ends]: [[f64; 2]; 2],
+) -> Data {
+    let is_in = |value: f64, [low, high]: [f64; 2]| (low..=high).contains(&value);
+    let place = |state: f64| (state / (x.step * x_unit)).round() as i64;
+    let value = |torque: f64| {
+        if is_in(torque, y_ends) {
+            Cell::of(torque, y.step * y_unit)
+        } else {
+            Cell::MISSING
+        }
+    };
+    // Before, after, the effect's ends.
+    let mut rows: Vec<(i64, [Cell; 4])> = points
+        .iter()
+        .filter(|point| is_in(point[0], x_ends))
+        .map(|&[state, before, after, _]| {
+            let row = [value(before), value(after), Cell::MISSING, Cell::MISSING];
+            (place(state), row)
+        })
+        .collect();
+    for (k, bin) in effect.iter().enumerate() {
+        if k > 0 && bin.is_start {
+            let between = 0.5 * (effect[k - 1].state + bin.state);
+            rows.push((place(between), [Cell::MISSING, Cell::MISSING, Cell::GAP, Cell::GAP]));
+        }
+        let row = [Cell::MISSING, Cell::MISSING, value(bin.low), value(bin.high)];
+        rows.push((place(bin.state), row));
+    }
+    rows.sort_by_key(|row| row.0);
+    let places: Vec<i64> = rows.iter().map(|row| row.0).collect();
+    let series = |k: usize, name, colour, on: usize| Series {
+        name,
+        colour,
+        dots: k < 2,
+        on: vec![on],
+        values: rows.iter().map(|row| row.1[k]).collect(),
+    };
+    let all = [
+        series(0, "before", "before", 0),
+        series(1, "after", "after", 1),
+        series(2, "effect", "effect", 0),
+        series(3, "effect", "effect", 0),
+    ];
+    Data {
+        panels: Vec::new(),
+        shades: Vec::new(),
+        places: differences(&places),
+        series: all.into(),
+        x,
+        y,
     }
 }
 

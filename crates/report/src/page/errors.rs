@@ -2,16 +2,18 @@
 
 use arm::JointKind;
 use diagnosis::JointFit;
-use maud::{Markup, PreEscaped, html};
+use maud::{PreEscaped, html};
 
-use super::{Page, key};
+use super::table::{number, table, words};
+use super::{Page, Section, key};
 use crate::chart::Svg;
 use crate::numbers;
 
-const WIDTH: f64 = 1080.0;
-const ROW: f64 = 30.0;
-const LEFT: f64 = 250.0;
-const RIGHT: f64 = 1050.0;
+/// The height of a joint's two lines.
+const ROW: f64 = 40.0;
+/// The ends of the axis, in per cent of the width.
+const LEFT: f64 = 3.0;
+const RIGHT: f64 = 97.0;
 
 impl Page<'_> {
     /// The joints with a fit, base to tip, with their numbers.
@@ -23,46 +25,49 @@ impl Page<'_> {
     }
 
     /// Errors by joint.
-    pub(super) fn errors(&self) -> Markup {
+    pub(super) fn errors(&self) -> Option<Section> {
         let fits = self.fits();
         if fits.is_empty() {
-            return html! {};
+            return None;
         }
         let optional = |value: Option<f64>| value.map_or("–".to_owned(), numbers::nrmse);
         let is_held_out = fits.iter().any(|(_, _, fit)| fit.held_out_nrmse_nominal.is_some());
-        html! {
-            h2 { "Torque error of each joint" }
+        let columns = [
+            words("joint"),
+            number("torque, standard deviation"),
+            number("nominal"),
+            number("with effects"),
+            number("learned"),
+            number("at rest, nominal → with effects"),
+            number("training, nominal → with effects"),
+            number("autocorrelation at 0.1 s"),
+        ];
+        let rows = fits.iter().map(|(joint, name, fit)| {
+            vec![
+                self.link(Some(name)),
+                html! { (numbers::quantity(fit.torque_std, self.figures.torque_unit(*joint))) },
+                html! { (optional(fit.held_out_nrmse_nominal)) },
+                html! { span class=[verdict_of(fit)] { (optional(fit.held_out_nrmse_augmented)) } },
+                html! { (optional(fit.held_out_nrmse_learned)) },
+                html! { (numbers::before_after(fit.held_out_nrmse_resting_nominal, fit.held_out_nrmse_resting)) },
+                html! { (numbers::before_after(Some(fit.train_nrmse_nominal), Some(fit.train_nrmse_augmented))) },
+                html! { (numbers::fixed(fit.residual_autocorrelation, 2)) },
+            ]
+        });
+        let rows = rows.collect();
+        let body = html! {
             @if !is_held_out {
                 p { "No recording was held out. These are the errors on the training recordings, which underestimate the error on other motions." }
             }
             figure {
                 (PreEscaped(dumbbells(&fits)))
                 figcaption {
+                    p { "RMS torque error over the torque's standard deviation (logarithmic)" }
                     (key("dot k-before", "nominal model")) (key("dot k-after", "with the effects found"))
                     @if is_held_out { (key("dot k-learned", "learned correction (Independent Joint Learning), for comparison")) }
                 }
             }
-            div.scroll { table {
-                thead { tr {
-                    th { "joint" } th.n { "torque, standard deviation" }
-                    th.n { "nominal" } th.n { "with effects" } th.n { "learned" }
-                    th.n { "at rest, nominal → with effects" } th.n { "training, nominal → with effects" } th.n { "autocorrelation at 0.1 s" }
-                } }
-                tbody {
-                    @for (joint, name, fit) in &fits {
-                        tr {
-                            td.name { (self.link(Some(name))) }
-                            td.n { (numbers::quantity(fit.torque_std, self.figures.torque_unit(*joint))) }
-                            td.n { (optional(fit.held_out_nrmse_nominal)) }
-                            td.n { span class=[verdict_of(fit)] { (optional(fit.held_out_nrmse_augmented)) } }
-                            td.n { (optional(fit.held_out_nrmse_learned)) }
-                            td.n { (numbers::before_after(fit.held_out_nrmse_resting_nominal, fit.held_out_nrmse_resting)) }
-                            td.n { (numbers::before_after(Some(fit.train_nrmse_nominal), Some(fit.train_nrmse_augmented))) }
-                            td.n { (numbers::fixed(fit.residual_autocorrelation, 2)) }
-                        }
-                    }
-                }
-            } }
+            (table(&columns, rows))
             p.small.soft {
                 "Errors are RMS torque errors over the standard deviation of the measured torque: a prediction by the mean torque \
                  has an error of 1. The columns nominal, with effects and learned are for the held-out recordings while the joint \
@@ -70,38 +75,38 @@ impl Page<'_> {
                  last column is the autocorrelation of the residual at a lag of 0.1 s: a value near 0 means that the residual is \
                  noise."
             }
-        }
+        };
+        Some(Section::new("errors", html! { "Torque error of each joint" }, body))
     }
 
     /// How closely the simulated arm follows the recording.
-    pub(super) fn rollout(&self) -> Markup {
+    pub(super) fn rollout(&self) -> Option<Section> {
         if self.report.rollout.is_empty() {
-            return html! {};
+            return None;
         }
-        let joints = self.figures.arm.joints();
-        html! {
-            h2 { "Simulated motion compared with the recording" }
+        let rows = self.figures.arm.joints().iter().filter_map(|joint| {
+            let rollout = self.report.rollout.get(&joint.name)?;
+            let unit = if joint.kind == JointKind::Prismatic { "m" } else { "rad" };
+            let factor = rollout.nominal_rms_rad / rollout.augmented_rms_rad;
+            Some(vec![
+                self.link(Some(&joint.name)),
+                html! { (numbers::quantity(rollout.nominal_rms_rad, unit)) },
+                html! { (numbers::quantity(rollout.augmented_rms_rad, unit)) },
+                html! { span class=[better(factor, 1.1)] { (numbers::fixed(factor, usize::from(factor < 10.0))) } },
+            ])
+        });
+        let columns = [
+            words("joint"),
+            number("nominal, RMS position error"),
+            number("with effects"),
+            number("reduction factor"),
+        ];
+        let body = html! {
             p { "The simulated arm is driven by the recorded torques, first with the nominal model, then with the effects found." }
-            div.scroll { table {
-                thead { tr {
-                    th { "joint" } th.n { "nominal, RMS position error" } th.n { "with effects" } th.n { "reduction factor" }
-                } }
-                tbody {
-                    @for joint in joints {
-                        @if let Some(rollout) = self.report.rollout.get(&joint.name) {
-                            @let unit = if joint.kind == JointKind::Prismatic { "m" } else { "rad" };
-                            @let factor = rollout.nominal_rms_rad / rollout.augmented_rms_rad;
-                            tr {
-                                td.name { (self.link(Some(&joint.name))) }
-                                td.n { (numbers::quantity(rollout.nominal_rms_rad, unit)) }
-                                td.n { (numbers::quantity(rollout.augmented_rms_rad, unit)) }
-                                td.n { span class=[better(factor, 1.1)] { (numbers::fixed(factor, usize::from(factor < 10.0))) } }
-                            }
-                        }
-                    }
-                }
-            } }
-        }
+            (table(&columns, rows.collect()))
+        };
+        let title = html! { "Simulated motion compared with the recording" };
+        Some(Section::new("simulation", title, body))
     }
 }
 
@@ -121,7 +126,8 @@ fn better(factor: f64, from: f64) -> Option<&'static str> {
     }
 }
 
-/// One row per joint: the nominal, augmented and learned error on a logarithmic axis.
+/// One row per joint: the nominal, augmented and learned error on a logarithmic axis. Places across are shares of the width, so
+/// that the text keeps its size on any screen.
 fn dumbbells(fits: &[(usize, &str, &JointFit)]) -> String {
     let values = |fit: &JointFit| match (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented) {
         (None, None) => [Some(fit.train_nrmse_nominal), Some(fit.train_nrmse_augmented), None],
@@ -138,34 +144,39 @@ fn dumbbells(fits: &[(usize, &str, &JointFit)]) -> String {
         let share = (value.max(1e-4).log10() - ends[0]) / (ends[1] - ends[0]);
         LEFT + share.clamp(0.0, 1.0) * (RIGHT - LEFT)
     };
-    let bottom = 10.0 + ROW * fits.len() as f64;
-    let mut svg = Svg::new(WIDTH, bottom + 40.0, "torque error of every joint");
+    let bottom = ROW * fits.len() as f64 + 6.0;
+    let mut svg = Svg::stretched(bottom + 24.0, "torque error of every joint");
+    let digits = if ends[1] - ends[0] > 2.2 {
+        &[1.0][..]
+    } else {
+        &[1.0, 2.0, 5.0]
+    };
     for power in -4..=4 {
-        for digit in [1.0, 2.0, 5.0] {
+        for digit in digits {
             let value = digit * 10_f64.powi(power);
             if (ends[0]..=ends[1]).contains(&value.log10()) {
-                let x = place(value);
-                svg.line([x, 4.0], [x, bottom], if value == 1.0 { "zero" } else { "grid" });
-                svg.text([x, bottom + 16.0], "tick", "middle", &numbers::nrmse(value));
+                let (x, class) = (place(value), if value == 1.0 { "zero" } else { "grid" });
+                svg.raw(format_args!(
+                    "<line class=\"{class}\" x1=\"{x:.2}%\" x2=\"{x:.2}%\" y1=\"4\" y2=\"{bottom:.0}\"/>\
+                     <text class=\"tick\" text-anchor=\"middle\" x=\"{x:.2}%\" y=\"{:.0}\">{}</text>",
+                    bottom + 16.0,
+                    numbers::nrmse(value)
+                ));
             }
         }
     }
-    let title = "RMS torque error over the torque's standard deviation (logarithmic)";
-    svg.text([0.5 * (LEFT + RIGHT), bottom + 35.0], "axis", "middle", title);
     for (row, (joint, name, fit)) in fits.iter().enumerate() {
-        let y = 10.0 + ROW * (row as f64 + 0.5);
-        let name: String = name.chars().take(32).collect();
-        svg.text(
-            [LEFT - 16.0, y + 4.0],
-            "tick",
-            "end",
-            &format!("{} · {name}", joint + 1),
-        );
+        let y = ROW * (row as f64 + 1.0) - 10.0;
+        svg.text([0.0, y - 14.0], "tick", "start", &format!("{} · {name}", joint + 1));
         let [nominal, augmented, learned] = values(fit);
         // Where the two meet, one is a ring about the other.
-        let meet = matches!((nominal, augmented), (Some(a), Some(b)) if (place(a) - place(b)).abs() < 8.0);
+        let meet = matches!((nominal, augmented), (Some(a), Some(b)) if (place(a) - place(b)).abs() < 1.0);
         if let (Some(nominal), Some(augmented)) = (nominal, augmented) {
-            svg.line([place(nominal), y], [place(augmented), y], "span");
+            svg.raw(format_args!(
+                "<line class=\"span\" x1=\"{:.2}%\" x2=\"{:.2}%\" y1=\"{y:.0}\" y2=\"{y:.0}\"/>",
+                place(nominal),
+                place(augmented)
+            ));
         }
         for (value, class, radius) in [
             (learned, "dot-learned", 5.0),
@@ -173,7 +184,10 @@ fn dumbbells(fits: &[(usize, &str, &JointFit)]) -> String {
             (augmented, "dot-after", if meet { 4.5 } else { 6.0 }),
         ] {
             if let Some(value) = value {
-                svg.circle([place(value), y], radius, class);
+                svg.raw(format_args!(
+                    "<circle class=\"{class}\" cx=\"{:.2}%\" cy=\"{y:.0}\" r=\"{radius}\"/>",
+                    place(value)
+                ));
             }
         }
     }

@@ -1,11 +1,14 @@
 //! One section per joint: its residual over time, then each finding with its figures and parameters.
 
-use diagnosis::{Finding, Located, Unexplained};
+use diagnosis::{Finding, Located, Parameter, TimeWindow, Unexplained};
 use maud::{Markup, PreEscaped, html};
 
 use super::against::Against;
+use super::clouds::Cloud;
 use super::place::regions;
-use super::{Page, key};
+use super::table::{name, number, table, words as text};
+use super::zoom::zoomable;
+use super::{Page, Section, key};
 use crate::{numbers, terminal, words};
 
 /// The share of a joint's torque from which a whole-arm effect is shown in the joint's section.
@@ -37,47 +40,37 @@ impl Page<'_> {
     }
 
     /// The findings of the whole arm, each drawn on the joint where it shows most.
-    pub(super) fn whole_arm(&self) -> Markup {
+    pub(super) fn whole_arm(&self) -> Option<Section> {
         let findings = self.findings_on(None);
-        html! {
-            @if !findings.is_empty() {
-                h2 #whole-arm { "Whole arm" }
-                @for (index, finding) in findings { (self.finding(index, finding)) }
-            }
-        }
+        let body = html! { @for (index, finding) in &findings { (self.finding(*index, finding)) } };
+        (!findings.is_empty()).then(|| Section::new("whole-arm", html! { "Whole arm" }, body))
     }
 
     /// Everything about one joint.
-    pub(super) fn joint(&self, joint: usize) -> Markup {
+    pub(super) fn joint(&self, joint: usize) -> Option<Section> {
         if !self.has_section(joint) {
-            return html! {};
+            return None;
         }
-        let name = self.figures.arm.joints()[joint].name.as_str();
-        let located = self.located(name);
+        let joint_name = self.figures.arm.joints()[joint].name.as_str();
+        let located = self.located(joint_name);
         let windows = located.map_or(&[][..], |located| &located.time);
-        html! {
-            h2 id={ "joint-" (joint + 1) } { "Joint " (joint + 1) " · " (name) }
-            (self.stats(joint, name, located))
-            @if let Some(strip) = self.figures.over_time(joint, windows) {
-                figure {
-                    (PreEscaped(strip))
-                    figcaption { (self.residual_key(!windows.is_empty())) }
-                }
-            }
+        let body = html! {
+            (self.stats(joint, joint_name, located))
+            (self.strip(joint, windows))
             @if let Some(located) = located { (regions(located, &self.figures.arm.joints()[joint])) }
-            @for (index, finding) in self.findings_on(Some(name)) { (self.finding(index, finding)) }
-            @let others = self.shared(name);
+            @for (index, finding) in self.findings_on(Some(joint_name)) { (self.finding(index, finding)) }
+            @let others = self.shared(joint_name);
             @if !others.is_empty() {
                 p { "Effects of the whole arm or of other joints also act on this joint: "
                     @for (number, (index, finding)) in others.iter().enumerate() {
                         @if number > 0 { ", " }
                         a href={ "#finding-" (index + 1) } { (words::effect(finding)) }
-                        @if let Some(share) = finding.share_by_joint.get(name) { " (" (numbers::share(*share)) " of the torque)" }
+                        @if let Some(share) = finding.share_by_joint.get(joint_name) { " (" (numbers::share(*share)) " of the torque)" }
                     }
                     "."
                 }
             }
-            @for open in self.report.unexplained.iter().filter(|open| open.joint == name) {
+            @for open in self.report.unexplained.iter().filter(|open| open.joint == joint_name) {
                 div.finding.open {
                     h4 { "Unexplained residual" span.size { (numbers::of_torque_spread(open.share)) } }
                     p.sentence {
@@ -92,7 +85,9 @@ impl Page<'_> {
                     @if !open.next.is_empty() { p { b { "Next experiment: " } (open.next) "." } }
                 }
             }
-        }
+        };
+        let title = html! { "Joint " (joint + 1) " · " (name(joint_name)) };
+        Some(Section::new(format!("joint-{}", joint + 1), title, body))
     }
 
     /// The residual against the quantities that it depends on, in at most two figures.
@@ -102,38 +97,58 @@ impl Page<'_> {
             .depends_on
             .iter()
             .filter_map(|code| Against::of_dependence(code, arm));
-        let panels: Vec<String> = states
+        let clouds: Vec<Cloud> = states
             .filter_map(|against| self.figures.unexplained(joint, against))
             .take(2)
             .collect();
         html! {
-            @if !panels.is_empty() {
+            @if !clouds.is_empty() {
                 div.pair {
-                    @for panel in panels {
-                        figure { (PreEscaped(panel)) figcaption { (key("k-after", "residual with all effects found")) } }
+                    @for cloud in clouds {
+                        (zoomable(Some(&cloud.data), html! {
+                            figure {
+                                div.plot { (PreEscaped(&cloud.after)) }
+                                figcaption { (key("k-after", "residual with all effects found")) }
+                            }
+                        }))
                     }
                 }
             }
         }
     }
 
+    /// The residual of a joint over time.
+    fn strip(&self, joint: usize, windows: &[TimeWindow]) -> Markup {
+        let Some(strip) = self.figures.over_time(joint, windows) else {
+            return html! {};
+        };
+        let data = self.figures.over_time_data(joint, windows);
+        let figure = html! {
+            figure {
+                div.plot.strip { (PreEscaped(strip)) }
+                figcaption { (self.residual_key(!windows.is_empty())) }
+            }
+        };
+        zoomable(data.as_ref(), figure)
+    }
+
     /// The residuals of the joints without a section, in a collapsed block.
-    pub(super) fn quiet_joints(&self) -> Markup {
+    pub(super) fn quiet_joints(&self) -> Option<Section> {
         let quiet = (0..self.figures.arm.dof()).filter(|&joint| !self.has_section(joint));
         let strips: Vec<_> = quiet
-            .filter_map(|joint| Some((joint, self.figures.over_time(joint, &[])?)))
+            .map(|joint| (joint, self.strip(joint, &[])))
+            .filter(|(_, strip)| !strip.0.is_empty())
             .collect();
-        html! {
-            @if !strips.is_empty() {
-                details {
-                    summary { "Residuals of the joints without findings (" (strips.len()) ")" }
-                    @for (joint, strip) in strips {
-                        h3 { "Joint " (joint + 1) " · " (self.figures.arm.joints()[joint].name) }
-                        figure { (PreEscaped(strip)) figcaption { (self.residual_key(false)) } }
-                    }
+        let body = html! {
+            details {
+                summary { "Their residuals over time (" (strips.len()) ")" }
+                @for (joint, strip) in &strips {
+                    h3 { "Joint " (joint + 1) " · " (name(&self.figures.arm.joints()[*joint].name)) }
+                    (strip)
                 }
             }
-        }
+        };
+        (!strips.is_empty()).then(|| Section::new("quiet", html! { "Joints without findings" }, body))
     }
 
     /// Findings of other joints or of the whole arm that act on this joint.
@@ -199,9 +214,9 @@ impl Page<'_> {
                     }
                 }
                 p.sentence { (words::capital(&words::described(finding))) "." }
-                @if let Some((joint, [before, after])) = panels {
-                    div.pair {
-                        figure { (PreEscaped(before)) figcaption {
+                @if let Some((joint, cloud)) = panels {
+                    (zoomable(Some(&cloud.data), html! { div.pair {
+                        figure { div.plot { (PreEscaped(&cloud.before)) } figcaption {
                             (key("k-before", if self.figures.has_company(index, joint) {
                                 "before: residual with all other effects found"
                             } else {
@@ -209,11 +224,11 @@ impl Page<'_> {
                             }))
                             (key("k-effect", "the effect"))
                         } }
-                        figure { (PreEscaped(after)) figcaption {
+                        figure { div.plot { (PreEscaped(&cloud.after)) } figcaption {
                             (key("k-after", "after: residual with all effects found"))
-                            @if finding.joint.is_none() { "(" (self.figures.arm.joints()[joint].name) ")" }
+                            @if finding.joint.is_none() { "(" (name(&self.figures.arm.joints()[joint].name)) ")" }
                         } }
-                    }
+                    } }))
                 }
                 div.facts { (parameters(finding)) (self.background(finding)) }
             }
@@ -257,24 +272,19 @@ impl Page<'_> {
 }
 
 fn parameters(finding: &Finding) -> Markup {
-    html! {
-        table {
-            thead { tr { th { "parameter" } th.n { "value" } th.n { "95 % interval" } } }
-            tbody {
-                @for (name, parameter) in &finding.parameters {
-                    @let (value, interval) = numbers::value_and_interval(name, parameter);
-                    tr {
-                        td { (name.replace('_', " ")) }
-                        td.n {
-                            (value)
-                            @if parameter.unit == "rad" && parameter.value.abs() > 1e-3 {
-                                " (" (numbers::short(parameter.value.to_degrees())) "°)"
-                            }
-                        }
-                        td.n { (interval) }
-                    }
+    let row = |(name, parameter): (&&'static str, &Parameter)| {
+        let (value, interval) = numbers::value_and_interval(name, parameter);
+        vec![
+            html! { (name.replace('_', " ")) },
+            html! {
+                (value)
+                @if parameter.unit == "rad" && parameter.value.abs() > 1e-3 {
+                    " (" (numbers::short(parameter.value.to_degrees())) "°)"
                 }
-            }
-        }
-    }
+            },
+            html! { (interval) },
+        ]
+    };
+    let rows = finding.parameters.iter().map(row).collect();
+    table(&[text("parameter"), number("value"), number("95 % interval")], rows)
 }

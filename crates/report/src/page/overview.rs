@@ -2,7 +2,8 @@
 
 use maud::{Markup, html};
 
-use super::{Page, key};
+use super::table::{brief_table, number, words as text};
+use super::{Page, Section, key};
 use crate::{numbers, terminal, words};
 
 impl Page<'_> {
@@ -19,7 +20,7 @@ impl Page<'_> {
         )
     }
 
-    /// The held-out error in a sentence, and why the data are not enough where they are not.
+    /// The held-out error in a sentence.
     pub(super) fn lead(&self) -> Markup {
         // Joints with a model error; the effects cannot improve the others.
         let missed = |name: &str| self.report.located.iter().any(|located| located.joint == name);
@@ -54,66 +55,59 @@ impl Page<'_> {
                     }
                 }
             }
-            @if !self.report.not_enough_data.is_empty() {
-                div.finding.open {
-                    h4 { "Not enough data" }
-                    ul { @for reason in &self.report.not_enough_data { li { (reason) } } }
-                }
-            }
         }
     }
 
     /// All findings in a table.
-    pub(super) fn overview(&self) -> Markup {
+    pub(super) fn overview(&self) -> Option<Section> {
         if self.report.findings.is_empty() && self.report.unexplained.is_empty() {
-            return html! {};
+            return None;
         }
-        let mut last = None;
-        html! {
-            h2 { "What was found" }
-            div.scroll { table {
-                thead { tr {
-                    th { "joint" } th { "effect" } th { "size with its 95 % interval" } th { "share of the torque" }
-                    th.n { "probability" } th.n { (terminal::error_title(self.report)) } th { "could also be" }
-                } }
-                tbody {
-                    @for (index, finding) in self.report.findings.iter().enumerate() {
-                        @let joint = finding.joint.as_deref();
-                        @let is_continued = last.replace(joint) == Some(joint);
-                        tr class=[is_continued.then_some("continued")] {
-                            td.name { @if is_continued { (words::joint(joint)) } @else { (self.link(joint)) } }
-                            td { a href={ "#finding-" (index + 1) } { (words::effect(finding)) } }
-                            td.nowrap {
-                                @if let Some((name, parameter)) = words::main_parameter(finding) {
-                                    (numbers::with_interval(name, parameter))
-                                }
-                            }
-                            td.nowrap { (bar(finding.share)) (numbers::share(finding.share)) }
-                            td.n { (numbers::probability(finding.probability)) }
-                            td.n { (terminal::error(self.report, finding)) }
-                            td.small { (terminal::alternatives(finding)) }
-                        }
+        let columns = [
+            text("joint"),
+            text("effect"),
+            text("size with its 95 % interval"),
+            text("share of the torque"),
+            number("probability"),
+            number(terminal::error_title(self.report)),
+            text("could also be"),
+        ];
+        let found = self.report.findings.iter().enumerate().map(|(index, finding)| {
+            vec![
+                self.link(finding.joint.as_deref()),
+                html! { a href={ "#finding-" (index + 1) } { (words::effect(finding)) } },
+                html! {
+                    @if let Some((name, parameter)) = words::main_parameter(finding) {
+                        span.nowrap { (numbers::with_interval(name, parameter)) }
                     }
-                    @for open in &self.report.unexplained {
-                        tr {
-                            td.name { (self.link(Some(&open.joint))) }
-                            td { "unexplained residual" }
-                            td { "–" }
-                            td.nowrap { (bar(open.share)) (numbers::share(open.share)) }
-                            td.n { "–" }
-                            td.n { (terminal::error_of(self.report, &open.joint)) }
-                            td {}
-                        }
-                    }
-                }
-            } }
+                },
+                html! { (bar(finding.share)) (numbers::share(finding.share)) },
+                html! { (numbers::probability(finding.probability)) },
+                html! { (terminal::error(self.report, finding)) },
+                html! { (terminal::alternatives(finding)) },
+            ]
+        });
+        let open = self.report.unexplained.iter().map(|open| {
+            vec![
+                self.link(Some(&open.joint)),
+                html! { "unexplained residual" },
+                html! {},
+                html! { (bar(open.share)) (numbers::share(open.share)) },
+                html! {},
+                html! { (terminal::error_of(self.report, &open.joint)) },
+                html! {},
+            ]
+        });
+        let body = html! {
+            (brief_table(&columns, found.chain(open).collect()))
             p.small.soft {
                 "Share: standard deviation of the effect's torque over the standard deviation of the measured torque. The error is \
                  the RMS torque error over the standard deviation of the measured torque, with the nominal model → with all effects \
                  found; held-out recordings are not used in any fit. The error belongs to the joint and is repeated for each of its \
                  findings."
             }
-        }
+        };
+        Some(Section::new("found", html! { "What was found" }, body))
     }
 
     /// The legend of a residual's colours.

@@ -12,9 +12,13 @@ fn page(joints: usize, plot: Plot) -> String {
 #[test]
 fn the_page_needs_nothing_else_and_says_it_all() {
     let text = page(7, Plot::Rich);
-    for foreign in ["http:", "https:", "src=", "url(", "@import", "<script", "<link"] {
-        assert!(!text.contains(foreign), "the page has {foreign}");
+    // The library's licence and address are comments in its script.
+    let (own, scripts) = text.split_at(text.find("<script>").expect("the page has scripts"));
+    for foreign in ["http:", "https:", "src=", "url(", "@import", "<link"] {
+        assert!(!own.contains(foreign), "the page has {foreign}");
     }
+    assert!(scripts.contains("Copyright (c) 2022 Leon Sorokin"));
+    assert!(own.contains("default-src 'none'"));
     for part in [
         "The model omits 8 effects",
         "shoulder_lift_joint",
@@ -29,7 +33,54 @@ fn the_page_needs_nothing_else_and_says_it_all() {
         assert!(text.contains(part), "{part} is not in the page");
     }
     assert!(text.len() < 2_000_000, "{} bytes", text.len());
-    assert!(!text.contains("NaN") && !text.contains("inf "));
+    assert!(!own.contains("NaN") && !own.contains("inf "));
+}
+
+#[test]
+fn the_contents_lead_to_every_section() {
+    let text = page(7, Plot::Rich);
+    let (contents, rest) = text.split_once("</nav>").expect("the page has contents");
+    let links: Vec<&str> = contents
+        .split("<li><a href=\"#")
+        .skip(1)
+        .filter_map(|link| link.split('"').next())
+        .collect();
+    let headings: Vec<&str> = rest
+        .split("<h2 id=\"")
+        .skip(1)
+        .filter_map(|heading| heading.split('"').next())
+        .collect();
+    assert!(links.len() > 8, "{links:?}");
+    assert_eq!(links, headings);
+    let place = |id: &str| headings.iter().position(|heading| *heading == id);
+    assert!(
+        place("next") < place("joint-1"),
+        "what to do next comes before the details"
+    );
+}
+
+/// Beside every drawing that can be zoomed are its data: as many values as places, and every figure has something to show.
+#[test]
+fn figures_have_their_data() {
+    let text = page(7, Plot::Rich);
+    let data = text.split("<script type=\"application/json\">").skip(1);
+    let mut count = 0;
+    for part in data {
+        let (json, _) = part.split_once("</script>").expect("the script ends");
+        let data: serde_json::Value = serde_json::from_str(json).expect("it is JSON");
+        let places = data["places"].as_array().expect("places");
+        assert!(places.len() > 8);
+        // Places never go back.
+        assert!(places.iter().skip(1).all(|step| step.as_i64() >= Some(0)));
+        for series in data["series"].as_array().expect("series") {
+            let values = series["values"].as_array().expect("values");
+            assert_eq!(values.len(), places.len());
+            assert!(values.iter().any(serde_json::Value::is_number));
+        }
+        count += 1;
+    }
+    assert_eq!(count, text.matches("<div class=\"zoomable\">").count());
+    assert!(count > 10, "{count}");
 }
 
 #[test]

@@ -5,8 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use arm::Arm;
-use diagnosis::{Diagnosis, Verdict};
-use indicatif::ProgressBar;
+use diagnosis::{Diagnosis, Step, Verdict};
 use study::effect_file::EffectFile;
 use study::notes::Notes;
 use study::robot::RobotFile;
@@ -15,6 +14,7 @@ use study::{Diagnosed, Listener, mjcf_file, urdf_file};
 use super::{next_file, outputs, residuals_file, trace_file};
 use crate::cli::DiagnoseArgs;
 use crate::output;
+use crate::progress::Progress;
 
 /// The exit status of `--fail-on-mismatch` where the model alone does not explain the recordings.
 const MISMATCH: u8 = 3;
@@ -33,16 +33,16 @@ pub fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
 }
 
 fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
-    let spinner = if args.quiet {
-        ProgressBar::hidden()
+    let progress = if args.quiet {
+        Progress::hidden()
     } else {
-        output::spinner("reading")
+        Progress::new("reading")
     };
     let study = args.request().run(&Terminal {
         args,
-        spinner: &spinner,
+        progress: &progress,
     });
-    spinner.finish_and_clear();
+    progress.finish();
     let Diagnosed {
         robot,
         arm,
@@ -62,17 +62,17 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
 /// Tells what is done and noted on standard error.
 struct Terminal<'a> {
     args: &'a DiagnoseArgs,
-    spinner: &'a ProgressBar,
+    progress: &'a Progress,
 }
 
 impl Listener for Terminal<'_> {
-    fn doing(&self, what: &str) {
-        self.spinner.set_message(what.to_owned());
+    fn doing(&self, step: Step<'_>) {
+        self.progress.done(step.done, step.doing);
     }
 
     fn note(&self, text: &str) {
         if !self.args.quiet {
-            self.spinner.suspend(|| eprintln!("note: {text}"));
+            self.progress.suspend(|| eprintln!("note: {text}"));
         }
     }
 
@@ -81,7 +81,7 @@ impl Listener for Terminal<'_> {
             return;
         }
         for line in notes.lines(joints, !self.args.verbose) {
-            self.spinner.suspend(|| eprintln!("{line}"));
+            self.progress.suspend(|| eprintln!("{line}"));
         }
     }
 }

@@ -2,12 +2,10 @@
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::time::Duration;
-
-use anyhow::bail;
-use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::interrupt;
+use crate::progress::Progress;
+use anyhow::bail;
 
 /// Does `work` on all of `items`, `jobs` at once, in their order; says `what` is being done. The first error ends it.
 ///
@@ -19,8 +17,8 @@ pub fn all<T: Sync>(
     jobs: usize,
     work: impl Fn(&T) -> anyhow::Result<()> + Sync,
 ) -> anyhow::Result<()> {
-    let progress = bar(what, items.len());
-    let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let progress = Progress::new(what);
+    let (next, finished, failed) = (AtomicUsize::new(0), AtomicUsize::new(0), AtomicBool::new(false));
     let error = Mutex::new(None);
     std::thread::scope(|scope| {
         for _ in 0..jobs.clamp(1, items.len().max(1)) {
@@ -30,7 +28,11 @@ pub fn all<T: Sync>(
                         break;
                     };
                     match work(item) {
-                        Ok(()) => progress.inc(1),
+                        Ok(()) => {
+                            let done = 1 + finished.fetch_add(1, Ordering::SeqCst);
+                            let share = done as f64 / items.len() as f64;
+                            progress.done(share, format!("{what}: {done} of {}", items.len()));
+                        }
                         Err(reason) => {
                             failed.store(true, Ordering::SeqCst);
                             if let Ok(mut error) = error.lock() {
@@ -42,7 +44,7 @@ pub fn all<T: Sync>(
             });
         }
     });
-    progress.finish_and_clear();
+    progress.finish();
     if interrupt::requested() {
         bail!("interrupted; the same command goes on where it stopped");
     }
@@ -50,15 +52,4 @@ pub fn all<T: Sync>(
         Ok(Some(reason)) => Err(reason),
         _ => Ok(()),
     }
-}
-
-/// A progress bar on standard error, hidden where that is no terminal.
-fn bar(what: &'static str, count: usize) -> ProgressBar {
-    let progress = ProgressBar::new(count as u64);
-    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos} of {len} ({elapsed}, {eta} left)") {
-        progress.set_style(style);
-    }
-    progress.set_message(what);
-    progress.enable_steady_tick(Duration::from_millis(200));
-    progress
 }

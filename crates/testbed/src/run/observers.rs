@@ -1,37 +1,44 @@
-//! What watches a run: the progress bar and the viewer.
+//! What watches a run: its progress and the viewer.
 
 use std::path::{Path, PathBuf};
 
-use indicatif::{ProgressBar, ProgressStyle};
-
 use crate::cli::{Rerun, RunArgs};
 use crate::models::ModelKind;
+use crate::progress::Progress;
 use crate::scenario::Scenario;
 use crate::simulation::Observer;
 use crate::telemetry::Sample;
 
-/// A progress bar on standard error in simulated seconds, hidden where that is no terminal.
-pub struct Progress {
-    /// The bar.
-    pub bar: ProgressBar,
+/// Progress in simulated time.
+pub struct Simulating {
+    progress: Progress,
+    duration: f64,
+    tenths: u64,
 }
 
-impl Progress {
-    /// A bar for a run of `duration` (s).
+impl Simulating {
+    /// Of a run of `duration` (s).
     pub fn new(duration: f64) -> Self {
-        let bar = ProgressBar::new((duration * 10.0).ceil() as u64);
-        if let Ok(style) = ProgressStyle::with_template("simulating {bar:40} {percent} %  ({elapsed})") {
-            bar.set_style(style);
+        Self {
+            progress: Progress::new("simulating"),
+            duration,
+            tenths: 0,
         }
-        Self { bar }
+    }
+
+    /// Ends it.
+    pub fn finish(&self) {
+        self.progress.finish();
     }
 }
 
-impl Observer for Progress {
+impl Observer for Simulating {
     fn sample(&mut self, sample: &Sample<'_>) {
         let tenths = (sample.time * 10.0) as u64;
-        if tenths > self.bar.position() {
-            self.bar.set_position(tenths);
+        if tenths > self.tenths {
+            self.tenths = tenths;
+            let share = sample.time / self.duration;
+            self.progress.done(share, format!("simulating {:.0} %", 100.0 * share));
         }
     }
 }

@@ -52,6 +52,7 @@ pub struct RawChain {
 pub struct RawModel {
     pub kind: Option<Spanned<String>>,
     pub inertia_scale: Option<Spanned<f64>>,
+    pub length_scales: Option<Spanned<String>>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -4,13 +4,14 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow, bail, ensure};
 use arm::Arm;
+use clap::ValueEnum;
 use study::{Source, robot};
 use toml::Spanned;
 use torque::{Fade, Feedback, Reference, Sine};
 
 use super::Scenario;
 use super::raw::{PerJoint, RawReference, RawScenario};
-use crate::cli::ChainArgs;
+use crate::cli::{ChainArgs, LengthScalesArg};
 use crate::models::ModelKind;
 use crate::sensors::SensorNoise;
 
@@ -73,6 +74,10 @@ pub fn scenario(source: &Source, raw: RawScenario, chosen: &ChainArgs) -> anyhow
         None => ModelKind::IndependentJoint,
         Some(written) => check.model(written)?,
     };
+    let length_scales = match &raw.model.length_scales {
+        None => LengthScalesArg::One,
+        Some(written) => check.length_scales(written)?,
+    };
     let inertia_scale = check.number("model.inertia_scale", raw.model.inertia_scale.as_ref(), 1.0)?;
     if let Some(written) = &raw.model.inertia_scale {
         check.ensure(inertia_scale > 0.0, written, || {
@@ -130,6 +135,7 @@ pub fn scenario(source: &Source, raw: RawScenario, chosen: &ChainArgs) -> anyhow
         urdf,
         duration,
         model,
+        length_scales,
         inertia_scale,
         reference,
         sample_rate,
@@ -174,6 +180,16 @@ impl Check<'_> {
                 known.join(", ")
             ),
         }
+    }
+
+    fn length_scales(&self, written: &Spanned<String>) -> anyhow::Result<LengthScalesArg> {
+        LengthScalesArg::from_str(written.get_ref(), false).map_err(|_| {
+            anyhow!(
+                "{}: model.length_scales is \"{}\"; known: one, per-input",
+                self.source.place(written.span()),
+                written.get_ref()
+            )
+        })
     }
 
     fn rate(&self, key: &str, written: Option<&Spanned<f64>>, default: f64) -> anyhow::Result<f64> {

@@ -1,0 +1,152 @@
+//! Progress on standard error with the time left: a line that changes on a terminal, plain lines elsewhere.
+
+use std::fmt::Write;
+use std::io::IsTerminal;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
+
+/// What ends sooner needs no time left and no plain lines.
+const SHORT: Duration = Duration::from_secs(2);
+/// Between plain lines passes at least this part of the time so far, so that hours do not fill a log.
+const SPARSE: f64 = 0.1;
+
+/// The progress of one task.
+pub struct Progress {
+    bar: ProgressBar,
+    clock: Arc<Mutex<Clock>>,
+    is_plain: bool,
+}
+
+/// How much of a task is done since when.
+struct Clock {
+    started: Instant,
+    /// The part that is done, and since when.
+    done: f64,
+    at: Instant,
+    /// When the last plain line was written.
+    said: Option<Instant>,
+}
+
+impl Clock {
+    /// The time left, if the rest takes as long as what is done; none at the beginning, where that says little.
+    fn left(&self, now: Instant) -> Option<Duration> {
+        if self.done < 0.02 || now - self.started < SHORT {
+            return None;
+        }
+        let whole = (self.at - self.started).mul_f64(1.0 / self.done);
+        Some(whole.saturating_sub(now - self.started))
+    }
+}
+
+impl Progress {
+    /// Progress that begins with `message`.
+    pub fn new(message: impl Into<String>) -> Self {
+        let now = Instant::now();
+        let clock = Arc::new(Mutex::new(Clock {
+            started: now,
+            done: 0.0,
+            at: now,
+            said: None,
+        }));
+        let bar = ProgressBar::new_spinner();
+        let shown = Arc::clone(&clock);
+        let left = move |_: &ProgressState, text: &mut dyn Write| {
+            if let Some(left) = shown.lock().ok().and_then(|clock| clock.left(Instant::now())) {
+                let _ = write!(text, ", about {} left", words(left));
+            }
+        };
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed}{left})") {
+            bar.set_style(style.with_key("left", left));
+        }
+        bar.set_message(message.into());
+        bar.enable_steady_tick(Duration::from_millis(100));
+        Self {
+            bar,
+            clock,
+            is_plain: !std::io::stderr().is_terminal(),
+        }
+    }
+
+    /// Progress that nobody sees.
+    pub fn hidden() -> Self {
+        let mut progress = Self::new("");
+        progress.bar = ProgressBar::hidden();
+        progress.is_plain = false;
+        progress
+    }
+
+    /// Says what is being done; how much of the task is done stays.
+    pub fn doing(&self, message: impl Into<String>) {
+        self.done(0.0, message);
+    }
+
+    /// Says what is being done after the part `done` of the task, which never falls.
+    pub fn done(&self, done: f64, message: impl Into<String>) {
+        let message = message.into();
+        self.bar.set_message(message.clone());
+        let Ok(mut clock) = self.clock.lock() else { return };
+        let now = Instant::now();
+        if done > clock.done {
+            (clock.done, clock.at) = (done, now);
+        }
+        if !self.is_plain {
+            return;
+        }
+        let passed = now - clock.started;
+        let pause = SHORT.max(passed.mul_f64(SPARSE));
+        if passed >= SHORT && clock.said.is_none_or(|said| now - said >= pause) {
+            clock.said = Some(now);
+            let left = clock.left(now).map(|left| format!(", about {} left", words(left)));
+            eprintln!("{message} ({}{})", words(passed), left.unwrap_or_default());
+        }
+    }
+
+    /// Prints to standard error beside the line that changes.
+    pub fn suspend<T>(&self, print: impl FnOnce() -> T) -> T {
+        self.bar.suspend(print)
+    }
+
+    /// Removes the line that changes.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// `45 s`, `3 min`, `2 h 10 min`.
+fn words(time: Duration) -> String {
+    let seconds = time.as_secs_f64().round() as u64;
+    match (seconds, (seconds + 30) / 60) {
+        (0..100, _) => format!("{seconds} s"),
+        (_, minutes @ 0..100) => format!("{minutes} min"),
+        (_, minutes) => format!("{} h {} min", minutes / 60, minutes % 60),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_takes_as_long_as_what_is_done() {
+        let now = Instant::now();
+        let clock = |done: f64| Clock {
+            started: now,
+            done,
+            at: now + Duration::from_secs(10),
+            said: None,
+        };
+        let later = now + Duration::from_secs(15);
+        assert_eq!(clock(0.25).left(later), Some(Duration::from_secs(25)));
+        assert_eq!(clock(0.9).left(later), Some(Duration::ZERO));
+        assert_eq!(clock(0.0).left(later), None);
+        assert_eq!(clock(0.5).left(now + Duration::from_secs(1)), None);
+    }
+
+    #[test]
+    fn times_are_words() {
+        let said = [0, 99, 100, 3600, 6000, 7800].map(|seconds| words(Duration::from_secs(seconds)));
+        assert_eq!(said, ["0 s", "99 s", "2 min", "60 min", "1 h 40 min", "2 h 10 min"]);
+    }
+}
