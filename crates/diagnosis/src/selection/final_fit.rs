@@ -10,7 +10,7 @@ use crate::findings::report::{JointFit, Parameter};
 use crate::findings::verdict::structured;
 use crate::regression::background::Strengths;
 use crate::regression::bootstrap::{Resampled, resample};
-use crate::search::problem::{Chosen, Growth, IMPOSSIBLE, Problem};
+use crate::search::problem::{Chosen, IMPOSSIBLE, Problem};
 use crate::search::study::Study;
 use crate::selection::judge::{self, Selection};
 use crate::selection::naming::{Named, name};
@@ -20,18 +20,12 @@ use crate::thresholds::{HOPELESS, PARTLY};
 /// Fits the named effects for the last time: about the arm that they make, with the rows near reversals; drops what makes a
 /// joint's held-out error grow, what does not help there, and what might be zero.
 pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
-    let mut has_friction = false;
     loop {
         settle(study, judged, false);
         make_possible(study, judged);
         let before = judged.named.set.len();
 
-        let friction = study.strengths.friction;
         guard(study, judged);
-        // Once: what is dropped afterwards must not come back without end.
-        if study.strengths.friction < friction && !std::mem::replace(&mut has_friction, true) {
-            add_friction(study, judged);
-        }
         prove(study, judged);
 
         give_up(study, judged);
@@ -228,25 +222,6 @@ fn guard(study: &mut Study, judged: &mut Selection) {
         let products = study.training_products();
         judged.members = judge::describe(study, &study.problem(&products), &judged.named);
     }
-}
-
-/// Names the baseline friction for which the background of friction stood, once that was taken back.
-fn add_friction(study: &Study, judged: &mut Selection) {
-    let is_friction = |&c: &usize| {
-        let cause = study.candidates[c].cause;
-        cause.is_baseline() && cause.is_friction()
-    };
-    let mut allowed = study.allowed();
-    allowed.retain(is_friction);
-    let products = study.training_products();
-    let problem = study.problem(&products);
-    let mut growth = Growth::default();
-    while let Some(next) = problem.grow(&judged.named, &allowed, &mut growth) {
-        let next = problem.reweighted(next);
-        study.note("the background of friction was taken back", &judged.named, &next);
-        judged.named = next;
-    }
-    judged.members = judge::describe(study, &problem, &judged.named);
 }
 
 /// The held-out error of `joint`, of the model as it was given and with what is `chosen`.
