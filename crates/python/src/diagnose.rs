@@ -157,6 +157,9 @@ impl Outcome {
     }
 }
 
+/// An outcome or an exception, and the notes (each with whether it is a warning).
+type Answer = (Option<Outcome>, Option<PyErr>, Vec<(String, bool)>);
+
 /// Diagnoses: the outcome or the exception, and the notes (each with whether it is a warning).
 #[pyfunction]
 #[pyo3(signature = (
@@ -185,7 +188,7 @@ pub fn diagnose(
     next_experiment: bool,
     threads: usize,
     progress: Option<Py<PyAny>>,
-) -> PyResult<(Option<Outcome>, Option<PyErr>, Vec<(String, bool)>)> {
+) -> PyResult<Answer> {
     let urdf_friction = match urdf_friction {
         "diagnosed" => UrdfFriction::Diagnosed,
         "known" => UrdfFriction::Known,

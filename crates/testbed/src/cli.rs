@@ -43,7 +43,7 @@ pub enum Command {
     /// Print tables I and II and figure 4 of the paper, with our results beside the published ones
     Tables(TablesArgs),
     /// Find the physical effects that a robot's model omits, from recordings
-    Diagnose(DiagnoseArgs),
+    Diagnose(Box<DiagnoseArgs>),
     /// Propose the motion of the first recording: the one from which inertial parameters and friction are estimated best
     Excite(ExciteArgs),
     /// Check the quality of recordings before anything is fitted to them

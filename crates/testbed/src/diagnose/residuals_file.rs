@@ -64,7 +64,8 @@ fn columns<'a>(trace: &'a Trace, joints: &[&str]) -> Vec<(String, Values<'a>)> {
         let pairs = trace.tau[joint].iter().zip(&residual[joint]);
         pairs.map(|(tau, left)| tau - left).collect()
     };
-    let signals: [(&str, &dyn Fn(usize) -> Vec<f64>); 4] = [
+    type Signal<'a> = (&'static str, &'a dyn Fn(usize) -> Vec<f64>);
+    let signals: [Signal<'_>; 4] = [
         ("measured", &|joint| trace.tau[joint].clone()),
         ("nominal", &|joint| predicted(&trace.residual, joint)),
         ("corrected", &|joint| predicted(&trace.residual_exported, joint)),

@@ -14,10 +14,10 @@ use recording::nearest;
 pub fn of(args: &ExciteArgs, arm: &Arm) -> anyhow::Result<Vec<MotionLimits>> {
     let mut limits = MotionLimits::of(arm);
     replace("position", &args.position_limit, arm, &mut limits, |limits, value| {
-        limits.position = value
+        limits.position = value;
     })?;
     replace("velocity", &args.velocity_limit, arm, &mut limits, |limits, value| {
-        limits.velocity = value
+        limits.velocity = value;
     })?;
     replace(
         "acceleration",
@@ -29,7 +29,7 @@ pub fn of(args: &ExciteArgs, arm: &Arm) -> anyhow::Result<Vec<MotionLimits>> {
         },
     )?;
     replace("effort", &args.effort_limit, arm, &mut limits, |limits, value| {
-        limits.effort = value
+        limits.effort = value;
     })?;
     Ok(limits)
 }
