@@ -23,7 +23,6 @@ impl Schema<'_> {
         let keywords = schema.as_object().expect("a schema is an object");
         for (keyword, argument) in keywords {
             match keyword.as_str() {
-                "$schema" | "$defs" | "title" | "description" | "format" | "examples" | "default" => {}
                 "$ref" => faults.extend(self.faults(self.definition(argument), value, place)),
                 "anyOf" | "oneOf" => {
                     let list = argument.as_array().expect("a list");
@@ -39,7 +38,9 @@ impl Schema<'_> {
                 "enum" if !argument.as_array().expect("a list").contains(value) => {
                     faults.push(format!("{place}: {value} is none of {argument}"));
                 }
-                "const" | "enum" => {}
+                // A "const" or "enum" that comes to here holds; the others say nothing of the value.
+                "const" | "enum" | "$schema" | "$defs" | "title" | "description" | "format" | "examples"
+                | "default" => {}
                 "type" => {
                     let is = |name: &Value| is_of_type(value, name.as_str().expect("a type"));
                     if !argument
