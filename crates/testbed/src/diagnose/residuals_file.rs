@@ -190,7 +190,7 @@ mod tests {
             let signal = |scale: f64| -> Vec<Vec<f64>> {
                 let of = |joint: usize| {
                     (0..rows)
-                        .map(|row| scale * (1.0 + joint as f64) / (3.0 + row as f64))
+                        .map(|row| scale * (1.0 + joint as f64) / (3.0 + f64::from(row)))
                         .collect()
                 };
                 (0..arm.dof()).map(of).collect()
@@ -198,7 +198,7 @@ mod tests {
             Trace {
                 name: name.into(),
                 held_out,
-                time: (0..rows).map(|row| start + 0.1 * row as f64).collect(),
+                time: (0..rows).map(|row| start + 0.1 * f64::from(row)).collect(),
                 tau: signal(9.0),
                 residual: signal(2.0),
                 residual_augmented: signal(0.25),
