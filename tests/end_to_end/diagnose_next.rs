@@ -23,7 +23,8 @@ fn the_proposed_motion_is_a_scenario_that_runs() {
     let told = next["separates"].as_array().expect("a list");
     assert!(!told.is_empty(), "{next:#}");
     assert!(printed.contains("- next experiment: a motion of 25 s"), "{printed}");
-    assert!(case.text("page.html").contains("The next experiment"));
+    let page = case.text("page.html");
+    assert!(page.contains("What to do next") && page.contains("a motion of 25 s"));
     // As it is, and on the user's own robot.
     let ran = case
         .sandbox
