@@ -56,7 +56,7 @@ fn printed(cases: &[Tried]) -> Vec<String> {
         .map(|(name, [found, all])| format!("{name:26} {found:4} of {all:4}"))
         .collect();
     lines.push(format!(
-        "baseline friction and drive inertia: {} of {}, {} false",
+        "ordinary friction and drive inertia: {} of {}, {} false",
         plain.baseline[1], plain.baseline[0], plain.baseline[2]
     ));
     lines.push(format!(
@@ -67,7 +67,7 @@ fn printed(cases: &[Tried]) -> Vec<String> {
         plain.covered
     ));
     lines.push(format!(
-        "nothing but baseline effects concealed: {} of {} left clean; outside the catalogue: {} of {} refused on the right joint; refused for no reason: {}; no answer: {}",
+        "nothing but the ordinary concealed: {} of {} left clean; outside the catalogue: {} of {} refused on the right joint; refused for no reason: {}; no answer: {}",
         plain.clean, plain.empty, plain.refused, plain.outside, plain.refused_without_cause, plain.missing
     ));
     if let Some(ratio) = plain.held_out {
