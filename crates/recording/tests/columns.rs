@@ -2,14 +2,13 @@
 
 use recording::{Column, Recording};
 
-/// 200 rows of one joint, with a row written twice and a missing torque.
+/// 200 rows of one joint, with a row written twice.
 fn columns() -> Vec<(String, Column)> {
     let time: Vec<f64> = (0..200)
         .map(|k| 0.01 * f64::from(if k == 50 { 49 } else { k }))
         .collect();
     let q: Vec<f64> = time.iter().map(|t| t.sin()).collect();
-    let mut tau: Vec<f64> = time.iter().map(|t| 3.0 * t.cos()).collect();
-    tau[120] = f64::NAN;
+    let tau: Vec<f64> = time.iter().map(|t| 3.0 * t.cos()).collect();
     vec![
         ("t".to_owned(), Column::Numbers(time)),
         ("q_a".to_owned(), Column::Numbers(q)),
@@ -24,8 +23,6 @@ fn the_columns_are_those_of_the_same_csv() {
     let given = columns();
     for row in 0..200 {
         let cell = |column: &Column| match column {
-            // A missing value is an empty cell in a file.
-            Column::Numbers(values) if values[row].is_nan() => String::new(),
             Column::Numbers(values) => values[row].to_string(),
             Column::Integers(values) | Column::Nanos(values) => values[row].to_string(),
         };
@@ -61,6 +58,10 @@ fn what_is_wrong_with_columns_has_their_name() {
         message.contains("given") && message.contains("\"tau_a\" has 20 values"),
         "{message}"
     );
+    let mut missing = columns();
+    missing[2].1 = Column::Numbers([vec![1.0; 120], vec![f64::NAN], vec![1.0; 79]].concat());
+    let message = refusal(missing);
+    assert!(message.contains("tau_a") && message.contains("NaN"), "{message}");
     let mut lacking = columns();
     lacking.remove(0);
     assert!(refusal(lacking).contains("no column \"t\""));
