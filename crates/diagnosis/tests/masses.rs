@@ -3,7 +3,7 @@
 mod support;
 
 use arm::{Arm, Workspace};
-use support::{Concealed, diagnosed, sentences, trio};
+use support::{Concealed, baseline_friction, diagnosed, sentences, trio};
 
 /// What is named beside plain friction: effect and joint.
 fn named(robot: &Arm, concealed: Concealed<'_>) -> Vec<(String, Option<String>)> {
@@ -37,4 +37,41 @@ fn a_drive_that_makes_up_for_light_links_is_named_with_them() {
     let name = trio().joints()[0].name.clone();
     assert!(found.contains(&of("rotor_inertia", Some(&name))), "{found:?}");
     assert!(found.iter().all(|(effect, _)| !effect.contains("link")), "{found:?}");
+}
+
+/// A centre of mass that is 3 cm from where the URDF has it, on the upper arm or on the forearm, is that link's, and nothing
+/// else: no spring, no counterbalance, no zero of an encoder.
+#[test]
+fn a_centre_of_mass_off_is_named_on_its_link() {
+    for (link, off) in [(1, [0.0, 0.0, 0.03]), (1, [0.03, 0.0, 0.0]), (2, [0.0, 0.0, 0.03])] {
+        let mut body = trio().joints()[link].inertia;
+        body.com += arm::Vector3::from(off);
+        let robot = trio().with_link_inertia(link, body);
+        let diagnosis = diagnosed(
+            &trio(),
+            &robot,
+            &|motion, tau| baseline_friction(motion, tau),
+            Vec::new(),
+        );
+        let name = trio().joints()[link].name.clone();
+        let found = support::named(&diagnosis);
+        assert_eq!(
+            found,
+            [("inertial_parameters", Some(name.as_str()))],
+            "{:?}",
+            sentences(&diagnosis)
+        );
+        let com = &diagnosis.report.inertials[&name].parameters;
+        for (key, nominal, off) in [
+            ("com_x", trio().joints()[link].inertia.com.x, off[0]),
+            ("com_z", trio().joints()[link].inertia.com.z, off[2]),
+        ] {
+            let [low, high] = com[key].ci95;
+            let truth = nominal + off;
+            assert!(
+                low <= truth && truth <= high,
+                "{name} {key}: {low} … {high}, not {truth}"
+            );
+        }
+    }
 }

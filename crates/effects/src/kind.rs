@@ -42,8 +42,9 @@ pub trait EffectKind: Debug + Sync {
         true
     }
 
-    /// Whether the 95 % intervals of its parameters, by their keys, leave an effect that can be.
-    fn is_certain(&self, _effect: &Effect, _interval: &dyn Fn(&str) -> Option<[f64; 2]>) -> bool {
+    /// Whether the 95 % intervals of its parameters, by their keys, leave an effect that can be, where torque constants have the
+    /// relative standard deviation `_accuracy`.
+    fn is_certain(&self, _effect: &Effect, _interval: &dyn Fn(&str) -> Option<[f64; 2]>, _accuracy: f64) -> bool {
         true
     }
 

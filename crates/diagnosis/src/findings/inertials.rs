@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use arm::Inertia;
-use effects::Effect;
-use effects::arm::{INERTIAL_PARAMETER, InertialParameters, body};
+use effects::arm::{INERTIAL_PARAMETER, InertialParameters, Payload, body};
+use effects::{Effect, EffectKind};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::findings::report::{Finding, Parameter};
-use crate::findings::rivals::probability;
+use crate::findings::report::{Confusable, Finding, Parameter};
+use crate::findings::rivals::{allowance, probability};
 use crate::regression::bodies::{PER_LINK, physical};
 use crate::regression::bootstrap::Resampled;
 use crate::regression::fit::Products;
@@ -143,12 +143,18 @@ pub fn inertials(
         return list;
     }
     let common = strengths.common();
+    let apart: Vec<usize> = (0..dof)
+        .filter(|&link| strengths.links[link] > LINK_STANDS_OUT * common)
+        .collect();
     let together: Vec<f64> = (0..dof)
         .map(|joint| {
             let columns = resampled.columns.iter().copied();
             let (columns, values): (Vec<usize>, Vec<f64>) = columns
                 .zip(&resampled.estimate)
-                .filter(|(column, _)| study.table.terms[*column].is(&INERTIAL_PARAMETER))
+                .filter(|(column, _)| {
+                    let term = study.table.terms[*column];
+                    term.is(&INERTIAL_PARAMETER) && !apart.contains(&term.of[0])
+                })
                 .unzip();
             let torque = study.table.torque(joint, &columns, &values);
             deviation(&torque, &study.training_rows(joint)) / study.scales.torque[joint].max(1e-300)
@@ -165,6 +171,19 @@ pub fn inertials(
     let explained: Vec<bool> = (0..dof)
         .map(|joint| errors(study, joint, &augmented(study, &judged.named, joint)).train_nrmse_augmented < PARTLY)
         .collect();
+    // The links that explain nearly as much in the place of one, the best first, and how much better that one is.
+    let instead = |link: usize| -> (f64, Vec<Confusable>) {
+        let [score, loss] = study.evidence_of_link(products, &judged.named, link);
+        let mut others = study.in_other_links(products, &judged.named, link);
+        others.sort_by(|(_, a), (_, b)| a[1].total_cmp(&b[1]));
+        let margin = others.iter().map(|(_, lost)| lost[0]).fold(score, f64::min);
+        let nearly = others.iter().filter(|(_, lost)| lost[1] <= allowance(loss));
+        let rivals = nearly.map(|&(other, _)| Confusable {
+            effect: InertialParameters.spec().name,
+            joint: Some(study.arm.joints()[other].name.clone()),
+        });
+        (margin, rivals.collect())
+    };
     let mut add = |joint: Option<usize>, shares: &[f64], parameters: BTreeMap<&'static str, Parameter>| {
         // Beside structure without a name they may be a part of that.
         let stands_out = |joint: usize| {
@@ -179,16 +198,23 @@ pub fn inertials(
         if !(0..dof).any(stands_out) {
             return;
         }
+        let (margin, confusable_with) = joint.map_or_else(|| (evidence, Vec::new()), instead);
         list.findings.push(Finding {
             joint: joint.map(|joint| study.arm.joints()[joint].name.clone()),
             parameters,
-            probability: Some(probability(evidence)),
+            probability: Some(probability(margin)),
+            confusable_with,
             share: largest(shares),
             share_by_joint: by_joint(shares),
             ..Finding::of(list.effects[joint.unwrap_or(0)].clone())
         });
     };
-    for link in (0..dof).filter(|&link| strengths.links[link] > LINK_STANDS_OUT * common) {
+    // A payload and the last link are one body: what the payload's form leaves of it is not a second finding.
+    let has_payload = judged
+        .members
+        .iter()
+        .any(|member| study.candidates[member.candidate].cause.is(&Payload));
+    for &link in apart.iter().filter(|&&link| !(has_payload && link + 1 == dof)) {
         let name = &study.arm.joints()[link].name;
         let parameters = list
             .links

@@ -127,6 +127,27 @@ impl Strengths {
         list
     }
 
+    /// Those in which one link differs from the URDF more than these say, and all others less.
+    pub fn in_one_link(&self) -> Vec<Self> {
+        let common = self.common();
+        let less = LINK_STRENGTHS.into_iter().filter(|&rho| rho < common);
+        // The nearest one, and none at all.
+        let others: Vec<f64> = less.clone().take(1).chain(less.skip(1).last()).collect();
+        let mut list = Vec::new();
+        for (link, &own) in self.links.iter().enumerate() {
+            let stronger = OWN_STRENGTHS.into_iter().filter(|&rho| rho >= common && rho >= own);
+            for (rho, &rest) in stronger.flat_map(|rho| others.iter().map(move |rest| (rho, rest))) {
+                let mut next = Self {
+                    links: vec![rest; self.links.len()],
+                    ..self.clone()
+                };
+                next.links[link] = rho;
+                list.push(next);
+            }
+        }
+        list
+    }
+
     /// These with all links a finer step weaker or stronger than the grid's.
     pub fn finer(&self) -> Vec<Self> {
         let scaled = |factor: f64| Self {
@@ -195,6 +216,11 @@ impl Stated {
             friction: 0.0,
             gain: self.gain.map_or(0.0, |gain| gain / GAIN_PRIOR),
         }
+    }
+
+    /// The relative standard deviation of the torque constants.
+    pub fn torque_accuracy(self) -> f64 {
+        self.gain.unwrap_or(GAIN_PRIOR)
     }
 
     /// Whether strengths are as stated.

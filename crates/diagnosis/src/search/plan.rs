@@ -94,5 +94,5 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
         }
         chosen = refine(study, chosen, false);
     }
-    chosen
+    study.without_imitations(chosen)
 }

@@ -155,7 +155,8 @@ fn unclear(study: &Study, judged: &Selection, resampled: &Resampled) -> Option<(
         let is_contradicted = |named: &Named| {
             let interval = |key: &str| named.parameters.get(key).map(|parameter| parameter.ci95);
             let kind = named.effect.kind().get();
-            !kind.is_certain(&named.effect, &interval) || kind.is_contradicted(&named.effect, &all)
+            !kind.is_certain(&named.effect, &interval, study.stated.torque_accuracy())
+                || kind.is_contradicted(&named.effect, &all)
         };
         named.iter().any(|named| is_impossible(named) || is_contradicted(named))
     };

@@ -20,6 +20,8 @@ pub const GAIN_PRIOR: f64 = 0.05;
 pub const PER_BACKGROUND_PART: f64 = 4.0;
 /// The evidence that a link with a strength of its own must bring (nats).
 pub const PER_LINK_APART: f64 = 8.0;
+/// The evidence by which two effects on a joint that imitate another body of its link must beat that body (nats).
+pub const PER_IMITATION: f64 = 8.0;
 /// The prior standard deviation of the links' common strength: a URDF is seldom off by more than this part everywhere.
 pub const USUAL_STRENGTH: f64 = 0.3;
 /// The strengths of all links' inertial parameters that are tried.

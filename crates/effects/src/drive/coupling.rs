@@ -99,7 +99,7 @@ impl EffectKind for TransmissionCoupling {
 
     /// Its friction must be there beyond doubt, and its inertia may not be against that: a drive that both joints turn has both,
     /// in the sense in which it turns with them. (On the way to what explains more, a search may pass through others.)
-    fn is_certain(&self, effect: &Effect, interval: &dyn Fn(&str) -> Option<[f64; 2]>) -> bool {
+    fn is_certain(&self, effect: &Effect, interval: &dyn Fn(&str) -> Option<[f64; 2]>, _accuracy: f64) -> bool {
         let sense = effect.number("viscous").signum();
         let is_clear = |[low, high]: [f64; 2]| (sense * low).min(sense * high) > 0.0;
         let is_against = |[low, high]: [f64; 2]| (sense * low).max(sense * high) < 0.0;
@@ -170,7 +170,7 @@ mod tests {
                 "inertia" => Some(inertia),
                 _ => None,
             };
-            TransmissionCoupling.is_certain(&effect, &interval)
+            TransmissionCoupling.is_certain(&effect, &interval, 0.05)
         };
         assert!(is_certain([1.0, 2.0], [0.1, 0.2]));
         assert!(is_certain([1.0, 2.0], [-0.1, 0.2]));

@@ -75,7 +75,7 @@ impl EffectKind for TorqueRipple {
     }
 
     /// What turns with the joint itself repeats a whole number of times in a turn; only a motor before a gear need not.
-    fn is_certain(&self, effect: &Effect, interval: &dyn Fn(&str) -> Option<[f64; 2]>) -> bool {
+    fn is_certain(&self, effect: &Effect, interval: &dyn Fn(&str) -> Option<[f64; 2]>, _accuracy: f64) -> bool {
         let whole = effect.number("periods").round();
         let holds = |[low, high]: [f64; 2]| whole >= 1.0 && (low..=high).contains(&whole);
         interval("periods").is_none_or(|own| own[1] >= LEAST_GEARED || holds(own))
@@ -107,7 +107,7 @@ mod tests {
     fn a_slow_ripple_repeats_with_the_joint_itself() {
         let is_certain = |periods: f64, half: f64| {
             let effect = Effect::of(&TorqueRipple).on("a").with("periods", periods);
-            TorqueRipple.is_certain(&effect, &|_| Some([periods - half, periods + half]))
+            TorqueRipple.is_certain(&effect, &|_| Some([periods - half, periods + half]), 0.05)
         };
         assert!(is_certain(4.05, 0.1));
         assert!(!is_certain(4.27, 0.1));

@@ -38,6 +38,7 @@ static SPEC: Spec = Spec {
         rank: 1,
         text: "sweep the joint slowly over more of its range: a straight spring goes on rising where a lever's torque turns back",
     }),
+    may_be_inertial: true,
     ..Spec::EMPTY
 };
 

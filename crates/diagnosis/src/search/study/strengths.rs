@@ -9,7 +9,7 @@ use crate::regression::background::Strengths;
 use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::{Fit, Products};
 use crate::search::problem::{Chosen, Growth, MOST};
-use crate::thresholds::MOVED;
+use crate::thresholds::{MOVED, OWN_STRENGTHS, PER_IMITATION};
 
 /// So many effects may stand together in the place of a part of the background.
 const IN_PLACE: usize = 3;
@@ -43,7 +43,7 @@ impl Study {
         self.prior.variances(link, self.strengths.links[link])
     }
 
-    /// What the score of `chosen`, and the likelihood of the held-out recordings, lose if the links have the URDF's inertial
+    /// What the score of `chosen`, and the likelihood of the held-out recordings, lose if all links have the URDF's inertial
     /// parameters (nats).
     pub fn evidence_of_inertials(
         &self,
@@ -51,18 +51,53 @@ impl Study {
         held: Option<&Products>,
         chosen: &Chosen,
     ) -> (f64, Option<f64>) {
-        let strengths = Strengths {
-            links: vec![0.0; self.arm.dof()],
-            ..self.strengths.clone()
-        };
-        let products = products.with_background(self.prior.at(&strengths));
-        let problem = self.problem(&products);
-        let without = problem.reweighted(problem.choose(chosen.set.clone(), &chosen.fit.weights));
+        let links = vec![0.0; self.arm.dof()];
+        let (products, without) = self.with_links(products, chosen, links);
+        let without = self.problem(&products).reweighted(without);
         let outside = held.map(|held| {
             let loss = |fit: &Fit| held.loss(&held.rss(&self.table, &fit.columns, &fit.coefficients));
             loss(&without.fit) - loss(&chosen.fit)
         });
         (without.score - chosen.score, outside)
+    }
+
+    /// What the score and the loss of `chosen` lose (nats) if `link` differs from the URDF no more than most links.
+    pub fn evidence_of_link(&self, products: &Products, chosen: &Chosen, link: usize) -> [f64; 2] {
+        let mut links = self.strengths.links.clone();
+        links[link] = self.strengths.common();
+        let (_, without) = self.with_links(products, chosen, links);
+        [without.score - chosen.score, without.fit.loss - chosen.fit.loss]
+    }
+
+    /// The links that may differ from the URDF in the place of `link`: each with what the score and the loss of `chosen` lose
+    /// by that (nats).
+    pub fn in_other_links(&self, products: &Products, chosen: &Chosen, link: usize) -> Vec<(usize, [f64; 2])> {
+        let common = self.strengths.common();
+        let as_most = |&other: &usize| self.strengths.links[other] == common;
+        let others: Vec<usize> = (0..self.arm.dof()).filter(as_most).collect();
+        others
+            .into_par_iter()
+            .map(|other| {
+                let mut links = self.strengths.links.clone();
+                links.swap(link, other);
+                let (_, instead) = self.with_links(products, chosen, links);
+                (
+                    other,
+                    [instead.score - chosen.score, instead.fit.loss - chosen.fit.loss],
+                )
+            })
+            .collect()
+    }
+
+    /// The products and the fit of `chosen` with other strengths of the links' inertial parameters.
+    fn with_links(&self, products: &Products, chosen: &Chosen, links: Vec<f64>) -> (Products, Chosen) {
+        let strengths = Strengths {
+            links,
+            ..self.strengths.clone()
+        };
+        let products = products.with_background(self.prior.at(&strengths));
+        let next = self.problem(&products).choose(chosen.set.clone(), &chosen.fit.weights);
+        (products, next)
     }
 
     /// The strengths, stronger somewhere than the present ones, at which a background without `set`'s other members does best:
@@ -112,7 +147,9 @@ impl Study {
             self.note_tried(&chosen, &std::mem::take(&mut growth.tried));
             let mut stronger = self.strengthened(&bare, &chosen, self.strengths.neighbours());
             if grown.is_none() && stronger.is_none() {
-                stronger = self.strengthened(&bare, &chosen, self.strengths.with_other_links());
+                let others = self.strengths.with_other_links().into_iter();
+                let others = others.chain(self.strengths.in_one_link()).collect();
+                stronger = self.strengthened(&bare, &chosen, others);
             }
             let (rule, strengths, next) = match (grown, stronger) {
                 (Some(next), None) => ("largest gain", None, problem.reweighted(next)),
@@ -175,7 +212,13 @@ impl Study {
     pub fn with_best_strengths(&mut self, mut chosen: Chosen) -> Chosen {
         let bare = self.bare_products(|r| self.fitted[r]);
         for _ in 0..MOST_MOVES {
-            let next = [Strengths::neighbours, Strengths::with_other_links, Strengths::finer]
+            let kinds = [
+                Strengths::neighbours,
+                Strengths::with_other_links,
+                Strengths::in_one_link,
+                Strengths::finer,
+            ];
+            let next = kinds
                 .into_iter()
                 .find_map(|others| self.strengthened(&bare, &chosen, others(&self.strengths)));
             match next {
@@ -185,6 +228,43 @@ impl Study {
                     chosen = next;
                 }
                 None => break,
+            }
+        }
+        chosen
+    }
+
+    /// `chosen` with another body of a link in the place of the effects on its joint that may together imitate it: a scale of the
+    /// link and a spring on a lever are a centre of mass elsewhere. Effects that are clearly better stay.
+    pub fn without_imitations(&mut self, mut chosen: Chosen) -> Chosen {
+        let bare = self.bare_products(|r| self.fitted[r]);
+        for link in 0..self.arm.dof() {
+            let imitates = |&c: &usize| {
+                let candidate = &self.candidates[c];
+                candidate.joint == Some(link) && candidate.cause.spec().may_be_inertial
+            };
+            let (imitations, rest): (Vec<usize>, Vec<usize>) = chosen.set.iter().copied().partition(imitates);
+            if imitations.len() < 2 {
+                continue;
+            }
+            let own = self.strengths.links[link];
+            let trials = OWN_STRENGTHS.into_iter().filter(|&rho| rho > own).map(|rho| {
+                let mut strengths = self.strengths.clone();
+                strengths.links[link] = rho;
+                strengths
+            });
+            let trials = trials.filter(|strengths| self.stated.allows(strengths));
+            let bodies = trials.map(|strengths| {
+                let products = bare.with_background(self.prior.at(&strengths));
+                let next = self.problem(&products).choose(rest.clone(), &chosen.fit.weights);
+                (strengths, next)
+            });
+            let best = bodies.min_by(|a, b| a.1.score.total_cmp(&b.1.score));
+            if let Some((strengths, next)) = best
+                && next.score < chosen.score + PER_IMITATION
+            {
+                self.strengths = strengths;
+                self.note_strengths("one link in the place of effects that imitate it", &chosen, &next);
+                chosen = next;
             }
         }
         chosen
