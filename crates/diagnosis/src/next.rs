@@ -235,15 +235,16 @@ fn confusions(
             let is_it = |c: &usize| {
                 let other = &study.candidates[*c];
                 let finer = this.columns.iter().all(|column| other.columns.contains(column));
-                other.cause.name() == Some(rival.effect) && !finer && (other.joint == joint)
+                other.hypothesis.name() == Some(rival.effect) && !finer && (other.joint == joint)
             };
             let forms: Vec<usize> = (0..study.candidates.len()).filter(is_it).collect();
-            let is_alias = alias.is_some_and(|(cause, place)| cause.name() == Some(rival.effect) && place == joint);
+            let is_alias =
+                alias.is_some_and(|(hypothesis, place)| hypothesis.name() == Some(rival.effect) && place == joint);
             let instead: Vec<(Vec<usize>, Vec<usize>)> = if is_alias {
                 // Fitted in the finding's place it is the finding itself.
                 vec![(chosen.fit.columns.clone(), Vec::new())]
-            } else if this.cause.spec().same_on_all_joints == Some(rival.effect) {
-                let is_factor = |c: &usize| study.candidates[*c].cause.name() == Some(rival.effect);
+            } else if this.hypothesis.spec().same_on_all_joints == Some(rival.effect) {
+                let is_factor = |c: &usize| study.candidates[*c].hypothesis.name() == Some(rival.effect);
                 let all: Vec<usize> = (0..study.candidates.len()).filter(is_factor).collect();
                 vec![(with(&all), all)]
             } else {
@@ -296,7 +297,7 @@ fn visible<'a>(study: &Study, chosen: &Chosen, hidden: &'a [NotObservable]) -> V
         let parameter = *spec.main.first()?;
         let mut candidates = study.candidates.iter();
         let candidate = candidates
-            .find(|candidate| candidate.cause.name() == Some(entry.effect) && candidate.joint == Some(joint))?;
+            .find(|candidate| candidate.hypothesis.name() == Some(entry.effect) && candidate.joint == Some(joint))?;
         let column = candidate
             .columns
             .iter()

@@ -80,7 +80,7 @@ impl Study {
     fn described(&self, candidate: usize) -> (String, Option<String>) {
         let candidate = &self.candidates[candidate];
         let joint = candidate.joint.map(|joint| self.arm.joints()[joint].name.clone());
-        (candidate.cause.spec().name.to_owned(), joint)
+        (candidate.hypothesis.spec().name.to_owned(), joint)
     }
 
     /// Notes what `rule` made of `before`.

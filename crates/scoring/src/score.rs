@@ -31,7 +31,7 @@ pub struct Tried {
     pub true_terms: Option<Answer>,
     /// A wrong term in place of a true one.
     pub wrong_term: Option<Answer>,
-    /// The tracking error of a task with the diagnosed causes over that with the exact model, where a task was tracked.
+    /// The tracking error of a task with the diagnosed effects over that with the exact model, where a task was tracked.
     pub tracking_over_exact: Option<f64>,
     /// The tracking error over that with the exact model in a loop without the velocity filter's lag, where nothing but the model differs.
     pub tracking_over_exact_without_lag: Option<f64>,
@@ -90,7 +90,7 @@ pub struct Score {
     pub over_true_terms: Errors,
     /// The ratio of held-out errors over joints instead of cases.
     pub over_true_terms_by_joint: Errors,
-    /// Tracking error with the diagnosed causes over the exact model's, of the cases in which a task was tracked.
+    /// Tracking error with the diagnosed effects over the exact model's, of the cases in which a task was tracked.
     pub tracking_over_exact: Errors,
     /// Tracking errors over those with the exact model, without the velocity filter's lag.
     pub tracking_over_exact_without_lag: Errors,

@@ -163,7 +163,7 @@ pub fn targets(score: &Score) -> Vec<Target> {
         ),
         target(
             Figure::Tracking,
-            "tracking error with the diagnosed cause over the exact model’s, median",
+            "tracking error with the diagnosed effects over the exact model’s, median",
             tracking.median,
             at_most(1.5),
             tracking.count,

@@ -39,7 +39,7 @@ pub fn findings(study: &Study, named: &Chosen, inputs: &[Input<'_>]) -> Vec<Find
     for joint in 0..study.motions.dof {
         let already = named.set.iter().any(|&c| {
             let candidate = &study.candidates[c];
-            candidate.joint == Some(joint) && candidate.cause.is(&JointElasticity)
+            candidate.joint == Some(joint) && candidate.hypothesis.is(&JointElasticity)
         });
         if !already {
             list.extend(deflection(study, joint, inputs));

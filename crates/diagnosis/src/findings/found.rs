@@ -9,7 +9,7 @@ use crate::findings::report::{Confusable, Finding, Place};
 use crate::findings::rivals::{Standing, standing};
 use crate::regression::bootstrap::Resampled;
 use crate::regression::fit::{Fit, Products};
-use crate::search::candidate::Cause;
+use crate::search::candidate::Hypothesis;
 use crate::search::problem::Problem;
 use crate::search::study::Study;
 use crate::selection::judge::{Member, Selection};
@@ -79,7 +79,7 @@ fn finding(
         .filter(|(_, share)| **share > 1e-4)
         .map(|(joint, share)| (joint_name(joint), *share))
         .collect();
-    let place = place(study, candidate.cause, member.candidate);
+    let place = place(study, candidate.hypothesis, member.candidate);
     let gain = held_out_gain(study, problem, held, judged, member);
     let mut list = Vec::new();
     for (k, named) in name(study, resampled, member.candidate).into_iter().enumerate() {
@@ -105,9 +105,9 @@ fn finding(
             held_out_gain: gain,
             confusable_with: if k == 0 {
                 let mut list: Vec<Confusable> = Vec::new();
-                for &(cause, joint) in &standing.rivals {
+                for &(hypothesis, joint) in &standing.rivals {
                     let rival = Confusable {
-                        effect: cause.name().unwrap_or_default(),
+                        effect: hypothesis.name().unwrap_or_default(),
                         joint: joint.map(joint_name),
                     };
                     if !list.contains(&rival) {
@@ -197,7 +197,7 @@ fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joi
     1.0 - (with / f64::max(bare, 1e-300)).sqrt()
 }
 
-fn place(study: &Study, cause: Cause, candidate: usize) -> Place {
+fn place(study: &Study, hypothesis: Hypothesis, candidate: usize) -> Place {
     if let Some([from, to]) = study.window(candidate) {
         let at = study.motions.recording_at(0.5 * (from + to));
         // Refinement may have put an end just beyond the recording's.
@@ -216,7 +216,7 @@ fn place(study: &Study, cause: Cause, candidate: usize) -> Place {
     }
     let joint = &study.arm.joints()[study.candidates[candidate].joint.unwrap_or(0)];
     Place {
-        state: cause.kind.get().region(&study.terms(candidate), joint.kind),
+        state: hypothesis.kind.get().region(&study.terms(candidate), joint.kind),
         ..Place::default()
     }
 }

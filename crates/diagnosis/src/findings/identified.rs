@@ -21,9 +21,9 @@ pub fn identified(study: &Study) -> Vec<Option<f64>> {
     let products = study.products_at(&strengths);
     let problem = study.problem(&products);
     let is_part = |&candidate: &usize| {
-        let cause = study.candidates[candidate].cause;
+        let hypothesis = study.candidates[candidate].hypothesis;
         let always = study.terms(candidate).iter().all(|term| term.onset().is_none());
-        let is = |kind: &'static dyn effects::EffectKind| cause.is(kind);
+        let is = |kind: &'static dyn effects::EffectKind| hypothesis.is(kind);
         always && (is(&ViscousFriction) || is(&CoulombFriction) || is(&RotorInertia) || is(&TorqueOffset))
     };
     let set: Vec<usize> = (0..study.candidates.len()).filter(is_part).collect();

@@ -213,7 +213,7 @@ pub fn inertials(
     let has_payload = judged
         .members
         .iter()
-        .any(|member| study.candidates[member.candidate].cause.is(&Payload));
+        .any(|member| study.candidates[member.candidate].hypothesis.is(&Payload));
     for &link in apart.iter().filter(|&&link| !(has_payload && link + 1 == dof)) {
         let name = &study.arm.joints()[link].name;
         let parameters = list

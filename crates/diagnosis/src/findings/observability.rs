@@ -75,7 +75,7 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
         .iter()
         .map(|&c| &study.candidates[c])
         .filter(|candidate| candidate.joint == Some(joint))
-        .map(|candidate| candidate.cause.kind)
+        .map(|candidate| candidate.hypothesis.kind)
         .collect();
     let mut list = Vec::new();
     for kind in in_turn().filter(|kind| !found.contains(kind)) {
@@ -186,7 +186,7 @@ fn of(study: &Study, kind: Kind, joint: usize) -> impl Iterator<Item = &Candidat
     study
         .candidates
         .iter()
-        .filter(move |candidate| candidate.cause.kind == kind && candidate.joint == Some(joint))
+        .filter(move |candidate| candidate.hypothesis.kind == kind && candidate.joint == Some(joint))
 }
 
 /// The evidence that a name needs here (nats).

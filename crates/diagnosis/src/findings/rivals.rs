@@ -1,11 +1,11 @@
-//! What a finding could be instead: other causes, fitted in its place with all else refitted.
+//! What a finding could be instead: other hypotheses, fitted in its place with all else refitted.
 
 use effects::arm::InertialParameters;
 use effects::friction::{CoulombFriction, FrictionAsymmetry};
 use effects::sensor::TorqueOffset;
 use rayon::prelude::*;
 
-use crate::search::candidate::Cause;
+use crate::search::candidate::Hypothesis;
 use crate::search::problem::{Chosen, Problem};
 use crate::search::study::Study;
 use crate::thresholds::{MARGIN_SCALE, NEARLY, NEARLY_NATS, SUREST};
@@ -17,7 +17,7 @@ const TRIED: usize = 8;
 #[derive(Clone, Debug)]
 pub struct Standing {
     /// Causes that explain nearly as much, the best first.
-    pub rivals: Vec<(Cause, Option<usize>)>,
+    pub rivals: Vec<(Hypothesis, Option<usize>)>,
     /// How much better the finding is than its best rival (nats).
     pub margin: f64,
 }
@@ -49,7 +49,7 @@ pub fn beside(study: &Study, chosen: &Chosen, member: usize) -> Vec<usize> {
     // A form of something simpler stands against that with something else.
     let plain = (0..study.candidates.len()).find(|&c| {
         let plain = &study.candidates[c];
-        Some(plain.cause) == finding.cause.plain()
+        Some(plain.hypothesis) == finding.hypothesis.plain()
             && plain.joint == finding.joint
             && finding.columns.len() > 1
             && finding.columns.contains(&plain.columns[0])
@@ -64,17 +64,17 @@ pub fn beside(study: &Study, chosen: &Chosen, member: usize) -> Vec<usize> {
 
 /// The other name of the machine that `member` says, if it has one: dry friction that from some time on differs by direction is
 /// the same level, and a constant from then on. No motion tells the two apart. `set` is what stands [`beside`] it.
-pub fn alias(study: &Study, chosen: &Chosen, member: usize, set: &[usize]) -> Option<(Cause, Option<usize>)> {
+pub fn alias(study: &Study, chosen: &Chosen, member: usize, set: &[usize]) -> Option<(Hypothesis, Option<usize>)> {
     let finding = &study.candidates[member];
     let constant = *finding.columns.first()?;
-    let sets_in = finding.cause.is(&TorqueOffset) && study.table.terms[constant].onset().is_some();
+    let sets_in = finding.hypothesis.is(&TorqueOffset) && study.table.terms[constant].onset().is_some();
     let is_larger_friction = |&c: &usize| {
         let other = &study.candidates[c];
-        other.cause.is(&CoulombFriction)
+        other.hypothesis.is(&CoulombFriction)
             && other.joint == finding.joint
             && chosen.fit.coefficient(other.columns[0]) > chosen.fit.coefficient(constant).abs()
     };
-    (sets_in && set.iter().any(is_larger_friction)).then_some((Cause::of(&FrictionAsymmetry), finding.joint))
+    (sets_in && set.iter().any(is_larger_friction)).then_some((Hypothesis::of(&FrictionAsymmetry), finding.joint))
 }
 
 /// Tries everything else in the place of `member`.
@@ -84,18 +84,18 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
     let without = problem.choose(set.clone(), &chosen.fit.weights);
     let is_other = |c: usize| {
         let other = &study.candidates[c];
-        let same_name = other.cause.name() == finding.cause.name() && other.joint == finding.joint;
-        // What holds all of the finding's columns and more is a finer form of it, not another cause.
+        let same_name = other.hypothesis.name() == finding.hypothesis.name() && other.joint == finding.joint;
+        // What holds all of the finding's columns and more is a finer form of it, not another hypothesis.
         let finer = finding.columns.iter().all(|column| other.columns.contains(column));
         // A body's inertia is felt by all joints before it: what one link has too much, its neighbour may have.
-        let are_links = finding.cause.kind == other.cause.kind && finding.cause.is_wrong_mass();
+        let are_links = finding.hypothesis.kind == other.hypothesis.kind && finding.hypothesis.is_wrong_mass();
         !same_name
             && !finer
-            && other.cause.name().is_some()
+            && other.hypothesis.name().is_some()
             && (other.joint == finding.joint || other.joint.is_none() || finding.joint.is_none() || are_links)
             && !set.iter().any(|&known| {
                 let known = &study.candidates[known];
-                known.cause == other.cause && known.joint == other.joint
+                known.hypothesis == other.hypothesis && known.joint == other.joint
             })
     };
     let mut promises: Vec<(f64, usize)> = (0..study.candidates.len())
@@ -104,12 +104,12 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         .map(|c| (problem.promise(&without, c), c))
         .collect();
     promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    // The best size of each cause.
+    // The best size of each hypothesis.
     let mut tried: Vec<usize> = Vec::new();
     for &(_, c) in &promises {
         let same = |&&known: &&usize| {
             let (a, b) = (&study.candidates[known], &study.candidates[c]);
-            a.cause == b.cause && a.joint == b.joint
+            a.hypothesis == b.hypothesis && a.joint == b.joint
         };
         if tried.iter().find(same).is_none() {
             tried.push(c);
@@ -118,38 +118,52 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
             break;
         }
     }
-    let mut sets: Vec<(Cause, Option<usize>, Vec<usize>)> = tried
+    let mut sets: Vec<(Hypothesis, Option<usize>, Vec<usize>)> = tried
         .iter()
-        .map(|&c| (study.candidates[c].cause, study.candidates[c].joint, vec![c]))
+        .map(|&c| (study.candidates[c].hypothesis, study.candidates[c].joint, vec![c]))
         .collect();
-    if let Some(same) = finding.cause.spec().same_on_all_joints {
+    if let Some(same) = finding.hypothesis.spec().same_on_all_joints {
         // Masses all too large, or torques all measured too large: one and the same without a known load.
         let factors: Vec<usize> = (0..study.candidates.len())
-            .filter(|&c| study.candidates[c].cause.name() == Some(same))
+            .filter(|&c| study.candidates[c].hypothesis.name() == Some(same))
             .collect();
         for &c in &factors {
-            sets.push((study.candidates[c].cause, study.candidates[c].joint, factors.clone()));
+            sets.push((
+                study.candidates[c].hypothesis,
+                study.candidates[c].joint,
+                factors.clone(),
+            ));
         }
     }
     let explained = without.fit.loss - chosen.fit.loss;
-    let identical = alias(study, chosen, member, &set).map(|(cause, joint)| (0.0, 0.0, cause, joint));
+    let identical = alias(study, chosen, member, &set).map(|(hypothesis, joint)| (0.0, 0.0, hypothesis, joint));
     let allowance = allowance(explained);
-    let mut results: Vec<(f64, f64, Cause, Option<usize>)> = sets
+    let mut results: Vec<(f64, f64, Hypothesis, Option<usize>)> = sets
         .into_par_iter()
-        .filter_map(|(cause, joint, added)| {
+        .filter_map(|(hypothesis, joint, added)| {
             let mut next = set.clone();
             next.extend(&added);
             let next = problem.choose(next, &chosen.fit.weights);
             let possible = added.iter().all(|&c| problem.is_possible(c, &next.fit));
-            possible.then_some((next.fit.loss - chosen.fit.loss, next.score - chosen.score, cause, joint))
+            possible.then_some((
+                next.fit.loss - chosen.fit.loss,
+                next.score - chosen.score,
+                hypothesis,
+                joint,
+            ))
         })
         .collect();
     results.extend(identical);
-    if finding.cause.spec().may_be_inertial {
-        let cause = Cause::of(&InertialParameters);
+    if finding.hypothesis.spec().may_be_inertial {
+        let hypothesis = Hypothesis::of(&InertialParameters);
         let trials = study.in_the_background(problem.products, &set, chosen);
         let results_of = |(link, next): (Option<usize>, Chosen)| {
-            (next.fit.loss - chosen.fit.loss, next.score - chosen.score, cause, link)
+            (
+                next.fit.loss - chosen.fit.loss,
+                next.score - chosen.score,
+                hypothesis,
+                link,
+            )
         };
         let best = trials.into_iter().map(results_of).min_by(|a, b| a.1.total_cmp(&b.1));
         results.extend(best);
@@ -161,7 +175,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         rivals: results
             .into_iter()
             .filter(|(loss, ..)| *loss <= allowance)
-            .map(|(_, _, cause, joint)| (cause, joint))
+            .map(|(_, _, hypothesis, joint)| (hypothesis, joint))
             .collect(),
         margin,
     }

@@ -23,7 +23,7 @@ pub fn traces(
                 return vec![Vec::new(); dof];
             };
             // A drive's inertia named with a spring or a gap has a column of its own.
-            let is_brought = finding.as_effect.kind() != study.candidates[member].cause.kind;
+            let is_brought = finding.as_effect.kind() != study.candidates[member].hypothesis.kind;
             let columns: Vec<usize> = study.candidates[member]
                 .columns
                 .iter()

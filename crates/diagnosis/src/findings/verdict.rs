@@ -17,7 +17,7 @@ pub fn unexplained(study: &Study, judged: &Selection, bursts: &Bursts, left: &[V
     for member in &judged.unmodelled {
         let candidate = &study.candidates[member.candidate];
         let Some(joint) = candidate.joint else { continue };
-        let on = match (candidate.cause.spec().depends_on, candidate.cause.other) {
+        let on = match (candidate.hypothesis.spec().depends_on, candidate.hypothesis.other) {
             ("", _) => continue,
             (kind, Some(other)) => format!("{kind}:{}", study.arm.joints()[other].name),
             (kind, None) => kind.to_owned(),

@@ -1,20 +1,20 @@
-//! What may be the cause: the catalogue's effects, and forms that have no name, each with its columns.
+//! What may explain a residual: the catalogue's effects, and forms that have no name, each with its columns.
 
 use effects::{EffectKind, Grounds, Kind, Spec, Term};
 
 use crate::thresholds::Thresholds;
 
-/// A kind of cause, with the other joint whose motion it depends on; the catalogue's come first.
+/// A kind of hypothesis, with the other joint whose motion it depends on; the catalogue's come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Cause {
+pub struct Hypothesis {
     /// The effect, or the form without a name.
     pub kind: Kind,
     /// The other joint, of what depends on one.
     pub other: Option<usize>,
 }
 
-impl Cause {
-    /// A cause that depends on no other joint.
+impl Hypothesis {
+    /// A hypothesis that depends on no other joint.
     pub fn of(kind: &'static dyn EffectKind) -> Self {
         Self {
             kind: Kind::of(kind),
@@ -67,7 +67,7 @@ impl Cause {
         self.spec().is_wrong_mass
     }
 
-    /// The simpler cause that it is a form of.
+    /// The simpler hypothesis that it is a form of.
     pub fn plain(self) -> Option<Self> {
         let kind = Kind::named(self.spec().plain?)?;
         Some(Self { kind, other: None })
@@ -88,7 +88,7 @@ impl Cause {
 #[derive(Clone, Debug)]
 pub struct Candidate {
     /// What it would be.
-    pub cause: Cause,
+    pub hypothesis: Hypothesis,
     /// Where; `None` is the whole arm.
     pub joint: Option<usize>,
     /// Its columns, as indices into the table.
@@ -101,10 +101,10 @@ pub struct Candidate {
 
 impl Candidate {
     /// A candidate with the usual cost.
-    pub fn new(cause: Cause, joint: Option<usize>, columns: Vec<usize>, thresholds: &Thresholds) -> Self {
-        let cost = cause.spec().prior + thresholds.per_coefficient * columns.len() as f64;
+    pub fn new(hypothesis: Hypothesis, joint: Option<usize>, columns: Vec<usize>, thresholds: &Thresholds) -> Self {
+        let cost = hypothesis.spec().prior + thresholds.per_coefficient * columns.len() as f64;
         Self {
-            cause,
+            hypothesis,
             joint,
             columns,
             cost,
@@ -114,13 +114,13 @@ impl Candidate {
 }
 
 /// The candidates known from the outset, with the terms of their columns, in the order of their turns.
-pub fn catalogue(grounds: &Grounds<'_>) -> Vec<(Cause, Option<usize>, Vec<Term>)> {
+pub fn catalogue(grounds: &Grounds<'_>) -> Vec<(Hypothesis, Option<usize>, Vec<Term>)> {
     let of = |kind: Kind| kind.get().forms(grounds).into_iter().map(move |form| (kind, form));
     let mut forms: Vec<_> = Kind::all().flat_map(of).collect();
     forms.sort_by_key(|(_, form)| form.turn.key(form.joint, form.other));
     let candidate = |(kind, form): (Kind, effects::Form)| {
         let other = form.other;
-        (Cause { kind, other }, form.joint, form.terms)
+        (Hypothesis { kind, other }, form.joint, form.terms)
     };
     forms.into_iter().map(candidate).collect()
 }

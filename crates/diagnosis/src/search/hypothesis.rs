@@ -6,7 +6,7 @@ use effects::drive::FARTHEST_COUPLED;
 
 use crate::diagnose::Options;
 use crate::error::DiagnosisError;
-use crate::search::candidate::Cause;
+use crate::search::candidate::Hypothesis;
 use crate::search::problem::{Chosen, Problem};
 use crate::search::refine::resize;
 use crate::search::study::Study;
@@ -48,13 +48,13 @@ impl Wanted {
     }
 }
 
-/// Whether a cause is a candidate on a joint, or (`None`) on the whole arm: all are, unless certain effects were asked for.
-pub fn may_be(options: &Options, arm: &Arm, cause: Cause, joint: Option<usize>) -> bool {
+/// Whether a hypothesis is a candidate on a joint, or (`None`) on the whole arm: all are, unless certain effects were asked for.
+pub fn may_be(options: &Options, arm: &Arm, hypothesis: Hypothesis, joint: Option<usize>) -> bool {
     options.only.as_ref().is_none_or(|wanted| {
         let joint = joint.map(|joint| &arm.joints()[joint].name);
         let is_wanted = |one: &Wanted| {
             let is_there = joint == one.joint.as_ref() || (joint.is_some() && joint == one.other.as_ref());
-            cause.name() == Some(&one.effect) && is_there
+            hypothesis.name() == Some(&one.effect) && is_there
         };
         wanted.iter().any(is_wanted)
     })
@@ -171,10 +171,11 @@ fn best(
     let is_form = |&c: &usize| {
         let candidate = &problem.candidates[c];
         // What was asked for twice is there twice, not once in two sizes.
-        let is_twin = |&other: &usize| problem.candidates[other].cause == candidate.cause && problem.exclude(c, other);
-        let with = candidate.cause.other;
+        let is_twin =
+            |&other: &usize| problem.candidates[other].hypothesis == candidate.hypothesis && problem.exclude(c, other);
+        let with = candidate.hypothesis.other;
         let is_pair = with.is_none() || other.is_none() || other == with;
-        candidate.cause.name() == Some(wanted.effect.as_str())
+        candidate.hypothesis.name() == Some(wanted.effect.as_str())
             && candidate.joint == joint
             && is_pair
             && !others.iter().any(is_twin)

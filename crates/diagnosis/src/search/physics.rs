@@ -1,4 +1,4 @@
-//! What a coefficient must be for its cause to be possible.
+//! What a coefficient must be for its hypothesis to be possible.
 
 use arm::Arm;
 use effects::{Fitted, Term, UNIT};
@@ -60,7 +60,7 @@ impl Fitted for InFit<'_> {
 pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bool {
     // What every drive has may well be hidden by masses that are wrong the other way.
     let cancels = |joint| torque_share(candidate, table, fit, joint) >= LARGEST_TORQUE_SHARE;
-    if !candidate.cause.is_baseline() && candidate.joint.is_some_and(cancels) {
+    if !candidate.hypothesis.is_baseline() && candidate.joint.is_some_and(cancels) {
         return false;
     }
     is_physical(candidate, table, fit, arm)
@@ -68,7 +68,7 @@ pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -
 
 /// Whether the effect of `candidate` exists at the coefficients of `fit`, whatever it is to explain.
 fn is_physical(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bool {
-    candidate.cause.kind.get().is_possible(&InFit {
+    candidate.hypothesis.kind.get().is_possible(&InFit {
         candidate,
         table,
         fit,
@@ -96,7 +96,7 @@ pub fn is_beyond_physics(size: f64, column: usize, candidate: &Candidate, table:
 
 /// Whether what is simulated at its size comes out with a coefficient near one.
 pub fn is_at_its_size(candidate: &Candidate, fit: &Fit) -> bool {
-    !candidate.cause.is_unit() || UNIT.contains(&fit.coefficient(candidate.columns[0]))
+    !candidate.hypothesis.is_unit() || UNIT.contains(&fit.coefficient(candidate.columns[0]))
 }
 
 /// The root mean square of a candidate's torque over that of what it is to explain, on moving rows.

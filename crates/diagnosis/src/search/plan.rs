@@ -18,14 +18,14 @@ const LAST: usize = 3;
 /// Finds the candidates that together explain the training recordings. `progress` is told what is going on.
 pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
     let baseline: Vec<usize> = (0..study.candidates.len())
-        .filter(|&c| study.candidates[c].cause.is_friction())
+        .filter(|&c| study.candidates[c].hypothesis.is_friction())
         .collect();
     let products = study.training_products();
     let mut chosen = study.problem(&products).choose(baseline, &products.first_weights());
     for round in 1..=SUGGESTIONS {
         progress(Step::new(
             0.12 + 0.08 * round as f64,
-            &format!("looking for causes, round {round}"),
+            &format!("looking for effects, round {round}"),
         ));
         let before = chosen.set.clone();
         // What has no name must not hide what the residual suggests, nor what was suggested when little else was known: a
@@ -35,9 +35,9 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
             .iter()
             .copied()
             .filter(|&c| {
-                let cause = study.candidates[c].cause;
+                let hypothesis = study.candidates[c].hypothesis;
                 let sets_in = study.terms(c).iter().any(|term| term.onset().is_some());
-                cause.name().is_some() && !sets_in && !cause.spec().is_suggested
+                hypothesis.name().is_some() && !sets_in && !hypothesis.spec().is_suggested
             })
             .collect();
         let next = study.problem(&products).choose(named, &chosen.fit.weights);

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::regression::fit::{Fit, Products};
 use crate::regression::table::Table;
-use crate::search::candidate::{Candidate, Cause};
+use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::physics::is_possible;
 use crate::thresholds::{KNOWN_DRIVE, TELLING_DRIVES, Thresholds};
 
@@ -87,7 +87,7 @@ impl Problem<'_> {
         let counted: usize = set.iter().map(|&c| self.candidates[c].columns.len()).sum();
         let drives = set
             .iter()
-            .filter(|&&c| self.candidates[c].cause.is_drive_inertia())
+            .filter(|&&c| self.candidates[c].hypothesis.is_drive_inertia())
             .count();
         own - self.thresholds.per_coefficient * (counted - self.columns(set).len()) as f64
             - KNOWN_DRIVE * drives.saturating_sub(TELLING_DRIVES) as f64
@@ -111,7 +111,7 @@ impl Problem<'_> {
     fn misfit(&self, set: &[usize], fit: &Fit) -> f64 {
         set.iter()
             .map(|&c| &self.candidates[c])
-            .filter(|candidate| candidate.cause.is_unit())
+            .filter(|candidate| candidate.hypothesis.is_unit())
             .map(|candidate| {
                 let coefficient = fit.coefficient(candidate.columns[0]).max(1e-3);
                 0.5 * (coefficient.ln() / self.thresholds.unit_spread).powi(2)
@@ -174,8 +174,8 @@ impl Problem<'_> {
         promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         promises.retain(|(promise, _)| *promise > 0.0);
         // Of each kind the most promising first: what contains something simpler promises as much as that, in all its sizes.
-        let kind = |c: usize| (self.candidates[c].joint, self.candidates[c].cause);
-        let mut of_kind: HashMap<(Option<usize>, Cause), usize> = HashMap::new();
+        let kind = |c: usize| (self.candidates[c].joint, self.candidates[c].hypothesis);
+        let mut of_kind: HashMap<(Option<usize>, Hypothesis), usize> = HashMap::new();
         let mut turns: Vec<(usize, usize)> = promises
             .into_iter()
             .map(|(_, candidate)| {
@@ -238,7 +238,7 @@ impl Problem<'_> {
         if self.is_unmodelled(candidate) {
             let is_friction = |c: &usize| {
                 let other = &self.candidates[*c];
-                other.joint == self.candidates[candidate].joint && other.cause.is_friction()
+                other.joint == self.candidates[candidate].joint && other.hypothesis.is_friction()
             };
             for friction in (0..self.candidates.len()).filter(is_friction) {
                 if !set
@@ -254,13 +254,13 @@ impl Problem<'_> {
     }
 
     fn is_unmodelled(&self, candidate: usize) -> bool {
-        self.candidates[candidate].cause.name().is_none()
+        self.candidates[candidate].hypothesis.name().is_none()
     }
 
     /// Whether a member of `set` may be taken out for its price: baseline friction may not, beside what has no name.
     fn may_go(&self, set: &[usize], member: usize) -> bool {
         let this = &self.candidates[member];
-        !this.cause.is_friction()
+        !this.hypothesis.is_friction()
             || !set
                 .iter()
                 .any(|&c| self.is_unmodelled(c) && self.candidates[c].joint == this.joint)
@@ -269,13 +269,14 @@ impl Problem<'_> {
     /// Whether an effect says what the background could say in its place, at a higher price: then it does not predict more, but
     /// for fewer nats.
     pub fn is_background_too(&self, candidate: &Candidate) -> bool {
-        self.products.has_background() && candidate.cause.is_certain_in_form()
+        self.products.has_background() && candidate.hypothesis.is_certain_in_form()
     }
 
     /// Whether `candidate` helps to predict what it was not fitted to.
     fn predicts(&self, chosen: &Chosen, candidate: usize) -> bool {
         let candidate = &self.candidates[candidate];
-        if candidate.cause.is_passing() || candidate.cause.is_baseline() || self.is_background_too(candidate) {
+        if candidate.hypothesis.is_passing() || candidate.hypothesis.is_baseline() || self.is_background_too(candidate)
+        {
             return true;
         }
         let columns = &chosen.fit.columns;
@@ -290,7 +291,7 @@ impl Problem<'_> {
             .products
             .gains(self.table, joint, columns, &candidate.columns, weights);
         outside
-            > if candidate.cause.name().is_none() {
+            > if candidate.hypothesis.name().is_none() {
                 self.thresholds.predicted * inside
             } else {
                 0.0
@@ -339,7 +340,7 @@ impl Problem<'_> {
         let onset = |c: &Candidate| self.onset(c);
         let is_plain = |&c: &usize| {
             let plain = &self.candidates[c];
-            Some(plain.cause) == candidate.cause.plain()
+            Some(plain.hypothesis) == candidate.hypothesis.plain()
                 && plain.joint == candidate.joint
                 && onset(plain).is_some() == onset(candidate).is_some()
         };

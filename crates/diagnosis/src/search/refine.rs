@@ -165,9 +165,9 @@ pub fn resize(study: &mut Study, mut chosen: Chosen, again: bool) -> Chosen {
         let options: Vec<(usize, Vec<usize>)> = options
             .into_iter()
             .map(|(member, list)| {
-                let (cause, joint) = (study.candidates[member].cause, study.candidates[member].joint);
+                let (hypothesis, joint) = (study.candidates[member].hypothesis, study.candidates[member].joint);
                 let known = study.candidates.len();
-                let add = |terms| study.add(cause, joint, terms);
+                let add = |terms| study.add(hypothesis, joint, terms);
                 let indices = list.into_iter().map(add).collect();
                 study.candidates[known..]
                     .iter_mut()

@@ -13,7 +13,7 @@ use crate::diagnose::Options;
 use crate::regression::background::{Background, Prior, Stated, Strengths};
 use crate::regression::fit::Products;
 use crate::regression::table::{Moving, Table};
-use crate::search::candidate::{Candidate, Cause, catalogue};
+use crate::search::candidate::{Candidate, Hypothesis, catalogue};
 use crate::search::hypothesis;
 use crate::search::problem::Problem;
 use crate::thresholds::{LEAST_FOR_DYNAMICS, RESTING, RESTING_REACH, Thresholds};
@@ -70,7 +70,7 @@ pub struct Study {
     /// What was decided so far.
     pub trace: Trace,
     /// What the final fit showed not to be: it is not looked for again.
-    refused: Vec<(Cause, Option<usize>)>,
+    refused: Vec<(Hypothesis, Option<usize>)>,
 }
 
 impl Study {
@@ -121,19 +121,21 @@ impl Study {
             inertial: &measure::inertial(&motions, &rigid, &scales.torque),
         });
         if motions.cutoff < LEAST_FOR_DYNAMICS {
-            list.retain(|(cause, ..)| !cause.is_unit());
+            list.retain(|(hypothesis, ..)| !hypothesis.is_unit());
         }
-        list.retain(|(cause, joint, _)| hypothesis::may_be(options, &arm, *cause, *joint));
+        list.retain(|(hypothesis, joint, _)| hypothesis::may_be(options, &arm, *hypothesis, *joint));
         if let Some(at) = motions.changed_at {
             // Whatever has a name may have come since the recordings from before.
             let new: Vec<_> = list
                 .iter()
-                .filter(|(cause, ..)| cause.name().is_some() && !cause.is_unit())
-                .map(|(cause, joint, terms)| (*cause, *joint, terms.iter().map(|term| term.since(at)).collect()))
+                .filter(|(hypothesis, ..)| hypothesis.name().is_some() && !hypothesis.is_unit())
+                .map(|(hypothesis, joint, terms)| {
+                    (*hypothesis, *joint, terms.iter().map(|term| term.since(at)).collect())
+                })
                 .collect();
             list.extend(new);
         }
-        for (cause, joint, columns) in list {
+        for (hypothesis, joint, columns) in list {
             let columns = columns
                 .into_iter()
                 .map(|term| {
@@ -143,7 +145,7 @@ impl Study {
                     })
                 })
                 .collect();
-            candidates.push(Candidate::new(cause, joint, columns, &thresholds));
+            candidates.push(Candidate::new(hypothesis, joint, columns, &thresholds));
         }
         let always = contact_columns(f64::NEG_INFINITY, f64::INFINITY, false);
         let force = [0, 1, 2].map(|k| terms.len() + k);
@@ -287,7 +289,7 @@ impl Study {
     }
 
     /// A new candidate with new columns; its index.
-    pub fn add(&mut self, cause: Cause, joint: Option<usize>, terms: Vec<Term>) -> usize {
+    pub fn add(&mut self, hypothesis: Hypothesis, joint: Option<usize>, terms: Vec<Term>) -> usize {
         let columns: Vec<usize> = terms
             .iter()
             .filter_map(|term| self.table.terms.iter().position(|known| known == term))
@@ -307,12 +309,12 @@ impl Study {
                 .collect()
         };
         let same = |candidate: &Candidate| {
-            candidate.cause == cause && candidate.joint == joint && candidate.columns == columns
+            candidate.hypothesis == hypothesis && candidate.joint == joint && candidate.columns == columns
         };
         if let Some(known) = self.candidates.iter().position(same) {
             return known;
         }
-        let mut candidate = Candidate::new(cause, joint, columns, &self.thresholds);
+        let mut candidate = Candidate::new(hypothesis, joint, columns, &self.thresholds);
         if terms.iter().any(|term| term.onset().is_some()) {
             candidate.cost += self.thresholds.per_onset;
         }

@@ -7,7 +7,7 @@ use effects::{EffectKind, Term};
 use rayon::prelude::*;
 
 use crate::data::measure;
-use crate::search::candidate::Cause;
+use crate::search::candidate::Hypothesis;
 use crate::search::problem::Chosen;
 use crate::search::scan;
 use crate::search::study::Study;
@@ -49,7 +49,7 @@ impl Study {
                 )
             })
             .collect();
-        let of = |kind: &'static dyn EffectKind| Cause::of(kind);
+        let of = |kind: &'static dyn EffectKind| Hypothesis::of(kind);
         let mut new = scan::onsets(self, &chosen.fit.weights, &times, &residual);
         for (from, to) in windows {
             for round in [false, true] {
@@ -70,8 +70,8 @@ impl Study {
             .filter(|term| !self.table.terms.contains(term))
             .collect();
         self.table.add(&self.motions, &self.rigid, &self.scales, missing, None);
-        for (cause, joint, terms) in new {
-            self.add(cause, joint, terms);
+        for (hypothesis, joint, terms) in new {
+            self.add(hypothesis, joint, terms);
         }
     }
 

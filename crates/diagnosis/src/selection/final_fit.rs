@@ -129,7 +129,7 @@ fn give_up(study: &Study, judged: &mut Selection) {
     // Friction that explains a part of the training recordings is there, whatever else is.
     let stays = |&candidate: &usize| {
         let candidate = &study.candidates[candidate];
-        let explains = |joint: usize| candidate.cause.is_friction() && left[joint].train_nrmse_augmented < PARTLY;
+        let explains = |joint: usize| candidate.hypothesis.is_friction() && left[joint].train_nrmse_augmented < PARTLY;
         !candidate
             .joint
             .is_some_and(|joint| is_hopeless(joint) && !explains(joint))
@@ -188,7 +188,7 @@ fn may_be_nothing(spec: &Spec, parameters: &BTreeMap<&'static str, Parameter>) -
 /// Whether it is a constant or a drive's inertia no larger than what is left beside it with structure.
 fn is_part_of_the_rest(study: &Study, judged: &Selection, member: &judge::Member) -> bool {
     let candidate = &study.candidates[member.candidate];
-    let Some(factor) = candidate.cause.spec().least_beside_residual else {
+    let Some(factor) = candidate.hypothesis.spec().least_beside_residual else {
         return false;
     };
     let Some(joint) = candidate.joint else { return false };

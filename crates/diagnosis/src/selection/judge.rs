@@ -89,20 +89,20 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
     }
     let (unmodelled, named): (Vec<Member>, Vec<Member>) = members
         .into_iter()
-        .partition(|member| study.candidates[member.candidate].cause.name().is_none());
+        .partition(|member| study.candidates[member.candidate].hypothesis.name().is_none());
     let mut kept = problem.choose(named.iter().map(|m| m.candidate).collect(), &chosen.fit.weights);
     if !unmodelled.is_empty() {
         // What has no name may have stood for something simple: for a constant only if nothing else is left.
         let candidates = &study.candidates;
         let simple: Vec<usize> = (0..candidates.len())
-            .filter(|&c| candidates[c].cause.is_simple())
+            .filter(|&c| candidates[c].hypothesis.is_simple())
             .collect();
         let left: Vec<Option<usize>> = beside(study, &problem, &problem.forward(kept.clone(), &simple), &unmodelled)
             .iter()
             .map(|member| candidates[member.candidate].joint)
             .collect();
         let mut allowed = simple;
-        allowed.retain(|&c| candidates[c].cause.is_baseline() || !left.contains(&candidates[c].joint));
+        allowed.retain(|&c| candidates[c].hypothesis.is_baseline() || !left.contains(&candidates[c].joint));
         let next = problem.forward(kept.clone(), &allowed);
         study.note("stands in for what has no name", &kept, &next);
         kept = next;
@@ -226,8 +226,8 @@ pub fn is_idle(study: &Study, chosen: &Chosen, candidate: usize) -> bool {
 
 /// The member that deserves its place least, if one does not.
 fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
-    let cause = |member: &Member| study.candidates[member.candidate].cause;
-    let is_named = |member: &Member| cause(member).name().is_some();
+    let hypothesis = |member: &Member| study.candidates[member.candidate].hypothesis;
+    let is_named = |member: &Member| hypothesis(member).name().is_some();
     // On each joint, the largest unmodelled form and the largest of the effects that are not baseline.
     let dof = study.motions.dof;
     let largest = |wanted: &dyn Fn(&Member) -> bool, joint: usize| -> f64 {
@@ -243,17 +243,17 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             .max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b]))
             .unwrap_or(0);
         if !is_named(member) {
-            let named = largest(&|m| is_named(m) && !cause(m).is_baseline(), at);
+            let named = largest(&|m| is_named(m) && !hypothesis(m).is_baseline(), at);
             return share < study.thresholds.least_unmodelled_share
                 || member.evidence < study.thresholds.least_unmodelled_evidence
                 || share < study.thresholds.beside_a_larger * named;
         }
         let unmodelled = largest(&|m| !is_named(m), at);
-        if cause(member).is_baseline() {
+        if hypothesis(member).is_baseline() {
             // Beside larger structure without a name a drive's inertia may be a part of that.
-            return cause(member).is_drive_inertia() && share < unmodelled.max(LEAST_DRIVE);
+            return hypothesis(member).is_drive_inertia() && share < unmodelled.max(LEAST_DRIVE);
         }
-        let needed = if cause(member).plain().is_some() {
+        let needed = if hypothesis(member).plain().is_some() {
             study.thresholds.least_beyond
         } else {
             study.thresholds.least_evidence
@@ -262,22 +262,30 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
         let stands_out = |joint: usize| {
             let others = |certain: bool| {
                 let is_other = |m: &Member| {
-                    let cause = cause(m);
-                    let is_known = is_named(m) && !cause.is_baseline() && cause.is_certain_in_form() == certain;
+                    let hypothesis = hypothesis(m);
+                    let is_known =
+                        is_named(m) && !hypothesis.is_baseline() && hypothesis.is_certain_in_form() == certain;
                     m.candidate != member.candidate && is_known
                 };
                 largest(&is_other, joint)
             };
             let share = member.shares[joint];
-            let alike = |&(name, part): &(&str, f64)| part * largest(&|m| cause(m).name() == Some(name), joint);
-            let alike = cause(member).spec().least_beside.iter().map(alike).fold(0.0, f64::max);
+            let alike = |&(name, part): &(&str, f64)| part * largest(&|m| hypothesis(m).name() == Some(name), joint);
+            let alike = hypothesis(member)
+                .spec()
+                .least_beside
+                .iter()
+                .map(alike)
+                .fold(0.0, f64::max);
             share >= study.thresholds.least_share
                 && share >= alike
                 && share >= study.thresholds.beside_a_larger * others(false)
                 && share >= study.thresholds.beside_a_certain * others(true)
                 && share >= study.thresholds.beside_unmodelled * largest(&|m| !is_named(m), joint)
         };
-        member.evidence < needed || member.beyond < cause(member).spec().least_beyond_plain || !(0..dof).any(stands_out)
+        member.evidence < needed
+            || member.beyond < hypothesis(member).spec().least_beyond_plain
+            || !(0..dof).any(stands_out)
     };
     (0..members.len())
         .filter(|&k| fails(&members[k]))

@@ -50,7 +50,7 @@ impl Estimate for Reader<'_> {
     }
 
     fn other(&self) -> Option<usize> {
-        self.study.candidates[self.candidate].cause.other
+        self.study.candidates[self.candidate].hypothesis.other
     }
 
     fn terms(&self) -> Vec<Term> {
@@ -102,9 +102,9 @@ impl Estimate for Reader<'_> {
     }
 }
 
-/// Names the effect of `candidate`, if its cause has a name, and what that brings along.
+/// Names the effect of `candidate`, if its hypothesis has a name, and what that brings along.
 pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named> {
-    let kind = study.candidates[candidate].cause.kind;
+    let kind = study.candidates[candidate].hypothesis.kind;
     let mut reader = Reader {
         study,
         resampled,

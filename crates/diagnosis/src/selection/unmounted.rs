@@ -19,7 +19,7 @@ use crate::thresholds::{LEAST_OF_THE_LINK, NEARLY_ALL};
 /// Names a body that is missing at the tool, if the background stands for one; the new resamplings. Other payloads stay what
 /// they are: a part of the background, or named by the search.
 pub fn unmounted(study: &mut Study, judged: &mut Selection) -> Option<Resampled> {
-    let is_payload = |c: usize| study.candidates[c].cause.is(&Payload);
+    let is_payload = |c: usize| study.candidates[c].hypothesis.is(&Payload);
     if study.strengths.links.last().is_none_or(|&rho| rho == 0.0) || judged.named.set.iter().any(|&c| is_payload(c)) {
         return None;
     }

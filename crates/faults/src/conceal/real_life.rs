@@ -1,4 +1,4 @@
-//! What real recordings have beside their causes: a little of everything on every joint, and friction that is another every day.
+//! What real recordings have beside the injected faults: a little of everything on every joint, and friction that is another every day.
 
 use std::f64::consts::TAU;
 

@@ -38,11 +38,11 @@ pub struct Disturbance {
     /// The URDF's masses and inertia tensors over the true ones.
     pub inertia_scale: f64,
     /// What the diagnosis named; empty without an answer.
-    pub findings: Vec<Cause>,
+    pub findings: Vec<NamedEffect>,
     /// Whether that is the scale of all inertias and nothing else.
     pub is_one_finding: bool,
     /// What it could be instead, as it was said.
-    pub aliases: Vec<Cause>,
+    pub aliases: Vec<NamedEffect>,
     /// Whether these are the scales of all joints' torques and nothing else.
     pub aliases_are_all_torque_scales: bool,
     /// The size that was found.
@@ -57,7 +57,7 @@ pub struct Disturbance {
 
 /// An effect and its joint.
 #[derive(Serialize)]
-pub struct Cause {
+pub struct NamedEffect {
     /// The catalogue's name.
     pub effect: String,
     /// The joint; `None` for the whole arm.
@@ -161,15 +161,15 @@ fn recorded(scenario: &Scenario) -> anyhow::Result<Recording> {
 pub fn assess(row: &Row) -> anyhow::Result<Disturbance> {
     let (train, test) = (Scenario::built_in(TRAIN)?, Scenario::built_in(TEST)?);
     let answer = row.tried()?.answer.unwrap_or_default();
-    let cause = |effect: &String, joint: &Option<String>| Cause {
+    let named = |effect: &String, joint: &Option<String>| NamedEffect {
         effect: effect.clone(),
         joint: joint.clone(),
     };
     let main = answer.findings.iter().find(|named| named.effect == EFFECT);
-    let aliases: Vec<Cause> = main
+    let aliases: Vec<NamedEffect> = main
         .iter()
         .flat_map(|named| &named.confusable_with)
-        .map(|other| cause(&other.effect, &other.joint))
+        .map(|other| named(&other.effect, &other.joint))
         .collect();
     let diagnosed = diagnosed(&answer, &test)?;
     let factor = main.and_then(|named| factor(named.parameters.get("factor")?, 1.0 / train.inertia_scale));
@@ -181,7 +181,7 @@ pub fn assess(row: &Row) -> anyhow::Result<Disturbance> {
     Ok(Disturbance {
         inertia_scale: train.inertia_scale,
         is_one_finding: main.is_some() && answer.findings.len() == 1 && answer.unexplained.is_empty(),
-        findings: answer.findings.iter().map(|f| cause(&f.effect, &f.joint)).collect(),
+        findings: answer.findings.iter().map(|f| named(&f.effect, &f.joint)).collect(),
         aliases_are_all_torque_scales: are_all_scales(&aliases, &row.joints),
         aliases,
         factor,
@@ -192,7 +192,7 @@ pub fn assess(row: &Row) -> anyhow::Result<Disturbance> {
 }
 
 /// Whether the aliases are the torque's scale on each of `joints`, once.
-fn are_all_scales(aliases: &[Cause], joints: &[String]) -> bool {
+fn are_all_scales(aliases: &[NamedEffect], joints: &[String]) -> bool {
     let has = |joint: &String| aliases.iter().any(|alias| alias.joint.as_ref() == Some(joint));
     aliases.len() == joints.len() && joints.iter().all(has) && aliases.iter().all(|alias| alias.effect == ALIAS)
 }
@@ -268,7 +268,7 @@ mod tests {
     #[test]
     fn aliases_are_each_joints_scale_and_nothing_else() {
         let joints = ["a".to_owned(), "b".to_owned()];
-        let alias = |effect: &str, joint: &str| Cause {
+        let alias = |effect: &str, joint: &str| NamedEffect {
             effect: effect.to_owned(),
             joint: Some(joint.to_owned()),
         };

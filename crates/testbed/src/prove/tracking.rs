@@ -64,7 +64,7 @@ impl Model {
 
 /// An injected fault of the machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Cause {
+pub struct ConcealedEffect {
     /// Its name in the truth.
     pub effect: String,
     /// The joint; `None` for the whole arm.
@@ -103,7 +103,7 @@ pub struct CaseTracking {
     /// The joints' names, base to tip.
     pub joints: Vec<String>,
     /// The injected faults.
-    pub concealed: Vec<Cause>,
+    pub concealed: Vec<ConcealedEffect>,
     /// What was named, as the diagnosed model has it.
     pub named: Vec<Name>,
     /// One a model, in the order of [`Model::ALL`].
@@ -207,7 +207,7 @@ impl Case<'_> {
             start,
             joints: arm.joints().iter().map(|joint| joint.name.clone()).collect(),
             concealed: concealed
-                .map(|effect| Cause {
+                .map(|effect| ConcealedEffect {
                     effect: effect.effect.clone(),
                     joint: effect.joint.clone(),
                     onset: effect.onset,

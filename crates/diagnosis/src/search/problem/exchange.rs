@@ -6,13 +6,13 @@ use super::{Chosen, Growth, Problem};
 use crate::thresholds::SWAP_GAIN;
 
 impl Problem<'_> {
-    /// `chosen` with one cause that acts on the whole arm, without what that then explains: on several joints at once other
-    /// causes may stand for it, of which none alone gives way.
+    /// `chosen` with one hypothesis that acts on the whole arm, without what that then explains: on several joints at once other
+    /// hypotheses may stand for it, of which none alone gives way.
     fn arm_wide(&self, chosen: &Chosen, allowed: &[usize]) -> Vec<Chosen> {
         let is_free = |c: &usize| {
             let candidate = &self.candidates[*c];
             candidate.joint.is_none()
-                && !candidate.cause.is_passing()
+                && !candidate.hypothesis.is_passing()
                 && !chosen.set.iter().any(|&other| other == *c || self.exclude(*c, other))
         };
         let free: Vec<usize> = allowed.iter().copied().filter(is_free).collect();
@@ -32,7 +32,7 @@ impl Problem<'_> {
     /// together along the arm, so that two wrong ones may look like a third, and one like two others; no exchange of one for
     /// one leads from these to the true ones.
     fn other_masses(&self, chosen: &Chosen, allowed: &[usize]) -> Vec<Chosen> {
-        let is_mass = |c: &usize| self.candidates[*c].cause.is_wrong_mass();
+        let is_mass = |c: &usize| self.candidates[*c].hypothesis.is_wrong_mass();
         let rest: Vec<usize> = chosen.set.iter().copied().filter(|c| !is_mass(c)).collect();
         if rest.len() == chosen.set.len() {
             return Vec::new();
@@ -60,7 +60,7 @@ impl Problem<'_> {
                 .filter_map(|k| {
                     let removed = chosen.set[k];
                     let out = &self.candidates[removed];
-                    if out.cause.is_friction() {
+                    if out.hypothesis.is_friction() {
                         return None;
                     }
                     let without = self.without(&chosen, removed);

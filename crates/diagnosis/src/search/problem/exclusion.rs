@@ -14,7 +14,10 @@ impl Problem<'_> {
         if self.onset(a).is_some() != self.onset(b).is_some() {
             return false;
         }
-        let ([first, second], [one, other]) = ([a, b].map(|c| &self.table.terms[c.columns[0]]), [a.cause, b.cause]);
+        let ([first, second], [one, other]) = (
+            [a, b].map(|c| &self.table.terms[c.columns[0]]),
+            [a.hypothesis, b.hypothesis],
+        );
         if one.kind == other.kind {
             one.other == other.other && one.kind.get().is_same(first, second)
         } else {

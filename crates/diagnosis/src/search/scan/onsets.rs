@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::regression::small::explained;
 use crate::regression::table::Table;
-use crate::search::candidate::Cause;
+use crate::search::candidate::Hypothesis;
 use crate::search::study::Study;
 use crate::thresholds::ONSET_FROM_END;
 
@@ -21,7 +21,7 @@ pub fn onsets(
     weights: &[f64],
     times: &[f64],
     residual: &[Vec<f64>],
-) -> Vec<(Cause, Option<usize>, Vec<Term>)> {
+) -> Vec<(Hypothesis, Option<usize>, Vec<Term>)> {
     if !study.motions.one_clock {
         return Vec::new();
     }
@@ -53,11 +53,11 @@ pub fn onsets(
             let what = (form.terms)(joint.unwrap_or(0));
             let joints = joint.map_or_else(|| all.clone(), |joint| vec![joint]);
             let from = past.best(&joints, &what[..form.looked_for_with]);
-            let cause = Cause { kind, other: None };
+            let hypothesis = Hypothesis { kind, other: None };
             let candidate = move |from: f64| {
                 let since = |count: &usize| what[..*count].iter().map(|term| term.since(from)).collect();
                 let taken: Vec<Vec<Term>> = form.taken.iter().map(since).collect();
-                taken.into_iter().map(move |terms| (cause, joint, terms))
+                taken.into_iter().map(move |terms| (hypothesis, joint, terms))
             };
             from.into_iter().flat_map(candidate)
         })

@@ -86,10 +86,10 @@ impl Study {
         (set.iter().map(|&number| numbers[number]).collect(), terms)
     }
 
-    /// Refuses the cause of `candidate` on its joint.
+    /// Refuses the hypothesis of `candidate` on its joint.
     pub fn refuse(&mut self, candidate: usize) {
         let refused = &self.candidates[candidate];
-        self.refused.push((refused.cause, refused.joint));
+        self.refused.push((refused.hypothesis, refused.joint));
     }
 
     /// How many were refused so far.
@@ -101,7 +101,7 @@ impl Study {
     pub fn allowed(&self) -> Vec<usize> {
         let is_allowed = |&c: &usize| {
             let candidate = &self.candidates[c];
-            !self.refused.contains(&(candidate.cause, candidate.joint))
+            !self.refused.contains(&(candidate.hypothesis, candidate.joint))
         };
         (0..self.candidates.len()).filter(is_allowed).collect()
     }

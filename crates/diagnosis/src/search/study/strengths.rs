@@ -240,7 +240,7 @@ impl Study {
         for link in 0..self.arm.dof() {
             let imitates = |&c: &usize| {
                 let candidate = &self.candidates[c];
-                candidate.joint == Some(link) && candidate.cause.spec().may_be_inertial
+                candidate.joint == Some(link) && candidate.hypothesis.spec().may_be_inertial
             };
             let (imitations, rest): (Vec<usize>, Vec<usize>) = chosen.set.iter().copied().partition(imitates);
             if imitations.len() < 2 {

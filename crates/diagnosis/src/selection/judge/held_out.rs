@@ -10,15 +10,17 @@ use crate::search::study::Study;
 /// `chosen` without the unmodelled forms that do not predict recordings they were not fitted to. They may have stood for
 /// something simple, which is then looked for again.
 pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen: Chosen) -> Chosen {
-    let cause = |c: usize| study.candidates[c].cause;
+    let hypothesis = |c: usize| study.candidates[c].hypothesis;
     let loss = |chosen: &Chosen| held.loss(&held.rss(&study.table, &chosen.fit.columns, &chosen.fit.coefficients));
-    let simple: Vec<usize> = (0..study.candidates.len()).filter(|&c| cause(c).is_simple()).collect();
+    let simple: Vec<usize> = (0..study.candidates.len())
+        .filter(|&c| hypothesis(c).is_simple())
+        .collect();
     loop {
         let with = loss(&chosen);
         let worst = chosen
             .set
             .par_iter()
-            .filter(|&&c| cause(c).name().is_none() && !cause(c).is_passing())
+            .filter(|&&c| hypothesis(c).name().is_none() && !hypothesis(c).is_passing())
             .map(|&c| {
                 let set: Vec<usize> = chosen.others(c);
                 let rest = problem.forward(problem.choose(set, &chosen.fit.weights), &simple);

@@ -4,7 +4,7 @@ use report::block::{Block, table, text};
 use report::numbers::rounded;
 use report::score::name;
 
-use super::{Cause, Disturbance, EFFECT, Factor, Other, ROUNDING};
+use super::{Disturbance, EFFECT, Factor, NamedEffect, Other, ROUNDING};
 use crate::models::ModelKind;
 use crate::tables::mean;
 
@@ -43,10 +43,10 @@ pub fn blocks(of: &Disturbance) -> Vec<Block> {
 }
 
 fn found(of: &Disturbance) -> String {
-    let list = |causes: &[Cause]| {
-        let words = causes
+    let list = |effects: &[NamedEffect]| {
+        let words = effects
             .iter()
-            .map(|cause| name(&(cause.effect.clone(), cause.joint.clone())));
+            .map(|effect| name(&(effect.effect.clone(), effect.joint.clone())));
         words.collect::<Vec<_>>().join(", ")
     };
     let mut sentences = vec![match (of.is_one_finding, of.findings.is_empty()) {

@@ -138,7 +138,7 @@ fn word(model: Model) -> &'static str {
 }
 
 fn write_layout(layout: &mut Layout<'_>, arm: &Arm) -> RecordingStreamResult<Node> {
-    let title = format!("{}: with the diagnosed cause (solid), reference (amber)", arm.name());
+    let title = format!("{}: with the diagnosed effects (solid), reference (amber)", arm.name());
     let scene = layout.scene(arm, &title, 1.0)?;
     let key = layout.view("TextDocument", "Key", KEY, &[])?;
     let left = layout.container(ContainerKind::Vertical, &[scene, key], |c| {

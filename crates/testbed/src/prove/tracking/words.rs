@@ -93,11 +93,11 @@ fn factor(ratio: Option<f64>) -> String {
 }
 
 fn row(case: &CaseTracking) -> Vec<String> {
-    let concealed = case.concealed.iter().map(|cause| {
-        let onset = cause
+    let concealed = case.concealed.iter().map(|effect| {
+        let onset = effect
             .onset
             .map_or_else(String::new, |onset| format!(" from {onset:.0} s"));
-        format!("{}{onset}", name(&(cause.effect.clone(), cause.joint.clone())))
+        format!("{}{onset}", name(&(effect.effect.clone(), effect.joint.clone())))
     });
     let named = case.named.iter().filter(|named| !BASELINE.contains(&named.0.as_str()));
     let or_nothing = |words: Vec<String>| {
@@ -140,19 +140,19 @@ fn why(case: &CaseTracking) -> String {
             ))
         });
     let place = place.unwrap_or_else(|| "unstable".to_owned());
-    let has = |cause: &&super::Cause| case.named.contains(&(cause.effect.clone(), cause.joint.clone()));
+    let has = |effect: &&super::ConcealedEffect| case.named.contains(&(effect.effect.clone(), effect.joint.clone()));
     let missing: Vec<String> = case
         .concealed
         .iter()
-        .filter(|cause| !has(cause))
-        .map(|cause| name(&(cause.effect.clone(), cause.joint.clone())))
+        .filter(|effect| !has(effect))
+        .map(|effect| name(&(effect.effect.clone(), effect.joint.clone())))
         .collect();
     let is_there = |named: &&Name| {
         BASELINE.contains(&named.0.as_str())
             || case
                 .concealed
                 .iter()
-                .any(|cause| (&cause.effect, &cause.joint) == (&named.0, &named.1))
+                .any(|effect| (&effect.effect, &effect.joint) == (&named.0, &named.1))
     };
     let too_many: BTreeSet<String> = case.named.iter().filter(|named| !is_there(named)).map(name).collect();
     let mut reasons = Vec::new();
