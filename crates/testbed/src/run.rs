@@ -19,6 +19,7 @@ use crate::progress::Progress;
 use crate::scenario::Scenario;
 use crate::simulation::{self, Observer, Outcome};
 use crate::training;
+use crate::written::Written;
 use folder::RunFolder;
 use observers::{Simulating, View};
 
@@ -135,28 +136,29 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
         },
         regressions: model.regressions().iter().map(regression).collect(),
     };
-    let mut written = vec![folder.path.join("recording.csv"), folder.path.join("summary.json")];
-    outcome.recording.write_csv(&written[0])?;
-    output::write_json(&written[1], &summary)?;
+    let mut written = Written::default();
+    let [recording, file] = ["recording.csv", "summary.json"].map(|name| folder.path.join(name));
+    written.add(&recording, || Ok(outcome.recording.write_csv(&recording)?));
+    written.add(&file, || output::write_json(&file, &summary));
     if let Some(path) = &args.json {
-        output::write_json(path, &summary)?;
-        written.push(path.clone());
+        written.add(path, || output::write_json(path, &summary));
     }
-    if viewer.finish() {
-        written.extend(rerun_file.clone());
+    if viewer.finish()
+        && let Some(path) = &rerun_file
+    {
+        written.add(path, || Ok(()));
     }
     drop(deferred);
     let mut text = text(&scenario, kind, &sources, &summary, &outcome);
     if kind.learns() {
         text += &hardly_learned(&scenario, &summary.torque_mse, length_scales)?;
     }
-    for path in &written {
-        text += &format!("written: {}\n", path.display());
-    }
-    if rerun_file.is_some_and(|file| written.contains(&file)) {
+    text += &written.lines();
+    if rerun_file.is_some_and(|file| written.has(&file)) {
         text += "The .rrd file opens with `rerun FILE` (pip install rerun-sdk==0.36.3).\n";
     }
-    output::print(&text)
+    output::print(&text)?;
+    written.finish()
 }
 
 /// Refuses outputs that cannot be written or are in each other's way, before any work is done.
