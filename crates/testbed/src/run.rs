@@ -107,6 +107,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     let deferred = interrupt::Deferred::start();
     let folder = RunFolder::create(out, &format!("{}-{}", scenario.name, kind.flag()))?;
     let rerun_file = observers::rerun_file(args, &folder.path);
+    let replaces = rerun_file.as_ref().is_some_and(|path| path.is_file());
     let mut viewer = View::open(args, kind, &scenario, rerun_file.as_deref())?;
     let mut progress = Simulating::new(scenario.duration);
     let outcome = simulation::run(
@@ -146,7 +147,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     if viewer.finish()
         && let Some(path) = &rerun_file
     {
-        written.add(path, || Ok(()));
+        written.note(path, replaces);
     }
     drop(deferred);
     let mut text = text(&scenario, kind, &sources, &summary, &outcome);

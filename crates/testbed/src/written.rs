@@ -15,9 +15,19 @@ impl Written {
     pub fn add(&mut self, path: &Path, write: impl FnOnce() -> anyhow::Result<()>) {
         let replaces = path.is_file();
         match write() {
-            Ok(()) => self.files.push((path.to_owned(), replaces)),
+            Ok(()) => self.note(path, replaces),
             Err(error) => self.failures.push(error),
         }
+    }
+
+    /// Notes a file that was written already.
+    pub fn note(&mut self, path: &Path, replaces: bool) {
+        self.files.push((path.to_owned(), replaces));
+    }
+
+    /// Does what leaves no file.
+    pub fn attempt(&mut self, what: impl FnOnce() -> anyhow::Result<()>) {
+        self.failures.extend(what().err());
     }
 
     /// Whether the file was written.

@@ -56,7 +56,6 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     drop(deferred);
     tell(args, &diagnosis, &written)?;
     written.files.finish()?;
-    show(args, &arm, &robot.path, &diagnosis)?;
     let explains = diagnosis.report.verdict == Verdict::NoMismatch && diagnosis.report.findings.is_empty();
     Ok(if args.fail_on_mismatch && !explains {
         ExitCode::from(MISMATCH)
@@ -201,6 +200,11 @@ fn write<'a>(
     }
     if let Some(path) = args.json_file() {
         files.add(path, || output::write_json(path, &diagnosis.report));
+    }
+    let shown = || show(args, arm, &robot.path, diagnosis);
+    match args.rerun_file() {
+        Some(path) => files.add(path, shown),
+        None => files.attempt(shown),
     }
     written
 }

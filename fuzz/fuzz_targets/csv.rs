@@ -1,0 +1,5 @@
+//! Text files of columns: `targets::recording`.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| testbed_fuzz::targets::recording(bytes));
