@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn a_tie_is_not_decided_by_rounding() {
         for scale in (1..200).map(|k| 0.37 * f64::from(k)) {
-            let mut values: Vec<f64> = (0..350).map(|k| scale * (k as f64 * 0.01).sin()).collect();
+            let mut values: Vec<f64> = (0..350).map(|k| scale * (f64::from(k) * 0.01).sin()).collect();
             values[40] -= 8.0 * scale;
             values[222] += 2.5 * scale;
             let spikes = remove(&places(350), &mut values);
