@@ -4,6 +4,7 @@ mod conceal;
 mod diagnose;
 mod diagnose_blind;
 mod diagnose_cases;
+mod diagnose_invariances;
 mod diagnose_made;
 mod diagnose_mistakes;
 mod diagnose_next;
@@ -11,6 +12,10 @@ mod diagnose_refusals;
 mod diagnose_takeaways;
 mod diagnose_terminal;
 mod excite;
+#[cfg(unix)]
+mod faults;
+#[cfg(unix)]
+mod faults_outputs;
 mod formats;
 mod inspect;
 mod manual;
@@ -25,3 +30,4 @@ mod runs;
 mod schema;
 mod support;
 mod tidy;
+mod untrusted_names;

@@ -208,3 +208,42 @@ fn a_tensor_that_breaks_the_triangle_inequality_is_warned_of() {
     assert_eq!(arm.dof(), 6);
     assert_eq!(arm.joints()[1].limits.effort, 186.4);
 }
+
+/// A parser that calls itself for each level has no stack for 20 000.
+#[test]
+fn elements_that_are_nested_without_end_are_refused() {
+    let deep = |levels: usize| {
+        let text = "<robot name=\"r\">\n".to_owned() + &"<a>".repeat(levels) + &"</a>".repeat(levels) + "</robot>";
+        Arm::from_urdf_text(&text, "deep.urdf")
+            .expect_err("it is no arm")
+            .to_string()
+    };
+    assert!(
+        deep(20_000).starts_with("deep.urdf:2: has elements in each other 64 deep"),
+        "{}",
+        deep(20_000)
+    );
+    assert!(deep(20).contains("no links"), "{}", deep(20));
+}
+
+/// Entities of its own, of which each is ten of the one before, or which are a file.
+#[test]
+fn entities_are_not_expanded() {
+    let entities = |definitions: &str| {
+        let text = format!("<!DOCTYPE robot [{definitions}]>\n<robot name=\"r\"><link name=\"a\"/><x>&e9;</x></robot>");
+        Arm::from_urdf_text(&text, "e.urdf")
+            .expect_err("it is no arm")
+            .to_string()
+    };
+    let definition = |k: usize| {
+        format!(
+            "<!ENTITY e{k} \"{}\">",
+            format!("&e{};", k.saturating_sub(1)).repeat(10)
+        )
+    };
+    let growing: String = (1..10).map(definition).collect();
+    let message = entities(&format!("<!ENTITY e0 \"lol\">{growing}"));
+    assert!(message.contains("e.urdf"), "{message}");
+    let message = entities("<!ENTITY e9 SYSTEM \"file:///etc/hostname\">");
+    assert!(message.contains("e.urdf"), "{message}");
+}

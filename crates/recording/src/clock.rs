@@ -89,6 +89,8 @@ fn by_phase(time: &[f64], breaks: &[usize], period: f64, near: f64) -> Clock {
         let ticks = assign(stamps, &phases, period);
         // Ticks count from the piece's first row.
         let first = ticks.first().copied().unwrap_or(0);
+        // Two rows cannot share a tick.
+        clock.regular &= ticks.windows(2).all(|pair| pair[0] < pair[1]);
         clock.ticks.extend(ticks.iter().map(|tick| tick - first));
         clock.pieces.push(Piece {
             rows: rows.clone(),
@@ -324,7 +326,7 @@ fn likeliest(exact: &[f64], nearest: &[i64]) -> Vec<i64> {
         |best, candidate| if cost[candidate] < cost[best] { candidate } else { best },
     );
     if !cost[best].is_finite() {
-        // More rows than ticks: no clock; the caller sees it from the scatter.
+        // More rows than ticks: no clock.
         return nearest.to_vec();
     }
     let mut ticks = vec![0; exact.len()];

@@ -113,6 +113,9 @@ pub fn write_remedy(reason: &std::io::Error) -> &'static str {
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
             "the disk is full: free some space, or choose another disk"
         }
+        ErrorKind::FileTooLarge => {
+            "the file is larger than this disk, or a limit (ulimit -f), allows: choose another disk"
+        }
         ErrorKind::ReadOnlyFilesystem => "the disk is read-only: choose another",
         ErrorKind::NotFound => "give a path in a folder that exists",
         _ => "choose a folder you may write to",

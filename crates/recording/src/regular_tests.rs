@@ -103,3 +103,12 @@ fn what_has_no_order_or_length_is_refused() {
     let back = sample(vec![0.0, 1.0, 0.5], &[0.0, 1.0, 0.5]).regular();
     assert!(matches!(back, Err(RecordingError::Time { row: 2, .. })));
 }
+
+/// Pairs of rows half a second apart: a clock of their mean period would put both rows of a pair on one tick.
+#[test]
+fn rows_of_one_tick_have_no_clock() {
+    let at = [0.0, 2.663, 2.667, 2.679, 2.683, 2.695, 2.699, 3.203, 3.207];
+    let (regular, _) = sample(at.to_vec(), &at).regular().expect("it is resampled");
+    assert!(!regular.has_clock);
+    assert!(regular.q[0].iter().all(|q| q.abs() < 2.0), "{:?}", regular.q[0]);
+}

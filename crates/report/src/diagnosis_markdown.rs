@@ -37,9 +37,9 @@ fn blocks(report: &Report, arm: &Arm) -> Vec<Block> {
     blocks
 }
 
-/// A name as it is, which Markdown might otherwise read as emphasis.
+/// A name as it is, which Markdown might otherwise read as emphasis; it does not end its own code span.
 fn code(name: &str) -> String {
-    format!("`{name}`")
+    format!("`{}`", name.replace('`', "'").replace('\n', " "))
 }
 
 /// The joint, or the whole arm.

@@ -7,10 +7,10 @@ pub fn markdown(blocks: &[Block], made: &str) -> String {
     let mut text = String::new();
     for block in blocks {
         match block {
-            Block::Title(title) => text.push_str(&format!("# {title}\n\n")),
-            Block::Heading(heading) => text.push_str(&format!("## {heading}\n\n")),
-            Block::Section(heading) => text.push_str(&format!("### {heading}\n\n")),
-            Block::Text(paragraph) => text.push_str(&format!("{paragraph}\n\n")),
+            Block::Title(title) => text.push_str(&format!("# {}\n\n", without_tags(title))),
+            Block::Heading(heading) => text.push_str(&format!("## {}\n\n", without_tags(heading))),
+            Block::Section(heading) => text.push_str(&format!("### {}\n\n", without_tags(heading))),
+            Block::Text(paragraph) => text.push_str(&format!("{}\n\n", without_tags(paragraph))),
             Block::Code(code) => text.push_str(&format!("```sh\n{code}\n```\n\n")),
             Block::Figure { .. } => {}
             Block::Table { head, rows, words } => {
@@ -35,6 +35,46 @@ pub fn markdown(blocks: &[Block], made: &str) -> String {
 }
 
 fn line(cells: &[String]) -> String {
-    let cells: Vec<String> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
+    let cells: Vec<String> = cells
+        .iter()
+        .map(|cell| without_tags(cell).replace('|', "\\|"))
+        .collect();
     format!("| {} |\n", cells.join(" | "))
+}
+
+/// The text without HTML, which Markdown would pass on: names from files are no part of a page. A code span shows what it holds.
+fn without_tags(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for (index, span) in text.split('`').enumerate() {
+        if index > 0 {
+            safe.push('`');
+        }
+        let is_code = index % 2 == 1 && text.matches('`').count().is_multiple_of(2);
+        let mut rest = span;
+        while let Some(at) = rest.find('<') {
+            let (before, tag) = rest.split_at(at);
+            safe.push_str(before);
+            let begins = |c: char| c.is_ascii_alphabetic() || matches!(c, '/' | '!' | '?');
+            let is_tag = !is_code && tag[1..].starts_with(begins);
+            safe.push_str(if is_tag { "&lt;" } else { "<" });
+            rest = &tag[1..];
+        }
+        safe.push_str(rest);
+    }
+    safe
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tags_are_shown_and_not_obeyed() {
+        assert_eq!(
+            without_tags("p < 0.05, `a<b>` <b>x</b>"),
+            "p < 0.05, `a<b>` &lt;b>x&lt;/b>"
+        );
+        // A lone backtick begins no code.
+        assert_eq!(without_tags("a`<i>"), "a`&lt;i>");
+    }
 }

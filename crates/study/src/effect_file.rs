@@ -154,18 +154,24 @@ pub fn tables(source: &Source, arm: &Arm) -> anyhow::Result<(Option<String>, Vec
     Ok((raw.robot.map(Spanned::into_inner), raw.effects))
 }
 
+/// The largest number in a value, without its sign.
+fn largest(value: &toml::Value) -> f64 {
+    match value {
+        toml::Value::Float(number) => number.abs(),
+        toml::Value::Integer(number) => (*number as f64).abs(),
+        toml::Value::Array(list) => list.iter().map(largest).fold(0.0, f64::max),
+        toml::Value::Table(table) => table.values().map(largest).fold(0.0, f64::max),
+        _ => 0.0,
+    }
+}
+
 /// The effect of a table that stands at `span` in the file, which must fit `arm`.
 ///
 /// # Errors
 /// With file, line, reason and remedy.
 pub fn effect(source: &Source, span: Range<usize>, table: toml::Table, arm: &Arm) -> anyhow::Result<Effect> {
-    let huge = |value: &toml::Value| {
-        value
-            .as_float()
-            .is_some_and(|value| value.is_finite() && value.abs() > MOST)
-    };
-    if let Some((key, value)) = table.iter().find(|(_, value)| huge(value)) {
-        let value = value.as_float().unwrap_or_default();
+    let huge = |(key, value)| Some((key, largest(value))).filter(|(_, value)| value.is_finite() && *value > MOST);
+    if let Some((key, value)) = table.iter().find_map(huge) {
         let reason = format!("{key} is {value:e}, which no arm has; check its unit");
         return Err(fail(source, key_span(&source.text, &span, Some(key)), &reason));
     }

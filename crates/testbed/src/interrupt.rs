@@ -17,6 +17,14 @@ pub fn listen() -> anyhow::Result<()> {
         let again = REQUESTED.swap(true, Ordering::SeqCst);
         // Outside the loop nothing has been written yet, and who asks twice does not want to wait.
         if again || !IN_LOOP.load(Ordering::SeqCst) {
+            eprintln!(
+                "{}",
+                if again {
+                    "interrupted at once: what was being written stays as it was before, what is listed as written is complete"
+                } else {
+                    "interrupted; nothing was written, and what was there before is as it was"
+                }
+            );
             std::process::exit(i32::from(EXIT_CODE));
         }
     })?;

@@ -1,5 +1,6 @@
 //! testbed: tracking testbed and model diagnosis for robot arms.
 
+mod alone;
 mod cli;
 mod conceal;
 mod diagnose;
@@ -22,6 +23,7 @@ mod telemetry;
 mod training;
 #[cfg(feature = "viewer")]
 mod viewer;
+mod written;
 
 use std::process::ExitCode;
 

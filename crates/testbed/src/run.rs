@@ -19,6 +19,7 @@ use crate::progress::Progress;
 use crate::scenario::Scenario;
 use crate::simulation::{self, Observer, Outcome};
 use crate::training;
+use crate::written::Written;
 use folder::RunFolder;
 use observers::{Simulating, View};
 
@@ -106,6 +107,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     let deferred = interrupt::Deferred::start();
     let folder = RunFolder::create(out, &format!("{}-{}", scenario.name, kind.flag()))?;
     let rerun_file = observers::rerun_file(args, &folder.path);
+    let replaces = rerun_file.as_ref().is_some_and(|path| path.is_file());
     let mut viewer = View::open(args, kind, &scenario, rerun_file.as_deref())?;
     let mut progress = Simulating::new(scenario.duration);
     let outcome = simulation::run(
@@ -135,28 +137,29 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
         },
         regressions: model.regressions().iter().map(regression).collect(),
     };
-    let mut written = vec![folder.path.join("recording.csv"), folder.path.join("summary.json")];
-    outcome.recording.write_csv(&written[0])?;
-    output::write_json(&written[1], &summary)?;
+    let mut written = Written::default();
+    let [recording, file] = ["recording.csv", "summary.json"].map(|name| folder.path.join(name));
+    written.add(&recording, || Ok(outcome.recording.write_csv(&recording)?));
+    written.add(&file, || output::write_json(&file, &summary));
     if let Some(path) = &args.json {
-        output::write_json(path, &summary)?;
-        written.push(path.clone());
+        written.add(path, || output::write_json(path, &summary));
     }
-    if viewer.finish() {
-        written.extend(rerun_file.clone());
+    if viewer.finish()
+        && let Some(path) = &rerun_file
+    {
+        written.note(path, replaces);
     }
     drop(deferred);
     let mut text = text(&scenario, kind, &sources, &summary, &outcome);
     if kind.learns() {
         text += &hardly_learned(&scenario, &summary.torque_mse, length_scales)?;
     }
-    for path in &written {
-        text += &format!("written: {}\n", path.display());
-    }
-    if rerun_file.is_some_and(|file| written.contains(&file)) {
+    text += &written.lines();
+    if rerun_file.is_some_and(|file| written.has(&file)) {
         text += "The .rrd file opens with `rerun FILE` (pip install rerun-sdk==0.36.3).\n";
     }
-    output::print(&text)
+    output::print(&text)?;
+    written.finish()
 }
 
 /// Refuses outputs that cannot be written or are in each other's way, before any work is done.

@@ -13,6 +13,9 @@ const NUMBERS: [&str; 18] = [
     "friction", "radius", "length", "size",
 ];
 
+/// Elements within elements: no URDF needs more, and a parser's stack ends somewhere.
+const DEEPEST: usize = 64;
+
 /// A text that is XML with a `<robot>`.
 pub(super) struct Text {
     /// The text without its comments and without textures that name no file, which `urdf-rs` refuses. They are blanked
@@ -30,7 +33,7 @@ impl Text {
     pub(super) fn of(text: &str, path: &Path) -> Result<Self, ArmError> {
         let mut reader = quick_xml::Reader::from_str(text);
         let (mut blanks, mut elements): (Vec<Range<usize>>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
-        let mut depth = 0;
+        let mut depth: usize = 0;
         let (mut begun, mut texture) = (0, None);
         let mut root_seen = false;
         loop {
@@ -68,9 +71,13 @@ impl Text {
                         _ => {}
                     }
                     depth += usize::from(!is_empty);
+                    if depth > DEEPEST {
+                        let reason = format!("has elements in each other {DEEPEST} deep; is this a URDF?");
+                        return Err(syntax_error(path, Some(line_at(text, from)), reason));
+                    }
                 }
                 Event::End(_) => {
-                    depth -= 1;
+                    depth = depth.saturating_sub(1);
                     if depth == 1 {
                         elements.push(begun..here.end);
                     }

@@ -127,6 +127,8 @@ pub struct Motions {
     pub tempo: Vec<f64>,
     /// Whether one clock runs through all recordings. If not, each begins where the one before it ended.
     pub one_clock: bool,
+    /// The first time of all recordings (s).
+    pub begins: f64,
     /// When the recordings from before end and the others begin, on the diagnosis' clock (s); `None` if there are none from before.
     pub changed_at: Option<f64>,
     /// What was left out, in sentences.
@@ -199,6 +201,7 @@ impl Motions {
             cutoff,
             tempo: Vec::new(),
             one_clock: overlap.is_none() && !has_before,
+            begins: f64::INFINITY,
             changed_at: None,
             remarks: [(false, "training"), (true, "held-out")]
                 .into_iter()
@@ -229,6 +232,7 @@ impl Motions {
                 motions.changed_at = Some(end - 0.5 * BETWEEN);
             }
             end += recording.len() as f64 * recording.period + BETWEEN;
+            motions.begins = motions.begins.min(shift + recording.time(0));
             motions.add(index, input, used(input.held_out), thin, shift);
         }
         motions.tempo = motions.tempo();

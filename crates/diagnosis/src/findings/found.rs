@@ -182,7 +182,8 @@ fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joi
     let rows = study.training_rows(joint);
     let (mut with, mut bare) = (0.0, 0.0);
     for parity in [0, 1] {
-        let is_fitted = |row: &&usize| ((times[**row] / GAIN_PIECE).floor() as i64 - parity) % 2 == 0;
+        let begins = study.motions.begins;
+        let is_fitted = |row: &&usize| (((times[**row] - begins) / GAIN_PIECE).floor() as i64 - parity) % 2 == 0;
         let (mut power, mut product) = (0.0, 0.0);
         for &row in rows.iter().filter(is_fitted) {
             power += torque[row] * torque[row];

@@ -121,7 +121,8 @@ fn windows(study: &Study, state: &State, rows: &[usize], nominal: &[f64], all: f
     let mut from = 0;
     while from < rows.len() {
         let (recording, start) = (state.recording[rows[from]], state.time[rows[from]]);
-        let inside = |&&row: &&usize| state.recording[row] == recording && state.time[row] < start + WINDOW;
+        // A row at the window's very end is the next one's, however its time was rounded.
+        let inside = |&&row: &&usize| state.recording[row] == recording && state.time[row] - start < WINDOW - 1e-6;
         let length = rows[from..].iter().take_while(inside).count().max(1);
         let residual = root_mean_square(rows[from..from + length].iter().map(|&row| nominal[row]));
         // A stretch ends with its last row: the recording may end before the window does.

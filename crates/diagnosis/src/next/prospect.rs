@@ -150,6 +150,7 @@ impl<'a> Prospect<'a> {
             cutoff: study.motions.cutoff,
             tempo: tempo.clone(),
             one_clock: study.motions.one_clock,
+            begins: study.motions.begins,
             remarks: Vec::new(),
         };
         let terms = self.bare.terms.clone();

@@ -228,7 +228,7 @@ pub fn contact_gain(study: &Study, without: &Fit, columns: &[usize]) -> f64 {
     let times = study.motions.row_times();
     let mut fit = ForceFit::default();
     for row in study.training() {
-        let piece = (times[row] / CONTACT_PIECE).floor() as i64;
+        let piece = ((times[row] - study.motions.begins) / CONTACT_PIECE).floor() as i64;
         for joint in 0..table.dof() {
             let this = &table.joints[joint];
             let mut x = Vector3::zeros();

@@ -3,6 +3,7 @@
 use std::io::{Read, Write};
 use std::path::Path;
 
+use rusqlite::limits::Limit;
 use rusqlite::{Connection, OpenFlags};
 
 use super::mcap::{self, no_states};
@@ -43,6 +44,7 @@ impl Format for Rosbag2 {
                 .iter()
                 .any(|end| name.ends_with(end));
             if is_part && path.is_file() {
+                refuse_outside(&input, &path)?;
                 files.push(path);
             }
         }
@@ -65,6 +67,19 @@ impl Format for Rosbag2 {
         table.warnings.extend(warnings);
         Ok(table)
     }
+}
+
+/// Refuses a link in a bag's folder that leads out of it.
+fn refuse_outside(input: &Input, path: &Path) -> Result<(), RecordingError> {
+    let [folder, target] = [input.path.as_path(), path].map(std::fs::canonicalize);
+    if matches!((folder, target), (Ok(folder), Ok(target)) if target.starts_with(&folder)) {
+        return Ok(());
+    }
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    Err(input.error(
+        NAME,
+        format!("{name} is a link that leads out of the bag's folder; copy the file into it"),
+    ))
 }
 
 /// Reads the joint states of a database.
@@ -115,6 +130,19 @@ impl From<rusqlite::Error> for Failure {
 fn messages(path: &Path, most: u64, options: &Options<'_>, states: &mut JointStates) -> Result<Vec<String>, Failure> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let database = Connection::open_with_flags(path, flags)?;
+    // A view or a generated column is a program, which may never end or make a gigabyte of nothing.
+    database.set_limit(Limit::SQLITE_LIMIT_LENGTH, i32::try_from(most).unwrap_or(i32::MAX))?;
+    database.pragma_update(None, "trusted_schema", false)?;
+    for table in ["topics", "messages"] {
+        let stored = "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND rootpage > 0 AND name = ?1";
+        let made = "SELECT count(*) FROM pragma_table_xinfo(?1) WHERE hidden <> 0";
+        let count = |query: &str| database.query_row(query, [table], |row| row.get::<_, i64>(0));
+        if count(stored)? != 1 || count(made)? != 0 {
+            return Err(Failure::Message(format!(
+                "its table \"{table}\" is missing or computed; give a bag as ros2 bag wrote it"
+            )));
+        }
+    }
     let mut query = database.prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY name")?;
     let topics = query.query_map([], |row| {
         Ok((

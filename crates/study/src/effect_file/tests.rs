@@ -221,4 +221,7 @@ fn an_effect_said_twice_is_refused_with_both_places() {
         found.contains("k.toml:5: coefficient is 1e308") && found.len() < 200,
         "{found}"
     );
+    // Whole numbers and lists, too.
+    assert!(parse(&[friction("joint1", "8352007717348")]).is_err());
+    assert!(parse(&[payload("1.0").replace("0.1]", "1e13]")]).is_err());
 }

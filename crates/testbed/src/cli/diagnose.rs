@@ -161,11 +161,6 @@ impl DiagnoseArgs {
 
     /// The files that will be written.
     pub fn outputs(&self) -> Vec<&Path> {
-        let rerun = match &self.rerun {
-            Some(Rerun::Save(Some(path))) => Some(path.as_path()),
-            Some(Rerun::Save(None)) => Some(Path::new("diagnosis.rrd")),
-            _ => None,
-        };
         let files = [
             &self.report,
             &self.markdown,
@@ -177,7 +172,20 @@ impl DiagnoseArgs {
             &self.next,
         ];
         let files = files.into_iter().flatten().map(PathBuf::as_path);
-        self.json_file().into_iter().chain(files).chain(rerun).collect()
+        self.json_file()
+            .into_iter()
+            .chain(files)
+            .chain(self.rerun_file())
+            .collect()
+    }
+
+    /// The file that Rerun saves to.
+    pub fn rerun_file(&self) -> Option<&Path> {
+        match &self.rerun {
+            Some(Rerun::Save(Some(path))) => Some(path),
+            Some(Rerun::Save(None)) => Some(Path::new("diagnosis.rrd")),
+            _ => None,
+        }
     }
 
     /// Whether the diagnosis is printed as JSON.

@@ -13,8 +13,9 @@ use study::{Diagnosed, Listener, mjcf_file, urdf_file};
 
 use super::{next_file, outputs, residuals_file, trace_file};
 use crate::cli::DiagnoseArgs;
-use crate::output;
 use crate::progress::Progress;
+use crate::written::Written;
+use crate::{interrupt, output};
 
 /// The exit status of `--fail-on-mismatch` where the model alone does not explain the recordings.
 const MISMATCH: u8 = 3;
@@ -22,7 +23,7 @@ const MISMATCH: u8 = 3;
 /// Diagnoses where and why the recordings that `args` name differ from the robot's model.
 ///
 /// # Errors
-/// If an input cannot be used or an output cannot be written; nothing is written then.
+/// If an input cannot be used, or an output cannot be written; the answer is printed then, and the other outputs are written.
 pub fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     outputs::check(args)?;
     let pool = rayon::ThreadPoolBuilder::new()
@@ -49,8 +50,12 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
         diagnosis,
         effects,
     } = study?;
-    let written = write(args, &arm, &robot, &diagnosis, effects)?;
+    // From here on Ctrl-C waits, so that no file is left half written.
+    let deferred = interrupt::Deferred::start();
+    let written = write(args, &arm, &robot, &diagnosis, effects);
+    drop(deferred);
     tell(args, &diagnosis, &written)?;
+    written.files.finish()?;
     let explains = diagnosis.report.verdict == Verdict::NoMismatch && diagnosis.report.findings.is_empty();
     Ok(if args.fail_on_mismatch && !explains {
         ExitCode::from(MISMATCH)
@@ -87,7 +92,7 @@ impl Listener for Terminal<'_> {
 }
 
 /// Prints the result and the files written. JSON on standard output has it for itself.
-fn tell(args: &DiagnoseArgs, diagnosis: &Diagnosis, written: &Written<'_>) -> anyhow::Result<()> {
+fn tell(args: &DiagnoseArgs, diagnosis: &Diagnosis, written: &Files<'_>) -> anyhow::Result<()> {
     let report = &diagnosis.report;
     if args.prints_json() {
         output::print(&(serde_json::to_string_pretty(report)? + "\n"))?;
@@ -103,9 +108,8 @@ fn tell(args: &DiagnoseArgs, diagnosis: &Diagnosis, written: &Written<'_>) -> an
         }
         output::print(&text)
     };
-    let is_written = |path: &&Path| args.next.as_deref() != Some(*path) || diagnosis.next.is_some();
-    for path in args.outputs().into_iter().filter(is_written) {
-        say(format!("written: {}\n", path.display()))?;
+    for line in args.outputs().into_iter().filter_map(|path| written.files.line(path)) {
+        say(line)?;
     }
     if args.quiet {
         return Ok(());
@@ -124,7 +128,9 @@ fn tell(args: &DiagnoseArgs, diagnosis: &Diagnosis, written: &Written<'_>) -> an
 
 /// What there is to say of the files that were written.
 #[derive(Default)]
-struct Written<'a> {
+struct Files<'a> {
+    /// Which were, and which could not be.
+    files: Written,
     /// What a format cannot hold, by its file.
     left: Vec<(&'a Path, Vec<String>)>,
     /// An earlier proposal that was removed without a new one.
@@ -138,53 +144,69 @@ fn write<'a>(
     robot: &RobotFile,
     diagnosis: &Diagnosis,
     effects: Vec<effects::Effect>,
-) -> anyhow::Result<Written<'a>> {
-    let mut written = Written::default();
-    // Both are made before one of them is written.
+) -> Files<'a> {
+    let mut written = Files::default();
     let urdf = |_| urdf_file::corrected_urdf(&robot.text, arm, &effects);
     let mjcf = |_| mjcf_file::mjcf(arm, &effects);
     let exports = [
-        (&args.urdf, args.urdf.as_ref().map(urdf).transpose()?),
-        (&args.mjcf, args.mjcf.as_ref().map(mjcf).transpose()?),
+        (&args.urdf, args.urdf.as_ref().map(urdf)),
+        (&args.mjcf, args.mjcf.as_ref().map(mjcf)),
     ];
     for (path, export) in exports {
-        if let (Some(path), Some(export)) = (path, export) {
+        let (Some(path), Some(export)) = (path, export) else {
+            continue;
+        };
+        let left = &mut written.left;
+        written.files.add(path, || {
+            let export = export?;
             output::write_text(path, &export.text)?;
             if !export.left.is_empty() {
-                written.left.push((path, export.left));
+                left.push((path, export.left));
             }
-        }
+            Ok(())
+        });
     }
+    let files = &mut written.files;
     if let Some(path) = &args.model {
-        let file = EffectFile {
-            robot: Some(arm.name().to_owned()),
-            effects,
-        };
-        file.write(path)?;
+        let robot = Some(arm.name().to_owned());
+        files.add(path, || EffectFile { robot, effects }.write(path));
     }
     if let Some(path) = &args.next {
         match (&diagnosis.next, &diagnosis.report.next_experiment) {
-            (Some(motion), Some(next)) => next_file::write(path, &args.robot, &robot.path, arm, next, motion)?,
-            _ => written.removed = next_file::remove_earlier(path)?.then_some(path.as_path()),
+            (Some(motion), Some(next)) => {
+                files.add(path, || {
+                    next_file::write(path, &args.robot, &robot.path, arm, next, motion)
+                });
+            }
+            _ => match next_file::remove_earlier(path) {
+                Ok(removed) => written.removed = removed.then_some(path.as_path()),
+                Err(error) => files.add(path, || Err(error)),
+            },
         }
     }
     if let Some(path) = &args.trace {
-        trace_file::write(path, &diagnosis.trace)?;
+        files.add(path, || trace_file::write(path, &diagnosis.trace));
     }
     if let Some(path) = &args.residuals {
-        residuals_file::write(path, arm, &diagnosis.traces)?;
+        files.add(path, || residuals_file::write(path, arm, &diagnosis.traces));
     }
     if let Some(path) = &args.report {
-        output::write_text(path, &report::page(&diagnosis.report, &diagnosis.traces, arm))?;
+        let page = || report::page(&diagnosis.report, &diagnosis.traces, arm);
+        files.add(path, || output::write_text(path, &page()));
     }
     if let Some(path) = &args.markdown {
-        output::write_text(path, &report::diagnosis_markdown(&diagnosis.report, arm))?;
+        let text = || report::diagnosis_markdown(&diagnosis.report, arm);
+        files.add(path, || output::write_text(path, &text()));
     }
     if let Some(path) = args.json_file() {
-        output::write_json(path, &diagnosis.report)?;
+        files.add(path, || output::write_json(path, &diagnosis.report));
     }
-    show(args, arm, &robot.path, diagnosis)?;
-    Ok(written)
+    let shown = || show(args, arm, &robot.path, diagnosis);
+    match args.rerun_file() {
+        Some(path) => files.add(path, shown),
+        None => files.attempt(shown),
+    }
+    written
 }
 
 #[cfg(feature = "viewer")]

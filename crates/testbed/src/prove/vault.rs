@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cases::{Cases, Files, Place};
 use super::child::{self, Ended, Task};
+use crate::alone::Alone;
 use crate::output;
 
 /// The record of a finished process: sufficient to decide whether it must run again, and to repeat it.
@@ -53,6 +54,7 @@ pub struct Vault {
     pub executable: PathBuf,
     /// Its version and hash.
     pub program: Program,
+    _alone: Alone,
 }
 
 impl Vault {
@@ -71,6 +73,7 @@ impl Vault {
             sha256: sha256_of(&executable)?,
         };
         Ok(Self {
+            _alone: Alone::in_folder(out)?,
             out: out.to_owned(),
             executable,
             program,

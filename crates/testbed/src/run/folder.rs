@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail, ensure};
 
+use crate::alone::Alone;
 use crate::output;
 
 /// The folder of a run, removed again if the run fails and nothing else is in it.
@@ -11,6 +12,7 @@ pub struct RunFolder {
     /// Where it is.
     pub path: PathBuf,
     created: bool,
+    _alone: Option<Alone>,
 }
 
 impl RunFolder {
@@ -53,6 +55,7 @@ impl RunFolder {
             let created = !out.exists();
             std::fs::create_dir_all(out).with_context(|| remedy(out))?;
             return Ok(Self {
+                _alone: Some(Alone::in_folder(out)?),
                 path: out.to_owned(),
                 created,
             });
@@ -62,7 +65,13 @@ impl RunFolder {
         for number in last_number(runs) + 1.. {
             let path = runs.join(format!("{number:03}-{name}"));
             match std::fs::create_dir(&path) {
-                Ok(()) => return Ok(Self { path, created: true }),
+                Ok(()) => {
+                    return Ok(Self {
+                        path,
+                        created: true,
+                        _alone: None,
+                    });
+                }
                 // Another run was quicker.
                 Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error).with_context(|| remedy(&path)),

@@ -66,6 +66,8 @@ fn parse(address: Option<&str>) -> anyhow::Result<ProxyUri> {
 fn spawn() -> anyhow::Result<ProxyUri> {
     let options = SpawnOptions {
         hide_welcome_screen: true,
+        // By itself, the viewer would take recordings from the whole network.
+        extra_args: vec!["--bind=127.0.0.1".to_owned()],
         extra_env: vec![("RUST_LOG".to_owned(), "error".to_owned())],
         ..SpawnOptions::default()
     };

@@ -8,7 +8,9 @@ const FORMATS: [&str; 5] = ["glb", "gltf", "obj", "stl", "dae"];
 /// The file behind a URDF's mesh `name`, if it is there and Rerun can show it.
 ///
 /// `package://<package>/<rest>` is `<package>/<rest>` in the URDF's folder or one above it, or `<rest>` in one
-/// of that name; `file://<path>` and plain paths are taken from the URDF's folder.
+/// of that name; `file://<path>` and plain paths are taken from the URDF's folder. A file outside the package's folder,
+/// or outside the folder that the URDF's is in, is none, whether dots or links lead there: a URDF of somebody else is no reason
+/// to show one's own files.
 pub fn resolve(name: &str, urdf_path: &Path) -> Option<PathBuf> {
     let is_shown = Path::new(name)
         .extension()
@@ -19,14 +21,23 @@ pub fn resolve(name: &str, urdf_path: &Path) -> Option<PathBuf> {
     let urdf_path = std::path::absolute(urdf_path).ok()?;
     let folder = urdf_path.parent()?;
     // A file that cannot be opened is as good as none.
-    let existing = |path: PathBuf| (path.is_file() && std::fs::File::open(&path).is_ok()).then_some(path);
-    let Some(in_package) = name.strip_prefix("package://") else {
-        return existing(folder.join(name.strip_prefix("file://").unwrap_or(name)));
+    let existing = |path: PathBuf, within: &Path| {
+        let [target, within] = [path.as_path(), within].map(|path| path.canonicalize().ok());
+        let is_within = target?.starts_with(within?);
+        (is_within && path.is_file() && std::fs::File::open(&path).is_ok()).then_some(path)
     };
+    let Some(in_package) = name.strip_prefix("package://") else {
+        let around = folder.parent().unwrap_or(folder);
+        return existing(folder.join(name.strip_prefix("file://").unwrap_or(name)), around);
+    };
+    let (package, rest) = in_package.split_once('/')?;
+    if matches!(package, "" | "." | "..") {
+        return None;
+    }
     folder.ancestors().find_map(|ancestor| {
-        let (package, rest) = in_package.split_once('/')?;
         let is_package = ancestor.file_name().is_some_and(|name| name == package);
-        existing(ancestor.join(in_package)).or_else(|| existing(ancestor.join(rest)).filter(|_| is_package))
+        let below = existing(ancestor.join(in_package), &ancestor.join(package));
+        below.or_else(|| is_package.then(|| existing(ancestor.join(rest), ancestor)).flatten())
     })
 }
 
@@ -53,5 +64,36 @@ mod tests {
         );
         assert_eq!(resolve(&format!("file://{}", mesh.display()), &urdf), Some(mesh));
         assert_eq!(resolve("package://my_arm/meshes/base.step", &urdf), None);
+    }
+
+    #[test]
+    fn meshes_elsewhere_are_none() {
+        let root = tempfile::tempdir().expect("a folder");
+        let urdf = root.path().join("downloads/my_arm/urdf/arm.urdf");
+        let meshes = root.path().join("downloads/my_arm/meshes");
+        for folder in [urdf.parent().expect("a folder"), &meshes] {
+            std::fs::create_dir_all(folder).expect("a folder");
+        }
+        let secret = root.path().join("secret.stl");
+        std::fs::write(&secret, "solid").expect("a file");
+        for name in [
+            "package://my_arm/../../../secret.stl",
+            "package://my_arm/../../secret.stl",
+            "package://../secret.stl",
+            "package://../../../secret.stl",
+            "package:///secret.stl",
+            "../../../secret.stl",
+        ] {
+            assert_eq!(resolve(name, &urdf), None, "{name}");
+        }
+        for scheme in ["", "file://"] {
+            assert_eq!(resolve(&format!("{scheme}{}", secret.display()), &urdf), None);
+        }
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink(&secret, meshes.join("link.stl")).expect("a link");
+            assert_eq!(resolve("package://my_arm/meshes/link.stl", &urdf), None);
+            assert_eq!(resolve("../meshes/link.stl", &urdf), None);
+        }
     }
 }

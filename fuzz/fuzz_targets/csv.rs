@@ -1,0 +1,8 @@
+//! Text files of columns: `targets::recording`.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    testbed_fuzz::forgive_parquet();
+    testbed_fuzz::targets::recording(bytes);
+});

@@ -1,0 +1,5 @@
+//! Scenarios: `targets::scenario`.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| testbed_fuzz::targets::scenario(bytes));

@@ -1,0 +1,173 @@
+//! Outputs that cannot be written, or are there already: the answer is printed, no file is half there, and what is replaced is told.
+
+use std::process::{Command, Stdio};
+
+use crate::faults::{OUTPUTS, SCENARIO, diagnose, files, strings};
+use crate::support::Sandbox;
+
+/// Runs the program where no file may be larger than `blocks` of 512 bytes, which fails as a full disk does.
+fn on_a_full_disk(sandbox: &Sandbox, arguments: &[String], blocks: u32) -> std::process::Output {
+    // SIGXFSZ is ignored, so that the write fails instead.
+    Command::new("bash")
+        .args(["-c", &format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"")])
+        .arg(env!("CARGO_BIN_EXE_testbed"))
+        .args(arguments)
+        .current_dir(sandbox.path(""))
+        .output()
+        .expect("a shell starts")
+}
+
+#[test]
+fn a_full_disk_costs_the_file_and_not_the_answer() {
+    let sandbox = Sandbox::new();
+    for folder in ["none", "some"] {
+        std::fs::create_dir(sandbox.path(folder)).expect("a folder");
+    }
+    let none = on_a_full_disk(&sandbox, &diagnose("none/"), 0);
+    let printed = String::from_utf8_lossy(&none.stdout);
+    let told = String::from_utf8_lossy(&none.stderr);
+    assert!(
+        !none.status.success() && printed.contains("Coulomb friction"),
+        "{printed}{told}"
+    );
+    for name in OUTPUTS {
+        assert!(told.contains(&format!("error: none/{name}")), "{name}: {told}");
+    }
+    assert!(
+        sandbox.list("none").is_empty() && !printed.contains("written:"),
+        "{printed}"
+    );
+    // Small files have room, large ones do not.
+    let some = on_a_full_disk(&sandbox, &diagnose("some/"), 16);
+    let printed = String::from_utf8_lossy(&some.stdout);
+    assert!(
+        !some.status.success() && printed.contains("Coulomb friction"),
+        "{printed}"
+    );
+    let kept = sandbox.list("some");
+    assert!(
+        kept.contains(&"m.toml".to_owned()) && !kept.contains(&"p.html".to_owned()),
+        "{kept:?}"
+    );
+    for name in OUTPUTS {
+        assert_eq!(
+            printed.contains(&format!("written: some/{name}")),
+            kept.contains(&name.to_owned()),
+            "{name}: {printed}"
+        );
+    }
+    // A run, too.
+    sandbox.write("s.toml", SCENARIO);
+    let run = strings(&[
+        "--scenario",
+        "s.toml",
+        "--model",
+        "true",
+        "--rerun",
+        "off",
+        "--out",
+        "run",
+    ]);
+    let run = on_a_full_disk(&sandbox, &run, 0);
+    let printed = String::from_utf8_lossy(&run.stdout);
+    assert!(!run.status.success() && printed.contains("RMS error"), "{printed}");
+    assert!(sandbox.list("run").is_empty());
+    let told = String::from_utf8_lossy(&run.stderr);
+    assert!(
+        told.contains("recording.csv") && told.contains("summary.json"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_printed_answer_that_finds_no_room_is_an_error() {
+    let full = std::fs::File::options().write(true).open("/dev/full");
+    // Not every system has the device.
+    let Ok(full) = full else { return };
+    let output = Command::new(env!("CARGO_BIN_EXE_testbed"))
+        .arg("schema")
+        .stdout(full)
+        .output();
+    let output = output.expect("the program starts");
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        !output.status.success() && told.contains("printing the result"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_reader_that_leaves_costs_no_file() {
+    let sandbox = Sandbox::new();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_testbed"))
+        .args(diagnose(""))
+        .current_dir(sandbox.path(""))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("it starts");
+    drop(child.stdout.take());
+    assert!(child.wait().expect("it ends").success());
+    assert_eq!(files(&sandbox, "").len(), OUTPUTS.len());
+}
+
+#[test]
+fn what_is_replaced_is_told() {
+    let sandbox = Sandbox::new();
+    let arguments = diagnose("");
+    let list: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let first = sandbox.succeed(&list);
+    assert!(
+        first.contains("written: d.json\n") && !first.contains("in place of"),
+        "{first}"
+    );
+    let second = sandbox.succeed(&list);
+    assert!(
+        second.contains("written: d.json (in place of an earlier one)\n"),
+        "{second}"
+    );
+    sandbox.write("s.toml", SCENARIO);
+    let run = [
+        "--scenario",
+        "s.toml",
+        "--model",
+        "true",
+        "--rerun",
+        "off",
+        "--out",
+        "run",
+    ];
+    assert!(!sandbox.succeed(&run).contains("in place of"));
+    assert!(
+        sandbox
+            .succeed(&run)
+            .contains("recording.csv (in place of an earlier one)\n")
+    );
+}
+
+/// A folder that cannot be written to is told before the work. Root may write everywhere, and is not stopped.
+#[test]
+fn a_read_only_folder_is_told_before_the_work() {
+    use std::os::unix::fs::PermissionsExt;
+    let sandbox = Sandbox::new();
+    let folder = sandbox.path("closed");
+    std::fs::create_dir(&folder).expect("a folder");
+    let permit =
+        |mode: u32| std::fs::set_permissions(&folder, std::fs::Permissions::from_mode(mode)).expect("it is set");
+    permit(0o555);
+    let is_closed = std::fs::write(folder.join("x"), "").is_err();
+    if is_closed {
+        let arguments = diagnose("closed/");
+        let list: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let told = sandbox.refuse(&list);
+        assert!(told.contains("closed/") && told.contains("cannot be written"), "{told}");
+        assert!(!told.contains("reading"), "{told}");
+    }
+    permit(0o755);
+    // A folder of the system that nobody writes to stops root, too.
+    if std::path::Path::new("/proc/self").is_dir() {
+        let arguments = diagnose("/proc/self/");
+        let list: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        assert!(sandbox.refuse(&list).contains("cannot be written"));
+    }
+}

@@ -1,0 +1,103 @@
+//! Names from files are text wherever they are shown: in the page, its figures and in Markdown.
+
+use crate::support::{Sandbox, root};
+
+/// Ends a script, a comment, an attribute and an element.
+const EVIL: &str = "`</script>--><script>alert(1)</script>\"'><img src=x onerror=alert(2)>";
+
+#[test]
+fn names_are_no_part_of_the_page() {
+    let sandbox = Sandbox::new();
+    let urdf = std::fs::read_to_string(root().join("tests/cases/arm.urdf")).expect("it is there");
+    let as_xml = EVIL.replace('<', "&lt;").replace('"', "&quot;");
+    let urdf = urdf
+        .replace("robot name=\"trio\"", &format!("robot name=\"{as_xml}\""))
+        .replace("joint name=\"elbow\"", &format!("joint name=\"{as_xml}\""))
+        .replace("\"fore\"", &format!("\"fore{as_xml}\""));
+    sandbox.write("arm.urdf", &urdf);
+    // A file's name may not hold a slash.
+    let train = format!("a{}.csv", EVIL.replace('/', ""));
+    for (case, name) in [("train_1.csv", train.as_str()), ("held_out.csv", "b.csv")] {
+        let text =
+            std::fs::read_to_string(root().join("tests/cases/spring_and_payload").join(case)).expect("it is there");
+        let quoted = |kind: &str| format!("\"{kind}_{}\"", EVIL.replace('"', "\"\""));
+        let text = text
+            .replacen("q_elbow", &quoted("q"), 1)
+            .replacen("tau_elbow", &quoted("tau"), 1);
+        sandbox.write(name, &text);
+    }
+    let arguments = [
+        "diagnose",
+        "--robot",
+        "arm.urdf",
+        "--train",
+        &train,
+        "--held-out",
+        "b.csv",
+        "--report",
+        "p.html",
+    ];
+    sandbox.succeed(
+        &[
+            &arguments[..],
+            &[
+                "--torques-only",
+                "--markdown",
+                "p.md",
+                "--json",
+                "d.json",
+                "--model",
+                "m.toml",
+                "--urdf",
+                "u.urdf",
+                "--mjcf",
+                "m.xml",
+            ],
+        ]
+        .concat(),
+    );
+    let page = std::fs::read_to_string(sandbox.path("p.html")).expect("the page is there");
+    assert!(page.contains("onerror"), "the name is not shown");
+    for word in ["<script>alert", "<img src=x", "--><script"] {
+        assert!(!page.contains(word), "{word} is in the page");
+    }
+    // Inside a script, only a backslash keeps the name from ending it.
+    for part in page.split("<script").skip(1) {
+        let script = part.split("</script>").next().unwrap_or_default();
+        assert!(!script.contains("<!--"), "{}", &script[..script.len().min(200)]);
+    }
+    let markdown = std::fs::read_to_string(sandbox.path("p.md")).expect("it is there");
+    // Code spans show what they hold.
+    let outside: String = markdown.lines().flat_map(|line| line.split('`').step_by(2)).collect();
+    assert!(
+        !outside.contains("<script>alert") && !outside.contains("<img src=x"),
+        "{markdown}"
+    );
+    // What was written is read again.
+    let found = sandbox.json("d.json").to_string();
+    assert!(found.contains("onerror"), "{found}");
+    sandbox.succeed(&[
+        "diagnose",
+        "--robot",
+        "u.urdf",
+        "--train",
+        &train,
+        "--held-out",
+        "b.csv",
+        "--torques-only",
+        "-q",
+    ]);
+    sandbox.succeed(&[
+        "diagnose",
+        "--robot",
+        "arm.urdf",
+        "--known",
+        "m.toml",
+        "--train",
+        &train,
+        "--held-out",
+        "b.csv",
+        "--torques-only",
+        "-q",
+    ]);
+}
