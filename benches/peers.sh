@@ -31,7 +31,7 @@ have sklearn || install scikit-learn
 case ,$only, in *,sparse,*) have gpytorch || install gpytorch ;; esac
 
 cd "$root"
-for crate in arm plant gp; do
+for crate in arm plant gp torque; do
     cargo build --quiet --release --package $crate --example ${crate}_peers
 done
 mkdir -p target/peers

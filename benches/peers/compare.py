@@ -164,6 +164,24 @@ def gp(programs, build, rounds):
         row(f"GP fit, 2000 points, 13 inputs, {starts} start(s) against 1", ratios, 0.01, note)
 
 
+def sparse(programs, build, rounds):
+    """Noisy points by inducing points: as many for both."""
+    try:
+        import gpytorch
+    except ImportError:
+        raise Missing("GPyTorch: pip install gpytorch (several gigabytes)")
+    for samples, epochs, seconds in ((20_000, 60, 60), (100_000, 12, 600)):
+        train, test = (build / f"{name}{samples}.csv" for name in ("train", "test"))
+        subprocess.run([programs / "torque_peers", str(samples), train, test], check=True)
+        ours = [programs / "gp_peers", "sparse", train, test, "200"]
+        answers = pairs(rounds, ours, [sys.executable, HERE / "sparse.py", train, test, "200", epochs])
+        ours, theirs = answers[-1]
+        note = f"{ours['seconds']:.0f} s, of {seconds}; GPyTorch {gpytorch.__version__} {theirs['seconds']:.0f} s"
+        row(f"{samples} noisy points, time", [a["seconds"] / b["seconds"] for a, b in answers], None, note)
+        note = f"{ours['error']:.3f} N m; {theirs['error']:.3f} N m; bound within {ours['gap']:.0f} nats"
+        row(f"{samples} noisy points, test error", [a["error"] / b["error"] for a, b in answers], 1.0, note)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=7)
@@ -171,7 +189,7 @@ def main():
     parser.add_argument("--ours", type=pathlib.Path, required=True, help="folder of our programs")
     parser.add_argument("--build", type=pathlib.Path, required=True, help="folder for what is made on the way")
     options = parser.parse_args()
-    parts = {"arm": arm, "plant": plant, "gp": gp}
+    parts = {"arm": arm, "plant": plant, "gp": gp, "sparse": sparse}
     print("| row | ours / theirs, median | range | target | times of the last round or median |")
     print("|---|---|---|---|---|")
     missing = []

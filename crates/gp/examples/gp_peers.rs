@@ -1,18 +1,24 @@
-//! Times of a fit as JSON, for `benches/peers.sh`. Inputs: `fit TABLE.csv STARTS`; the table's last column is the target.
+//! Times of a fit as JSON, for `benches/peers.sh`. Inputs: `fit TABLE.csv STARTS`, or `sparse TRAIN.csv TEST.csv INDUCING`,
+//! which also gives the error on the test points; the last column of a table is the target.
 
 use std::time::Instant;
 
-use gp::{FitOptions, Gp, TrainingSet};
+use gp::{FitOptions, Gp, LengthScales, TrainingSet};
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [mode, table, number] = arguments.as_slice() else {
-        panic!("usage: gp_peers fit TABLE.csv STARTS");
-    };
-    assert_eq!(mode, "fit", "usage: gp_peers fit TABLE.csv STARTS");
-    let training = read(table);
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
+        ["fit", table, starts] => fit(table, starts.parse().expect("the number of starts")),
+        ["sparse", train, test, inducing] => sparse(train, test, inducing.parse().expect("the number of points")),
+        _ => panic!("usage: gp_peers fit TABLE.csv STARTS, or gp_peers sparse TRAIN.csv TEST.csv INDUCING"),
+    }
+}
+
+fn fit(table: &str, starts: usize) {
+    let (dim, inputs, targets) = read(table);
+    let training = TrainingSet::new(dim, &inputs, &targets).expect("the table is valid");
     let options = FitOptions {
-        starts: number.parse().expect("the number of starts"),
+        starts,
         ..FitOptions::default()
     };
     let start = Instant::now();
@@ -25,7 +31,32 @@ fn main() {
     );
 }
 
-fn read(path: &str) -> TrainingSet {
+fn sparse(train: &str, test: &str, inducing: usize) {
+    let (dim, inputs, targets) = read(train);
+    let training = TrainingSet::new(dim, &inputs, &targets).expect("the table is valid");
+    let options = FitOptions {
+        inducing: Some(inducing),
+        lengths: LengthScales::PerInput,
+        ..FitOptions::default()
+    };
+    let start = Instant::now();
+    let gp = Gp::fit(&training, &options).expect("it fits");
+    let seconds = start.elapsed().as_secs_f64();
+    let (_, inputs, targets) = read(test);
+    let squares = inputs.chunks_exact(dim).zip(&targets);
+    let sum: f64 = squares.map(|(x, y)| (gp.mean(x) - y).powi(2)).sum();
+    let error = (sum / targets.len() as f64).sqrt();
+    eprintln!("{}", gp.conditioning());
+    println!(
+        "{{\"seconds\": {seconds:.3}, \"error\": {error:.6}, \"bound\": {:.3}, \"gap\": {:.3}, \"noise\": {:.4}}}",
+        gp.log_marginal_likelihood(),
+        gp.conditioning().likelihood_gap.unwrap_or(0.0),
+        gp.hyperparameters().noise
+    );
+}
+
+/// The number of inputs, the inputs and the targets.
+fn read(path: &str) -> (usize, Vec<f64>, Vec<f64>) {
     let text = std::fs::read_to_string(path).expect("the table can be read");
     let (mut inputs, mut targets) = (Vec::new(), Vec::new());
     for line in text.lines().skip(1) {
@@ -33,5 +64,5 @@ fn read(path: &str) -> TrainingSet {
         targets.extend(row.pop());
         inputs.extend(row);
     }
-    TrainingSet::new(inputs.len() / targets.len(), &inputs, &targets).expect("the table is valid")
+    (inputs.len() / targets.len(), inputs, targets)
 }
