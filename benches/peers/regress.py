@@ -13,9 +13,9 @@ def main():
     table = np.loadtxt(sys.argv[1], delimiter=",", skiprows=1)
     inputs, targets = table[:, :-1], table[:, -1]
     kernel = ConstantKernel(10.0, (1e-6, 1e6)) * RBF(10.0, (1e-2, 1e4)) + WhiteKernel(1e-6, (1e-14, 1e1))
-    begun = time.perf_counter()
+    begun = time.process_time()
     fitted = GaussianProcessRegressor(kernel).fit(inputs, targets)
-    seconds = time.perf_counter() - begun
+    seconds = time.process_time() - begun
     print(json.dumps({"seconds": seconds, "likelihood": float(fitted.log_marginal_likelihood_value_)}))
 
 

@@ -1,7 +1,7 @@
-//! Times of a fit as JSON, for `benches/peers.sh`. Inputs: `fit TABLE.csv STARTS`, or `sparse TRAIN.csv TEST.csv INDUCING`,
+//! Processor times of a fit as JSON, for `benches/peers.sh`. Inputs: `fit TABLE.csv STARTS`, or `sparse TRAIN.csv TEST.csv INDUCING`,
 //! which also gives the error on the test points; the last column of a table is the target.
 
-use std::time::Instant;
+use std::time::SystemTime;
 
 use gp::{FitOptions, Gp, LengthScales, TrainingSet};
 
@@ -21,11 +21,11 @@ fn fit(table: &str, starts: usize) {
         starts,
         ..FitOptions::default()
     };
-    let start = Instant::now();
+    let start = clock();
     let gp = Gp::fit(&training, &options).expect("it fits");
     println!(
         "{{\"seconds\": {:.6}, \"likelihood\": {:.6}, \"rank\": {}}}",
-        start.elapsed().as_secs_f64(),
+        clock() - start,
         gp.log_marginal_likelihood(),
         gp.rank()
     );
@@ -39,9 +39,9 @@ fn sparse(train: &str, test: &str, inducing: usize) {
         lengths: LengthScales::PerInput,
         ..FitOptions::default()
     };
-    let start = Instant::now();
+    let start = clock();
     let gp = Gp::fit(&training, &options).expect("it fits");
-    let seconds = start.elapsed().as_secs_f64();
+    let seconds = clock() - start;
     let (_, inputs, targets) = read(test);
     let squares = inputs.chunks_exact(dim).zip(&targets);
     let sum: f64 = squares.map(|(x, y)| (gp.mean(x) - y).powi(2)).sum();
@@ -53,6 +53,19 @@ fn sparse(train: &str, test: &str, inducing: usize) {
         gp.conditioning().likelihood_gap.unwrap_or(0.0),
         gp.hyperparameters().noise
     );
+}
+
+/// Processor time of this thread (s); where the system does not tell it, the time.
+fn clock() -> f64 {
+    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let nanoseconds = told.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
+    nanoseconds.map_or_else(
+        || {
+            let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+            now.expect("the clock is right").as_secs_f64()
+        },
+        |nanoseconds| nanoseconds * 1e-9,
+    )
 }
 
 /// The number of inputs, the inputs and the targets.
