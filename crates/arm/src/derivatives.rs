@@ -1,34 +1,42 @@
 //! The derivatives of inverse dynamics by the positions and the velocities.
 
-use nalgebra::{DMatrix, Matrix3, Vector3};
+use nalgebra::DMatrix;
 
 use crate::model::{Arm, JointKind};
-use crate::pose::Pose;
-use crate::small::{acceleration_tensor, cross, cross_columns, field_moment, mul, rotate_symmetric, tr_mul};
-use crate::workspace::Workspace;
+use crate::place::Place;
+use crate::real::Real;
+use crate::small::{
+    Mat3, Vec3, acceleration_tensor, cross, cross_columns, field_moment, mul, outer, product, rotate_symmetric, tr_mul,
+};
+use crate::workspace::{Scratch, Workspace};
 
 /// A twist, a spatial acceleration or a wrench along the base's axes about its origin: the angular part (or moment) first.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Spatial(pub Vector3<f64>, pub Vector3<f64>);
+pub(crate) struct Spatial<T>(pub Vec3<T>, pub Vec3<T>);
 
-impl Spatial {
-    pub fn zero() -> Self {
-        Self(Vector3::zeros(), Vector3::zeros())
+impl<T: Real> Spatial<T> {
+    #[inline(always)]
+    pub fn zeros(context: T::Context) -> Self {
+        Self(Vec3::zeros(context), Vec3::zeros(context))
     }
 
+    #[inline(always)]
     fn plus(&self, other: &Self) -> Self {
         Self(self.0 + other.0, self.1 + other.1)
     }
 
-    fn times(&self, factor: f64) -> Self {
+    #[inline(always)]
+    fn times(&self, factor: T) -> Self {
         Self(self.0 * factor, self.1 * factor)
     }
 
-    fn dot(&self, other: &Self) -> f64 {
+    #[inline(always)]
+    fn dot(&self, other: &Self) -> T {
         self.0.dot(&other.0) + self.1.dot(&other.1)
     }
 
     /// How a motion that a body with this twist carries changes.
+    #[inline(always)]
     fn cross(&self, motion: &Self) -> Self {
         Self(
             cross(&self.0, &motion.0),
@@ -37,6 +45,7 @@ impl Spatial {
     }
 
     /// How a wrench that a body with this twist carries changes.
+    #[inline(always)]
     fn cross_wrench(&self, wrench: &Self) -> Self {
         Self(
             cross(&self.0, &wrench.0) + cross(&self.1, &wrench.1),
@@ -47,28 +56,30 @@ impl Spatial {
 
 /// What one link, or all links from one on, contribute; along the base's axes about its origin.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Body {
-    mass: f64,
-    first: Vector3<f64>,
-    second: Matrix3<f64>,
+pub(crate) struct Body<T> {
+    mass: T,
+    first: Vec3<T>,
+    second: Mat3<T>,
     /// ∫ v dm and ∫ v rᵀ dm, v the velocity of the point r.
-    momentum: Vector3<f64>,
-    flow: Matrix3<f64>,
-    wrench: Spatial,
+    momentum: Vec3<T>,
+    flow: Mat3<T>,
+    wrench: Spatial<T>,
 }
 
-impl Body {
-    pub fn none() -> Self {
+impl<T: Real> Body<T> {
+    #[inline(always)]
+    pub fn none(context: T::Context) -> Self {
         Self {
-            mass: 0.0,
-            first: Vector3::zeros(),
-            second: Matrix3::zeros(),
-            momentum: Vector3::zeros(),
-            flow: Matrix3::zeros(),
-            wrench: Spatial::zero(),
+            mass: T::constant(context, 0.0),
+            first: Vec3::zeros(context),
+            second: Mat3::zeros(context),
+            momentum: Vec3::zeros(context),
+            flow: Mat3::zeros(context),
+            wrench: Spatial::zeros(context),
         }
     }
 
+    #[inline(always)]
     fn add(&mut self, other: &Self) {
         self.mass += other.mass;
         self.first += other.first;
@@ -79,50 +90,55 @@ impl Body {
     }
 
     /// I x.
-    fn inertia_times(&self, x: &Spatial) -> Spatial {
-        let turned = self.second.trace() * x.0 - mul(&self.second, &x.0);
+    #[inline(always)]
+    fn inertia_times(&self, x: &Spatial<T>) -> Spatial<T> {
+        let turned = x.0 * self.second.trace() - mul(&self.second, &x.0);
         Spatial(
             turned + cross(&self.first, &x.1),
-            self.mass * x.1 + cross(&x.0, &self.first),
+            x.1 * self.mass + cross(&x.0, &self.first),
         )
     }
 
     /// ∫ (r ×; 1) 2 x × v dm of a turn x: x ×* I v + v ×* I x − I (v × x) of any motion with that angular part.
-    fn coriolis_times(&self, x: &Vector3<f64>) -> Spatial {
+    #[inline(always)]
+    fn coriolis_times(&self, context: T::Context, x: &Vec3<T>) -> Spatial<T> {
+        let two = T::constant(context, 2.0);
         Spatial(
-            2.0 * (self.flow.trace() * x - mul(&self.flow, x)),
-            2.0 * cross(x, &self.momentum),
+            (*x * self.flow.trace() - mul(&self.flow, x)) * two,
+            cross(x, &self.momentum) * two,
         )
     }
 
     /// The e with e · x = s · [`Self::coriolis_times`] x.
-    fn coriolis_along(&self, s: &Spatial) -> Vector3<f64> {
-        2.0 * (self.flow.trace() * s.0 - tr_mul(&self.flow, &s.0) + cross(&self.momentum, &s.1))
+    #[inline(always)]
+    fn coriolis_along(&self, context: T::Context, s: &Spatial<T>) -> Vec3<T> {
+        (s.0 * self.flow.trace() - tr_mul(&self.flow, &s.0) + cross(&self.momentum, &s.1)) * T::constant(context, 2.0)
     }
 }
 
 /// Scratch of one joint; along the base's axes about its origin.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Tangent {
+pub(crate) struct Tangent<T> {
     /// The joint's unit motion s.
-    unit: Spatial,
+    unit: Spatial<T>,
     /// How the motion of all that it carries changes by q, seen from there: velocity and acceleration.
-    velocity: Spatial,
-    acceleration: Spatial,
+    velocity: Spatial<T>,
+    acceleration: Spatial<T>,
     /// How the acceleration changes by q̇, less a part that belongs to the Coriolis term.
-    by_speed: Spatial,
-    body: Body,
+    by_speed: Spatial<T>,
+    body: Body<T>,
 }
 
-impl Tangent {
-    pub fn zero() -> Self {
-        let zero = Spatial::zero();
+impl<T: Real> Tangent<T> {
+    #[inline(always)]
+    pub fn zeros(context: T::Context) -> Self {
+        let zero = Spatial::zeros(context);
         Self {
             unit: zero,
             velocity: zero,
             acceleration: zero,
             by_speed: zero,
-            body: Body::none(),
+            body: Body::none(context),
         }
     }
 }
@@ -151,69 +167,101 @@ impl Arm {
         let n = self.dof();
         assert_eq!(by_position.shape(), (n, n), "the derivatives are dof × dof");
         assert_eq!(by_velocity.shape(), (n, n), "the derivatives are dof × dof");
-        self.propagate_tangents(&mut workspace.tangents, q, qd, qdd);
-        let tangents = &workspace.tangents;
-        let mut body = Body::none();
+        let (by_position, by_velocity) = (by_position.as_mut_slice(), by_velocity.as_mut_slice());
+        self.tangents((), &mut workspace.scratch, q, qd, qdd, by_position, by_velocity);
+    }
+
+    /// The recursion of [`Self::inverse_dynamics_derivatives`]; the matrices are column after column.
+    #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "three inputs and two outputs, as the public function"
+    )]
+    pub(crate) fn tangents<T: Real>(
+        &self,
+        context: T::Context,
+        scratch: &mut Scratch<T>,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+        by_position: &mut [T],
+        by_velocity: &mut [T],
+    ) {
+        let n = self.dof();
+        self.place(context, scratch, q, 0);
+        self.propagate_tangents(context, scratch, qd, qdd);
+        let tangents = &scratch.tangents;
+        let mut body = Body::none(context);
         for (i, at) in tangents.iter().enumerate().rev() {
             body.add(&at.body);
             let s = &at.unit;
             // By the joints before this one, and by itself.
             let inertial = body.inertia_times(s);
-            let coriolis = body.coriolis_along(s);
+            let coriolis = body.coriolis_along(context, s);
             for (j, by) in tangents[..=i].iter().enumerate() {
-                by_position[(i, j)] = inertial.dot(&by.acceleration) + coriolis.dot(&by.velocity.0);
-                by_velocity[(i, j)] = inertial.dot(&by.by_speed) + coriolis.dot(&by.unit.0);
+                by_position[j * n + i] = inertial.dot(&by.acceleration) + coriolis.dot(&by.velocity.0);
+                by_velocity[j * n + i] = inertial.dot(&by.by_speed) + coriolis.dot(&by.unit.0);
             }
             // The joints before this one, by it.
             let moved = body
                 .inertia_times(&at.acceleration)
-                .plus(&body.coriolis_times(&at.velocity.0))
+                .plus(&body.coriolis_times(context, &at.velocity.0))
                 .plus(&s.cross_wrench(&body.wrench));
-            let faster = body.inertia_times(&at.by_speed).plus(&body.coriolis_times(&s.0));
+            let faster = body
+                .inertia_times(&at.by_speed)
+                .plus(&body.coriolis_times(context, &s.0));
             for (k, before) in tangents[..i].iter().enumerate() {
-                by_position[(k, i)] = before.unit.dot(&moved);
-                by_velocity[(k, i)] = before.unit.dot(&faster);
+                by_position[i * n + k] = before.unit.dot(&moved);
+                by_velocity[i * n + k] = before.unit.dot(&faster);
             }
         }
     }
 
     /// Base to tip: the motions of the joints and links, and the links' moments and wrenches, in the base's axes.
-    fn propagate_tangents(&self, tangents: &mut [Tangent], q: &[f64], qd: &[f64], qdd: &[f64]) {
-        let mut base_from_link = Pose::identity();
-        let mut v = Spatial::zero();
-        let mut a = Spatial(Vector3::zeros(), -self.gravity);
-        for (i, (joint, tangent)) in self.joints.iter().zip(tangents).enumerate() {
-            base_from_link = base_from_link.compose(&joint.parent_from_link(q[i]));
-            let (r, o) = (&base_from_link.rotation, &base_from_link.translation);
-            let axis = mul(r, &joint.axis);
+    #[inline(always)]
+    fn propagate_tangents<T: Real>(&self, context: T::Context, scratch: &mut Scratch<T>, qd: &[T], qdd: &[T]) {
+        let zero = Vec3::zeros(context);
+        let (mut v, mut a) = (
+            Spatial::zeros(context),
+            Spatial(zero, Vec3::constant(context, &-self.gravity)),
+        );
+        let mut r = Mat3::constant(context, &nalgebra::Matrix3::identity());
+        let mut o = zero;
+        let Scratch { places, tangents, .. } = scratch;
+        for (i, ((joint, place), tangent)) in self.joints.iter().zip(places.iter()).zip(tangents).enumerate() {
+            let Place { rotation, translation } = place;
+            (r, o) = (product(&r, rotation), mul(&r, translation) + o);
+            let axis = mul(&r, &Vec3::constant(context, &joint.axis));
             let s = match joint.kind {
-                JointKind::Revolute => Spatial(axis, cross(o, &axis)),
-                JointKind::Prismatic => Spatial(Vector3::zeros(), axis),
+                JointKind::Revolute => Spatial(axis, cross(&o, &axis)),
+                JointKind::Prismatic => Spatial(zero, axis),
             };
             let velocity = v.cross(&s);
             tangent.unit = s;
             tangent.velocity = velocity;
             tangent.acceleration = a.cross(&s).plus(&v.cross(&velocity));
             // v_j × s_j = v_{j−1} × s_j: the own share drops out.
-            tangent.by_speed = velocity.times(2.0);
+            tangent.by_speed = velocity.times(T::constant(context, 2.0));
             a = a.plus(&s.times(qdd[i])).plus(&velocity.times(qd[i]));
             v = v.plus(&s.times(qd[i]));
 
-            let mass = joint.inertia.mass;
-            let turned = mul(r, &joint.moments.first);
-            let first = turned + mass * o;
-            let second = rotate_symmetric(r, &joint.moments.second) + o * turned.transpose() + first * o.transpose();
+            let mass = T::constant(context, joint.inertia.mass);
+            let turned = mul(&r, &Vec3::constant(context, &joint.moments.first));
+            let first = turned + o * mass;
+            let second = rotate_symmetric(&r, &Mat3::constant(context, &joint.moments.second))
+                + outer(&o, &turned)
+                + outer(&first, &o);
             let field = acceleration_tensor(&v.0, &a.0);
             let at_origin = a.1 + cross(&v.0, &v.1);
             tangent.body = Body {
                 mass,
                 first,
                 second,
-                momentum: mass * v.1 + cross(&v.0, &first),
-                flow: v.1 * first.transpose() + cross_columns(&v.0, &second),
+                momentum: v.1 * mass + cross(&v.0, &first),
+                flow: outer(&v.1, &first) + cross_columns(&v.0, &second),
                 wrench: Spatial(
                     cross(&first, &at_origin) + field_moment(&field, &second),
-                    mass * at_origin + mul(&field, &first),
+                    at_origin * mass + mul(&field, &first),
                 ),
             };
         }

@@ -37,10 +37,10 @@ impl Arm {
     /// If a slice or the workspace is of another size than the arm.
     pub fn potential_energy(&self, workspace: &mut Workspace, q: &[f64]) -> f64 {
         self.forward_kinematics(workspace, q);
-        let links = self.joints.iter().zip(&workspace.links);
+        let links = self.joints.iter().zip(&workspace.base_from_link);
         links
-            .map(|(joint, link)| {
-                let com = link.base_from_link.transform_point(&joint.inertia.com);
+            .map(|(joint, base_from_link)| {
+                let com = base_from_link.transform_point(&joint.inertia.com);
                 -joint.inertia.mass * self.gravity.dot(&com)
             })
             .sum()

@@ -1,11 +1,52 @@
 //! Forward dynamics by the articulated-body algorithm.
 
-use nalgebra::{Matrix3, Vector3};
-
 use crate::model::{Arm, JointKind};
-use crate::pose::cross_matrix;
-use crate::small::{cross, cross_columns, less_outer, mul, product, product_tr, rotate_symmetric, symmetric, tr_mul};
-use crate::workspace::Workspace;
+use crate::place::Place;
+use crate::real::Real;
+use crate::small::{
+    Mat3, Vec3, cross, cross_columns, cross_matrix, less_outer, mul, product, product_tr, rotate_symmetric, symmetric,
+    tr_mul,
+};
+use crate::workspace::{Scratch, Workspace};
+
+/// An articulated body: a link and all that it carries, in the link's frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Articulated<T> {
+    /// Its inertia in blocks, [n; f] = [I H; Hᵀ M] [ω̇; v̇].
+    rotational: Mat3<T>,
+    coupling: Mat3<T>,
+    translational: Mat3<T>,
+    /// The bias wrench p^A (N m, N).
+    moment: Vec3<T>,
+    force: Vec3<T>,
+    /// Featherstone's U = I^A S, D = Sᵀ U, u = τ − Sᵀ p^A, and the velocity product c.
+    u_moment: Vec3<T>,
+    u_force: Vec3<T>,
+    d: T,
+    u: T,
+    c_angular: Vec3<T>,
+    c_linear: Vec3<T>,
+}
+
+impl<T: Real> Articulated<T> {
+    /// Without mass, at rest.
+    pub fn zeros(context: T::Context) -> Self {
+        let (vector, matrix) = (Vec3::zeros(context), Mat3::zeros(context));
+        Self {
+            rotational: matrix,
+            coupling: matrix,
+            translational: matrix,
+            moment: vector,
+            force: vector,
+            u_moment: vector,
+            u_force: vector,
+            d: vector.x,
+            u: vector.x,
+            c_angular: vector,
+            c_linear: vector,
+        }
+    }
+}
 
 impl Arm {
     /// The accelerations `qdd` (rad/s² or m/s²) under the torques `tau` at `q`, `qd`: q̈ = M⁻¹ (τ − C q̇ − g).
@@ -16,9 +57,23 @@ impl Arm {
     /// If a slice or the workspace is of another size than the arm.
     pub fn forward_dynamics(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64], tau: &[f64], qdd: &mut [f64]) {
         workspace.check(self, &[q, qd, tau, qdd]);
-        self.propagate_velocities(workspace, q, qd);
-        self.articulate(workspace, tau);
-        self.accelerate(workspace, qdd);
+        self.articulated_bodies((), &mut workspace.scratch, q, qd, tau, qdd);
+    }
+
+    /// The recursion of [`Self::forward_dynamics`] over `scratch`.
+    #[inline(always)]
+    pub(crate) fn articulated_bodies<T: Real>(
+        &self,
+        context: T::Context,
+        scratch: &mut Scratch<T>,
+        q: &[T],
+        qd: &[T],
+        tau: &[T],
+        qdd: &mut [T],
+    ) {
+        self.propagate_velocities(context, scratch, q, qd);
+        self.articulate(context, scratch, tau);
+        self.accelerate(context, scratch, qdd);
     }
 
     /// The last joint, if any, that can move without moving mass or a rotor; forward dynamics is not defined then.
@@ -29,24 +84,28 @@ impl Arm {
         // Any posture will do that is not a special one.
         let q: Vec<f64> = (0..self.dof()).map(|i| 0.3 + 0.1 * i as f64).collect();
         self.forward_dynamics(&mut workspace, &q, &zeros, &zeros, &mut qdd);
-        let inertias = workspace.links.iter().map(|link| link.d);
+        let links = &workspace.scratch.articulated;
+        let inertias = links.iter().map(|link| link.d);
         let largest = inertias.clone().fold(0.0, f64::max);
         // Beyond the first such joint from the tip, towards the base, the recursion has divided by nothing.
         (0..self.dof())
             .rev()
-            .find(|&i| workspace.links[i].d.is_nan() || workspace.links[i].d <= 1e-12 * largest)
+            .find(|&i| links[i].d.is_nan() || links[i].d <= 1e-12 * largest)
     }
 
     /// Base to tip: velocities, velocity products c, bias wrenches p^A and the links' own inertias.
-    fn propagate_velocities(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64]) {
-        let mut w = Vector3::zeros();
-        let mut v = Vector3::zeros();
-        for ((joint, link), (&q, &qd)) in self.joints.iter().zip(&mut workspace.links).zip(q.iter().zip(qd)) {
-            let pose = joint.parent_from_link(q);
-            v = tr_mul(&pose.rotation, &(v + cross(&w, &pose.translation)));
-            w = tr_mul(&pose.rotation, &w);
-            link.parent_from_link = pose;
-            let velocity = joint.axis * qd;
+    #[inline(always)]
+    fn propagate_velocities<T: Real>(&self, context: T::Context, scratch: &mut Scratch<T>, q: &[T], qd: &[T]) {
+        self.place(context, scratch, q, 0);
+        let Scratch {
+            places, articulated, ..
+        } = scratch;
+        let mut w = Vec3::zeros(context);
+        let mut v = Vec3::zeros(context);
+        for (((joint, place), link), &qd) in self.joints.iter().zip(places).zip(articulated).zip(qd) {
+            v = tr_mul(&place.rotation, &(v + cross(&w, &place.translation)));
+            w = tr_mul(&place.rotation, &w);
+            let velocity = Vec3::constant(context, &joint.axis) * qd;
             match joint.kind {
                 JointKind::Revolute => {
                     // v × S q̇ for S = (a, 0): (ω × a q̇, v × a q̇); the own share drops out.
@@ -55,61 +114,65 @@ impl Arm {
                     w += velocity;
                 }
                 JointKind::Prismatic => {
-                    link.c_angular = Vector3::zeros();
+                    link.c_angular = Vec3::zeros(context);
                     link.c_linear = cross(&w, &velocity);
                     v += velocity;
                 }
             }
 
-            let (mass, first) = (joint.inertia.mass, &joint.moments.first);
-            link.rotational = joint.moments.tensor;
-            link.coupling = cross_matrix(first);
-            link.translational = Matrix3::from_diagonal_element(mass);
+            let mass = T::constant(context, joint.inertia.mass);
+            let first = Vec3::constant(context, &joint.moments.first);
+            let (zero, tensor) = (
+                T::constant(context, 0.0),
+                Mat3::constant(context, &joint.moments.tensor),
+            );
+            link.rotational = tensor;
+            link.coupling = cross_matrix(context, &first);
+            link.translational = symmetric(mass, zero, zero, mass, zero, mass);
             // p = v ×* (I v): (ω × n + v × f, ω × f) with the momentum (n, f).
-            let n = mul(&joint.moments.tensor, &w) + cross(first, &v);
-            let f = mass * v + cross(&w, first);
+            let n = mul(&tensor, &w) + cross(&first, &v);
+            let f = v * mass + cross(&w, &first);
             link.moment = cross(&w, &n) + cross(&v, &f);
             link.force = cross(&w, &f);
         }
     }
 
     /// Tip to base: articulated inertias and bias wrenches.
-    fn articulate(&self, workspace: &mut Workspace, tau: &[f64]) {
+    #[inline(always)]
+    fn articulate<T: Real>(&self, context: T::Context, scratch: &mut Scratch<T>, tau: &[T]) {
+        let Scratch {
+            places, articulated, ..
+        } = scratch;
         for (i, joint) in self.joints.iter().enumerate().rev() {
-            let (proximal, distal) = workspace.links.split_at_mut(i);
+            let (proximal, distal) = articulated.split_at_mut(i);
             let link = &mut distal[0];
-            let a = &joint.axis;
+            let a = &Vec3::constant(context, &joint.axis);
+            let rotor = T::constant(context, joint.rotor_inertia);
             match joint.kind {
                 JointKind::Revolute => {
                     link.u_moment = mul(&link.rotational, a);
                     link.u_force = tr_mul(&link.coupling, a);
-                    link.d = a.dot(&link.u_moment) + joint.rotor_inertia;
+                    link.d = a.dot(&link.u_moment) + rotor;
                     link.u = tau[i] - a.dot(&link.moment);
                 }
                 JointKind::Prismatic => {
                     link.u_moment = mul(&link.coupling, a);
                     link.u_force = mul(&link.translational, a);
-                    link.d = a.dot(&link.u_force) + joint.rotor_inertia;
+                    link.d = a.dot(&link.u_force) + rotor;
                     link.u = tau[i] - a.dot(&link.force);
                 }
             }
             let Some(parent) = proximal.last_mut() else { continue };
             let (um, uf) = (&link.u_moment, &link.u_force);
-            let inverse = 1.0 / link.d;
-            let (sm, sf) = (um * inverse, uf * inverse);
+            let inverse = T::constant(context, 1.0) / link.d;
+            let (sm, sf) = (*um * inverse, *uf * inverse);
             let rotational = less_outer(&link.rotational, um, &sm);
             let c = &link.coupling;
-            let coupling = Matrix3::new(
-                c.m11 - um.x * sf.x,
-                c.m12 - um.x * sf.y,
-                c.m13 - um.x * sf.z,
-                c.m21 - um.y * sf.x,
-                c.m22 - um.y * sf.y,
-                c.m23 - um.y * sf.z,
-                c.m31 - um.z * sf.x,
-                c.m32 - um.z * sf.y,
-                c.m33 - um.z * sf.z,
-            );
+            let coupling = Mat3::new([
+                [c.m11 - um.x * sf.x, c.m12 - um.x * sf.y, c.m13 - um.x * sf.z],
+                [c.m21 - um.y * sf.x, c.m22 - um.y * sf.y, c.m23 - um.y * sf.z],
+                [c.m31 - um.z * sf.x, c.m32 - um.z * sf.y, c.m33 - um.z * sf.z],
+            ]);
             let translational = less_outer(&link.translational, uf, &sf);
             let (cw, cv) = (&link.c_angular, &link.c_linear);
             let moment = link.moment + mul(&rotational, cw) + mul(&coupling, cv) + sm * link.u;
@@ -117,8 +180,10 @@ impl Arm {
 
             // To the parent's frame: rotate the blocks, then shift the origin by p. With C' = C + [p]× M, the shifted
             // rotational block is I + [p]× C'ᵀ + ([p]× Cᵀ)ᵀ.
-            let r = &link.parent_from_link.rotation;
-            let p = &link.parent_from_link.translation;
+            let Place {
+                rotation: r,
+                translation: p,
+            } = &places[i];
             let rotational = rotate_symmetric(r, &rotational);
             let coupling = product_tr(&product(r, &coupling), r);
             let translational = rotate_symmetric(r, &translational);
@@ -142,17 +207,19 @@ impl Arm {
     }
 
     /// Base to tip: the accelerations.
-    fn accelerate(&self, workspace: &mut Workspace, qdd: &mut [f64]) {
-        let mut wd = Vector3::zeros();
-        let mut vd = -self.gravity;
-        for ((joint, link), qdd) in self.joints.iter().zip(&workspace.links).zip(qdd) {
-            let pose = &link.parent_from_link;
-            vd = tr_mul(&pose.rotation, &(vd + cross(&wd, &pose.translation))) + link.c_linear;
-            wd = tr_mul(&pose.rotation, &wd) + link.c_angular;
+    #[inline(always)]
+    fn accelerate<T: Real>(&self, context: T::Context, scratch: &Scratch<T>, qdd: &mut [T]) {
+        let mut wd = Vec3::zeros(context);
+        let mut vd = Vec3::constant(context, &-self.gravity);
+        let links = scratch.places.iter().zip(&scratch.articulated);
+        for ((joint, (place, link)), qdd) in self.joints.iter().zip(links).zip(qdd) {
+            vd = tr_mul(&place.rotation, &(vd + cross(&wd, &place.translation))) + link.c_linear;
+            wd = tr_mul(&place.rotation, &wd) + link.c_angular;
             *qdd = (link.u - link.u_moment.dot(&wd) - link.u_force.dot(&vd)) / link.d;
+            let own = Vec3::constant(context, &joint.axis) * *qdd;
             match joint.kind {
-                JointKind::Revolute => wd += joint.axis * *qdd,
-                JointKind::Prismatic => vd += joint.axis * *qdd,
+                JointKind::Revolute => wd += own,
+                JointKind::Prismatic => vd += own,
             }
         }
     }

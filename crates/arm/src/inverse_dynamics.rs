@@ -1,10 +1,9 @@
 //! Recursive Newton-Euler inverse dynamics, and the features Independent Joint Learning takes from it.
 
-use nalgebra::{Matrix3, Vector3};
-
 use crate::model::{Arm, JointKind};
-use crate::small::{acceleration_tensor, cross, field_moment, mul, tr_mul};
-use crate::workspace::Workspace;
+use crate::real::Real;
+use crate::small::{Mat3, Vec3, acceleration_tensor, cross, field_moment, mul, tr_mul};
+use crate::workspace::{Scratch, Workspace};
 
 /// How many Newton-Euler features a joint has: the paper's twelve, and its own torque as the thirteenth.
 pub const FEATURES: usize = 13;
@@ -16,6 +15,36 @@ pub const FEATURES: usize = 13;
 /// its algorithms 1 to 3.
 pub type NewtonEulerFeatures = [f64; FEATURES];
 
+/// A link's motion and the wrench on it, in its own frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LinkMotion<T> {
+    /// ω, ω̇ (rad/s, rad/s²).
+    pub angular_velocity: Vec3<T>,
+    pub angular_acceleration: Vec3<T>,
+    /// [ω̇]× + [ω]×²: the acceleration of a point beyond that of the origin, per metre (1/s²).
+    pub field: Mat3<T>,
+    /// v̇ of the frame's origin less gravity (m/s²).
+    pub linear_acceleration: Vec3<T>,
+    /// f, τ that the parent exerts on the link, about the frame's origin (N, N m).
+    pub force: Vec3<T>,
+    pub moment: Vec3<T>,
+}
+
+impl<T: Real> LinkMotion<T> {
+    /// At rest, without a load.
+    pub fn zeros(context: T::Context) -> Self {
+        let zero = Vec3::zeros(context);
+        Self {
+            angular_velocity: zero,
+            angular_acceleration: zero,
+            field: Mat3::zeros(context),
+            linear_acceleration: zero,
+            force: zero,
+            moment: zero,
+        }
+    }
+}
+
 impl Arm {
     /// The joint torques (N m or N) that produce `qdd` at `q`, `qd`: τ = M(q) q̈ + C(q, q̇) q̇ + g(q).
     ///
@@ -26,8 +55,7 @@ impl Arm {
     /// If a slice or the workspace is of another size than the arm.
     pub fn inverse_dynamics(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64], tau: &mut [f64]) {
         workspace.check(self, &[q, qd, qdd, tau]);
-        self.propagate_motion(workspace, q, qd, qdd);
-        self.propagate_wrenches(workspace, qdd, tau);
+        self.newton_euler((), &mut workspace.scratch, q, qd, qdd, tau);
     }
 
     /// [`Self::inverse_dynamics`], and the Newton-Euler features of every joint (algorithm 1 of the paper).
@@ -45,18 +73,8 @@ impl Arm {
     ) {
         self.inverse_dynamics(workspace, q, qd, qdd, tau);
         assert_eq!(features.len(), self.dof(), "one set of features a joint");
-        let zero = Vector3::zeros();
         for (i, feature) in features.iter_mut().enumerate() {
-            let link = &workspace.links[i];
-            let (moment, force) = workspace
-                .links
-                .get(i + 1)
-                .map_or((zero, zero), |next| (next.moment, next.force));
-            feature[0..3].copy_from_slice(link.angular_velocity.as_slice());
-            feature[3..6].copy_from_slice(link.angular_acceleration.as_slice());
-            feature[6..9].copy_from_slice(moment.as_slice());
-            feature[9..12].copy_from_slice(force.as_slice());
-            feature[12] = tau[i];
+            *feature = workspace.scratch.features((), i, tau[i]);
         }
     }
 
@@ -80,29 +98,53 @@ impl Arm {
         workspace.zeros = zeros;
     }
 
+    /// The recursion of [`Self::inverse_dynamics`] over `scratch`.
+    #[inline(always)]
+    pub(crate) fn newton_euler<T: Real>(
+        &self,
+        context: T::Context,
+        scratch: &mut Scratch<T>,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+        tau: &mut [T],
+    ) {
+        self.propagate_motion(context, scratch, q, qd, qdd);
+        self.propagate_wrenches(context, scratch, qdd, tau);
+    }
+
     /// Base to tip: each link's pose in its parent, ω, ω̇, and v̇ less gravity, in its own frame.
-    pub(crate) fn propagate_motion(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64]) {
-        let mut w = Vector3::zeros();
-        let mut vd = -self.gravity;
-        let mut field = Matrix3::zeros();
-        let mut wd = Vector3::zeros();
-        let joints = self.joints.iter().zip(&mut workspace.links);
-        for (((joint, link), (&q, &qd)), &qdd) in joints.zip(q.iter().zip(qd)).zip(qdd) {
-            let pose = joint.parent_from_link(q);
-            vd = tr_mul(&pose.rotation, &(vd + mul(&field, &pose.translation)));
-            w = tr_mul(&pose.rotation, &w);
-            wd = tr_mul(&pose.rotation, &wd);
-            let velocity = joint.axis * qd;
-            let acceleration = joint.axis * qdd;
+    #[inline(always)]
+    pub(crate) fn propagate_motion<T: Real>(
+        &self,
+        context: T::Context,
+        scratch: &mut Scratch<T>,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+    ) {
+        self.place(context, scratch, q, 0);
+        let Scratch { places, motions, .. } = scratch;
+        let mut w = Vec3::zeros(context);
+        let mut vd = Vec3::constant(context, &-self.gravity);
+        let mut field = Mat3::zeros(context);
+        let mut wd = Vec3::zeros(context);
+        let joints = self.joints.iter().zip(places).zip(motions);
+        for (((joint, place), link), (&qd, &qdd)) in joints.zip(qd.iter().zip(qdd)) {
+            vd = tr_mul(&place.rotation, &(vd + mul(&field, &place.translation)));
+            w = tr_mul(&place.rotation, &w);
+            wd = tr_mul(&place.rotation, &wd);
+            let axis = Vec3::constant(context, &joint.axis);
+            let velocity = axis * qd;
+            let acceleration = axis * qdd;
             match joint.kind {
                 JointKind::Revolute => {
                     wd += acceleration + cross(&w, &velocity);
                     w += velocity;
                 }
-                JointKind::Prismatic => vd += acceleration + 2.0 * cross(&w, &velocity),
+                JointKind::Prismatic => vd += acceleration + cross(&w, &velocity) * T::constant(context, 2.0),
             }
             field = acceleration_tensor(&w, &wd);
-            link.parent_from_link = pose;
             link.angular_velocity = w;
             link.angular_acceleration = wd;
             link.linear_acceleration = vd;
@@ -114,26 +156,47 @@ impl Arm {
     ///
     /// A point r of a link accelerates by v̇ + W r, W = [ω̇]× + [ω]×²: its inertial force is m v̇ + W ∫ r dm, its moment
     /// ∫ r × (v̇ + W r) dm, linear in the moments of its mass (Balafoutis and Patel 1991).
-    fn propagate_wrenches(&self, workspace: &mut Workspace, qdd: &[f64], tau: &mut [f64]) {
+    #[inline(always)]
+    fn propagate_wrenches<T: Real>(&self, context: T::Context, scratch: &mut Scratch<T>, qdd: &[T], tau: &mut [T]) {
         // The wrench of link i+1 in link i's axes, about link i's origin.
-        let mut force = Vector3::zeros();
-        let mut moment = Vector3::zeros();
-        let joints = self.joints.iter().zip(&mut workspace.links);
-        for (((joint, link), &qdd), tau) in joints.zip(qdd).zip(tau).rev() {
-            let body = &joint.moments;
+        let mut force = Vec3::zeros(context);
+        let mut moment = Vec3::zeros(context);
+        let links = scratch.places.iter().zip(&mut scratch.motions);
+        let joints = self.joints.iter().zip(links).zip(qdd.iter().zip(tau));
+        for (i, ((joint, (place, link)), (&qdd, tau))) in joints.enumerate().rev() {
+            let first = Vec3::constant(context, &joint.moments.first);
+            let second = Mat3::constant(context, &joint.moments.second);
             let vd = &link.linear_acceleration;
-            force += joint.inertia.mass * vd + mul(&link.field, &body.first);
-            moment += cross(&body.first, vd) + field_moment(&link.field, &body.second);
+            force += *vd * T::constant(context, joint.inertia.mass) + mul(&link.field, &first);
+            moment += cross(&first, vd) + field_moment(&link.field, &second);
             link.force = force;
             link.moment = moment;
+            let axis = Vec3::constant(context, &joint.axis);
             let along_axis = match joint.kind {
-                JointKind::Revolute => joint.axis.dot(&moment),
-                JointKind::Prismatic => joint.axis.dot(&force),
+                JointKind::Revolute => axis.dot(&moment),
+                JointKind::Prismatic => axis.dot(&force),
             };
-            *tau = along_axis + joint.rotor_inertia * qdd;
-            let pose = &link.parent_from_link;
-            force = mul(&pose.rotation, &force);
-            moment = mul(&pose.rotation, &moment) + cross(&pose.translation, &force);
+            *tau = along_axis + T::constant(context, joint.rotor_inertia) * qdd;
+            if i > 0 {
+                force = mul(&place.rotation, &force);
+                moment = mul(&place.rotation, &moment) + cross(&place.translation, &force);
+            }
         }
+    }
+}
+
+impl<T: Real> Scratch<T> {
+    /// The features of joint `i`, whose torque is `tau`, as the recursion left them.
+    #[inline(always)]
+    pub(crate) fn features(&self, context: T::Context, i: usize, tau: T) -> [T; FEATURES] {
+        let LinkMotion {
+            angular_velocity: w,
+            angular_acceleration: wd,
+            ..
+        } = self.motions[i];
+        let zero = Vec3::zeros(context);
+        let next = self.motions.get(i + 1).map(|next| (next.moment, next.force));
+        let (n, f) = next.unwrap_or((zero, zero));
+        [w.x, w.y, w.z, wd.x, wd.y, wd.z, n.x, n.y, n.z, f.x, f.y, f.z, tau]
     }
 }

@@ -15,10 +15,8 @@ impl Arm {
         workspace.check(self, &[q]);
         let mut base_from_parent = Pose::identity();
         for (i, joint) in self.joints.iter().enumerate() {
-            let link = &mut workspace.links[i];
-            link.parent_from_link = joint.parent_from_link(q[i]);
-            link.base_from_link = base_from_parent.compose(&link.parent_from_link);
-            base_from_parent = link.base_from_link;
+            base_from_parent = base_from_parent.compose(&joint.parent_from_link(q[i]));
+            workspace.base_from_link[i] = base_from_parent;
         }
     }
 
@@ -34,11 +32,9 @@ impl Arm {
         assert_eq!(jacobian.ncols(), self.dof(), "one column a joint");
         jacobian.fill(0.0);
         let Some(link) = frame.link else { return };
-        let point = workspace.links[link]
-            .base_from_link
-            .transform_point(&frame.link_from_frame.translation);
+        let point = workspace.base_from_link[link].transform_point(&frame.link_from_frame.translation);
         for (i, joint) in self.joints.iter().enumerate().take(link + 1) {
-            let base_from_link = &workspace.links[i].base_from_link;
+            let base_from_link = &workspace.base_from_link[i];
             let axis = base_from_link.rotation * joint.axis;
             let mut column = jacobian.column_mut(i);
             match joint.kind {
@@ -57,13 +53,13 @@ impl Workspace {
     /// The pose of moving link `link` in the base frame, as [`Arm::forward_kinematics`] or
     /// [`Arm::jacobian`] left it.
     pub fn base_from_link(&self, link: usize) -> &Pose {
-        &self.links[link].base_from_link
+        &self.base_from_link[link]
     }
 
     /// The pose of `frame` in the base frame, likewise.
     pub fn base_from_frame(&self, frame: &Frame) -> Pose {
         frame.link.map_or(frame.link_from_frame, |link| {
-            self.links[link].base_from_link.compose(&frame.link_from_frame)
+            self.base_from_link[link].compose(&frame.link_from_frame)
         })
     }
 }

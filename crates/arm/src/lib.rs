@@ -7,6 +7,7 @@
 //! A link's frame is its URDF frame, at its joint. Poses are written `a_from_b`. Spatial
 //! quantities put the angular part first.
 
+mod batch;
 mod chain;
 mod derivatives;
 mod energy;
@@ -16,7 +17,9 @@ mod inverse_dynamics;
 mod kinematics;
 mod mass_matrix;
 mod model;
+mod place;
 mod pose;
+mod real;
 mod regressor;
 mod small;
 mod urdf;

@@ -1,10 +1,11 @@
 //! The joint-space mass matrix by the composite-rigid-body algorithm.
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::DMatrix;
 
 use crate::model::{Arm, JointKind};
-use crate::small::{cross, mul, rotate_symmetric, symmetric};
-use crate::workspace::Workspace;
+use crate::real::Real;
+use crate::small::{Mat3, Vec3, cross, mul, rotate_symmetric, symmetric};
+use crate::workspace::{Scratch, Workspace};
 
 impl Arm {
     /// M(q), dof × dof, symmetric positive definite (kg m², kg m, kg); rotor inertias on its diagonal.
@@ -17,46 +18,69 @@ impl Arm {
         workspace.check(self, &[q]);
         let n = self.dof();
         assert_eq!(mass_matrix.shape(), (n, n), "the mass matrix is dof × dof");
+        self.composite_bodies((), &mut workspace.scratch, q, mass_matrix.as_mut_slice());
+    }
+
+    /// The recursion of [`Self::mass_matrix`]; `mass_matrix` is column after column.
+    #[inline(always)]
+    pub(crate) fn composite_bodies<T: Real>(
+        &self,
+        context: T::Context,
+        scratch: &mut Scratch<T>,
+        q: &[T],
+        mass_matrix: &mut [T],
+    ) {
+        let n = self.dof();
         // The composite body beyond joint i: mass, first moment m c and inertia about link i's
         // origin. `distal` is the part beyond link i, already in link i's frame.
         let mut distal_mass = 0.0;
-        let mut distal_moment = Vector3::zeros();
-        let mut distal_tensor = nalgebra::Matrix3::zeros();
-        // The joints' inertia does not depend on where the first one stands: its pose is not needed.
-        for ((joint, link), &q) in self.joints.iter().zip(&mut workspace.links).zip(q).skip(1) {
-            link.parent_from_link = joint.parent_from_link(q);
-        }
+        let mut distal_moment = Vec3::zeros(context);
+        let mut distal_tensor = Mat3::zeros(context);
+        // The joints' inertia does not depend on where the first one stands: its place is not needed.
+        self.place(context, scratch, q, 1);
+        let places = &scratch.places;
         for i in (0..n).rev() {
             let joint = &self.joints[i];
-            let mass = joint.inertia.mass + distal_mass;
-            let first_moment = joint.moments.first + distal_moment;
-            let tensor = joint.moments.tensor + distal_tensor;
+            let joint_mass = joint.inertia.mass + distal_mass;
+            let mass = T::constant(context, joint_mass);
+            let first_moment = Vec3::constant(context, &joint.moments.first) + distal_moment;
+            let tensor = Mat3::constant(context, &joint.moments.tensor) + distal_tensor;
 
             // The wrench (about link i's origin) of a unit acceleration of joint i, carried to the base.
+            let axis = Vec3::constant(context, &joint.axis);
             let (mut force, mut moment) = match joint.kind {
-                JointKind::Revolute => (cross(&joint.axis, &first_moment), mul(&tensor, &joint.axis)),
-                JointKind::Prismatic => (mass * joint.axis, cross(&first_moment, &joint.axis)),
+                JointKind::Revolute => (cross(&axis, &first_moment), mul(&tensor, &axis)),
+                JointKind::Prismatic => (axis * mass, cross(&first_moment, &axis)),
             };
-            let column = &mut mass_matrix.as_mut_slice()[i * n..][..=i];
-            for ((other, link), element) in self.joints.iter().zip(&workspace.links).zip(column).rev() {
+            let column = &mut mass_matrix[i * n..][..=i];
+            let between = self.joints.iter().zip(places.iter()).zip(column.iter_mut());
+            for ((other, place), element) in between.skip(1).rev() {
+                let axis = Vec3::constant(context, &other.axis);
                 *element = match other.kind {
-                    JointKind::Revolute => other.axis.dot(&moment),
-                    JointKind::Prismatic => other.axis.dot(&force),
+                    JointKind::Revolute => axis.dot(&moment),
+                    JointKind::Prismatic => axis.dot(&force),
                 };
-                let pose = &link.parent_from_link;
-                force = mul(&pose.rotation, &force);
-                moment = mul(&pose.rotation, &moment) + cross(&pose.translation, &force);
+                force = mul(&place.rotation, &force);
+                moment = mul(&place.rotation, &moment) + cross(&place.translation, &force);
             }
-            mass_matrix[(i, i)] += joint.rotor_inertia;
+            let base = Vec3::constant(context, &self.joints[0].axis);
+            column[0] = match self.joints[0].kind {
+                JointKind::Revolute => base.dot(&moment),
+                JointKind::Prismatic => base.dot(&force),
+            };
+            mass_matrix[i * n + i] += T::constant(context, joint.rotor_inertia);
+            if i == 0 {
+                break;
+            }
 
             // The composite body in the parent's frame, about the parent's origin: with the first moment h about the
             // link's origin and p to it, I' = I + (2 p·h + m p²) 1 − (p hᵀ + h pᵀ) − m p pᵀ.
-            let pose = &workspace.links[i].parent_from_link;
-            let (p, h) = (&pose.translation, mul(&pose.rotation, &first_moment));
-            let moved = h + mass * p;
+            let place = &places[i];
+            let (p, h) = (&place.translation, mul(&place.rotation, &first_moment));
+            let moved = h + *p * mass;
             let both = h + moved;
             let (xx, yy, zz) = (p.x * both.x, p.y * both.y, p.z * both.z);
-            distal_tensor = rotate_symmetric(&pose.rotation, &tensor)
+            distal_tensor = rotate_symmetric(&place.rotation, &tensor)
                 + symmetric(
                     yy + zz,
                     -(p.x * moved.y + h.x * p.y),
@@ -66,11 +90,11 @@ impl Arm {
                     xx + yy,
                 );
             distal_moment = moved;
-            distal_mass = mass;
+            distal_mass = joint_mass;
         }
         for i in 0..n {
             for j in 0..i {
-                mass_matrix[(i, j)] = mass_matrix[(j, i)];
+                mass_matrix[j * n + i] = mass_matrix[i * n + j];
             }
         }
     }

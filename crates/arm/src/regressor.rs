@@ -1,10 +1,12 @@
 //! The torque regressor: joint torques as a matrix times the links' inertial parameters.
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::DMatrix;
 
+use crate::inverse_dynamics::LinkMotion;
 use crate::model::{Arm, JointKind};
-use crate::small::{cross, tr_mul};
-use crate::workspace::{LinkState, Workspace};
+use crate::real::Real;
+use crate::small::{Vec3, cross, tr_mul};
+use crate::workspace::{Scratch, Workspace};
 
 /// m, m c (3), Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the link frame's origin.
 pub const PARAMETERS_PER_LINK: usize = 10;
@@ -32,32 +34,52 @@ impl Arm {
             (n, n * PARAMETERS_PER_LINK),
             "the regressor is dof × 10 dof"
         );
-        self.propagate_motion(workspace, q, qd, qdd);
+        regressor.as_mut_slice().fill(0.0);
+        self.link_powers((), &mut workspace.scratch, q, qd, qdd, regressor.as_mut_slice());
+    }
+
+    /// The recursion of [`Self::torque_regressor`]; `regressor` is column after column, and keeps its entries for the joints
+    /// beyond each link, which are zero.
+    #[inline(always)]
+    pub(crate) fn link_powers<T: Real>(
+        &self,
+        context: T::Context,
+        scratch: &mut Scratch<T>,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+        regressor: &mut [T],
+    ) {
+        let n = self.dof();
+        self.propagate_motion(context, scratch, q, qd, qdd);
         // For link j, the unit motions of joints 0 … j as twists in link j's frame: their power against the wrench that
         // the link needs is the joints' torque (virtual work).
-        let Workspace { links, twists, .. } = workspace;
-        let links = self.joints.iter().zip(links.iter());
-        for (j, ((joint, link), columns)) in links
-            .zip(regressor.as_mut_slice().chunks_exact_mut(n * PARAMETERS_PER_LINK))
+        let Scratch {
+            places,
+            motions,
+            twists,
+            ..
+        } = scratch;
+        let zero = Vec3::zeros(context);
+        let links = self.joints.iter().zip(places.iter().zip(motions.iter()));
+        for (j, ((joint, (place, link)), columns)) in links
+            .zip(regressor.chunks_exact_mut(n * PARAMETERS_PER_LINK))
             .enumerate()
         {
-            let pose = &link.parent_from_link;
             for (angular, linear) in &mut twists[..j] {
-                *linear = tr_mul(&pose.rotation, &(*linear + cross(angular, &pose.translation)));
-                *angular = tr_mul(&pose.rotation, angular);
+                *linear = tr_mul(&place.rotation, &(*linear + cross(angular, &place.translation)));
+                *angular = tr_mul(&place.rotation, angular);
             }
+            let axis = Vec3::constant(context, &joint.axis);
             twists[j] = match joint.kind {
-                JointKind::Revolute => (joint.axis, Vector3::zeros()),
-                JointKind::Prismatic => (Vector3::zeros(), joint.axis),
+                JointKind::Revolute => (axis, zero),
+                JointKind::Prismatic => (zero, axis),
             };
             for (i, (angular, linear)) in twists[..=j].iter().enumerate() {
                 let row = wrench_row(link, angular, linear);
                 for (column, value) in columns.chunks_exact_mut(n).zip(row) {
                     column[i] = value;
                 }
-            }
-            for column in columns.chunks_exact_mut(n) {
-                column[j + 1..].fill(0.0);
             }
         }
     }
@@ -67,7 +89,7 @@ impl Arm {
 /// each of its ten parameters. With a = v̇ of the origin less gravity and W = [ω̇]× + [ω]×²:
 /// f = m a + W mc, n = mc × a + I ω̇ + ω × I ω.
 #[inline(always)]
-fn wrench_row(link: &LinkState, angular: &Vector3<f64>, linear: &Vector3<f64>) -> [f64; PARAMETERS_PER_LINK] {
+fn wrench_row<T: Real>(link: &LinkMotion<T>, angular: &Vec3<T>, linear: &Vec3<T>) -> [T; PARAMETERS_PER_LINK] {
     let (w, wd, a) = (
         &link.angular_velocity,
         &link.angular_acceleration,

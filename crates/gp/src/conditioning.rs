@@ -31,6 +31,10 @@ pub struct Conditioning {
     pub added: f64,
     /// Trace of what the factor of rank `rank` leaves of the kernel matrix, as a share of amplitude²: bounds its largest eigenvalue.
     pub neglected: f64,
+    /// Of an approximation by inducing points (then `rank` of them): how far the bound that was maximised can be below the
+    /// exact log marginal likelihood at these hyperparameters, nats. Absent if nothing was approximated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub likelihood_gap: Option<f64>,
 }
 
 impl fmt::Display for Conditioning {
@@ -42,7 +46,16 @@ impl fmt::Display for Conditioning {
             floor,
             added,
             neglected,
+            likelihood_gap,
         } = self;
+        if let Some(gap) = likelihood_gap {
+            let share = neglected / *samples as f64;
+            write!(
+                f,
+                "{rank} inducing points (variational free energy) leave {share:.1e} of the prior variance at the {samples} samples, and \
+                 the exact log marginal likelihood is at most {gap:.3} nats higher; "
+            )?;
+        }
         write!(
             f,
             "kernel matrix of {samples} samples, numerical rank {rank} (neglected trace {neglected:.1e}): "

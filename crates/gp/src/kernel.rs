@@ -111,9 +111,10 @@ impl WithSimd for Column<'_> {
 impl Column<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
+        let mut scaled = Scaled::new(self.x, self.lengths);
         let blocks = self.points.values.chunks_exact(LANES * self.points.dim);
         for (block, out) in blocks.zip(self.out.chunks_mut(LANES)) {
-            let values = kernel_block::<FUSED>(block, self.x, self.lengths);
+            let values = kernel_block::<FUSED>(block, &mut scaled);
             out.copy_from_slice(&values[..out.len()]);
         }
     }
@@ -142,10 +143,11 @@ impl WithSimd for Sum<'_> {
 impl Sum<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> f64 {
+        let mut scaled = Scaled::new(self.x, self.lengths);
         let blocks = self.points.values.chunks_exact(LANES * self.points.dim);
         let mut sums = [0.0; LANES];
         for (block, weights) in blocks.zip(self.weights.chunks_exact(LANES)) {
-            let values = kernel_block::<FUSED>(block, self.x, self.lengths);
+            let values = kernel_block::<FUSED>(block, &mut scaled);
             for lane in 0..LANES {
                 sums[lane] = multiply_add::<FUSED>(weights[lane], values[lane], sums[lane]);
             }
@@ -196,23 +198,60 @@ impl Squares<'_> {
     }
 }
 
-/// exp(-½ Σ_d (x_d / l_d - z_d)²) for the points z of one block.
-#[inline(always)]
-fn kernel_block<const FUSED: bool>(block: &[f64], x: &[f64], lengths: &[f64]) -> [f64; LANES] {
-    let mut squares = [0.0; LANES];
-    for ((row, &x), &length) in block.chunks_exact(LANES).zip(x).zip(lengths) {
-        // Divided as the points were: at the smallest noise one rounding more in x already shows in the mean.
-        let scaled = x / length;
-        for lane in 0..LANES {
-            let difference = scaled - row[lane];
-            squares[lane] = multiply_add::<FUSED>(difference, difference, squares[lane]);
+/// Inputs divided together.
+const CHUNK: usize = 32;
+
+/// A point divided by the length scales, [`CHUNK`] inputs at a time, so that nothing is allocated. With no more inputs than
+/// that, they are divided once.
+struct Scaled<'a> {
+    x: &'a [f64],
+    lengths: &'a [f64],
+    values: [f64; CHUNK],
+}
+
+impl<'a> Scaled<'a> {
+    #[inline(always)]
+    fn new(x: &'a [f64], lengths: &'a [f64]) -> Self {
+        let mut this = Self {
+            x,
+            lengths,
+            values: [0.0; CHUNK],
+        };
+        this.divide(0);
+        this
+    }
+
+    /// Divides the inputs from `first` on. As the points were: at the smallest noise one rounding more already shows in the
+    /// mean.
+    #[inline(always)]
+    fn divide(&mut self, first: usize) {
+        let inputs = self.x[first..].iter().zip(&self.lengths[first..]);
+        for (value, (x, length)) in self.values.iter_mut().zip(inputs) {
+            *value = x / length;
         }
     }
-    let mut values = [0.0; LANES];
-    for lane in 0..LANES {
-        values[lane] = exp_of_negative::<FUSED>(-0.5 * squares[lane]);
+}
+
+/// exp(-½ Σ_d (x_d / l_d - z_d)²) for the points z of one block.
+#[inline(always)]
+fn kernel_block<const FUSED: bool>(block: &[f64], x: &mut Scaled<'_>) -> [f64; LANES] {
+    let mut squares = [0.0; LANES];
+    let many = x.x.len() > CHUNK;
+    for (chunk, rows) in block.chunks(LANES * CHUNK).enumerate() {
+        if many {
+            x.divide(chunk * CHUNK);
+        }
+        for (row, &scaled) in rows.chunks_exact(LANES).zip(&x.values) {
+            for lane in 0..LANES {
+                let difference = scaled - row[lane];
+                squares[lane] = multiply_add::<FUSED>(difference, difference, squares[lane]);
+            }
+        }
     }
-    values
+    for square in &mut squares {
+        *square *= -0.5;
+    }
+    exp_of_negative::<FUSED, LANES>(squares)
 }
 
 /// `a * b + c`, in one rounding where the processor has the instruction: without it, `mul_add` is a slow library call.
@@ -227,17 +266,11 @@ fn multiply_add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
 /// Source: the usual reduction x = k ln 2 + r, |r| ≤ ½ ln 2 (ln 2 in two parts), and the Taylor polynomial of degree 13,
 /// whose remainder there is 4e-18.
 #[inline(always)]
-fn exp_of_negative<const FUSED: bool>(x: f64) -> f64 {
+fn exp_of_negative<const FUSED: bool, const N: usize>(mut x: [f64; N]) -> [f64; N] {
     /// 1.5 · 2^52: adding it rounds to an integer, which then stands in the low bits.
     const ROUNDER: f64 = 6_755_399_441_055_744.0;
     const LN_2_HIGH: f64 = 6.931_471_803_691_238e-1;
     const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
-    // A comparison rather than `max`, which would turn NaN into a number.
-    let x = if x < -708.0 { -708.0 } else { x };
-    let shifted = multiply_add::<FUSED>(x, std::f64::consts::LOG2_E, ROUNDER);
-    let k = shifted - ROUNDER;
-    let r = multiply_add::<FUSED>(k, -LN_2_HIGH, x);
-    let r = multiply_add::<FUSED>(k, -LN_2_LOW, r);
     const COEFFICIENTS: [f64; 13] = [
         1.0 / 479_001_600.0,
         1.0 / 39_916_800.0,
@@ -253,12 +286,27 @@ fn exp_of_negative<const FUSED: bool>(x: f64) -> f64 {
         1.0,
         1.0,
     ];
-    let mut value = 1.0 / 6_227_020_800.0;
-    for coefficient in COEFFICIENTS {
-        value = multiply_add::<FUSED>(value, r, coefficient);
+    let mut powers = [0.0; N];
+    for (x, power) in x.iter_mut().zip(&mut powers) {
+        // A comparison rather than `max`, which would turn NaN into a number.
+        let bounded = if *x < -708.0 { -708.0 } else { *x };
+        let shifted = multiply_add::<FUSED>(bounded, std::f64::consts::LOG2_E, ROUNDER);
+        let k = shifted - ROUNDER;
+        *x = multiply_add::<FUSED>(k, -LN_2_HIGH, bounded);
+        *x = multiply_add::<FUSED>(k, -LN_2_LOW, *x);
+        *power = f64::from_bits((shifted.to_bits().wrapping_add(1023)) << 52);
     }
-    let power_of_two = f64::from_bits((shifted.to_bits().wrapping_add(1023)) << 52);
-    value * power_of_two
+    // Coefficient after coefficient for all numbers, so that none waits for its own product.
+    let mut values = [1.0 / 6_227_020_800.0; N];
+    for coefficient in COEFFICIENTS {
+        for (value, r) in values.iter_mut().zip(&x) {
+            *value = multiply_add::<FUSED>(*value, *r, coefficient);
+        }
+    }
+    for (value, power) in values.iter_mut().zip(&powers) {
+        *value *= power;
+    }
+    values
 }
 
 #[cfg(test)]
@@ -270,24 +318,33 @@ mod tests {
         let mut worst = 0.0_f64;
         for i in 0..700_000 {
             let x = -f64::from(i) * 1e-3;
-            for value in [exp_of_negative::<false>(x), exp_of_negative::<true>(x)] {
+            for [value] in [exp_of_negative::<false, 1>([x]), exp_of_negative::<true, 1>([x])] {
                 worst = worst.max((value / x.exp() - 1.0).abs());
             }
         }
         assert!(worst < 4.5e-16, "relative error {worst:e}");
-        assert_eq!(exp_of_negative::<true>(0.0), 1.0);
-        assert!(exp_of_negative::<true>(-1e9) < 1e-300);
-        assert!(exp_of_negative::<true>(f64::NEG_INFINITY) < 1e-300);
-        assert!(exp_of_negative::<true>(f64::NAN).is_nan());
+        let [at_zero, far, farthest, of_nan] = exp_of_negative::<true, 4>([0.0, -1e9, f64::NEG_INFINITY, f64::NAN]);
+        assert_eq!(at_zero, 1.0);
+        assert!(far < 1e-300);
+        assert!(farthest < 1e-300);
+        assert!(of_nan.is_nan());
     }
 
     #[test]
     fn column_and_sum_agree_with_the_formula() {
-        let dim = 3;
-        let lengths = [0.5, 2.0, 1.25];
+        // Few inputs, a chunk of them, and chunks and a part of one.
+        for dim in [3, CHUNK, 2 * CHUNK + 5] {
+            compare_with_the_formula(dim);
+        }
+    }
+
+    fn compare_with_the_formula(dim: usize) {
+        let lengths: Vec<f64> = (0..dim)
+            .map(|d| [0.5, 2.0, 1.25][d % 3] * (1.0 + dim as f64 / 10.0))
+            .collect();
         let coordinate = |i: usize, d: usize| ((i * 7 + d * 3) % 11) as f64 * 0.1;
         let points = Points::new(37, dim, |i, d| coordinate(i, d) / lengths[d]);
-        let x = [0.3, -0.2, 0.9];
+        let x: Vec<f64> = (0..dim).map(|d| [0.3, -0.2, 0.9][d % 3]).collect();
         let mut column = vec![0.0; 37];
         kernel_column(&points, &x, &lengths, &mut column);
         let mut weights = vec![0.0; points.padded_len()];

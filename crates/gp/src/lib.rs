@@ -18,6 +18,9 @@
 //! rank, and everything else then costs n r² rather than n³, and a mean r kernel values rather than n. The answer is the exact one: the
 //! factorisation stops only where what it leaves is negligible against the noise, or is rounding. Where r is not far below n, the matrix is
 //! factored in full.
+//!
+//! With [`FitOptions::inducing`] the same factorisation stops at a given rank, which noisy data do not have: an approximation, whose
+//! likelihood is a bound of the exact one. [`Conditioning`] says how far off it can be.
 
 mod algebra;
 mod conditioning;

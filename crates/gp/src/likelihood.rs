@@ -13,6 +13,8 @@ pub(crate) struct Evaluation {
     pub(crate) quadratic: f64,
     /// log det C.
     pub(crate) log_determinant: f64,
+    /// What the bound of an approximation takes off, nats; 0 if C is exact.
+    pub(crate) penalty: f64,
 }
 
 impl Evaluation {
@@ -21,6 +23,7 @@ impl Evaluation {
             samples,
             quadratic,
             log_determinant,
+            penalty: 0.0,
         }
     }
 
@@ -35,6 +38,7 @@ impl Evaluation {
         -0.5 * (self.quadratic / amplitude_squared
             + self.log_determinant
             + n * (2.0 * std::f64::consts::PI * amplitude_squared).ln())
+            - self.penalty
     }
 
     /// Log marginal likelihood at the best amplitude.
@@ -82,13 +86,33 @@ pub(crate) fn well_conditioned(rho: f64, samples: usize) -> bool {
 const PIVOT_FLOOR: f64 = 16.0 * f64::EPSILON;
 
 impl Factored {
-    /// Factors C for points scaled by the length scales and solves for the targets.
-    pub(crate) fn new(points: &Points, targets: &[f64], rho: f64, precision: Precision) -> Self {
+    /// Factors C for points scaled by the length scales and solves for the targets. If there are more samples than
+    /// `inducing`, C is approximated by as many of them at most.
+    pub(crate) fn new(
+        points: &Points,
+        targets: &[f64],
+        rho: f64,
+        precision: Precision,
+        inducing: Option<usize>,
+    ) -> Self {
+        if let Some(inducing) = inducing
+            && inducing < targets.len()
+        {
+            let stopping = Stopping {
+                trace: precision.neglected * rho,
+                pivot: PIVOT_FLOOR,
+                max_rank: inducing,
+                truncates: true,
+            };
+            let pivoted = PivotedCholesky::new(points, stopping).expect("a truncated factor is a factor");
+            return Self::LowRank(LowRank::new(pivoted, targets, rho, Method::Normal));
+        }
         let stopping = Stopping {
             trace: precision.neglected * rho,
             pivot: PIVOT_FLOOR,
             // Beyond about this rank the dense factorisation is the faster one (benches/fit.rs).
             max_rank: targets.len() * 2 / 5,
+            truncates: false,
         };
         if let Some(pivoted) = PivotedCholesky::new(points, stopping) {
             let mut low_rank = LowRank::new(pivoted, targets, rho, precision.method);
@@ -122,6 +146,15 @@ impl Factored {
         match self {
             Self::LowRank(low_rank) => (low_rank.pivoted().rank(), low_rank.pivoted().neglected),
             Self::Dense(dense) => (dense.alpha.len(), 0.0),
+        }
+    }
+
+    /// How far below the exact log marginal likelihood the approximation's bound can be, at amplitude², nats; `None` if it
+    /// is exact.
+    pub(crate) fn gap(&self, targets: &[f64], amplitude_squared: f64) -> Option<f64> {
+        match self {
+            Self::LowRank(low_rank) => low_rank.gap(targets, amplitude_squared),
+            Self::Dense(_) => None,
         }
     }
 
@@ -177,7 +210,7 @@ mod tests {
                     neglected,
                     method: Method::Orthogonal,
                 };
-                let factored = Factored::new(&points, &y, at[DIM].exp(), precision);
+                let factored = Factored::new(&points, &y, at[DIM].exp(), precision, None);
                 (factored, points)
             };
             let (here, points) = factored(&at, neglected);
@@ -204,6 +237,64 @@ mod tests {
     }
 
     #[test]
+    fn the_bounds_gradient_agrees_with_finite_differences() {
+        let (n, inducing) = (200, 40);
+        let y = targets(n, 0.3);
+        let factored = |at: &[f64]| {
+            let points = points(n, 3.0, &at[..DIM]);
+            let factored = Factored::new(&points, &y, at[DIM].exp(), Precision::SEARCH, Some(inducing));
+            (factored, points)
+        };
+        let at = [0.6, 0.4, 0.8, f64::ln(1e-1)];
+        let (here, points) = factored(&at);
+        let Factored::LowRank(low_rank) = &here else {
+            panic!("an approximation has a low rank");
+        };
+        assert!(low_rank.pivoted().truncated);
+        let pivots = low_rank.pivoted().pivots.clone();
+        let gradient = here.gradient(&points);
+        let largest = gradient.iter().fold(0.0_f64, |a, g| a.max(g.abs()));
+        for k in 0..=DIM {
+            let step = 1e-5;
+            let value = |steps: f64| {
+                let mut there = at;
+                there[k] += steps * step;
+                let (factored, _) = factored(&there);
+                let Factored::LowRank(low_rank) = &factored else {
+                    panic!("an approximation has a low rank");
+                };
+                assert_eq!(low_rank.pivoted().pivots, pivots, "the step is small enough");
+                factored.evaluation().profiled()
+            };
+            let slope = (value(1.0) - value(-1.0)) / (2.0 * step);
+            let error = (gradient[k] - slope).abs() / largest;
+            assert!(error < 1e-6, "component {k}: {} and {slope}", gradient[k]);
+        }
+    }
+
+    #[test]
+    fn the_exact_likelihood_is_between_the_bounds() {
+        let n = 200;
+        let y = targets(n, 0.3);
+        let points = points(n, 3.0, &[0.6, 0.4, 0.8]);
+        let exact = Factored::new(&points, &y, 0.1, Precision::POSTERIOR, None).evaluation();
+        let amplitude_squared = exact.best_amplitude_squared();
+        let exact = exact.log_likelihood(amplitude_squared);
+        let mut last = f64::NEG_INFINITY;
+        for inducing in [20, 80, 160] {
+            let bound = Factored::new(&points, &y, 0.1, Precision::POSTERIOR, Some(inducing));
+            let below = bound.evaluation().log_likelihood(amplitude_squared);
+            let gap = bound.gap(&y, amplitude_squared).expect("an approximation");
+            assert!(below < exact && exact < below + gap, "{below} {exact} {gap}");
+            assert!(
+                below > last,
+                "more inducing points, a closer bound: {below} after {last}"
+            );
+            last = below;
+        }
+    }
+
+    #[test]
     fn low_rank_and_dense_agree() {
         let n = 150;
         // ρ, and the tolerance: rounding of the kernel, n ε / ρ, is in both.
@@ -214,6 +305,7 @@ mod tests {
                 trace: 1e-11 * rho,
                 pivot: PIVOT_FLOOR,
                 max_rank: n,
+                truncates: false,
             };
             let dense = Dense::new(&points, &y, rho).expect("definite");
             let expected = dense.evaluation().profiled();
@@ -235,6 +327,7 @@ mod tests {
             trace: 0.0,
             pivot: PIVOT_FLOOR,
             max_rank: n,
+            truncates: false,
         };
         let pivoted = PivotedCholesky::new(&points, stopping).expect("within n");
         let product = pivoted.factor() * pivoted.factor().transpose();

@@ -141,7 +141,59 @@ impl LowRank {
     }
 
     pub(crate) fn evaluation(&self) -> Evaluation {
-        Evaluation::new(self.misfit.len(), self.quadratic, self.log_determinant)
+        Evaluation {
+            penalty: self.penalty(),
+            ..Evaluation::new(self.misfit.len(), self.quadratic, self.log_determinant)
+        }
+    }
+
+    /// G Gᵀ - `share` I = Fᵀ F + (ρ - `share`) I.
+    fn square_less(&self, share: f64) -> Mat<f64> {
+        let r = self.outer.nrows();
+        let mut square = Mat::from_fn(r, r, |i, j| if i == j { -share } else { 0.0 });
+        triangular_matmul(
+            square.as_mut(),
+            BlockStructure::Rectangular,
+            Accum::Add,
+            self.outer.as_ref(),
+            BlockStructure::TriangularLower,
+            self.outer.transpose(),
+            BlockStructure::TriangularUpper,
+            1.0,
+            Par::Seq,
+        );
+        square
+    }
+
+    /// What a truncated factor takes off the likelihood, so that it is a bound whatever the pivots: tr(K - F Fᵀ) / 2 ρ, nats.
+    ///
+    /// Source: Titsias 2009, "Variational learning of inducing variables in sparse Gaussian processes", eq. 9.
+    fn penalty(&self) -> f64 {
+        if self.pivoted.truncated {
+            self.pivoted.neglected / (2.0 * self.rho)
+        } else {
+            0.0
+        }
+    }
+
+    /// The distance of the bounds of the exact likelihood, from below and from above: Titsias 2014, "Variational inference
+    /// for Gaussian and determinantal point processes", eq. 8, the quadratic form with ρ + tr(K - F Fᵀ) in place of ρ.
+    pub(crate) fn gap(&self, targets: &[f64], amplitude_squared: f64) -> Option<f64> {
+        if !self.pivoted.truncated {
+            return None;
+        }
+        let factor = self.pivoted.factor();
+        let more = self.pivoted.neglected;
+        let mut outer = self.square_less(-more);
+        let r = outer.nrows();
+        if !cholesky(outer.as_mut()) {
+            return Some(f64::INFINITY);
+        }
+        let mut inner = vec![0.0; r];
+        add_product(&mut inner, 1.0, factor.transpose(), targets);
+        solve_lower(outer.as_ref(), &mut inner);
+        let quadratic = (sum_of_squares(targets) - sum_of_squares(&inner)) / (self.rho + more);
+        Some(self.penalty() + 0.5 * (self.quadratic - quadratic) / amplitude_squared)
     }
 
     /// Derivatives of the profiled log marginal likelihood by the logarithm of each length scale, then by log ρ, for fixed pivots.
@@ -180,6 +232,15 @@ impl LowRank {
             1.0,
             Par::Seq,
         );
+        // The penalty changes by -½ tr(d(F Fᵀ)) / ρ: C⁻¹ is then C⁻¹ - I / ρ, and B = F L_S⁻¹.
+        let truncated = self.pivoted.truncated;
+        if truncated {
+            for j in 0..r {
+                for i in j..r {
+                    inner[(i, j)] -= triangle_inverse[(i, j)] / self.rho;
+                }
+            }
+        }
         let mut weights = Mat::<f64>::zeros(n, r);
         matmul(weights.as_mut(), Accum::Replace, factor, inner.as_ref(), -1.0, Par::Seq);
         // Bᵀ C⁻¹ B = L_S⁻ᵀ (I - ρ (Fᵀ F + ρ I)⁻¹) L_S⁻¹ = L_S⁻ᵀ L_S⁻¹ - ρ Yᵀ Y.
@@ -194,6 +255,34 @@ impl LowRank {
                 matrix.as_ref(),
                 BlockStructure::TriangularLower,
                 sign,
+                Par::Seq,
+            );
+        }
+        if truncated {
+            // Less Bᵀ B / ρ, half of it, with Fᵀ F = G Gᵀ - ρ I.
+            let square = self.square_less(self.rho);
+            let inverse = triangle_inverse.as_ref();
+            let mut right = Mat::<f64>::zeros(r, r);
+            triangular_matmul(
+                right.as_mut(),
+                BlockStructure::Rectangular,
+                Accum::Replace,
+                square.as_ref(),
+                BlockStructure::Rectangular,
+                inverse,
+                BlockStructure::TriangularLower,
+                1.0,
+                Par::Seq,
+            );
+            triangular_matmul(
+                pivot_weights.as_mut(),
+                BlockStructure::Rectangular,
+                Accum::Add,
+                inverse.transpose(),
+                BlockStructure::TriangularUpper,
+                right.as_ref(),
+                BlockStructure::Rectangular,
+                -0.5 / self.rho,
                 Par::Seq,
             );
         }
@@ -221,7 +310,8 @@ impl LowRank {
         }
         let alpha_squared = dot(&self.misfit, &self.misfit) / self.rho;
         let trace: f64 = outer_inverse.col_iter().map(|column| column.squared_norm_l2()).sum();
-        gradient[points.dim()] = 0.5 * (alpha_squared / amplitude_squared - (n - r) as f64 - self.rho * trace);
+        gradient[points.dim()] =
+            0.5 * (alpha_squared / amplitude_squared - (n - r) as f64 - self.rho * trace) + self.penalty();
         gradient
     }
 }

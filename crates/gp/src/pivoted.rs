@@ -26,6 +26,8 @@ pub(crate) struct PivotedCholesky {
     rows: usize,
     /// Trace of K - F Fᵀ, which bounds its largest eigenvalue.
     pub(crate) neglected: f64,
+    /// Whether the factorisation ended at the largest rank, not at the end of the matrix.
+    pub(crate) truncated: bool,
 }
 
 /// When to stop, and when to give up.
@@ -37,10 +39,12 @@ pub(crate) struct Stopping {
     pub(crate) pivot: f64,
     /// Give up beyond this rank.
     pub(crate) max_rank: usize,
+    /// Rather than giving up, keep the pivots found by then.
+    pub(crate) truncates: bool,
 }
 
 impl PivotedCholesky {
-    /// Factorises; `None` if the rank exceeds `stopping.max_rank`.
+    /// Factorises; `None` if the rank exceeds `stopping.max_rank` and the factor is not to be truncated there.
     ///
     /// Source: Harbrecht, Peters, Schneider 2012, "On the low-rank approximation by the pivoted Cholesky decomposition", algorithm 1, in blocks.
     pub(crate) fn new(points: &Points, stopping: Stopping) -> Option<Self> {
@@ -53,6 +57,7 @@ impl PivotedCholesky {
             kernel: Vec::new(),
             rows: n,
             neglected: n as f64,
+            truncated: false,
         };
         let mut residual = vec![1.0; n];
         loop {
@@ -62,15 +67,24 @@ impl PivotedCholesky {
                 return Some(this);
             }
             let accept = (largest * ACCEPTED_SHARE).max(stopping.pivot);
-            let (block, triangle) = this.choose_block(points, &residual, accept);
-            let (rank, taken) = (this.pivots.len(), block.len());
+            let (mut block, triangle) = this.choose_block(points, &residual, accept);
+            let rank = this.pivots.len();
             // Empty only if every residual is rounding.
-            if taken == 0 {
+            if block.is_empty() {
                 return Some(this);
             }
-            if rank + taken > stopping.max_rank {
-                return None;
+            if rank + block.len() > stopping.max_rank {
+                if !stopping.truncates {
+                    return None;
+                }
+                block.truncate(stopping.max_rank - rank);
+                if block.is_empty() {
+                    this.truncated = true;
+                    return Some(this);
+                }
             }
+            let taken = block.len();
+            let triangle = triangle.submatrix(0, 0, taken, taken);
             this.kernel.resize((rank + taken) * n, 0.0);
             for (&i, column) in block.iter().zip(this.kernel[rank * n..].chunks_exact_mut(n)) {
                 points.copy_point(i, &mut point);
@@ -83,7 +97,7 @@ impl PivotedCholesky {
             let old = MatRef::from_column_major_slice(old, n, rank);
             let mut new = MatMut::from_column_major_slice_mut(new, n, taken);
             matmul(new.as_mut(), Accum::Add, old, earlier.transpose(), -1.0, Par::Seq);
-            solve_lower_triangular_in_place(triangle.as_ref(), new.as_mut().transpose_mut(), Par::Seq);
+            solve_lower_triangular_in_place(triangle, new.as_mut().transpose_mut(), Par::Seq);
             for (t, &i) in block.iter().enumerate() {
                 // Zero but for rounding; exactly zero makes the pivots' rows a triangle.
                 for later in t + 1..taken {

@@ -39,7 +39,7 @@ pub(crate) fn search(training: &TrainingSet, options: &FitOptions, floor: f64) -
     let bounds = Bounds::new(&shapes[0], floor);
     let few = training.thinned(FEW);
     // On few samples only the neighbourhood of an optimum is wanted.
-    let on_few = Likelihood::new(&few, &bounds, options.lengths, 0.05);
+    let on_few = Likelihood::new(&few, &bounds, options, 0.05);
 
     let mut grid = Vec::new();
     for shape in &shapes {
@@ -65,7 +65,7 @@ pub(crate) fn search(training: &TrainingSet, options: &FitOptions, floor: f64) -
     }
 
     // A likelihood ratio of 1.003 is no evidence.
-    let on_all = Likelihood::new(training, &bounds, options.lengths, 0.003);
+    let on_all = Likelihood::new(training, &bounds, options, 0.003);
     let mut best = (f64::NEG_INFINITY, Vec::new());
     for start in &chosen {
         let (_, free) = on_few.climb(start, options.max_iterations)?;
@@ -91,11 +91,38 @@ pub(crate) fn search(training: &TrainingSet, options: &FitOptions, floor: f64) -
     if training.samples() > 4 * FEW {
         // Halfway there on the geometric mean of few and all: first steps are long, and some of them lead to a high rank.
         let between = training.thinned((FEW * training.samples()).isqrt());
-        let on_between = Likelihood::new(&between, &bounds, options.lengths, 0.05);
+        let on_between = Likelihood::new(&between, &bounds, options, 0.05);
         best = on_between.climb(&best.1, options.max_iterations)?;
+        if options.inducing.is_some() {
+            // Few noisy samples may have set an input aside, where no slope leads back from: once more from all inputs alike.
+            let start = best_start(&on_between, &shapes, &bounds, floor);
+            let other = on_between.climb(&start, options.max_iterations)?;
+            if other.0 > best.0 {
+                best = other;
+            }
+        }
     }
     let (_, free) = on_all.climb(&best.1, options.max_iterations)?;
     Ok(on_all.found(&free))
+}
+
+/// The best of the starts with every input at the same multiple of its scale.
+fn best_start(likelihood: &Likelihood<'_>, shapes: &[Vec<f64>], bounds: &Bounds, floor: f64) -> Vec<f64> {
+    let mut best = (f64::NEG_INFINITY, Vec::new());
+    for shape in shapes {
+        for factor in LENGTH_FACTORS {
+            for relative in [RESOLVED * 1e-3, RESOLVED] {
+                let mut at: Vec<f64> = shape.iter().map(|l| (l * factor).ln()).collect();
+                at.push(relative.max(2.0 * floor).ln());
+                let free = bounds.free_from_log(&at);
+                let value = likelihood.value(&free);
+                if value > best.0 || best.1.is_empty() {
+                    best = (value, free);
+                }
+            }
+        }
+    }
+    best.1
 }
 
 /// Grid points closer than this, in every logarithm, count as one start.
@@ -106,6 +133,7 @@ struct Likelihood<'a> {
     training: &'a TrainingSet,
     bounds: &'a Bounds,
     lengths: LengthScales,
+    inducing: Option<usize>,
     /// Gains that are no gain, nats.
     tolerance: f64,
     /// The last point asked for (the search asks for value and gradient separately), and the best one.
@@ -139,11 +167,12 @@ impl Default for Seen {
 }
 
 impl<'a> Likelihood<'a> {
-    fn new(training: &'a TrainingSet, bounds: &'a Bounds, lengths: LengthScales, tolerance: f64) -> Self {
+    fn new(training: &'a TrainingSet, bounds: &'a Bounds, options: &FitOptions, tolerance: f64) -> Self {
         Self {
             training,
             bounds,
-            lengths,
+            lengths: options.lengths,
+            inducing: options.inducing,
             tolerance,
             seen: RefCell::default(),
         }
@@ -157,7 +186,7 @@ impl<'a> Likelihood<'a> {
         };
         let points = self.training.scaled(&lengths);
         let targets = self.training.targets();
-        let factored = Factored::new(&points, targets, found.rho, Precision::SEARCH);
+        let factored = Factored::new(&points, targets, found.rho, Precision::SEARCH, self.inducing);
         (factored, points)
     }
 

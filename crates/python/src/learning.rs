@@ -78,6 +78,7 @@ impl Learned {
                 lengths,
                 starts,
                 max_iterations,
+                inducing: None,
             };
             torque::Learned::on_top_of(&arm, inputs, &samples, &options)
         };

@@ -18,6 +18,8 @@ pub struct TrainingOptions {
     pub starts: usize,
     /// Iterations from each start: [`FitOptions::max_iterations`].
     pub max_iterations: u64,
+    /// With more samples than this, approximate by so many inducing points: [`FitOptions::inducing`].
+    pub inducing: Option<usize>,
 }
 
 impl Default for TrainingOptions {
@@ -27,6 +29,7 @@ impl Default for TrainingOptions {
             lengths: LengthScales::Isotropic,
             starts: fit.starts,
             max_iterations: fit.max_iterations,
+            inducing: fit.inducing,
         }
     }
 }
@@ -102,6 +105,7 @@ impl Learned {
             lengths: options.lengths,
             starts: options.starts,
             max_iterations: options.max_iterations,
+            inducing: options.inducing,
             ..FitOptions::default()
         };
         // Each regression is a computation of its own, so the result does not depend on the threads.

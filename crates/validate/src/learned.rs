@@ -38,6 +38,7 @@ impl Default for LearnedOptions {
                 lengths: LengthScales::PerInput,
                 starts: 1,
                 max_iterations: 8,
+                inducing: None,
             },
         }
     }

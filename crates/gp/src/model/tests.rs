@@ -309,3 +309,48 @@ fn bad_data_and_settings_are_refused_by_name() {
     };
     assert!(Gp::fit(&training, &options).is_err());
 }
+
+#[test]
+fn inducing_points_predict_nearly_as_all_points_do() {
+    let n = 600;
+    let mut random = Random(7);
+    let inputs: Vec<f64> = (0..2 * n).map(|_| 4.0 * random.uniform()).collect();
+    let truth = |x: &[f64]| (2.0 * x[0]).sin() + (1.5 * x[1]).cos();
+    let targets: Vec<f64> = inputs
+        .chunks_exact(2)
+        .map(|x| truth(x) + 0.05 * random.normal())
+        .collect();
+    let training = TrainingSet::new(2, &inputs, &targets).expect("valid");
+    let fit = |inducing| {
+        let options = FitOptions {
+            inducing,
+            ..FitOptions::default()
+        };
+        Gp::fit(&training, &options).expect("valid")
+    };
+    let (exact, approximate) = (fit(None), fit(Some(40)));
+    assert_eq!(approximate.support(), 40);
+    assert_eq!(exact.conditioning().likelihood_gap, None);
+    let gap = approximate.conditioning().likelihood_gap.expect("an approximation");
+    assert!(gap > 0.0);
+    let bound = approximate.log_marginal_likelihood();
+    assert!(bound < exact.log_marginal_likelihood(), "the bound is one: {bound}");
+    assert!(approximate.conditioning().to_string().contains("40 inducing points"));
+    let at = [1.1, 2.3];
+    let (mean, variance) = approximate.mean_and_variance(&at, &mut Workspace::default());
+    assert!((mean - exact.mean(&at)).abs() < 0.02, "{mean} and {}", exact.mean(&at));
+    assert!(variance > 0.0 && variance < 0.01, "{variance}");
+    // Saved and loaded, it says the same of itself.
+    let again: Gp = serde_json::from_str(&serde_json::to_string(&approximate).expect("valid")).expect("valid");
+    assert_eq!(again.conditioning(), approximate.conditioning());
+    // As many inducing points as samples are no approximation.
+    assert_eq!(fit(Some(n)).log_marginal_likelihood(), exact.log_marginal_likelihood());
+    let none = FitOptions {
+        inducing: Some(0),
+        ..FitOptions::default()
+    };
+    assert!(matches!(
+        Gp::fit(&training, &none),
+        Err(GpError::OutOfRange { name: "inducing", .. })
+    ));
+}

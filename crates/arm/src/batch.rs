@@ -1,0 +1,246 @@
+//! The algorithms over many states, several at a time: one in each lane of the processor's vectors.
+//!
+//! A signal of many states stands joint after joint: with `samples` states, joint `i` of state `k` is at `i * samples + k`.
+//! Matrices stand likewise, entry after entry. What a state gets has the bits that it gets alone, whatever the processor
+//! (`real`). A call allocates scratch once, whatever the number of states.
+
+use pulp::{Arch, Simd, WithSimd};
+
+use crate::inverse_dynamics::FEATURES;
+use crate::model::Arm;
+use crate::real::{Lanes, Real};
+use crate::regressor::PARAMETERS_PER_LINK;
+use crate::workspace::Scratch;
+
+impl Arm {
+    /// [`Arm::inverse_dynamics`] of many states, all slices joint after joint.
+    ///
+    /// # Panics
+    /// If a slice does not have as many entries as the others, a number of states for each joint.
+    pub fn inverse_dynamics_batch(&self, q: &[f64], qd: &[f64], qdd: &[f64], tau: &mut [f64]) {
+        self.evaluate(InverseDynamics, [q, qd, qdd], [(tau, 1)]);
+    }
+
+    /// [`Arm::newton_euler_features`] of many states: feature `f` of joint `i` of state `k` at
+    /// `(i * FEATURES + f) * samples + k`. The torque is the last feature.
+    ///
+    /// # Panics
+    /// If a slice has another size than `q` gives it.
+    pub fn newton_euler_features_batch(&self, q: &[f64], qd: &[f64], qdd: &[f64], features: &mut [f64]) {
+        self.evaluate(Features, [q, qd, qdd], [(features, FEATURES)]);
+    }
+
+    /// [`Arm::forward_dynamics`] of many states, all slices joint after joint.
+    ///
+    /// # Panics
+    /// If a slice does not have as many entries as the others, a number of states for each joint.
+    pub fn forward_dynamics_batch(&self, q: &[f64], qd: &[f64], tau: &[f64], qdd: &mut [f64]) {
+        self.evaluate(ForwardDynamics, [q, qd, tau], [(qdd, 1)]);
+    }
+
+    /// [`Arm::mass_matrix`] of many states: entry (i, j) of state `k` at `(j * dof + i) * samples + k`.
+    ///
+    /// # Panics
+    /// If a slice has another size than `q` gives it.
+    pub fn mass_matrix_batch(&self, q: &[f64], mass_matrix: &mut [f64]) {
+        self.evaluate(MassMatrix, [q], [(mass_matrix, self.dof())]);
+    }
+
+    /// [`Arm::torque_regressor`] of many states: row `i`, column `c` of state `k` at `(c * dof + i) * samples + k`.
+    ///
+    /// The rows of joints beyond a column's link are zero in every state: they are not written, so `regressor` starts as
+    /// zeros. It is large, 10 dof² numbers a state: about a hundred states at a time stay in the processor's caches.
+    ///
+    /// # Panics
+    /// If a slice has another size than `q` gives it.
+    pub fn torque_regressor_batch(&self, q: &[f64], qd: &[f64], qdd: &[f64], regressor: &mut [f64]) {
+        let width = PARAMETERS_PER_LINK * self.dof();
+        self.evaluate(Regressor, [q, qd, qdd], [(regressor, width)]);
+    }
+
+    /// [`Arm::inverse_dynamics_derivatives`] of many states: entry (i, j) of state `k` at `(j * dof + i) * samples + k`.
+    ///
+    /// # Panics
+    /// If a slice has another size than `q` gives it.
+    pub fn inverse_dynamics_derivatives_batch(
+        &self,
+        q: &[f64],
+        qd: &[f64],
+        qdd: &[f64],
+        by_position: &mut [f64],
+        by_velocity: &mut [f64],
+    ) {
+        let n = self.dof();
+        self.evaluate(Derivatives, [q, qd, qdd], [(by_position, n), (by_velocity, n)]);
+    }
+
+    /// Runs `recursion`; an output comes with how many numbers a joint has in it.
+    fn evaluate<R: Recursion, const I: usize, const O: usize>(
+        &self,
+        recursion: R,
+        inputs: [&[f64]; I],
+        outputs: [(&mut [f64], usize); O],
+    ) {
+        let len = inputs[0].len();
+        assert_eq!(len % self.dof(), 0, "a signal has as many states for each joint");
+        for input in inputs {
+            assert_eq!(input.len(), len, "the signals have one length");
+        }
+        for (output, width) in &outputs {
+            assert_eq!(output.len(), len * width, "the output has a place for each state");
+        }
+        let samples = len / self.dof();
+        if samples > 0 {
+            Arch::new().dispatch(Evaluation {
+                arm: self,
+                recursion,
+                samples,
+                inputs,
+                outputs: outputs.map(|(output, _)| output),
+            });
+        }
+    }
+}
+
+/// One of the arm's recursions, on any kind of number.
+trait Recursion {
+    /// Whether this entry of the output is zero in every state: it is not written.
+    fn is_zero(&self, _dof: usize, _entry: usize) -> bool {
+        false
+    }
+
+    /// From `inputs`, one after the other, to `output`, likewise; `output` is zero at first.
+    fn run<T: Real>(&self, arm: &Arm, context: T::Context, scratch: &mut Scratch<T>, inputs: &[T], output: &mut [T]);
+}
+
+struct InverseDynamics;
+
+impl Recursion for InverseDynamics {
+    #[inline(always)]
+    fn run<T: Real>(&self, arm: &Arm, context: T::Context, scratch: &mut Scratch<T>, inputs: &[T], output: &mut [T]) {
+        let [q, qd, qdd] = thirds(inputs);
+        arm.newton_euler(context, scratch, q, qd, qdd, output);
+    }
+}
+
+struct Features;
+
+impl Recursion for Features {
+    #[inline(always)]
+    fn run<T: Real>(&self, arm: &Arm, context: T::Context, scratch: &mut Scratch<T>, inputs: &[T], output: &mut [T]) {
+        let [q, qd, qdd] = thirds(inputs);
+        let n = arm.dof();
+        arm.newton_euler(context, scratch, q, qd, qdd, &mut output[..n]);
+        // The torques stand where the features of the first joints come: from the last joint on none is overwritten.
+        for i in (0..n).rev() {
+            let features = scratch.features(context, i, output[i]);
+            output[i * FEATURES..(i + 1) * FEATURES].copy_from_slice(&features);
+        }
+    }
+}
+
+struct ForwardDynamics;
+
+impl Recursion for ForwardDynamics {
+    #[inline(always)]
+    fn run<T: Real>(&self, arm: &Arm, context: T::Context, scratch: &mut Scratch<T>, inputs: &[T], output: &mut [T]) {
+        let [q, qd, tau] = thirds(inputs);
+        arm.articulated_bodies(context, scratch, q, qd, tau, output);
+    }
+}
+
+struct MassMatrix;
+
+impl Recursion for MassMatrix {
+    #[inline(always)]
+    fn run<T: Real>(&self, arm: &Arm, context: T::Context, scratch: &mut Scratch<T>, inputs: &[T], output: &mut [T]) {
+        arm.composite_bodies(context, scratch, inputs, output);
+    }
+}
+
+struct Regressor;
+
+impl Recursion for Regressor {
+    fn is_zero(&self, dof: usize, entry: usize) -> bool {
+        let (row, column) = (entry % dof, entry / dof);
+        row > column / PARAMETERS_PER_LINK
+    }
+
+    #[inline(always)]
+    fn run<T: Real>(&self, arm: &Arm, context: T::Context, scratch: &mut Scratch<T>, inputs: &[T], output: &mut [T]) {
+        let [q, qd, qdd] = thirds(inputs);
+        arm.link_powers(context, scratch, q, qd, qdd, output);
+    }
+}
+
+struct Derivatives;
+
+impl Recursion for Derivatives {
+    #[inline(always)]
+    fn run<T: Real>(&self, arm: &Arm, context: T::Context, scratch: &mut Scratch<T>, inputs: &[T], output: &mut [T]) {
+        let [q, qd, qdd] = thirds(inputs);
+        let (by_position, by_velocity) = output.split_at_mut(arm.dof() * arm.dof());
+        arm.tangents(context, scratch, q, qd, qdd, by_position, by_velocity);
+    }
+}
+
+#[inline(always)]
+fn thirds<T>(values: &[T]) -> [&[T]; 3] {
+    let (a, rest) = values.split_at(values.len() / 3);
+    let (b, c) = rest.split_at(a.len());
+    [a, b, c]
+}
+
+struct Evaluation<'a, R, const I: usize, const O: usize> {
+    arm: &'a Arm,
+    recursion: R,
+    samples: usize,
+    inputs: [&'a [f64]; I],
+    outputs: [&'a mut [f64]; O],
+}
+
+impl<R: Recursion, const I: usize, const O: usize> WithSimd for Evaluation<'_, R, I, O> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self {
+            arm,
+            recursion,
+            samples,
+            ..
+        } = self;
+        let zero = Lanes::constant(simd, 0.0);
+        let mut scratch = Scratch::new(simd, arm.dof());
+        let columns = self.inputs.iter().flat_map(|input| input.chunks_exact(samples));
+        let inputs: Vec<&[f64]> = columns.collect();
+        let columns = self
+            .outputs
+            .into_iter()
+            .flat_map(|output| output.chunks_exact_mut(samples));
+        let mut outputs: Vec<(usize, &mut [f64])> = columns.enumerate().collect();
+        let mut output = vec![zero; outputs.len()];
+        outputs.retain(|(entry, _)| !recursion.is_zero(arm.dof(), *entry));
+        let mut input = vec![zero; inputs.len()];
+        for start in (0..samples).step_by(S::F64_LANES) {
+            // What is left of the vector after the last state is zero: states of no account.
+            let states = start..samples.min(start + S::F64_LANES);
+            for (lanes, column) in input.iter_mut().zip(&inputs) {
+                let column = &column[states.clone()];
+                lanes.values = match S::as_simd_f64s(column) {
+                    ([values], []) => *values,
+                    _ => simd.partial_load_f64s(column),
+                };
+            }
+            recursion.run(arm, simd, &mut scratch, &input, &mut output);
+            for (entry, column) in &mut outputs {
+                let values = output[*entry].values;
+                let column = &mut column[states.clone()];
+                match S::as_mut_simd_f64s(column) {
+                    ([at], []) => *at = values,
+                    _ => simd.partial_store_f64s(column, values),
+                }
+            }
+        }
+    }
+}

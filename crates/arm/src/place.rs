@@ -1,0 +1,65 @@
+//! Where each link stands in its parent, for the recursions.
+
+use crate::model::{Arm, Joint, JointKind};
+use crate::real::Real;
+use crate::small::{Mat3, Vec3};
+use crate::workspace::Scratch;
+
+/// A pose `parent_from_link`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place<T> {
+    pub rotation: Mat3<T>,
+    pub translation: Vec3<T>,
+}
+
+impl<T: Real> Place<T> {
+    /// Not moved.
+    pub fn zeros(context: T::Context) -> Self {
+        Self {
+            rotation: Mat3::zeros(context),
+            translation: Vec3::zeros(context),
+        }
+    }
+
+    /// [`Joint::parent_from_link`], by q and, of a revolute joint, its sine and cosine.
+    #[inline(always)]
+    fn of(context: T::Context, joint: &Joint, (q, sin, cos): (T, T, T)) -> Self {
+        let at = Vec3::constant(context, &joint.parent_from_joint.translation);
+        match joint.kind {
+            JointKind::Revolute => {
+                let [r0, r1, r2] = &joint.rotation_terms;
+                let (r0, r1) = (Mat3::constant(context, r0), Mat3::constant(context, r1));
+                let r2 = Mat3::constant(context, r2);
+                Self {
+                    rotation: r0 + r1 * sin + r2 * (T::constant(context, 1.0) - cos),
+                    translation: at,
+                }
+            }
+            JointKind::Prismatic => Self {
+                rotation: Mat3::constant(context, &joint.rotation_terms[0]),
+                translation: at + Vec3::constant(context, &joint.axis_in_parent) * q,
+            },
+        }
+    }
+}
+
+impl Arm {
+    /// The place in its parent of each link from `first` on, into `scratch`.
+    #[inline(always)]
+    pub(crate) fn place<T: Real>(&self, context: T::Context, scratch: &mut Scratch<T>, q: &[T], first: usize) {
+        let Scratch { places, turns, .. } = scratch;
+        // All sines first: lanes are written one by one, and it takes a while until they can be read as a vector.
+        for ((joint, turn), &q) in self.joints.iter().zip(turns.iter_mut()).zip(q).skip(first) {
+            *turn = match joint.kind {
+                JointKind::Revolute => {
+                    let (sin, cos) = q.sin_cos();
+                    (q, sin, cos)
+                }
+                JointKind::Prismatic => (q, q, q),
+            };
+        }
+        for ((joint, place), &turn) in self.joints.iter().zip(places).zip(turns.iter()).skip(first) {
+            *place = Place::of(context, joint, turn);
+        }
+    }
+}
