@@ -233,6 +233,31 @@ fn a_clock_that_began_earlier_shifts_the_times_and_nothing_else() {
     }
 }
 
+/// Warming is found on a clock that ran long before, too: its amplitude is told at another time, the rest is the same.
+#[test]
+fn warming_is_found_on_a_clock_that_began_long_before() {
+    let warming = |seconds: f64| -> Value {
+        let later = move |rows: &mut Rows| rows.each(|row| row[0] += seconds);
+        let diagnosis = Variant {
+            case: "warming",
+            rows: &later,
+            ..Variant::default()
+        }
+        .diagnose();
+        let findings = diagnosis["findings"].as_array().expect("findings").clone();
+        let is_it = |finding: &Value| finding["effect"] == "thermal_drift";
+        findings.into_iter().find(is_it).expect("warming is found")
+    };
+    let (plain, later) = (warming(0.0), warming(54_321.0));
+    let value = |finding: &Value, key: &str| finding["parameters"][key]["value"].as_f64().expect("a number");
+    for key in ["coulomb", "amplitude", "time_constant"] {
+        let (a, b) = (value(&plain, key), value(&later, key));
+        assert!((a - b).abs() < 1e-3 * a.abs(), "{key}: {a} and {b}");
+    }
+    assert_eq!(value(&later, "start"), 54_321.0);
+    assert!(plain["parameters"].get("start").is_none());
+}
+
 /// Twice the masses and inertias under twice the torques are the same arm in another unit of mass.
 #[test]
 fn masses_and_torques_that_scale_alike_change_only_their_sizes() {

@@ -6,7 +6,7 @@ use crate::{
     Parameter, Place, Quantity, Range, Size, Spec, Systematic, Term, Turn, Unseen,
 };
 
-/// Dry friction coulomb (1 + amplitude e^(−t/time_constant)) sgn q̇, t on the recordings' own clock.
+/// Dry friction coulomb (1 + amplitude e^(−(t − start)/time_constant)) sgn q̇, t on the recordings' own clock.
 #[derive(Debug)]
 pub struct ThermalDrift;
 
@@ -18,7 +18,7 @@ static SPEC: Spec = Spec {
     title: "warming friction",
     meaning: "Coulomb friction that falls as the drive warms up",
     told_by: "a longer recording of one repeated motion that starts with a cold drive",
-    formula: "Coulomb friction × (1 + a e^(−t/T))",
+    formula: "Coulomb friction × (1 + a e^(−(t − t₀)/T))",
     sentence: "Coulomb friction of {coulomb} on the warm drive, larger by {amplitude%} % at first, with a time constant of {time_constant}",
     parameters: &[
         Parameter::new("coulomb", Quantity::Torque)
@@ -26,8 +26,11 @@ static SPEC: Spec = Spec {
             .remarked("N m, when warm"),
         Parameter::new("amplitude", Quantity::Ratio)
             .within(Range::AtLeastMinusOne)
-            .remarked("of the warm level, at time 0"),
+            .remarked("of the warm level, at time t₀"),
         Parameter::new("time_constant", Quantity::Time).within(Range::Positive),
+        Parameter::new("start", Quantity::Time)
+            .or(0.0)
+            .remarked("s, t₀; 0 where the clock begins with the recordings"),
     ],
     main: &["amplitude"],
     plain: Some("coulomb_friction"),
@@ -47,18 +50,26 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// e^(−t/time constant) sgn q̇; the size is the time constant (s).
+/// e^(−(t − start)/time constant) sgn q̇; the sizes are the time constant and the start (s).
 pub static WARMING: Law = Law {
     name: "warming",
-    column: |term, joint, motion| motion.map(|k| cold(motion.time(k), term.sizes[0]) * motion.sign(joint, k)),
+    column: |term, joint, motion| motion.map(|k| cold(motion.time(k), term.sizes) * motion.sign(joint, k)),
     sizes: &[(Size::Main, 0)],
-    cone: Cone::Level(|term, _, time| cold(time, term.sizes[0])),
+    cone: Cone::Level(|term, _, time| cold(time, term.sizes)),
     ..Law::PLAIN
 };
 
-/// How cold it still is: one at time 0.
-fn cold(time: f64, time_constant: f64) -> f64 {
-    (-time / time_constant).exp()
+/// How cold it still is: one at the start.
+fn cold(time: f64, [time_constant, start, ..]: [f64; 4]) -> f64 {
+    (-(time - start) / time_constant).exp()
+}
+
+/// A clock that runs for longer (s) when the recordings begin did not begin with them: it is a controller's, or a computer's.
+const OWN_CLOCK: f64 = 60.0;
+
+/// The time at which the amplitude is told (s), for recordings that begin at `begins`.
+fn start(begins: f64) -> f64 {
+    if begins.abs() > OWN_CLOCK { begins.floor() } else { 0.0 }
 }
 
 impl EffectKind for ThermalDrift {
@@ -70,10 +81,11 @@ impl EffectKind for ThermalDrift {
         let constants = [0.15, 0.25, 0.4, 0.6, 1.0].map(|share| share * grounds.span.unwrap_or(0.0));
         // What fades faster is no warming of a drive.
         let constants: Vec<f64> = constants.into_iter().filter(|time| *time >= FASTEST_WARMING).collect();
+        let start = start(grounds.times.first().map_or(0.0, |&(begins, _)| begins));
         let mut forms = Vec::new();
         for joint in grounds.moving() {
             for &time_constant in &constants {
-                let warming = Term::on(&WARMING, joint).sized([time_constant]);
+                let warming = Term::on(&WARMING, joint).sized([time_constant, start]);
                 forms.push(Form::on(Turn::Friction, joint, vec![Term::on(&SIGN, joint), warming]));
             }
         }
@@ -94,15 +106,22 @@ impl EffectKind for ThermalDrift {
         let coulomb = estimate.note("coulomb", |draw| draw[a]);
         let amplitude = estimate.note("amplitude", |draw| draw[b] / draw[a]);
         let time_constant = estimate.size(Systematic::Usual, "time_constant", Size::Main, second.sizes[0]);
-        let effect = effect.with("coulomb", coulomb).with("amplitude", amplitude);
+        let start = second.sizes[1];
+        if start != 0.0 {
+            estimate.start(start, 0.0);
+        }
+        let effect = effect
+            .with("coulomb", coulomb)
+            .with("amplitude", amplitude)
+            .with("start", start);
         Some(effect.with("time_constant", time_constant))
     }
 
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        let [coulomb, amplitude, time_constant] =
-            ["coulomb", "amplitude", "time_constant"].map(|key| effect.number(key));
+        let [coulomb, amplitude, time_constant, start] =
+            ["coulomb", "amplitude", "time_constant", "start"].map(|key| effect.number(key));
         let level = move |_, at: Circumstance| {
-            let cold = at.time.map_or(0.0, |time| cold(time, time_constant));
+            let cold = at.time.map_or(0.0, |time| cold(time, [time_constant, start, 0.0, 0.0]));
             coulomb * (1.0 + amplitude * cold)
         };
         machine.dry.push((at.joint, Dry::new(level)));
@@ -120,5 +139,7 @@ mod tests {
         let effect = effect.with("amplitude", 0.5).with("time_constant", 10.0);
         let warming = Term::on(&WARMING, 0).sized([10.0]);
         agree(&effect, &[(Term::on(&SIGN, 0), 2.0), (warming, 1.0)]);
+        let later = Term::on(&WARMING, 0).sized([10.0, -3.0]);
+        agree(&effect.with("start", -3.0), &[(Term::on(&SIGN, 0), 2.0), (later, 1.0)]);
     }
 }

@@ -27,6 +27,7 @@ pub(super) const FAULT: Fault = Fault {
         let warming = Warming {
             amplitude: reader.number("amplitude")?,
             time_constant: reader.above("time_constant", 0.0)?,
+            start: reader.number_or("start", 0.0)?,
             cooling: [Cooling::Exponential, Cooling::Hyperbolic, Cooling::Stretched][reader.form()?],
         };
         Ok(vec![
@@ -47,10 +48,12 @@ pub(super) const FAULT: Fault = Fault {
 struct Warming {
     amplitude: f64,
     time_constant: f64,
+    /// When it began to warm up (s).
+    start: f64,
     cooling: Cooling,
 }
 
-/// How something warms up, from 1 at time 0 to 0.
+/// How something warms up, from 1 at the start to 0.
 #[derive(Clone, Copy)]
 enum Cooling {
     /// e^(−t/T).
@@ -63,7 +66,7 @@ enum Cooling {
 
 impl DryLaw for Warming {
     fn add_to(&self, sum: &mut DrySum, at: &DryAt) {
-        let x = (at.time / self.time_constant).max(0.0);
+        let x = ((at.time - self.start) / self.time_constant).max(0.0);
         let left = match self.cooling {
             Cooling::Exponential => (-x).exp(),
             Cooling::Hyperbolic => 1.0 / (1.0 + x),
