@@ -29,8 +29,11 @@ const DRAKE: &str = "xmlns:drake=\"http://drake.mit.edu\"";
 /// If an effect does not fit the arm or the text is not the arm's.
 pub fn corrected_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Result<Export> {
     let places = Places::of(urdf).context("the URDF cannot be edited")?;
-    // A drive that the file describes already is not described twice.
-    let is_described = |effect: &Effect| effect.joint().is_some_and(|joint| places.drives.contains(joint));
+    // A drive that the file describes without its inertia is not described twice.
+    let is_described = |effect: &Effect| {
+        let drive = effect.joint().and_then(|joint| places.drives.get(joint));
+        drive.is_some_and(|drive| drive.rotor.is_none())
+    };
     let left = held::left_out(effects, |effect| match held::in_common(effect) {
         Held::Whole if effect.is(&RotorInertia) && is_described(effect) => {
             Held::Without("the file has a transmission of this joint, which stays as it was")
@@ -73,6 +76,20 @@ pub fn diagnosed_joints(urdf: &str) -> anyhow::Result<Vec<String>> {
     Ok(ours.map(|(name, _)| name).collect())
 }
 
+/// The drive inertias that `urdf` states for Drake, by joint (kg m² at the joint).
+///
+/// # Errors
+/// If the text is not XML, or a value is no number.
+pub fn stated_drive_inertias(urdf: &str) -> anyhow::Result<Vec<(String, f64)>> {
+    let places = Places::of(urdf)?;
+    let stated = places.drives.into_iter().filter_map(|(joint, drive)| {
+        let reflection = drive.reflection();
+        let (_, rotor) = drive.rotor?;
+        Some((joint, rotor * reflection))
+    });
+    Ok(stated.collect())
+}
+
 fn edited(urdf: &str, places: &Places, arm: &Arm, effects: &[Effect], remark: String) -> anyhow::Result<String> {
     Corrected::new(arm, effects)?;
     let mut edits: Vec<(Range<usize>, String)> = Vec::new();
@@ -93,6 +110,16 @@ fn edited(urdf: &str, places: &Places, arm: &Arm, effects: &[Effect], remark: St
             .get(name)
             .with_context(|| format!("the URDF has no joint \"{name}\""))?;
         edits.push(found.edit(damping, friction));
+    }
+    for (joint, drive) in &places.drives {
+        let inertia = drive_inertia(effects, joint);
+        if let (Some((range, _)), true) = (&drive.rotor, inertia > 0.0) {
+            let at_the_motor = inertia / drive.reflection();
+            edits.push((
+                range.clone(),
+                format!("<drake:rotor_inertia value=\"{at_the_motor}\"/>"),
+            ));
+        }
     }
     let drives = drives(places, effects);
     if !drives.is_empty() {
@@ -174,16 +201,22 @@ fn changed_links(arm: &Arm, effects: &[Effect], places: &Places) -> anyhow::Resu
     Ok(changed)
 }
 
+/// The drive inertia that `effects` say of `joint` (kg m² at the joint).
+fn drive_inertia(effects: &[Effect], joint: &str) -> f64 {
+    let on_joint = |effect: &&Effect| effect.is(&RotorInertia) && effect.joint() == Some(joint);
+    effects
+        .iter()
+        .filter(on_joint)
+        .map(|effect| effect.number("inertia"))
+        .sum()
+}
+
 /// A transmission for each joint with a drive inertia and without a transmission in the file.
 fn drives(places: &Places, effects: &[Effect]) -> String {
     let mut text = String::new();
-    for joint in places.joints.keys().filter(|joint| !places.drives.contains(*joint)) {
-        let on_joint = |effect: &&Effect| effect.is(&RotorInertia) && effect.joint() == Some(joint.as_str());
-        let inertia: f64 = effects
-            .iter()
-            .filter(on_joint)
-            .map(|effect| effect.number("inertia"))
-            .sum();
+    let without = |joint: &&String| !places.drives.contains_key(*joint);
+    for joint in places.joints.keys().filter(without) {
+        let inertia = drive_inertia(effects, joint);
         if inertia > 0.0 {
             let name = quick_xml::escape::escape(joint);
             text.push_str(&format!(

@@ -1,12 +1,13 @@
-//! Friction that the URDF has already, as known effects.
+//! Friction and drive inertias that the URDF has already, as known effects.
 
 use arm::Arm;
+use effects::drive::RotorInertia;
 use effects::friction::{CoulombFriction, ViscousFriction};
 use effects::{Effect, InUrdf};
 
 use crate::held;
 use crate::robot::RobotFile;
-use crate::urdf_file::diagnosed_joints;
+use crate::urdf_file::{diagnosed_joints, stated_drive_inertias};
 
 /// Which friction in a URDF is known friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,7 +22,8 @@ pub enum UrdfFriction {
 }
 
 /// The friction in the `<dynamics>` of `robot` that `which` takes as known, beside the effects `known`: what those say of
-/// a joint's friction takes its place. A second value says what was not taken.
+/// a joint's friction takes its place. The drive inertias that it states for Drake are known, too, unless friction is ignored:
+/// nobody writes them as a placeholder. A second value says what was not taken.
 ///
 /// # Errors
 /// If the URDF cannot be read again.
@@ -69,6 +71,18 @@ pub fn known_friction(
             );
         }
     }
+    if which != UrdfFriction::Ignored {
+        let is_open = |name: &str| {
+            let is_here = arm.joints().iter().any(|joint| joint.name == name);
+            let is_known = |effect: &Effect| effect.is(&RotorInertia) && effect.joint() == Some(name);
+            is_here && !known.iter().any(is_known)
+        };
+        for (joint, inertia) in stated_drive_inertias(&robot.text)? {
+            if inertia > 0.0 && is_open(&joint) {
+                effects.push(Effect::of(&RotorInertia).on(&joint).with("inertia", inertia));
+            }
+        }
+    }
     let remark = (which == UrdfFriction::Diagnosed && !left.is_empty()).then(|| {
         format!(
             "the friction in <dynamics> of {} is not used, because it is a placeholder in most URDFs; --urdf-friction known \
@@ -79,12 +93,12 @@ pub fn known_friction(
     Ok((effects, remark))
 }
 
-/// The known effects and those found beside them: friction that is found on top of known friction of the same kind is one
-/// effect with both.
+/// The known effects and those found beside them: friction or a drive inertia that is found on top of a known one of the same
+/// kind is one effect with both.
 pub fn summed(known: &[Effect], found: &[Effect]) -> Vec<Effect> {
     let mut sum = known.to_vec();
     for effect in found {
-        let adds_up = matches!(effect.spec().in_urdf, InUrdf::Damping | InUrdf::Friction);
+        let adds_up = matches!(effect.spec().in_urdf, InUrdf::Damping | InUrdf::Friction) || effect.is(&RotorInertia);
         let is_same = |other: &&mut Effect| {
             let key = |effect: &Effect| (effect.kind(), effect.joint().map(str::to_owned), effect.onset());
             adds_up && key(other) == key(effect)
@@ -100,6 +114,7 @@ pub fn summed(known: &[Effect], found: &[Effect]) -> Vec<Effect> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::held::Export;
     use crate::urdf_file::corrected_urdf;
 
     const TWO: &str = r#"<robot name="two"><link name="base"/>
@@ -141,6 +156,24 @@ mod tests {
         let (_, arm) = robot(&corrected_urdf(&file.text, &arm, &more).expect("it is written").text);
         let joint = &arm.joints()[1];
         assert_eq!((joint.damping, joint.friction), (3.0, 0.25));
+        // A drive inertia that was written is known, at the joint, and what is found on top of it takes its place.
+        let drive = |inertia: f64| Effect::of(&RotorInertia).on("a").with("inertia", inertia);
+        let geared = corrected_urdf(TWO, &arm, &[drive(0.5)]).expect("it is written").text;
+        let geared = geared.replace("gear_ratio value=\"1\"", "gear_ratio value=\"10\"");
+        let (file, arm) = robot(&geared);
+        let (known, _) = known_friction(&file, &arm, UrdfFriction::Diagnosed, &[]).expect("it reads");
+        assert_eq!(known, [drive(50.0)]);
+        let more = summed(&known, &[drive(10.0)]);
+        assert_eq!(more, [drive(60.0)]);
+        let Export { text, left } = corrected_urdf(&file.text, &arm, &more).expect("it is written");
+        assert!(
+            left.is_empty() && text.contains("rotor_inertia value=\"0.6\""),
+            "{left:?} {text}"
+        );
+        let (none, _) = known_friction(&file, &arm, UrdfFriction::Ignored, &[]).expect("it reads");
+        assert!(none.is_empty());
+        let (file, arm) = robot(TWO);
+        let (file, arm) = robot(&corrected_urdf(&file.text, &arm, &found).expect("it is written").text);
         // What --known says of a joint's damping takes the place of the file's.
         let (known, _) = known_friction(&file, &arm, UrdfFriction::Diagnosed, &found).expect("it reads");
         assert!(known.iter().all(|effect| effect.is(&CoulombFriction)), "{known:?}");

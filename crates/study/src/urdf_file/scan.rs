@@ -1,6 +1,6 @@
 //! Where in a URDF's text the inertials and the joints' dynamics stand.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use anyhow::{Context, ensure};
@@ -53,8 +53,50 @@ pub(super) struct Places {
     pub(super) end_of_robot: usize,
     pub(super) links: BTreeMap<String, LinkPlaces>,
     pub(super) joints: BTreeMap<String, JointPlaces>,
-    /// The joints that a transmission drives.
-    pub(super) drives: BTreeSet<String>,
+    /// The transmissions, by the joint that each drives.
+    pub(super) drives: BTreeMap<String, Drive>,
+}
+
+/// What a transmission says of its drive to Drake.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Drive {
+    /// Where `<drake:rotor_inertia>` is, and its value (kg m² at the motor).
+    pub(super) rotor: Option<(Range<usize>, f64)>,
+    /// `<drake:gear_ratio>`, 1 where there is none.
+    pub(super) gear_ratio: Option<f64>,
+}
+
+impl Drive {
+    /// The square of the gear ratio: the inertia at the joint over that at the motor.
+    pub(super) fn reflection(&self) -> f64 {
+        self.gear_ratio.unwrap_or(1.0).powi(2)
+    }
+}
+
+/// The transmission being read.
+#[derive(Default)]
+struct Transmission {
+    joint: Option<String>,
+    drive: Drive,
+}
+
+impl Transmission {
+    /// A tag at `depth` of the file.
+    fn read(&mut self, depth: usize, tag: &BytesStart<'_>, here: Range<usize>) -> anyhow::Result<()> {
+        let value = || -> anyhow::Result<f64> { number(&attribute(tag, "value")?.unwrap_or_default()) };
+        match (depth, tag.name().as_ref()) {
+            (3, b"joint") => self.joint = attribute(tag, "name")?,
+            (4, b"drake:rotor_inertia") => {
+                let value = value().context("<drake:rotor_inertia> has no value")?;
+                self.drive.rotor = Some((here, value));
+            }
+            (4, b"drake:gear_ratio") => {
+                self.drive.gear_ratio = Some(value().context("<drake:gear_ratio> has no value")?);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
 }
 
 /// The link or joint being read.
@@ -134,12 +176,12 @@ impl Places {
             end_of_robot: 0,
             links: BTreeMap::new(),
             joints: BTreeMap::new(),
-            drives: BTreeSet::new(),
+            drives: BTreeMap::new(),
         };
         let mut reader = Reader::from_str(text);
         let mut depth = 0;
         let mut open: Option<Open> = None;
-        let mut is_transmission = false;
+        let mut transmission: Option<Transmission> = None;
         loop {
             let from = reader.buffer_position() as usize;
             let event = reader.read_event()?;
@@ -147,8 +189,11 @@ impl Places {
             match event {
                 Event::Start(tag) => {
                     depth += 1;
-                    places.note_drive(is_transmission && depth == 3, &tag)?;
-                    is_transmission |= depth == 2 && tag.name().as_ref() == b"transmission";
+                    if let Some(transmission) = &mut transmission {
+                        transmission.read(depth, &tag, here.clone())?;
+                    } else if depth == 2 && tag.name().as_ref() == b"transmission" {
+                        transmission = Some(Transmission::default());
+                    }
                     match depth {
                         1 => places.inside_robot = here.end,
                         2 => open = opened(&tag)?,
@@ -166,13 +211,19 @@ impl Places {
                     }
                 }
                 Event::Empty(tag) => {
-                    places.note_drive(is_transmission && depth == 2, &tag)?;
+                    if let Some(transmission) = &mut transmission {
+                        transmission.read(depth + 1, &tag, here.clone())?;
+                    }
                     begin(&mut open, depth + 1, &tag, here.clone())?;
                     end(&mut open, depth + 1, here.end);
                 }
                 Event::End(_) => {
                     end(&mut open, depth, here.end);
-                    is_transmission &= depth > 2;
+                    if depth == 2
+                        && let Some(Transmission { joint, drive }) = transmission.take()
+                    {
+                        places.drives.extend(joint.map(|joint| (joint, drive)));
+                    }
                     if depth == 1 {
                         places.end_of_robot = here.start;
                     }
@@ -190,14 +241,6 @@ impl Places {
         }
         ensure!(places.inside_robot > 0, "it has no <robot> element");
         Ok(places)
-    }
-
-    /// Notes the joint that `tag`, directly within a transmission, names.
-    fn note_drive(&mut self, is_within: bool, tag: &BytesStart<'_>) -> anyhow::Result<()> {
-        if is_within && tag.name().as_ref() == b"joint" {
-            self.drives.extend(attribute(tag, "name")?);
-        }
-        Ok(())
     }
 
     fn close(&mut self, element: &mut Open, place: Place) {
