@@ -20,7 +20,7 @@ fn markdown_leaves_drawings_out() {
     let text = report::markdown(&blocks(), "The end.");
     assert_eq!(
         text,
-        "# A <title>\n\nHeld by `seal.json`, **not** by trust.\n\n| case | share |\n| --- | --: |\n| a\\|b | 12 % |\n\n(none)\n\nThe end.\n"
+        "# A &lt;title>\n\nHeld by `seal.json`, **not** by trust.\n\n| case | share |\n| --- | --: |\n| a\\|b | 12 % |\n\n(none)\n\nThe end.\n"
     );
 }
 
