@@ -94,5 +94,6 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
         }
         chosen = refine(study, chosen, false);
     }
-    study.without_imitations(chosen)
+    let chosen = study.without_imitations(chosen);
+    study.with_payload_for_last_link(chosen)
 }
