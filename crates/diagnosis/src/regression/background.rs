@@ -127,22 +127,19 @@ impl Strengths {
         list
     }
 
-    /// Those in which one link differs from the URDF more than these say, and all others less.
+    /// Those in which one link alone differs from the URDF.
     pub fn in_one_link(&self) -> Vec<Self> {
-        let common = self.common();
-        let less = LINK_STRENGTHS.into_iter().filter(|&rho| rho < common);
-        // The nearest one, and none at all.
-        let others: Vec<f64> = less.clone().take(1).chain(less.skip(1).last()).collect();
         let mut list = Vec::new();
-        for (link, &own) in self.links.iter().enumerate() {
-            let stronger = OWN_STRENGTHS.into_iter().filter(|&rho| rho >= common && rho >= own);
-            for (rho, &rest) in stronger.flat_map(|rho| others.iter().map(move |rest| (rho, rest))) {
-                let mut next = Self {
-                    links: vec![rest; self.links.len()],
-                    ..self.clone()
-                };
-                next.links[link] = rho;
-                list.push(next);
+        if self.common() > 0.0 {
+            for link in 0..self.links.len() {
+                for rho in OWN_STRENGTHS.into_iter().filter(|&rho| rho >= self.common()) {
+                    let mut next = Self {
+                        links: vec![0.0; self.links.len()],
+                        ..self.clone()
+                    };
+                    next.links[link] = rho;
+                    list.push(next);
+                }
             }
         }
         list

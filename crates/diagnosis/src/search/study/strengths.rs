@@ -279,7 +279,7 @@ impl Study {
         let Some(last) = self.arm.dof().checked_sub(1) else {
             return chosen;
         };
-        if self.strengths.links[last] <= common || chosen.set.iter().any(|c| is_payload(c)) {
+        if self.strengths.links[last] <= common || chosen.set.iter().any(is_payload) {
             return chosen;
         }
         let mut strengths = self.strengths.clone();
