@@ -39,6 +39,20 @@ pub fn diagnose(folder: &str) -> Vec<String> {
     list
 }
 
+/// A run of the scenario file `scenario` into the folder `out`.
+pub fn run_of(scenario: &str, out: &str) -> Vec<String> {
+    strings(&[
+        "--scenario",
+        scenario,
+        "--model",
+        "true",
+        "--rerun",
+        "off",
+        "--out",
+        out,
+    ])
+}
+
 /// Starts the program, whose words nobody hears.
 pub fn start(sandbox: &Sandbox, arguments: &[String]) -> Child {
     Command::new(env!("CARGO_BIN_EXE_testbed"))
@@ -95,25 +109,18 @@ fn a_killed_diagnosis_leaves_whole_files_or_none() {
 fn a_killed_run_leaves_whole_files_or_none() {
     let sandbox = Sandbox::new();
     sandbox.write("s.toml", SCENARIO);
-    let run = |out: &str| {
-        strings(&[
-            "--scenario",
-            "s.toml",
-            "--model",
-            "true",
-            "--rerun",
-            "off",
-            "--out",
-            out,
-        ])
-    };
     let started = std::time::Instant::now();
-    assert!(start(&sandbox, &run("whole")).wait().expect("it ends").success());
+    assert!(
+        start(&sandbox, &run_of("s.toml", "whole"))
+            .wait()
+            .expect("it ends")
+            .success()
+    );
     let longest = started.elapsed();
     let whole = files(&sandbox, "whole");
     for k in 1..=5 {
         let out = format!("killed_{k}");
-        killed(&sandbox, &run(&out), longest * k / 5);
+        killed(&sandbox, &run_of("s.toml", &out), longest * k / 5);
         for (name, bytes) in files(&sandbox, &out) {
             // The summary has computing times, which differ.
             let is_json = name == "summary.json" && serde_json::from_slice::<serde_json::Value>(&bytes).is_ok();
@@ -160,18 +167,7 @@ fn two_runs_do_not_share_a_folder() {
     let sandbox = Sandbox::new();
     sandbox.write("long.toml", &SCENARIO.replace("duration = 2", "duration = 2000"));
     sandbox.write("s.toml", SCENARIO);
-    let run = |scenario: &str| {
-        strings(&[
-            "--scenario",
-            scenario,
-            "--model",
-            "true",
-            "--rerun",
-            "off",
-            "--out",
-            "run",
-        ])
-    };
+    let run = |scenario: &str| run_of(scenario, "run");
     let mut first = start(&sandbox, &run("long.toml"));
     while !sandbox.path("run").exists() {
         std::thread::sleep(Duration::from_millis(5));
@@ -207,16 +203,7 @@ fn an_interrupted_program_says_what_was_kept() {
         assert_eq!(output.status.code(), Some(130));
         String::from_utf8_lossy(&output.stderr).into_owned()
     };
-    let run = strings(&[
-        "--scenario",
-        "s.toml",
-        "--model",
-        "true",
-        "--rerun",
-        "off",
-        "--out",
-        "run",
-    ]);
+    let run = run_of("s.toml", "run");
     let told = interrupted(&run, &|| {
         while !sandbox.path("run").exists() {
             std::thread::sleep(Duration::from_millis(5));

@@ -2,7 +2,7 @@
 
 use std::process::{Command, Stdio};
 
-use crate::faults::{OUTPUTS, SCENARIO, diagnose, files, strings};
+use crate::faults::{OUTPUTS, SCENARIO, diagnose, files, run_of};
 use crate::support::Sandbox;
 
 /// Runs the program where no file may be larger than `blocks` of 512 bytes, which fails as a full disk does.
@@ -58,16 +58,7 @@ fn a_full_disk_costs_the_file_and_not_the_answer() {
     }
     // A run, too.
     sandbox.write("s.toml", SCENARIO);
-    let run = strings(&[
-        "--scenario",
-        "s.toml",
-        "--model",
-        "true",
-        "--rerun",
-        "off",
-        "--out",
-        "run",
-    ]);
+    let run = run_of("s.toml", "run");
     let run = on_a_full_disk(&sandbox, &run, 0);
     let printed = String::from_utf8_lossy(&run.stdout);
     assert!(!run.status.success() && printed.contains("RMS error"), "{printed}");
@@ -127,16 +118,8 @@ fn what_is_replaced_is_told() {
         "{second}"
     );
     sandbox.write("s.toml", SCENARIO);
-    let run = [
-        "--scenario",
-        "s.toml",
-        "--model",
-        "true",
-        "--rerun",
-        "off",
-        "--out",
-        "run",
-    ];
+    let run = run_of("s.toml", "run");
+    let run: Vec<&str> = run.iter().map(String::as_str).collect();
     assert!(!sandbox.succeed(&run).contains("in place of"));
     assert!(
         sandbox

@@ -5,7 +5,10 @@ use std::fmt::Write;
 use arm::{Arm, Vector3};
 use nalgebra::{Matrix3, Rotation3};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
+
+#[path = "../../../../tests/properties.rs"]
+mod properties;
+pub use properties::config;
 
 /// How far a frame stands from its parent, and how it is turned.
 type Origin = ([f64; 3], [f64; 3]);
@@ -40,24 +43,6 @@ impl Case {
     /// Positions, velocities and accelerations of all joints.
     pub fn state(&self) -> [Vec<f64>; 3] {
         [0, 1, 2].map(|k| self.bodies.iter().map(|body| body.motion[k]).collect())
-    }
-}
-
-/// As many cases as a few seconds take in an unoptimised test, and the same ones each time.
-pub fn config() -> ProptestConfig {
-    let asked = ProptestConfig::default();
-    ProptestConfig {
-        cases: if std::env::var_os("PROPTEST_CASES").is_some() {
-            asked.cases
-        } else {
-            64
-        },
-        rng_seed: match asked.rng_seed {
-            RngSeed::Random => RngSeed::Fixed(1),
-            seed => seed,
-        },
-        failure_persistence: None,
-        ..asked
     }
 }
 

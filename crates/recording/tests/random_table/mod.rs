@@ -1,7 +1,10 @@
 //! Tables at random, as loggers leave them.
 
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
+
+#[path = "../../../../tests/properties.rs"]
+mod properties;
+pub use properties::config;
 
 /// Rows of a time, positions and torques of some joints.
 #[derive(Clone, Debug)]
@@ -36,24 +39,6 @@ impl Table {
         let length = turned.order.len();
         turned.order.rotate_left(by % length);
         turned
-    }
-}
-
-/// As many cases as a few seconds take in an unoptimised test, and the same ones each time.
-pub fn config() -> ProptestConfig {
-    let asked = ProptestConfig::default();
-    ProptestConfig {
-        cases: if std::env::var_os("PROPTEST_CASES").is_some() {
-            asked.cases
-        } else {
-            64
-        },
-        rng_seed: match asked.rng_seed {
-            RngSeed::Random => RngSeed::Fixed(1),
-            seed => seed,
-        },
-        failure_persistence: None,
-        ..asked
     }
 }
 
