@@ -82,6 +82,9 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
     let finding = &study.candidates[member];
     let set = beside(study, chosen, member);
     let without = problem.choose(set.clone(), &chosen.fit.weights);
+    // What each rival would gain is told at the weights of what is there without the finding: at the finding's own, whatever is on
+    // its joint seems to explain all.
+    let ground = problem.reweighted(without.clone());
     let is_other = |c: usize| {
         let other = &study.candidates[c];
         let same_name = other.hypothesis.name() == finding.hypothesis.name() && other.joint == finding.joint;
@@ -101,7 +104,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
     let mut promises: Vec<(f64, usize)> = (0..study.candidates.len())
         .into_par_iter()
         .filter(|&c| is_other(c))
-        .map(|c| (problem.promise(&without, c), c))
+        .map(|c| (problem.promise(&ground, c), c))
         .collect();
     promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     // The best size of each hypothesis.
