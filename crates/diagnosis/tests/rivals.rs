@@ -6,7 +6,7 @@ use arm::{Matrix6xX, Workspace};
 use diagnosis::{Options, diagnose};
 use recording::RegularRecording;
 use support::{
-    Concealed, ELBOW, Motion, SHOULDER, baseline_friction, diagnosed, inputs, recorded, regular, sentences, trio,
+    Concealed, ELBOW, Motion, SHOULDER, TURN, baseline_friction, diagnosed, inputs, recorded, regular, sentences, trio,
 };
 
 /// What was found beside baseline friction of the expected sizes: effects and joints.
@@ -203,4 +203,54 @@ fn a_torque_offset_that_sets_in_is_no_external_contact() {
         }
     };
     check(&concealed, &[("torque_offset", "elbow")]);
+}
+
+/// In motion, a constant beside dry friction is dry friction that differs by direction: whichever is named, the other stands beside
+/// it, however much it explains.
+#[test]
+fn a_large_constant_beside_friction_has_its_alternative() {
+    let diagnosis = diagnosed(
+        &trio(),
+        &trio(),
+        &|motion, tau| {
+            baseline_friction(motion, tau);
+            tau[TURN] += 2.5 * motion.qd[TURN].signum() + 2.0;
+        },
+        Vec::new(),
+    );
+    let pair = ["friction_asymmetry", "torque_offset"];
+    let mut findings = diagnosis.report.findings.iter();
+    let finding = findings.find(|finding| finding.joint.as_deref() == Some("turn") && pair.contains(&finding.effect));
+    let finding = finding.unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)));
+    let rivals: Vec<&str> = finding.confusable_with.iter().map(|rival| rival.effect).collect();
+    assert!(
+        pair.iter()
+            .any(|&name| name != finding.effect && rivals.contains(&name)),
+        "{} {rivals:?}",
+        finding.effect
+    );
+}
+
+/// Every drive has a little more friction in one direction; that is named from 2 % of the torque on.
+#[test]
+fn a_small_difference_of_the_directions_is_friction() {
+    for (difference, is_named) in [(0.008, false), (0.05, true)] {
+        let spread = 3.0;
+        let diagnosis = diagnosed(
+            &trio(),
+            &trio(),
+            &|motion, tau| {
+                baseline_friction(motion, tau);
+                tau[TURN] += difference * spread;
+            },
+            Vec::new(),
+        );
+        let found = names(&diagnosis);
+        assert_eq!(
+            found.iter().any(|(_, joint)| *joint == "turn"),
+            is_named,
+            "{difference} {:?}",
+            sentences(&diagnosis)
+        );
+    }
 }

@@ -11,6 +11,8 @@ pub enum Systematic {
     Usual,
     /// What hangs on a form that recordings hardly show: how a gap ends, how friction falls near standstill.
     OfForm,
+    /// What is in proportion to the arm's links, too, of which the URDF may be wrong.
+    OfArm,
 }
 
 /// A candidate with its estimate and resamplings. A draw holds the coefficients and relative corrections of sizes.

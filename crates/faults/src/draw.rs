@@ -1,6 +1,7 @@
 //! Faults drawn at random: on which joint, and when they set in; a fault's file draws its size and form.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use rand::Rng;
 use rand::seq::IndexedRandom;
@@ -9,6 +10,13 @@ use rand_chacha::ChaCha8Rng;
 use crate::fault::{Fault, Leaves, Place, coulomb_friction, viscous_friction};
 use crate::robot::Robot;
 use crate::truth::Injected;
+
+/// The least part of a joint's torque that its bodies cost where it is loaded.
+const LOADED: f64 = 0.5;
+/// Standard deviation of a drive's torque constant, where nobody has measured it.
+const TORQUE_CONSTANT: f64 = 0.05;
+/// How many of these deviations, and of the URDF's, a factor is off by at least that is to be told from them.
+const BEYOND: f64 = 2.0;
 
 /// How often faults set in at an onset that may.
 const ONSET: f64 = 0.12;
@@ -21,6 +29,10 @@ pub(crate) struct Scales<'a> {
     pub lifelike: bool,
     /// Standard deviation of each joint's torque (N m or N), without faults.
     pub spreads: &'a [f64],
+    /// The part of it that the URDF's bodies cost, without drives (N m or N).
+    pub loads: &'a [f64],
+    /// How wrong the inertials of the URDF are everywhere, about relative.
+    pub urdf_error: f64,
     /// Of each joint, the sizes of its torque in increasing order (N m or N).
     pub torques: &'a [Vec<f64>],
     /// Baseline dry friction (N m or N), 0 where there is none.
@@ -57,13 +69,14 @@ impl Scales<'_> {
         let n = self.robot.arm().dof();
         let free = |j: &usize| !used.contains(j);
         let mut joints: Vec<usize> = (0..n).filter(free).collect();
-        let fitting = match fault.place {
-            Place::AnyJoint | Place::WholeArm => 0..n,
-            Place::OuterJoints => 1..n,
-            Place::InnerJoints => 1..n.saturating_sub(1),
+        let fits = |j: usize| match fault.place {
+            Place::AnyJoint | Place::WholeArm => true,
+            Place::OuterJoints => j > 0,
+            Place::InnerJoints => (1..n.saturating_sub(1)).contains(&j),
+            Place::LoadedJoints => self.loads[j] >= LOADED * self.spreads[j],
         };
-        if joints.iter().any(|j| fitting.contains(j)) {
-            joints.retain(|j| fitting.contains(j));
+        if joints.iter().any(|&j| fits(j)) {
+            joints.retain(|&j| fits(j));
         }
         let joint = joints
             .choose(random)
@@ -113,6 +126,16 @@ impl<'a> Site<'a> {
     /// The baseline inertia of the joint's drive, 0 where it has none (kg m² or kg).
     pub(crate) fn rotor_inertia(&self) -> f64 {
         self.robot.rotor_inertias()[self.joint]
+    }
+
+    /// A factor that differs from 1 by a part of `parts`; or by more, where the URDF's masses, of which `bodies` count alike, and torque
+    /// constants would make up as much by themselves: what is no larger than they are is nobody's to tell.
+    pub(crate) fn factor(&self, parts: Range<f64>, bodies: f64, random: &mut ChaCha8Rng) -> f64 {
+        let constant = if self.lifelike { TORQUE_CONSTANT } else { 0.0 };
+        let least = BEYOND * constant.hypot(self.scales.urdf_error / bodies.sqrt());
+        let parts = parts.start.max(least)..parts.end.max(1.5 * least);
+        let (part, sign) = (random.random_range(parts), sign(random));
+        if sign > 0.0 { 1.0 + part } else { 1.0 / (1.0 + part) }
     }
 
     /// The mass (kg) that the arm might carry.

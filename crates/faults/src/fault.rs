@@ -131,6 +131,8 @@ pub(crate) enum Place {
     OuterJoints,
     /// All but the first and the last: the base may carry no load, and the last link may be next to nothing.
     InnerJoints,
+    /// Those whose torque is mostly what the URDF's bodies cost: the factor of what is all friction and drive is nobody's to tell.
+    LoadedJoints,
     WholeArm,
 }
 

@@ -15,6 +15,9 @@ pub const INERTIALS: &str = "inertial_parameters";
 /// A link whose inertial is wrong.
 pub const LINK_INERTIAL: &str = "link_inertial_error";
 
+/// A common factor of all masses and inertias.
+pub const ALL_INERTIALS: &str = "inertial_scale";
+
 /// Names that a wrong term on a joint is taken from.
 pub const ON_A_JOINT: [&str; 9] = [
     "quadratic_drag",

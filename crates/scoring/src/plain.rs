@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::answer::Answer;
-use crate::rules::{Key, Name, counted_findings, found, found_or_confusable, is_baseline};
+use crate::rules::{Key, Name, found, found_or_confusable, is_baseline, plainly_counted_findings};
 use crate::score::Tried;
 
 /// The numbers that the script prints.
@@ -59,7 +59,7 @@ pub fn plain(cases: &[Tried]) -> Plain {
     for case in cases {
         let key = Key::new(&case.truth);
         let empty = Answer::default();
-        let answer = &counted_findings(&case.truth, case.answer.as_ref().unwrap_or(&empty));
+        let answer = &plainly_counted_findings(&case.truth, case.answer.as_ref().unwrap_or(&empty));
         count.missing += usize::from(case.answer.is_none());
         let (named, sets) = (found(answer), found_or_confusable(answer));
         let baseline = |name: &Name| is_baseline(&case.truth, &name.0);

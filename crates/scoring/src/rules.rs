@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::answer::{Answer, DeclaredUnseen};
-use crate::catalogue::{INERTIALS, LINK_INERTIAL, brings, is_dry_friction, neutral};
+use crate::catalogue::{ALL_INERTIALS, INERTIALS, LINK_INERTIAL, brings, is_dry_friction, neutral};
 use crate::numbers::truth_value;
 use crate::truth::{Injected, Truth};
 
@@ -12,6 +12,9 @@ pub type Name = (String, Option<String>);
 
 /// An effect below this expressed share is not asked for.
 pub const LEAST_SHARE: f64 = 0.015;
+
+/// A common factor of all inertials within so many standard deviations of a URDF's error is a part of that error.
+const WITHIN_THE_URDF: f64 = 3.0;
 
 /// Whether it is in the machine's baseline, and scored apart.
 pub fn is_baseline(truth: &Truth, effect: &str) -> bool {
@@ -123,8 +126,18 @@ pub fn found_or_confusable(answer: &Answer) -> BTreeSet<Name> {
 
 /// The findings of `answer` as they are counted: `inertial_parameters` stands for each wrong link of its joint (of any, on the whole arm)
 /// that is not named beside it. Where the URDF is wrong everywhere such a link is moved in other ways, too, and inertials that differ are
-/// as baseline as friction; where it is exact, the name is right for a link that was moved in other ways, and false otherwise.
+/// as baseline as friction; where it is exact, the name is right for a link that was moved in other ways, and false otherwise. On the
+/// whole arm it stands for a common factor of all inertials, too, that is no larger than what the URDF is wrong by.
 pub fn counted_findings(truth: &Truth, answer: &Answer) -> Answer {
+    counted(truth, answer, true)
+}
+
+/// The findings as [`counted_findings`] gives them, but for the common factor, which is asked for by its own name.
+pub fn plainly_counted_findings(truth: &Truth, answer: &Answer) -> Answer {
+    counted(truth, answer, false)
+}
+
+fn counted(truth: &Truth, answer: &Answer, factor_too: bool) -> Answer {
     let mut counted = answer.clone();
     let names = found(answer);
     let (general, mut findings): (Vec<_>, Vec<_>) = counted
@@ -134,18 +147,21 @@ pub fn counted_findings(truth: &Truth, answer: &Answer) -> Answer {
     let wrong_everywhere = truth.has_a_wrong_urdf();
     let mut taken: BTreeSet<Name> = BTreeSet::new();
     for finding in general {
-        let meant = truth.of_note().filter(|concealed| {
-            concealed.name() == LINK_INERTIAL
-                && (wrong_everywhere || concealed.form.is_some())
-                && (finding.joint.is_none() || finding.joint == concealed.joint)
-        });
+        let is_meant = |concealed: &&Injected| match concealed.name() {
+            LINK_INERTIAL => {
+                (wrong_everywhere || concealed.form.is_some())
+                    && (finding.joint.is_none() || finding.joint == concealed.joint)
+            }
+            ALL_INERTIALS => factor_too && finding.joint.is_none() && is_of_the_urdf(truth, concealed),
+            _ => false,
+        };
         let mut stands = false;
-        for concealed in meant {
+        for concealed in truth.of_note().filter(is_meant) {
             stands = true;
-            let name = (LINK_INERTIAL.to_owned(), concealed.joint.clone());
-            if !names.contains(&name) && taken.insert(name) {
+            let name = (concealed.name().to_owned(), concealed.joint.clone());
+            if !names.contains(&name) && taken.insert(name.clone()) {
                 let mut finding = finding.clone();
-                (finding.effect, finding.joint) = (LINK_INERTIAL.to_owned(), concealed.joint.clone());
+                (finding.effect, finding.joint) = name;
                 // Its numbers are others.
                 finding.parameters.clear();
                 findings.push(finding);
@@ -157,6 +173,14 @@ pub fn counted_findings(truth: &Truth, answer: &Answer) -> Answer {
     }
     counted.findings = findings;
     counted
+}
+
+/// Whether a common factor of all inertials is within what each of them is wrong by in the URDF, so that nothing tells it from that.
+fn is_of_the_urdf(truth: &Truth, scale: &Injected) -> bool {
+    let factor = truth_value(scale, "factor").unwrap_or(1.0);
+    truth
+        .urdf_sigma
+        .is_some_and(|sigma| factor.ln().abs() <= WITHIN_THE_URDF * sigma)
 }
 
 /// Whether a diagnosis says that an effect of this size would not show in these recordings.

@@ -283,6 +283,27 @@ fn inertials_stand_for_a_wrong_link() {
     }
 }
 
+/// A common factor of all inertials that is no larger than what each of them is wrong by is a part of the URDF's error.
+#[test]
+fn inertials_of_the_whole_arm_stand_for_a_small_common_factor() {
+    let scale =
+        |factor: f64| json!([{"effect": "inertial_scale", "joint": null, "factor": factor, "expressed_share": 0.1}]);
+    let arm = || json!([{"effect": "inertial_parameters", "joint": null, "share": 0.2, "probability": 0.9}]);
+    let link = || json!([finding("inertial_parameters", "a", json!([]))]);
+    for (factor, sigma, findings, found) in [
+        (1.2, 0.1, arm(), 1),
+        (0.8, 0.1, arm(), 1),
+        (1.2, 0.1, link(), 0),
+        (1.2, 0.03, arm(), 0),
+        (1.2, 0.1, json!([]), 0),
+    ] {
+        let score = score(&[tried("case_000", scale(factor), sigma, findings)]);
+        assert_eq!(score.strict.right.hits, found, "{factor} {sigma}");
+        // The plain count knows the one rule of the shared cases.
+        assert_eq!((score.plain.found, score.plain.false_in_all()), (0, 0));
+    }
+}
+
 /// The small things of real joints are not asked for, and not false; what is weighed beside a torque constant is in its unit.
 #[test]
 fn minor_effects_are_not_scored() {

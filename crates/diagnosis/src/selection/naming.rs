@@ -10,7 +10,7 @@ use effects::{Effect, Estimate, Kind, Size, Systematic, Term};
 use crate::findings::report::Parameter;
 use crate::regression::bootstrap::Resampled;
 use crate::search::study::Study;
-use crate::thresholds::{OF_FORM, SYSTEMATIC};
+use crate::thresholds::{OF_ARM, OF_FORM, SYSTEMATIC};
 
 /// A named effect with its parameters.
 #[derive(Clone, Debug)]
@@ -37,6 +37,12 @@ impl Reader<'_> {
     fn unit(&self, key: &str) -> &'static str {
         let joint = &self.study.arm.joints()[self.joint()];
         self.kind.spec().unit(key, joint.kind).unwrap_or_default()
+    }
+
+    /// How wrong the URDF's links are that the joint moves, relative, by the background that the recordings ask for.
+    fn links_wrong_by(&self) -> f64 {
+        let moved = self.study.strengths.links.iter().skip(self.joint());
+        moved.fold(0.0, |most: f64, &strength| most.max(strength))
     }
 }
 
@@ -80,6 +86,7 @@ impl Estimate for Reader<'_> {
         let systematic = match systematic {
             Systematic::Usual => SYSTEMATIC,
             Systematic::OfForm => OF_FORM,
+            Systematic::OfArm => OF_FORM + OF_ARM * self.links_wrong_by(),
         };
         // A mass is never known better than the newton metres that it was weighed with.
         let quantity = self.kind.spec().parameter(key).map(|parameter| parameter.quantity);

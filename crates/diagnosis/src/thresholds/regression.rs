@@ -53,3 +53,7 @@ pub const SYSTEMATIC: f64 = 0.01;
 /// The half-width of an interval, as a part of the value, where it hangs on a form that recordings hardly show: how a gap ends,
 /// how friction falls near standstill, what else is late in a drive. Source: the errors on simulated cases.
 pub const OF_FORM: f64 = 0.05;
+/// The half-width of an interval, as a part of the value and for a background of strength one, of what is in proportion to the links
+/// that a joint moves: the stiffness of a joint by the frequency at which its link swings, friction by the load. Source: the errors
+/// on simulated cases with URDFs wrong by 3 to 30 %.
+pub const OF_ARM: f64 = 0.3;

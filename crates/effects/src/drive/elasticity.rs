@@ -90,10 +90,10 @@ impl EffectKind for JointElasticity {
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let [stiffness, damping, ..] = estimate.terms().first()?.sizes;
-        let stiffness = estimate.simulated(Systematic::Usual, "stiffness", |drawn, size| {
+        let stiffness = estimate.simulated(Systematic::OfArm, "stiffness", |drawn, size| {
             stiffness / (drawn - size).clamp(0.4, 2.5)
         });
-        let damping = estimate.size(Systematic::OfForm, "damping", Size::Damping, damping);
+        let damping = estimate.size(Systematic::OfArm, "damping", Size::Damping, damping);
         let effect = Effect::of(&Self).on(estimate.joint_name());
         Some(effect.with("stiffness", stiffness).with("damping", damping))
     }

@@ -3,7 +3,7 @@
 use crate::laws::SIGN;
 use crate::{
     Against, Cone, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
-    Range, Spec, Term, Turn, Unseen,
+    Range, Spec, Systematic, Term, Turn, Unseen,
 };
 
 /// τ = (coulomb + gain |τ rigid|) sgn q̇.
@@ -63,7 +63,8 @@ impl EffectKind for LoadDependentFriction {
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let coulomb = estimate.coefficient("coulomb", estimate.place(0), 1.0);
-        let gain = estimate.coefficient("gain", estimate.place(1), 1.0);
+        let place = estimate.place(1)?;
+        let gain = estimate.note_within(Systematic::OfArm, "gain", &|draw| draw[place]);
         let effect = Effect::of(&Self).on(estimate.joint_name());
         Some(effect.with("coulomb", coulomb).with("gain", gain))
     }

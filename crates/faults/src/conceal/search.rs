@@ -132,6 +132,8 @@ fn draw_all(
         hard: plan.hard,
         lifelike: plan.lifelike,
         spreads: &stage.spreads,
+        loads: &stage.loads,
+        urdf_error: plan.urdf_error,
         torques: &base.sorted,
         coulomb: &coulomb,
         span: (start(0), start(stage.training.len() - 1) + DURATION),

@@ -41,6 +41,8 @@ pub(crate) struct Stage<'a> {
     pub friction: Option<(Vec<(f64, f64)>, f64)>,
     /// Standard deviation of the torque that the training motions cost nominally (N m or N).
     pub spreads: Vec<f64>,
+    /// The part of it that the URDF's bodies cost, without drives (N m or N).
+    pub loads: Vec<f64>,
     pub sensors: Sensors,
     /// What the case has of real life; nothing in a plain one.
     pub real: Option<RealLife>,
@@ -95,7 +97,8 @@ impl<'a> Stage<'a> {
             .map(|k| excitation(robot, start(k), &mut motion))
             .collect();
         let held_out = pick_and_place(robot, start(training.len()), &mut motion);
-        let spreads: Vec<f64> = (0..n).map(|j| spread(robot, &training, j)).collect();
+        let spreads: Vec<f64> = (0..n).map(|j| spread(robot, &training, j, true)).collect();
+        let loads = (0..n).map(|j| spread(robot, &training, j, false)).collect();
         let mut draw = random(seed, Stream::Friction);
         let levels = baseline_friction(&spreads, &mut draw);
         let exponent = if hard && draw.random_bool(0.3) { 0.7 } else { 1.0 };
@@ -125,6 +128,7 @@ impl<'a> Stage<'a> {
             training,
             held_out,
             spreads,
+            loads,
             real,
             seed,
             urdf_error: kind.urdf_error,
@@ -323,9 +327,12 @@ fn drawn(tool: &Injected) -> Inertia {
     }
 }
 
-/// The standard deviation of the torque of joint `j` along motions, nominally and with its drive.
-fn spread(robot: &Robot, motions: &[Reference], j: usize) -> f64 {
-    let (n, rotor) = (robot.arm().dof(), robot.rotor_inertias()[j]);
+/// The standard deviation of the torque of joint `j` along motions, nominally, with its drive or without.
+fn spread(robot: &Robot, motions: &[Reference], j: usize, with_drive: bool) -> f64 {
+    let (n, rotor) = (
+        robot.arm().dof(),
+        if with_drive { robot.rotor_inertias()[j] } else { 0.0 },
+    );
     let torque = |motion: &Reference| -> Vec<f64> {
         let of_joint = motion.ff.iter().zip(&motion.qdd).skip(j).step_by(n);
         of_joint.map(|(ff, qdd)| ff + rotor * qdd).collect()

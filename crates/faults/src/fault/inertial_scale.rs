@@ -2,12 +2,15 @@
 
 use super::prelude::*;
 
+/// Of an arm's links, about that many carry its torque.
+const BODIES: f64 = 3.0;
+
 pub(super) const FAULT: Fault = Fault {
     name: "inertial_scale",
     alone_among: Some(Alike::Scales),
     draw: |bare, at, random| {
-        let part = random.random_range(if at.hard { 0.03..0.1 } else { 0.06..0.2 });
-        bare.with("factor", 1.0 + part * sign(random))
+        let parts = if at.hard { 0.03..0.1 } else { 0.06..0.2 };
+        bare.with("factor", at.factor(parts, BODIES, random))
     },
     read: |reader| {
         let factor = reader.above("factor", 0.0)?;

@@ -4,11 +4,12 @@ use super::prelude::*;
 
 pub(super) const FAULT: Fault = Fault {
     name: "torque_scale",
+    place: Place::LoadedJoints,
     sets_in: true,
     alone_among: Some(Alike::Scales),
     draw: |bare, at, random| {
-        let part = random.random_range(if at.hard { 0.04..0.12 } else { 0.08..0.25 });
-        bare.with("factor", 1.0 + part * sign(random))
+        let parts = if at.hard { 0.04..0.12 } else { 0.08..0.25 };
+        bare.with("factor", at.factor(parts, 1.0, random))
     },
     read: |reader| Ok(vec![What::Scale(reader.joint()?, reader.above("factor", 0.0)?).into()]),
     #[cfg(test)]
