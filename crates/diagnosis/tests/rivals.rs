@@ -231,10 +231,10 @@ fn a_large_constant_beside_friction_has_its_alternative() {
     );
 }
 
-/// Every drive has a little more friction in one direction; that is named from 2 % of the torque on.
+/// Every drive has a little more friction in one direction; that is named from 0.7 % of the torque on.
 #[test]
 fn a_small_difference_of_the_directions_is_friction() {
-    for (difference, is_named) in [(0.008, false), (0.05, true)] {
+    for (difference, is_named) in [(0.004, false), (0.05, true)] {
         let spread = 3.0;
         let diagnosis = diagnosed(
             &trio(),
