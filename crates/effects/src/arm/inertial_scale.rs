@@ -5,7 +5,7 @@ use crate::{
     Scope, Spec, Term,
 };
 
-/// All masses and inertias are factor × the model's.
+/// All masses and inertias are `factor` times the model's.
 #[derive(Debug)]
 pub struct InertialScale;
 
@@ -31,7 +31,7 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// The rigid torque of all links, drives apart.
+/// The rigid torque of all links, without that of the drives.
 pub static SCALE: Law = Law {
     name: "scale",
     column: |_, joint, motion| {

@@ -59,15 +59,15 @@ pub static WARMING: Law = Law {
     ..Law::PLAIN
 };
 
-/// How cold it still is: one at the start.
+/// The remaining part of the cold friction: one at the start.
 fn cold(time: f64, [time_constant, start, ..]: [f64; 4]) -> f64 {
     (-(time - start) / time_constant).exp()
 }
 
-/// A clock that runs for longer (s) when the recordings begin did not begin with them: it is a controller's, or a computer's.
+/// The time (s) at which recordings begin on a clock that did not begin with them, but with a controller or a computer.
 const OWN_CLOCK: f64 = 60.0;
 
-/// The time at which the amplitude is told (s), for recordings that begin at `begins`.
+/// The time for which the amplitude is given (s), for recordings that begin at `begins`.
 fn start(begins: f64) -> f64 {
     if begins.abs() > OWN_CLOCK { begins.floor() } else { 0.0 }
 }
@@ -79,7 +79,7 @@ impl EffectKind for ThermalDrift {
 
     fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
         let constants = [0.15, 0.25, 0.4, 0.6, 1.0].map(|share| share * grounds.span.unwrap_or(0.0));
-        // What fades faster is no warming of a drive.
+        // A faster decay is no warming of a drive.
         let constants: Vec<f64> = constants.into_iter().filter(|time| *time >= FASTEST_WARMING).collect();
         let start = start(grounds.times.first().map_or(0.0, |&(begins, _)| begins));
         let mut forms = Vec::new();
@@ -94,7 +94,7 @@ impl EffectKind for ThermalDrift {
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
         let (warm, cold) = (fitted.value(0), fitted.value(1));
-        // Refinement may do something to the time constant.
+        // Refinement may change the time constant.
         let is_slow = |term: Term| !term.is(&WARMING) || term.sizes[0] > 0.7 * FASTEST_WARMING;
         cold > 0.0 && warm > 0.0 && cold < 4.0 * warm && (0..fitted.len()).all(|k| is_slow(fitted.term(k)))
     }

@@ -33,12 +33,12 @@ impl EffectKind for Periodic {
         &SPEC
     }
 
-    /// The residuals suggest the frequency.
+    /// None: the residuals suggest the frequency.
     fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
         Vec::new()
     }
 
-    /// Two that are too close to be told apart.
+    /// Two frequencies that differ by less than 10 % are not distinguished.
     fn is_same(&self, a: &Term, b: &Term) -> bool {
         let (a, b) = (a.sizes[0], b.sizes[0]);
         (a - b).abs() < 0.1 * a.min(b)
