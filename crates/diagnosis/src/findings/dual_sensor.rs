@@ -1,4 +1,4 @@
-//! What two sensors of one joint tell: an encoder on either side of a spring, a torque on either side of a gearbox.
+//! Findings from two sensors of one joint: encoders on either side of a spring, torques on either side of a gearbox.
 
 use std::collections::BTreeMap;
 
@@ -33,7 +33,7 @@ struct Regression {
     held_out: Option<f64>,
 }
 
-/// Findings from second encoders and from motor currents beside torque sensors.
+/// Findings from second encoders, and from motor currents beside torque sensors.
 pub fn findings(study: &Study, named: &Chosen, inputs: &[Input<'_>]) -> Vec<Finding> {
     let mut list = Vec::new();
     for joint in 0..study.motions.dof {
@@ -89,7 +89,7 @@ fn gather(
     rows
 }
 
-/// Which derivative to take.
+/// The derivative to take of a signal.
 #[derive(Clone, Copy)]
 enum Order {
     Value,
@@ -131,7 +131,7 @@ fn regress(rows: &Rows) -> Option<Regression> {
     let (train, left) = explained(false)?;
     let variance = left / (count - p as f64);
     Some(Regression {
-        // Neighbouring rows are not independent: as if one in four were.
+        // // Neighbouring rows are correlated: only one in four counts as independent.
         errors: (0..p).map(|k| 2.0 * (variance * inverse[(k, k)]).sqrt()).collect(),
         coefficients: solution.as_slice().to_vec(),
         train,
@@ -158,7 +158,7 @@ impl Regression {
     }
 }
 
-/// The spring between a joint's two encoders: their difference follows its torque.
+/// The spring between a joint's two encoders: their difference is proportional to the torque.
 fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Finding> {
     let rows = gather(study, joint, inputs, |input, filter| {
         let secondary = input.recording.q_secondary.get(joint)?.as_ref()?;
@@ -166,7 +166,7 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
         let difference: Vec<f64> = secondary.iter().zip(q).map(|(link, motor)| link - motor).collect();
         let y = filter(&difference, Order::Value);
         let ones = vec![1.0; y.len()];
-        // A gear ratio that is slightly off shows as a part of the position.
+        // // An error of the gear ratio appears as a part of the position.
         let place = filter(q, Order::Value);
         let tau: Vec<f64> = filter(&input.recording.tau[joint], Order::Value);
         let friction: Vec<f64> = filter(q, Order::First).iter().map(|v| v.signum()).collect();
@@ -211,7 +211,7 @@ fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>])
         let current = input.recording.tau_current.get(joint)?.as_ref()?;
         let sensor = &input.recording.tau[joint];
         let difference: Vec<f64> = current.iter().zip(sensor).map(|(a, b)| a - b).collect();
-        // Both columns the same signal: there is nothing between them.
+        // // If both columns are the same signal, there is nothing between them.
         if difference.iter().all(|d| d.abs() < 1e-9) {
             return None;
         }
