@@ -107,7 +107,7 @@ fn check(arm: &Arm, inputs: &[Input<'_>], cutoff: f64) -> Result<(), DiagnosisEr
                 expected,
             });
         }
-        // // The reach of both filters, and ten rows.
+        // The reach of both filters, and ten rows.
         let needed = (10.0 + 6.0) * 0.235 / cutoff.min(0.235 / recording.period);
         let longest = recording.segments.iter().map(|s| s.ticks.len()).max().unwrap_or(0) as f64 * recording.period;
         if longest < needed {

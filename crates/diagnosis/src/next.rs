@@ -134,7 +134,7 @@ pub fn propose(
             list.extend(more);
         }
     }
-    // // A motion that exceeds the limits a little between two samples is scaled down and predicted again; it may no longer be
+    // A motion that exceeds the limits a little between two samples is scaled down and predicted again; it may no longer be
     // the best.
     while let Some(best) = best(&list) {
         let (design, parts) = (list[best].design.clone(), list[best].parts);
@@ -177,7 +177,7 @@ fn tried(
         .zip(&shows)
         .map(|(hidden, after)| match (hidden.gain(*after), after) {
             (Some(gain), _) => gain.clamp(0.0, 2.0),
-            // // Detectable at no size before, and at some size now.
+            // Detectable at no size before, and at some size now.
             (None, Some(_)) => 1.0,
             (None, None) => 0.0,
         });
@@ -241,7 +241,7 @@ fn confusions(
             let is_alias =
                 alias.is_some_and(|(hypothesis, place)| hypothesis.name() == Some(rival.effect) && place == joint);
             let instead: Vec<(Vec<usize>, Vec<usize>)> = if is_alias {
-                // // Fitted in the finding's place, it is the finding itself.
+                // Fitted in the finding's place, it is the finding itself.
                 vec![(chosen.fit.columns.clone(), Vec::new())]
             } else if this.hypothesis.spec().same_on_all_joints == Some(rival.effect) {
                 let is_factor = |c: &usize| study.candidates[*c].hypothesis.name() == Some(rival.effect);
@@ -330,7 +330,7 @@ fn described(
         let barred = if !confusion.is_explained {
             Some(Obstacle::Unexplained)
         } else {
-            // // A pair that is already distinguished is no confusion.
+            // A pair that is already distinguished is no confusion.
             (before[k][0] >= before[k][1].min(needed)).then_some(Obstacle::NotForetold)
         };
         if after >= SURE * needed && barred.is_none() {

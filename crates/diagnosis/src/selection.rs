@@ -69,7 +69,7 @@ fn selected(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> (judge::Selection
         let mut judged = judge::judge(study, &products, held.as_ref(), chosen);
         progress(Step::new(0.61, "final fit and intervals"));
         let resampled = final_fit::settled(study, &mut judged);
-        // // A refused name may have prevented that another effect was found.
+        // A refused name may have prevented that another effect was found.
         if study.refused() == refused || refused > MOST_REFUSED {
             let resampled = unmounted::unmounted(study, &mut judged).unwrap_or(resampled);
             return (judged, resampled);

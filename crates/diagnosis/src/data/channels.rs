@@ -68,7 +68,7 @@ pub fn without_torque(inputs: &[Input<'_>], motions: &Motions, rigid: &[Rigid], 
             Some((joint, why?))
         })
         .collect();
-    // // If nothing explains any joint, the model is wrong and not a channel.
+    // If nothing explains any joint, the model is wrong and not a channel.
     let is_all = list.len() == motions.dof;
     let stays = |(_, why): &(usize, Why)| is_all && matches!(why, Why::Unrelated(_));
     list.into_iter().filter(|one| !stays(one)).collect()
@@ -88,7 +88,7 @@ fn idle(inputs: &[Input<'_>], joint: usize) -> Option<f64> {
     let mut all = 0;
     for input in fitted() {
         for tick in ticks(input).filter(|&tick| speed(input, tick) > least) {
-            // // −0 equals 0.
+            // −0 equals 0.
             *counts
                 .entry((input.recording.tau[joint][tick] + 0.0).to_bits())
                 .or_default() += 1;

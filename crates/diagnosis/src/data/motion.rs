@@ -162,7 +162,7 @@ impl Motions {
         }
         let (share, joint) = motions.noise_share(arm);
         if share > MOST_NOISE {
-            // // The noise of the acceleration grows with the power 5/2 of the cut-off.
+            // The noise of the acceleration grows with the power 5/2 of the cut-off.
             let quiet = motions.cutoff * (MOST_NOISE / share).powf(0.4);
             let least = LEAST_CUTOFF.max(LEAST_CUTOFF_PERIODS * tempo).min(motions.cutoff);
             let before = motions.cutoff;
@@ -185,7 +185,7 @@ impl Motions {
         let cutoff = wanted.min(NARROWEST * slowest);
         let seconds = |held_out: bool| -> f64 {
             let of_role = inputs.iter().filter(|input| input.held_out == held_out);
-            // // An empty sum is −0, and a division by it gives −∞.
+            // An empty sum is −0, and a division by it gives −∞.
             0.0 + of_role
                 .map(|input| input.recording.len() as f64 * input.recording.period)
                 .sum::<f64>()
@@ -194,7 +194,7 @@ impl Motions {
         let total: f64 = [false, true].map(|role| used(role) * seconds(role)).iter().sum();
         let thin = (total * ROWS * cutoff / MOST_ROWS).max(1.0);
         let has_before = inputs.iter().any(|input| input.before);
-        // // Recordings from before get a clock of their own: the change happened between them and the others.
+        // Recordings from before get a clock of their own: the change happened between them and the others.
         let overlap = if has_before { None } else { overlapping(inputs) };
         let mut motions = Self {
             dof: inputs.first().map_or(0, |input| input.recording.joints.len()),
@@ -243,7 +243,7 @@ impl Motions {
 
     fn tempo(&self) -> Vec<f64> {
         let fitted = |chunk: &&Chunk| !self.sources[chunk.recording].held_out;
-        // // After the second filter: between the two filters, the acceleration's noise is many times the motion's.
+        // After the second filter: between the two filters, the acceleration's noise is many times the motion's.
         let power = |signal: &dyn Fn(&Chunk) -> &Vec<f64>| -> f64 {
             let rows = self
                 .chunks
@@ -255,7 +255,7 @@ impl Motions {
         (0..self.dof)
             .map(|joint| {
                 let (speed, acceleration) = (power(&|chunk| &chunk.qd[joint]), power(&|chunk| &chunk.qdd[joint]));
-                // // On a joint that does not move, only noise would be measured.
+                // On a joint that does not move, only noise would be measured.
                 let noise = self
                     .sources
                     .iter()
@@ -288,7 +288,7 @@ impl Motions {
             for piece in 0..pieces {
                 let from = segment.ticks.start + piece * length;
                 let to = (from + length).min(segment.ticks.end);
-                // // The position of the window in its section varies (by the golden ratio), because sections may repeat one
+                // The position of the window in its section varies (by the golden ratio), because sections may repeat one
                 // motion.
                 let kept = (used * (to - from) as f64).ceil() as usize;
                 let place = (GOLDEN * self.chunks.len() as f64).fract();

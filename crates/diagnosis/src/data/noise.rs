@@ -73,7 +73,7 @@ pub fn white_noise(signal: &[f64], recording: &RegularRecording) -> f64 {
     if squares.is_empty() {
         return 0.0;
     }
-    // // The mean of the lower nine tenths, because jumps (a reversal, a contact) are no noise. For a normal variable, the mean
+    // The mean of the lower nine tenths, because jumps (a reversal, a contact) are no noise. For a normal variable, the mean
     // of the squares up to their 90 % quantile is 0.6245 of the variance.
     let keep = (squares.len() * 9 / 10).max(1);
     squares.sort_by(f64::total_cmp);
@@ -113,7 +113,7 @@ pub fn band_noise(signal: &[f64], recording: &RegularRecording, cutoff: f64) -> 
         if to >= n / 2 || to < from + LEAST_BINS {
             continue;
         }
-        // // With the line from end to end subtracted and a Hann window, the motion does not leak into the band.
+        // With the line from end to end subtracted and a Hann window, the motion does not leak into the band.
         let slope = (values[n - 1] - values[0]) / (n - 1) as f64;
         let mut power = 0.0;
         let mut spectrum: Vec<Complex<f64>> = (0..n)

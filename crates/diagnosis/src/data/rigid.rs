@@ -88,7 +88,7 @@ impl Rigid {
         let gravity = *arm.gravity();
         let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
         let along = axes.map(|axis| arm.clone().with_gravity(axis));
-        // // Turning the base by a small angle about x turns gravity by the opposite angle in the base's frame.
+        // Turning the base by a small angle about x turns gravity by the opposite angle in the base's frame.
         let turned = [Vector3::x(), Vector3::y()].map(|axis| -axis.cross(&gravity));
         let (mut q, mut qd, mut qdd) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
         let (mut tau, mut pull) = (vec![0.0; n], vec![0.0; n]);

@@ -30,13 +30,13 @@ impl Kernel {
         let x: Vec<f64> = (-reach..=reach).map(|tick| tick as f64 / scale).collect();
         let density = |x: f64| (-0.5 * x * x).exp() / (2.0 * PI).sqrt();
         let mut smooth: Vec<f64> = x.iter().map(|&x| density(x) * (3.0 - x * x) / 2.0).collect();
-        // // Convolution reverses the kernel: the weights at +x are those of the derivative at −x.
+        // Convolution reverses the kernel: the weights at +x are those of the derivative at −x.
         let mut first: Vec<f64> = x.iter().map(|&x| -density(x) * (x * x * x - 5.0 * x) / 2.0).collect();
         let mut second: Vec<f64> = x
             .iter()
             .map(|&x| density(x) * (-x.powi(4) + 8.0 * x * x - 5.0) / 2.0)
             .collect();
-        // // Makes the moments exact on the samples: 1 → 1, t → 1, t² / 2 → 1, and constants → 0.
+        // Makes the moments exact on the samples: 1 → 1, t → 1, t² / 2 → 1, and constants → 0.
         let time: Vec<f64> = (-reach..=reach).map(|tick| tick as f64 * period).collect();
         let moment =
             |weights: &[f64], power: i32| -> f64 { weights.iter().zip(&time).map(|(w, t)| w * t.powi(power)).sum() };

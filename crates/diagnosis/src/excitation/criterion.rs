@@ -164,7 +164,7 @@ impl<'a> Criterion<'a> {
                 0.0
             }
         };
-        // // The factors of the regressor's change: from the information, and from the penalties of the torques.
+        // The factors of the regressor's change: from the information, and from the penalties of the torques.
         let mut with = DMatrix::zeros(dof, inertial);
         for j in 0..dof {
             by[0][j] = beyond(q[j] - self.allowed.middle[j], self.allowed.room[j]);

@@ -80,7 +80,7 @@ fn descend(look: &Look<'_>, start: Vec<f64>, hardness: f64, most: u64) -> Result
         .ctrlc(false)
         .timer(false)
         .run();
-    // // An error is the end of the line search; the best point so far is the result.
+    // An error is the end of the line search; the best point so far is the result.
     drop(run);
     let seen = seen.borrow();
     Ok((seen.best, seen.best_at.clone()))

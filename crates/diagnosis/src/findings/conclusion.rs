@@ -67,7 +67,7 @@ impl Conclusion {
         findings.extend(others.into_iter().map(|finding| (finding, None)));
         let not_enough_data = not_enough(study, products);
         if !not_enough_data.is_empty() {
-            // // With so few data, no finding is supported.
+            // With so few data, no finding is supported.
             findings.clear();
         }
         let by_exported: Vec<Vec<f64>> = (0..study.motions.dof)

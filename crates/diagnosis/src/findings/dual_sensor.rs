@@ -131,7 +131,7 @@ fn regress(rows: &Rows) -> Option<Regression> {
     let (train, left) = explained(false)?;
     let variance = left / (count - p as f64);
     Some(Regression {
-        // // Neighbouring rows are correlated: only one in four counts as independent.
+        // Neighbouring rows are correlated: only one in four counts as independent.
         errors: (0..p).map(|k| 2.0 * (variance * inverse[(k, k)]).sqrt()).collect(),
         coefficients: solution.as_slice().to_vec(),
         train,
@@ -166,7 +166,7 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
         let difference: Vec<f64> = secondary.iter().zip(q).map(|(link, motor)| link - motor).collect();
         let y = filter(&difference, Order::Value);
         let ones = vec![1.0; y.len()];
-        // // An error of the gear ratio appears as a part of the position.
+        // An error of the gear ratio appears as a part of the position.
         let place = filter(q, Order::Value);
         let tau: Vec<f64> = filter(&input.recording.tau[joint], Order::Value);
         let friction: Vec<f64> = filter(q, Order::First).iter().map(|v| v.signum()).collect();
@@ -211,7 +211,7 @@ fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>])
         let current = input.recording.tau_current.get(joint)?.as_ref()?;
         let sensor = &input.recording.tau[joint];
         let difference: Vec<f64> = current.iter().zip(sensor).map(|(a, b)| a - b).collect();
-        // // If both columns are the same signal, there is nothing between them.
+        // If both columns are the same signal, there is nothing between them.
         if difference.iter().all(|d| d.abs() < 1e-9) {
             return None;
         }

@@ -46,7 +46,7 @@ pub fn useless(study: &Study, products: &Products, held: &Products, judged: &Sel
         .par_iter()
         .filter_map(|member| {
             let gain = held_out_gain(study, &problem, Some(held), judged, member)?;
-            // // The background in its place predicts as well, for more nats.
+            // The background in its place predicts as well, for more nats.
             let allowed = if problem.is_background_too(&study.candidates[member.candidate]) {
                 AS_WELL
             } else {
@@ -202,7 +202,7 @@ fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joi
 fn place(study: &Study, hypothesis: Hypothesis, candidate: usize) -> Place {
     if let Some([from, to]) = study.window(candidate) {
         let at = study.motions.recording_at(0.5 * (from + to));
-        // // Refinement may have moved an end just beyond the recording's.
+        // Refinement may have moved an end just beyond the recording's.
         let own = |time: f64| {
             at.map_or(time, |at| {
                 let [first, last] = study.motions.span(at);

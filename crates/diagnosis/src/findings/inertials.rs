@@ -81,7 +81,7 @@ pub fn inertials(
     if strengths.links.iter().all(|&rho| rho == 0.0) {
         return Inertials::default();
     }
-    // // The links with their scale errors, without payload, tilt and other effects.
+    // The links with their scale errors, without payload, tilt and other effects.
     let nominal: Vec<f64> = About::scaled(study, &judged.named.fit).inertial_parameters();
     let place = |link: usize, parameter: usize| {
         let is_it = |&column: &usize| {
@@ -168,11 +168,11 @@ pub fn inertials(
             .collect()
     };
     let largest = |shares: &[f64]| shares.iter().copied().fold(0.0, f64::max);
-    // // If hardly anything is explained, the background compensates a model that does not fit.
+    // If hardly anything is explained, the background compensates a model that does not fit.
     let explained: Vec<bool> = (0..dof)
         .map(|joint| errors(study, joint, &augmented(study, &judged.named, joint)).train_nrmse_augmented < PARTLY)
         .collect();
-    // // The links that explain nearly as much in the place of one, the best first, and the margin of that one.
+    // The links that explain nearly as much in the place of one, the best first, and the margin of that one.
     let instead = |link: usize| -> (f64, Vec<Confusable>) {
         let [score, loss] = study.evidence_of_link(products, &judged.named, link);
         let mut others = study.in_other_links(products, &judged.named, link);
@@ -186,7 +186,7 @@ pub fn inertials(
         (margin, rivals.collect())
     };
     let mut add = |joint: Option<usize>, shares: &[f64], parameters: BTreeMap<&'static str, Parameter>| {
-        // // Beside unmodelled structure, they may be a part of it.
+        // Beside unmodelled structure, they may be a part of it.
         let stands_out = |joint: usize| {
             let unnamed = judged.unmodelled.iter().map(|member| member.shares[joint]);
             explained[joint]
@@ -210,7 +210,7 @@ pub fn inertials(
             ..Finding::of(list.effects[joint.unwrap_or(0)].clone())
         });
     };
-    // // A payload and the last link are one body: the rest of it is no second finding.
+    // A payload and the last link are one body: the rest of it is no second finding.
     let has_payload = judged
         .members
         .iter()

@@ -87,7 +87,7 @@ fn on_joint(study: &Study, state: &State, joint: usize, nominal: &[f64], augment
     for (axis, values) in axes {
         let mut sorted: Vec<usize> = rows.clone();
         sorted.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
-        // // The region near a reversal is the slowest bin; the others are tried in turn.
+        // The region near a reversal is the slowest bin; the others are tried in turn.
         let bins = if axis == "near_reversal" { 0..1 } else { 0..BINS };
         let best = bins
             .map(|bin| &sorted[sorted.len() * bin / BINS..sorted.len() * (bin + 1) / BINS])
@@ -121,11 +121,11 @@ fn windows(study: &Study, state: &State, rows: &[usize], nominal: &[f64], all: f
     let mut from = 0;
     while from < rows.len() {
         let (recording, start) = (state.recording[rows[from]], state.time[rows[from]]);
-        // // A row at the very end of a window belongs to the next one, however its time was rounded.
+        // A row at the very end of a window belongs to the next one, however its time was rounded.
         let inside = |&&row: &&usize| state.recording[row] == recording && state.time[row] - start < WINDOW - 1e-6;
         let length = rows[from..].iter().take_while(inside).count().max(1);
         let residual = root_mean_square(rows[from..from + length].iter().map(|&row| nominal[row]));
-        // // A stretch ends with its last row, because the recording may end before the window.
+        // A stretch ends with its last row, because the recording may end before the window.
         let end = state.time[rows[from + length - 1]];
         if length >= 5 {
             stretches.push((residual, recording, [start, end]));

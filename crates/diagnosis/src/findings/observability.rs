@@ -97,7 +97,7 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
                 if_none,
                 is_seen_below,
             } => {
-                // // Sizes in ascending order.
+                // Sizes in ascending order.
                 let mut sizes: Vec<(f64, bool)> = of(study, kind, joint)
                     .map(|candidate| {
                         let size = study.table.terms[candidate.columns[0]].sizes[0];
@@ -106,7 +106,7 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
                     .collect();
                 sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
                 if is_seen_below {
-                    // // The largest detectable size for which all smaller ones are detectable.
+                    // The largest detectable size for which all smaller ones are detectable.
                     let last = sizes.iter().take_while(|(_, seen)| *seen).last();
                     add(because, None, last.map(|&(size, _)| size));
                 } else {

@@ -46,7 +46,7 @@ pub fn allowance(explained: f64) -> f64 {
 pub fn beside(study: &Study, chosen: &Chosen, member: usize) -> Vec<usize> {
     let finding = &study.candidates[member];
     let mut set: Vec<usize> = chosen.others(member);
-    // // A form of a simpler effect competes with that effect plus another.
+    // A form of a simpler effect competes with that effect plus another.
     let plain = (0..study.candidates.len()).find(|&c| {
         let plain = &study.candidates[c];
         Some(plain.hypothesis) == finding.hypothesis.plain()
@@ -86,9 +86,9 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
     let is_other = |c: usize| {
         let other = &study.candidates[c];
         let same_name = other.hypothesis.name() == finding.hypothesis.name() && other.joint == finding.joint;
-        // // A candidate with all of the finding's columns and more is a finer form of it, not another hypothesis.
+        // A candidate with all of the finding's columns and more is a finer form of it, not another hypothesis.
         let finer = finding.columns.iter().all(|column| other.columns.contains(column));
-        // // The inertia of a body acts on all joints before it: a wrong mass of one link resembles one of its neighbour.
+        // The inertia of a body acts on all joints before it: a wrong mass of one link resembles one of its neighbour.
         let are_links = finding.hypothesis.kind == other.hypothesis.kind && finding.hypothesis.is_wrong_mass();
         !same_name
             && !finer
@@ -124,7 +124,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         .map(|&c| (study.candidates[c].hypothesis, study.candidates[c].joint, vec![c]))
         .collect();
     if let Some(same) = finding.hypothesis.spec().same_on_all_joints {
-        // // Without a known load, a common factor of all masses and one of all torques cannot be distinguished.
+        // Without a known load, a common factor of all masses and one of all torques cannot be distinguished.
         let factors: Vec<usize> = (0..study.candidates.len())
             .filter(|&c| study.candidates[c].hypothesis.name() == Some(same))
             .collect();
@@ -170,7 +170,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         results.extend(best);
     }
     results.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)).then(a.3.cmp(&b.3)));
-    // // A simpler hypothesis is more probable: the margin includes the costs.
+    // A simpler hypothesis is more probable: the margin includes the costs.
     let margin = results.iter().map(|result| result.1).fold(explained, f64::min);
     Standing {
         rivals: results

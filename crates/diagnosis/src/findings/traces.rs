@@ -22,7 +22,7 @@ pub fn traces(
             let Some(member) = *member else {
                 return vec![Vec::new(); dof];
             };
-            // // A drive's inertia that is named with a spring or a gap has its own column.
+            // A drive's inertia that is named with a spring or a gap has its own column.
             let is_brought = finding.as_effect.kind() != study.candidates[member].hypothesis.kind;
             let columns: Vec<usize> = study.candidates[member]
                 .columns

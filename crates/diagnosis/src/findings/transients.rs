@@ -49,7 +49,7 @@ pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
     let times = study.motions.row_times();
     let weights: Vec<f64> = (0..study.motions.dof)
         .map(|joint| {
-            // // The usual residual of a joint that was never fitted is unknown.
+            // The usual residual of a joint that was never fitted is unknown.
             if study.training_rows(joint).len() < LEAST_BURST_ROWS {
                 return 0.0;
             }
@@ -63,7 +63,7 @@ pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
         let Some((recording, powers)) = power(study, &times, left, &weights, (from, to)) else {
             continue;
         };
-        // // A push on the tool acts on more than one joint, if there are more.
+        // A push on the tool acts on more than one joint, if there are more.
         let felt = powers.iter().filter(|power| power.sqrt() > OVER_THE_REST).count();
         if felt < study.motions.dof.min(2) {
             continue;
@@ -78,7 +78,7 @@ pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
                 explained,
             });
         } else {
-            // // The joint on which it stands out most.
+            // The joint on which it stands out most.
             let window = (from, to);
             let at = (0..study.motions.dof)
                 .map(|joint| {
@@ -100,7 +100,7 @@ pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
             }
         }
     }
-    // // A burst that recurs is an error of the model, not a contact.
+    // A burst that recurs is an error of the model, not a contact.
     if pushes.len() + bursts.unexplained.values().map(|entry| entry.1.len()).sum::<usize>() > MOST_BURSTS {
         return Bursts::default();
     }

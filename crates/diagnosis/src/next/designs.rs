@@ -100,7 +100,7 @@ impl Design {
             }
             speed *= step;
             if far > 1.0 || (strong > 1.0 && speed < 0.5 * self.speed) {
-                // // The torque for holding the arm does not decrease with the speed.
+                // The torque for holding the arm does not decrease with the speed.
                 amplitude *= step;
             }
         }

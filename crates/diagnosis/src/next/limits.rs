@@ -75,13 +75,13 @@ impl Limits {
             } else {
                 0.0
             };
-            // // The recorded motion may be beyond the URDF's limits.
+            // The recorded motion may be beyond the URDF's limits.
             if upper - free >= lower + free {
                 limits.middle[j] = rounded_into(limits.middle[j], lower + free, upper - free);
             }
             let middle = limits.middle[j];
             let to_a_limit = (upper - free - middle).min(middle - lower - free).max(0.0);
-            // // A joint that was held still may move as the others do.
+            // A joint that was held still may move as the others do.
             let recorded = 0.5 * scales.range[j];
             let (half, speed) = if scales.speed[j] > scales.rest[j] {
                 (wider * recorded, scales.speed[j])
@@ -96,7 +96,7 @@ impl Limits {
             });
             let torque = study.measured[j].iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
             let allowed = if joint.limits.effort.is_finite() {
-                // // The drive can give again the torque that it gave before.
+                // The drive can give again the torque that it gave before.
                 (WITHIN * joint.limits.effort).max(torque.min(joint.limits.effort))
             } else {
                 STRONGER_UNLIMITED * torque
@@ -127,7 +127,7 @@ impl Limits {
             let time = k as f64 / hertz;
             reference.at(time, &mut motion);
             let (q, qd, qdd) = (&motion.q, &motion.qd, &motion.qdd);
-            // // The time is the motion's own: a contact is not repeated, and a drive is warm.
+            // The time is the motion's own: a contact is not repeated, and a drive is warm.
             self.model
                 .predict_at(f64::INFINITY, &mut workspace, q, qd, qdd, &mut prediction);
             for (j, needed) in needed.iter_mut().enumerate() {

@@ -75,7 +75,7 @@ impl<'a> Prospect<'a> {
             chunks.filter(|chunk| study.fitted[chunk.recording])
         };
         let template = fitted().max_by_key(|chunk| chunk.ticks())?;
-        // // A sum of slow sines needs no finer grid.
+        // A sum of slow sines needs no finer grid.
         let (period, stride) = (COARSER as f64 * template.period, template.stride.div_ceil(COARSER));
         let needs = |term: &Term| term.law.needs_derivatives;
         let dof = study.motions.dof;
@@ -164,7 +164,7 @@ impl<'a> Prospect<'a> {
         );
         let new = Products::new(&table, |_| true, &[seconds], &tempo, &study.floor);
         let new = new.picked(&table, &(0..self.columns.len()).collect::<Vec<_>>());
-        // // The residual of the motion is predicted to be as large as that of the recordings.
+        // The residual of the motion is predicted to be as large as that of the recordings.
         let left: Vec<f64> = (0..dof)
             .map(|j| self.chosen.fit.rss[j].max(0.0) / self.old.count[j].max(1.0))
             .collect();
@@ -223,7 +223,7 @@ impl<'a> Prospect<'a> {
         let mut own = Vec::new();
         for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
             let term = self.study.table.terms[column];
-            // // A motion within a torque limit exceeds it nowhere.
+            // A motion within a torque limit exceeds it nowhere.
             if is_carried(term) || term.law.cuts {
                 continue;
             }

@@ -48,7 +48,7 @@ impl Resampled {
             return (value, [f64::NEG_INFINITY, f64::INFINITY]);
         }
         draws.sort_by(f64::total_cmp);
-        // // Half the interquartile range of a normal distribution is 0.6745 of its standard deviation.
+        // Half the interquartile range of a normal distribution is 0.6745 of its standard deviation.
         let at = |share: f64| draws[(share * (draws.len() - 1) as f64).round() as usize];
         let spread = (at(0.75) - at(0.25)) / (2.0 * 0.6745);
         let half = INFLATION * 1.96 * spread + systematic * value.abs();
@@ -106,7 +106,7 @@ pub fn resample(study: &mut Study, chosen: &Chosen) -> Resampled {
     let (draws, even): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (0..DRAWS)
         .into_par_iter()
         .map(|draw| {
-            // // Each draw has its own generator, so that the result does not depend on threads (splitmix64).
+            // Each draw has its own generator, so that the result does not depend on threads (splitmix64).
             let mut state = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(draw as u64 + 1);
             let (mut a, mut b) = (prior.precision.clone(), DVector::zeros(p));
             for (matrix, right) in &systems {
@@ -213,7 +213,7 @@ fn systems(
     let table = &study.table;
     let p = columns.len() + sizes.len();
     let weights = study.training_products().evidence_weights(&chosen.fit.weights);
-    // // The columns of each joint, with the derivatives by the sizes last.
+    // The columns of each joint, with the derivatives by the sizes last.
     let by_joint: Vec<Vec<Option<Vec<f64>>>> = (0..table.dof())
         .into_par_iter()
         .map(|joint| {

@@ -342,7 +342,7 @@ impl Products {
             own -= cross.tr_mul(&cross);
             right -= cross.tr_mul(&fit.reduced);
         }
-        // // The span of the present columns must not be gained again.
+        // The span of the present columns must not be gained again.
         for k in 0..c {
             own[(k, k)] += 1e-6;
         }

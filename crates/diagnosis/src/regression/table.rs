@@ -104,7 +104,7 @@ impl Table {
                     y.extend(chunk.filter(&difference));
                     let core = (CORE * chunk.kernel.width() / chunk.period).ceil() as usize;
                     let rest = scales.rest[joint];
-                    // // A joint that only yields a little does not count as moving.
+                    // A joint that only yields a little does not count as moving.
                     let (low, high) = chunk.q[joint]
                         .iter()
                         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &q| {
@@ -211,7 +211,7 @@ impl Table {
             Vec::new()
         };
         for (terms, copies) in terms.chunks(BATCH).zip(copies.chunks(BATCH)) {
-            // // The motion behind a compliant joint is simulated once for all joints on which it acts.
+            // The motion behind a compliant joint is simulated once for all joints on which it acts.
             let links: Vec<Vec<Behind>> = terms
                 .par_iter()
                 .map(|&term| {

@@ -70,7 +70,7 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Selection, DiagnosisE
     let mut placed: Vec<Place<'_>> = Vec::new();
     let products = study.training_products();
     let mut chosen = study.problem(&products).choose(Vec::new(), &products.first_weights());
-    // // The time of an onset or a contact and the period of a ripple follow from the residual of the other effects.
+    // The time of an onset or a contact and the period of a ripple follow from the residual of the other effects.
     for suggest in [false, true] {
         if suggest {
             study.suggest(&chosen);
@@ -132,7 +132,7 @@ fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, Diag
             None => Ok(None),
         };
         let (mut joint, mut other) = (joint_of(&one.joint)?, joint_of(&one.other)?);
-        // // The catalogue has the effect of a shared drive on the later of its two joints.
+        // The catalogue has the effect of a shared drive on the later of its two joints.
         if other > joint && joint.is_some() {
             (joint, other) = (other, joint);
         }
@@ -171,7 +171,7 @@ fn best(
     }
     let is_form = |&c: &usize| {
         let candidate = &problem.candidates[c];
-        // // An effect that is requested twice is present twice, not once in two sizes.
+        // An effect that is requested twice is present twice, not once in two sizes.
         let is_twin =
             |&other: &usize| problem.candidates[other].hypothesis == candidate.hypothesis && problem.exclude(c, other);
         let with = candidate.hypothesis.other;
@@ -181,7 +181,7 @@ fn best(
             && is_pair
             && !others.iter().any(is_twin)
     };
-    // // An effect without a form with onset is taken as always acting.
+    // An effect without a form with onset is taken as always acting.
     let is_as_wanted = |&c: &usize| {
         let sets_in = problem.onset(&problem.candidates[c]).is_some();
         wanted.sets_in.is_none_or(|wanted| wanted == sets_in)
@@ -196,7 +196,7 @@ fn best(
         let next = problem.choose(set, &chosen.fit.weights);
         (!problem.is_possible(c, &next.fit), next)
     };
-    // // Physically possible forms are preferred, if there are any.
+    // Physically possible forms are preferred, if there are any.
     let best = forms
         .into_iter()
         .map(with)

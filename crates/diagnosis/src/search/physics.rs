@@ -58,7 +58,7 @@ impl Fitted for InFit<'_> {
 
 /// Whether `candidate` is possible at the coefficients of `fit`.
 pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bool {
-    // // Masses with the opposite error may hide an effect that every drive has.
+    // Masses with the opposite error may hide an effect that every drive has.
     let cancels = |joint| torque_share(candidate, table, fit, joint) >= LARGEST_TORQUE_SHARE;
     if !candidate.hypothesis.is_baseline() && candidate.joint.is_some_and(cancels) {
         return false;

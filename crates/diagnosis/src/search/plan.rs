@@ -28,7 +28,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
             &format!("looking for effects, round {round}"),
         ));
         let before = chosen.set.clone();
-        // // Unmodelled forms must not hide what the residual suggests. Neither must earlier suggestions, made with less
+        // Unmodelled forms must not hide what the residual suggests. Neither must earlier suggestions, made with less
         // knowledge: the period of a ripple, a contact, an onset, one of which may have replaced the beginning of another.
         let products = study.training_products();
         let named = before
@@ -82,7 +82,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
             break;
         }
     }
-    // // With all sizes found, candidates that did not pay or were impossible before may do so.
+    // With all sizes found, candidates that did not pay or were impossible before may do so.
     for _ in 0..LAST {
         let products = study.training_products();
         let allowed = study.allowed();

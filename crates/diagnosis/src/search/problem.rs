@@ -147,7 +147,7 @@ impl Problem<'_> {
         };
         let gain = match self.candidates[candidate].joint {
             Some(joint) => log(drop, joint),
-            // // At least the gain of an evenly distributed reduction.
+            // At least the gain of an evenly distributed reduction.
             None => {
                 let joints = self.products.count.len();
                 (0..joints).map(|joint| log(drop / joints as f64, joint)).sum::<f64>()
@@ -173,7 +173,7 @@ impl Problem<'_> {
             .collect();
         promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         promises.retain(|(promise, _)| *promise > 0.0);
-        // // The most promising of each kind comes first: a candidate that contains a simpler one promises as much, in all its
+        // The most promising of each kind comes first: a candidate that contains a simpler one promises as much, in all its
         // sizes.
         let kind = |c: usize| (self.candidates[c].joint, self.candidates[c].hypothesis);
         let mut of_kind: HashMap<(Option<usize>, Hypothesis), usize> = HashMap::new();
@@ -345,7 +345,7 @@ impl Problem<'_> {
                 && plain.joint == candidate.joint
                 && onset(plain).is_some() == onset(candidate).is_some()
         };
-        // // Of candidates with an onset, those with nearly the same onset.
+        // Of candidates with an onset, those with nearly the same onset.
         let apart = |&c: &usize| match (onset(&self.candidates[c]), onset(candidate)) {
             (Some(a), Some(b)) => (a - b).abs(),
             _ => 0.0,

@@ -79,7 +79,7 @@ fn softened(terms: &[Term], mass: f64) -> Vec<Vec<Term>> {
 fn variants(terms: &[Term], round: usize, mass: f64) -> Vec<Vec<Term>> {
     let mut list: Vec<Vec<Term>> = ROUNDS[round].iter().map(|&factor| resized(terms, factor)).collect();
     list.retain(|terms| !terms.is_empty());
-    // // The stiffness and the damping of a spring are coupled, as are a gap and its compliant ends: all combinations of sizes
+    // The stiffness and the damping of a spring are coupled, as are a gap and its compliant ends: all combinations of sizes
     // are tried.
     let second = [Size::Damping, Size::Stop]
         .into_iter()
@@ -94,7 +94,7 @@ fn variants(terms: &[Term], round: usize, mass: f64) -> Vec<Vec<Term>> {
     let sized: Vec<Vec<Term>> = list.iter().cloned().chain([terms.to_vec()]).collect();
     list.extend(sized.iter().flat_map(|terms| softened(terms, mass)));
     list.extend(if round < FORMS { forms(terms) } else { Vec::new() });
-    // // A finer step of a ripple's period, relative to one period over the range.
+    // A finer step of a ripple's period, relative to one period over the range.
     let nudges = [-1.0, -0.4, 0.4, 1.0].map(|step| step * 0.25_f64.powi(round as i32));
     for kind in 0..NUDGES {
         for step in nudges {

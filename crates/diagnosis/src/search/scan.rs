@@ -118,7 +118,7 @@ pub fn ripples(
 ) -> Vec<f64> {
     let range = scales.range[joint].max(1e-6);
     let samples = samples(table, motions, joint, residual, fitted);
-    // // The gain of the filter at the usual speed.
+    // The gain of the filter at the usual speed.
     let usual = RIPPLE_SPEED * scales.speed[joint];
     let most_periods = (2.0 * std::f64::consts::PI * motions.cutoff / usual).min(MOST_RIPPLE_PERIODS);
     let step = 1.5 / range;

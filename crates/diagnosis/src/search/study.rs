@@ -125,7 +125,7 @@ impl Study {
         }
         list.retain(|(hypothesis, joint, _)| hypothesis::may_be(options, &arm, *hypothesis, *joint));
         if let Some(at) = motions.changed_at {
-            // // Every named effect may have begun after the recordings from before.
+            // Every named effect may have begun after the recordings from before.
             let new: Vec<_> = list
                 .iter()
                 .filter(|(hypothesis, ..)| hypothesis.name().is_some() && !hypothesis.is_unit())

@@ -29,7 +29,7 @@ pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
         prove(study, judged);
 
         give_up(study, judged);
-        // // The remaining effects are linearised about another arm, and may harm without the removed ones.
+        // The remaining effects are linearised about another arm, and may harm without the removed ones.
         if judged.named.set.len() < before {
             continue;
         }
@@ -125,7 +125,7 @@ fn give_up(study: &Study, judged: &mut Selection) {
         let fit = &left[joint];
         fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented) > HOPELESS
     };
-    // // Friction that explains a part of the training recordings is present in any case.
+    // Friction that explains a part of the training recordings is present in any case.
     let stays = |&candidate: &usize| {
         let candidate = &study.candidates[candidate];
         let explains = |joint: usize| candidate.hypothesis.is_friction() && left[joint].train_nrmse_augmented < PARTLY;
@@ -148,9 +148,9 @@ fn unclear(study: &Study, judged: &Selection, resampled: &Resampled) -> Option<(
     let all: Vec<Effect> = all.collect();
     let contradicted = |member: &judge::Member| {
         let named = name(study, resampled, member.candidate);
-        // // With its sizes corrected it may be impossible, such as a negative level.
+        // With its sizes corrected it may be impossible, such as a negative level.
         let is_impossible = |named: &Named| Corrected::new(&study.arm, std::slice::from_ref(&named.effect)).is_err();
-        // // Its own rows contradict it.
+        // Its own rows contradict it.
         let is_contradicted = |named: &Named| {
             let interval = |key: &str| named.parameters.get(key).map(|parameter| parameter.ci95);
             let kind = named.effect.kind().get();

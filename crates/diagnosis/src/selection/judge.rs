@@ -92,7 +92,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
         .partition(|member| study.candidates[member.candidate].hypothesis.name().is_none());
     let mut kept = problem.choose(named.iter().map(|m| m.candidate).collect(), &chosen.fit.weights);
     if !unmodelled.is_empty() {
-        // // Unmodelled forms may have replaced simple effects: a constant is allowed only if no other form remains on its
+        // Unmodelled forms may have replaced simple effects: a constant is allowed only if no other form remains on its
         // joint.
         let candidates = &study.candidates;
         let simple: Vec<usize> = (0..candidates.len())
@@ -111,7 +111,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
     if let Some(held) = held {
         kept = out_of_sample(study, &problem, held, kept);
     }
-    // // Without the unmodelled forms and the refused names, other effects may have become impossible.
+    // Without the unmodelled forms and the refused names, other effects may have become impossible.
     while let Some(&bad) = kept.set.iter().find(|&&c| !problem.is_possible(c, &kept.fit)) {
         let next = problem.choose(kept.others(bad), &kept.fit.weights);
         study.note(IMPOSSIBLE, &kept, &next);
@@ -229,7 +229,7 @@ pub fn is_idle(study: &Study, chosen: &Chosen, candidate: usize) -> bool {
 fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
     let hypothesis = |member: &Member| study.candidates[member.candidate].hypothesis;
     let is_named = |member: &Member| hypothesis(member).name().is_some();
-    // // On each joint, the largest unmodelled form and the largest effect that is not a baseline effect.
+    // On each joint, the largest unmodelled form and the largest effect that is not a baseline effect.
     let dof = study.motions.dof;
     let largest = |wanted: &dyn Fn(&Member) -> bool, joint: usize| -> f64 {
         members
@@ -251,7 +251,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
         }
         let unmodelled = largest(&|m| !is_named(m), at);
         if hypothesis(member).is_baseline() {
-            // // Beside larger unmodelled structure, a rotor inertia may be a part of that structure.
+            // Beside larger unmodelled structure, a rotor inertia may be a part of that structure.
             return hypothesis(member).is_drive_inertia() && share < unmodelled.max(LEAST_DRIVE);
         }
         let needed = if hypothesis(member).plain().is_some() {
@@ -259,7 +259,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
         } else {
             study.thresholds.least_evidence
         };
-        // // An effect on several joints need not stand out on all of them.
+        // An effect on several joints need not stand out on all of them.
         let stands_out = |joint: usize| {
             let others = |certain: bool| {
                 let is_other = |m: &Member| {

@@ -81,7 +81,7 @@ impl Estimate for Reader<'_> {
             Systematic::Usual => SYSTEMATIC,
             Systematic::OfForm => OF_FORM,
         };
-        // // A mass is never known more accurately than the torque constants.
+        // A mass is never known more accurately than the torque constants.
         let quantity = self.kind.spec().parameter(key).map(|parameter| parameter.quantity);
         let accuracy = match (quantity, self.study.stated.gain) {
             (Some(quantity), Some(accuracy)) if quantity.is_of_torque() => 1.96 * accuracy,
@@ -117,7 +117,7 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
     };
     let brought = kind.spec().brings.and_then(Kind::named);
     let brought = brought.and_then(|kind| reader.read(kind));
-    // // An effect that is brought along must be clearly present.
+    // An effect that is brought along must be clearly present.
     let is_clear = |named: &Named| {
         let main = named
             .effect

@@ -98,7 +98,7 @@ pub fn errors(study: &Study, joint: usize, augmented: &[f64]) -> JointFit {
     }
     let held = rows_of(study, |r| !study.fitted[r]);
     let train = rows_of(study, |r| study.fitted[r]);
-    // // A dead channel has no relative error.
+    // A dead channel has no relative error.
     let over_spread =
         |error: f64, spread: f64| (study.scales.torque[joint] > 0.0 && spread > 0.0).then(|| error / spread);
     let over = |rows: &[usize], keep: &[bool], signal: &[f64]| -> Option<f64> {
@@ -106,12 +106,12 @@ pub fn errors(study: &Study, joint: usize, augmented: &[f64]) -> JointFit {
         let error = rms(kept.iter().map(|&row| signal[row]))?;
         over_spread(error, deviation(tau, &kept))
     };
-    // // A joint at rest may need the same torque all the time, so that the standard deviation is that of all rows.
+    // A joint at rest may need the same torque all the time, so that the standard deviation is that of all rows.
     let at_rest = |signal: &[f64]| -> Option<f64> {
         let error = rms(held.iter().filter(|&&row| resting[row]).map(|&row| signal[row]))?;
         over_spread(error, deviation(tau, &held))
     };
-    // // The error is that of the samples in motion; at rest, friction, a brake or the last motion determine the measured
+    // The error is that of the samples in motion; at rest, friction, a brake or the last motion determine the measured
     // torque.
     let moves = held.iter().filter(|&&row| moving[row]).count() >= LEAST_ROWS;
     let counted = if moves {

@@ -53,7 +53,7 @@ impl Eliminated {
                 matrix[(k, i)] = matrix[(i, k)];
             }
         }
-        // // K is positive definite, and BᵀWB is positive semidefinite up to rounding.
+        // K is positive definite, and BᵀWB is positive semidefinite up to rounding.
         let factor = Cholesky::new(matrix).map_or_else(|| DMatrix::identity(p, p), Cholesky::unpack);
         let log_det = 2.0 * factor.diagonal().iter().map(|d| d.ln()).sum::<f64>();
         let lower = (0..p).map(|i| (0..=i).map(|k| factor[(i, k)]).collect()).collect();

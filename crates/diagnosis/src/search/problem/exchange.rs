@@ -63,7 +63,7 @@ impl Problem<'_> {
                         return None;
                     }
                     let without = self.without(&chosen, removed);
-                    // // The replacement acts where the member did.
+                    // The replacement acts where the member did.
                     let others: Vec<usize> = allowed
                         .iter()
                         .copied()

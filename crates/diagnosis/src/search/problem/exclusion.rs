@@ -10,7 +10,7 @@ impl Problem<'_> {
         if a.joint != b.joint {
             return false;
         }
-        // // A candidate with an onset is in addition to one that always acts.
+        // A candidate with an onset is in addition to one that always acts.
         if self.onset(a).is_some() != self.onset(b).is_some() {
             return false;
         }

@@ -122,7 +122,7 @@ impl Past<'_> {
         let (mut matrix, mut right) = (Matrix4::zeros(), Vector4::zeros());
         let mut found: Option<(f64, f64)> = None;
         let mut next = to;
-        // // From the end to the beginning: what the columns explain since each time.
+        // From the end to the beginning: what the columns explain since each time.
         for &row in &self.rows {
             let time = times[row];
             while time < next && next >= from {

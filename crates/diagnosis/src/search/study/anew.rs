@@ -28,7 +28,7 @@ impl Study {
             bare,
             carried,
         } = About::new(self, fit);
-        // // No effect to add to the arm, and none from an earlier selection.
+        // No effect to add to the arm, and none from an earlier selection.
         let carries = !carried.is_empty() || bare.is_some();
         if !carries && !self.carries && !anyway {
             return None;
@@ -66,7 +66,7 @@ impl Study {
                 terms.len() - 1
             })
         };
-        // // The background's columns stay first.
+        // The background's columns stay first.
         (0..self.prior.terms().len()).for_each(|column| {
             keep(column);
         });

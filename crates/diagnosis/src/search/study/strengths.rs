@@ -158,7 +158,7 @@ impl Study {
                     ("largest gain", None, problem.reweighted(next))
                 }
                 (_, Some((strengths, other))) => ("more evidence for this background", Some(strengths), other),
-                // // An effect that is a part of the background does not pay in addition to it, but may do so with a smaller
+                // An effect that is a part of the background does not pay in addition to it, but may do so with a smaller
                 // background.
                 (None, None) => match self.exchanged(&bare, &chosen, allowed) {
                     Some((strengths, next)) => {
@@ -313,7 +313,7 @@ impl Study {
                 let products = bare.with_background(self.prior.at(&strengths));
                 let problem = self.problem(&products);
                 let next = problem.choose(chosen.set.clone(), &chosen.fit.weights);
-                // // Without any background, the weights may be far from the right ones.
+                // Without any background, the weights may be far from the right ones.
                 let next = if self.strengths.is_none() {
                     problem.reweighted(next)
                 } else {

@@ -46,7 +46,7 @@ pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut 
     let rss = |chosen: &Chosen| held.rss(table, &chosen.fit.columns, &chosen.fit.coefficients);
     loop {
         let with = rss(&chosen);
-        // // The increase of the held-out loss without each.
+        // The increase of the held-out loss without each.
         let gains: Vec<(usize, f64, Vec<f64>)> = (0..chosen.set.len())
             .into_par_iter()
             .map(|k| {
@@ -55,7 +55,7 @@ pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut 
                 let rest = problem.choose(set, &chosen.fit.weights);
                 let without = rss(&rest);
                 let mut gain = held.loss(&without) - held.loss(&with);
-                // // The background in its place predicts as well, for more nats.
+                // The background in its place predicts as well, for more nats.
                 if problem.is_background_too(&study.candidates[removed]) {
                     gain += rest.score - chosen.score;
                 }
@@ -77,7 +77,7 @@ pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut 
             gains
                 .iter()
                 .filter(|(candidate, _, without)| {
-                    // // An effect on all joints is judged by the likelihood of all, and one that does not act on this joint is
+                    // An effect on all joints is judged by the likelihood of all, and one that does not act on this joint is
                     // not judged by it: there, the background may be the reason, which the final fit reduces.
                     let this = &study.candidates[*candidate];
                     let acts = this.columns.iter().any(|&column| table.place[joint][column].is_some());

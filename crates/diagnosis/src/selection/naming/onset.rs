@@ -35,7 +35,7 @@ impl Reader<'_> {
         let fitted = study.products(|recording| study.fitted[recording]);
         let columns = &study.candidates[self.candidate].columns;
         let value = |column: usize| self.resampled.column(column).map(|at| self.resampled.estimate[at]);
-        // // Its torque if it always acted.
+        // Its torque if it always acted.
         let (always, sizes): (Vec<usize>, Vec<f64>) = columns
             .iter()
             .filter_map(|&column| {
@@ -57,7 +57,7 @@ impl Reader<'_> {
                 (joint, table.torque(joint, &always, &sizes), left, weight)
             })
             .collect();
-        // // The increase of a row's misfit (nats) if the effect also acts on it (−1), or does not (1).
+        // The increase of a row's misfit (nats) if the effect also acts on it (−1), or does not (1).
         let growth = |row: usize, sign: f64| -> f64 {
             let acting = joints.iter().filter(|(joint, ..)| table.joints[*joint].moving[row]);
             acting
@@ -68,7 +68,7 @@ impl Reader<'_> {
         let mut rows: Vec<usize> = study.training().collect();
         rows.sort_by(|&a, &b| times[a].total_cmp(&times[b]));
         let now = rows.partition_point(|&row| times[row] < near);
-        // // The misfit if it acts from the k-th row on.
+        // The misfit if it acts from the k-th row on.
         let mut misfit = vec![0.0; rows.len() + 1];
         for k in (0..now).rev() {
             misfit[k] = misfit[k + 1] + growth(rows[k], -1.0);
