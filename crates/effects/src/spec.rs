@@ -60,7 +60,7 @@ pub enum Shape {
     Points,
 }
 
-/// Which values a parameter may have.
+/// The values that a parameter may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Range {
     /// Any finite value.

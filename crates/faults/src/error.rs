@@ -36,7 +36,7 @@ pub enum FaultError {
     },
     /// No draw of the case came out as it should.
     #[error(
-        "{case}: {effects} could not be concealed on {robot} so that it shows and the position loop is sound; leave the robot out, or take another seed"
+        "{case}: {effects} could not be injected on {robot} so that it is detectable and the position loop is stable; leave the robot out, or take another seed"
     )]
     NotExpressed {
         /// The case.

@@ -102,7 +102,7 @@ impl Recording {
             return Err(RecordingError::Header {
                 path: name.into(),
                 reason: format!(
-                    "column \"{header}\" has {} values, column \"{}\" has {length}; give one value a sample in each",
+                    "column \"{header}\" has {} values, column \"{}\" has {length}; give one value per sample in each",
                     column.len(),
                     columns[0].0
                 ),

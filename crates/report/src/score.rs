@@ -74,10 +74,10 @@ pub fn opening(score: &Score) -> Vec<Block> {
 fn headline(score: &Score) -> String {
     let strict = &score.strict;
     format!(
-        "**Strict macro F1 {}**: every concealed effect with an expressed share of at least {} is asked for, every name that is not true is false, and each is found \
-         only with its size within {} of the truth's, where the two can be compared. {} were found so, {} more with another size; {} false names, and {} of baseline \
-         friction and drive inertia. Beside it, macro F1 without sizes, which lets off what was declared not observable at its size and takes two names of one machine \
-         for one: {}.",
+        "**Strict macro F1 {}**: every injected effect with an expressed share of at least {} is required, every name that is not true is false, and an effect \
+         counts as found only if its size is within {} of the true one, where the two can be compared. {} were found with their size, {} more with another size; \
+         false names: {}, and {} of baseline friction and drive inertia. Macro F1 without sizes, without effects that were declared not testable at their size, \
+         and with equivalent names counted as right: {}.",
         number(strict.macro_f1),
         percent(LEAST_SHARE),
         percent(SIZE_WITHIN),
@@ -116,7 +116,7 @@ fn by_urdf(score: &Score) -> Block {
         "found with the size",
         "false names",
         "cases with one",
-        "95 % intervals that hold the truth",
+        "95 % intervals that contain the true value",
     ];
     table(&head, 1, rows)
 }

@@ -89,14 +89,16 @@ pub fn targets(score: &Score) -> Vec<Target> {
     let (tracking, stricter) = (score.tracking_over_exact, score.tracking_over_exact_without_lag);
     let experiments = &score.experiments;
     let without = match &experiments.most_frequent {
-        Some([a, b]) => format!("… of those proposed for, without `{a}` and `{b}`, the most frequent pair"),
-        None => "… of those proposed for, without the most frequent pair".to_owned(),
+        Some([a, b]) => format!(
+            "resolved, of the confusions with a proposed experiment, without the most frequent pair, `{a}` and `{b}`"
+        ),
+        None => "resolved, of the confusions with a proposed experiment, without the most frequent pair".to_owned(),
     };
     let (wrong, refused) = (score.outside_with_a_wrong_name, score.outside_refused);
     let strict = &score.strict;
     let mut list = vec![target(
         Figure::Strict,
-        "macro F1, strict: all from 1.5 % on asked for, every untrue name false, sizes within 20 %",
+        "strict macro F1: all effects from 1.5 % on required, every untrue name false, sizes within 20 %",
         strict.macro_f1,
         [None, None],
         strict.right.of,
@@ -118,13 +120,13 @@ pub fn targets(score: &Score) -> Vec<Target> {
         ),
         share(
             Figure::OutsideRefused,
-            "outside the catalogue, refused on the right joint",
+            "effects outside the catalogue: unexplained residual on the right joint",
             refused,
             at_least(0.90),
         ),
         share(
             Figure::OutsideNamed,
-            "outside the catalogue, given a wrong name",
+            "effects outside the catalogue: cases with a wrong name",
             wrong,
             at_most(0.03),
         ),
@@ -137,13 +139,13 @@ pub fn targets(score: &Score) -> Vec<Target> {
         ),
         share(
             Figure::Intervals,
-            "95 % intervals that hold the truth",
+            "95 % intervals that contain the true value",
             score.intervals,
             [Some(0.90), Some(0.99)],
         ),
         share(
             Figure::Covered,
-            "truth in the finding or its confusable set",
+            "ground truth in the finding or its alternatives",
             score.covered,
             at_least(0.98),
         ),
@@ -170,20 +172,20 @@ pub fn targets(score: &Score) -> Vec<Target> {
         ),
         target(
             Figure::Tracking,
-            "tracking error likewise, without the velocity filter’s lag, median",
+            "tracking error over the exact model’s, without the velocity filter’s lag, median",
             stricter.median,
             at_most(1.5),
             stricter.count,
         ),
         share(
             Figure::Confusions,
-            "confusions resolved by the proposed experiment, of those it was proposed for",
+            "resolved, of the confusions with a proposed experiment",
             experiments.resolved,
             at_least(0.70),
         ),
         share(
             Figure::Confusions,
-            "… of all in the cases tried",
+            "resolved, of all confusions in the same cases",
             experiments.resolved_of_all,
             [None, None],
         ),
@@ -208,20 +210,20 @@ fn of_group(group: &UrdfGroup) -> [Target; 3] {
     [
         target(
             Figure::Strict,
-            &format!("… URDF {urdf}"),
+            &format!("strict macro F1, URDF {urdf}"),
             strict.macro_f1,
             [Some(least), None],
             strict.right.of,
         ),
         share(
             Figure::FalseCases,
-            &format!("… cases with a false name, URDF {urdf}"),
+            &format!("cases with a false name, URDF {urdf}"),
             strict.cases_with_a_false_name,
             [None, Some(0.02)],
         ),
         share(
             Figure::Intervals,
-            &format!("… 95 % intervals that hold the truth, URDF {urdf}"),
+            &format!("95 % intervals that contain the true value, URDF {urdf}"),
             strict.intervals,
             [Some(0.90), Some(0.99)],
         ),

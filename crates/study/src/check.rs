@@ -252,11 +252,11 @@ fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_it_is
         scored[1..].iter().filter(near).map(|(_, other, _)| *other)
     };
     let good = |joint: &usize| fit.left[*joint] < EXPLAINED && as_it_is.left[*joint] > 3.0 * fit.left[*joint].max(0.02);
-    // The joint at which the supposition is told best, and by how much.
+    // How much better the supposition explains a joint's torque.
     let evidence = |joint: usize| {
-        let share = |fit: &Fit| (100.0 * (1.0 - fit.left[joint])).round();
+        let share = |fit: &Fit| (100.0 * (1.0 - fit.left[joint]).max(0.0)).round();
         format!(
-            "mended, the model and friction explain {} % of the torque's variance at {}, and {} % as it is",
+            "with this correction, the model and friction explain {} % of the torque's variance at {}; without it, {} %",
             share(fit),
             names[joint],
             share(as_it_is)

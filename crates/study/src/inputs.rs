@@ -177,7 +177,7 @@ pub fn read(
         if let Some(map) = &prepared.column_map
             && list.iter().all(|other| other.column_map.as_ref() != Some(map))
         {
-            let text = format!("a column map that mends it (--map):\n{map}");
+            let text = format!("a column map that corrects it (--map):\n{map}");
             notes.add("note", &prepared.name, text);
         }
         // The same samples under another name.
@@ -278,9 +278,9 @@ fn prepare(
             .joint
             .as_ref()
             .map_or_else(String::new, |joint| format!("{joint}: "));
-        let map = column_map.map_or_else(String::new, |map| format!(" A column map that mends it:\n{map}"));
+        let map = column_map.map_or_else(String::new, |map| format!(" A column map that corrects it:\n{map}"));
         bail!(
-            "{name}: {joint}{}. Units, signs, order or zeros first: no effect is searched before.{map}",
+            "{name}: {joint}{}. Correct units, signs, order or zeros first: until then, no effect is searched.{map}",
             misfit.text
         );
     }

@@ -14,9 +14,9 @@ use crate::simulation::Outcome;
 pub struct Tracking {
     /// The model.
     pub model: ModelKind,
-    /// Root mean square, one a joint (rad, or m).
+    /// Root mean square, one per joint (rad, or m).
     pub rms_error_rad: Vec<f64>,
-    /// Largest, one a joint (rad, or m).
+    /// Largest, one per joint (rad, or m).
     pub max_error_rad: Vec<f64>,
 }
 

@@ -14,7 +14,7 @@ use crate::cli::{ChainArgs, LengthScalesArg};
 use crate::models::ModelKind;
 use crate::sensors::SensorNoise;
 
-/// A validated scenario. Vectors have one entry a joint of the arm.
+/// A validated scenario. Vectors have one entry per joint of the arm.
 #[derive(Clone, Debug)]
 pub struct Scenario {
     /// The name it was asked for by, without folder and extension.

@@ -35,11 +35,11 @@ pub trait Observer {
 pub struct Outcome {
     /// Everything measured and commanded, at the control rate.
     pub recording: Recording,
-    /// Root mean square of the tracking error, one a joint (rad or m).
+    /// Root mean square of the tracking error, one per joint (rad or m).
     pub rms_error: Vec<f64>,
-    /// Largest tracking error, one a joint (rad or m).
+    /// Largest tracking error, one per joint (rad or m).
     pub max_error: Vec<f64>,
-    /// Share of the steps in which the effort limit cut the torque, one a joint.
+    /// Share of the steps in which the effort limit cut the torque, one per joint.
     pub saturated: Vec<f64>,
     /// Simulated time over the time it took.
     pub real_time_factor: f64,

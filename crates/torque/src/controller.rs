@@ -24,7 +24,7 @@ pub enum Feedback {
     },
 }
 
-/// The torques of one control step, one entry a joint (N m or N).
+/// The torques of one control step, one entry per joint (N m or N).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Command {
     /// The model's feed-forward, in parts.

@@ -24,7 +24,7 @@ pub trait TorqueModel: Send + Sync {
     /// If a slice or the workspace is of another size than the arm.
     fn variance<'w>(&self, workspace: &'w mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64]) -> Option<&'w [f64]>;
 
-    /// The regressions of the learned part, one a joint; none in a model without a learned part.
+    /// The regressions of the learned part, one per joint; none in a model without a learned part.
     fn regressions(&self) -> &[Gp] {
         &[]
     }
@@ -46,7 +46,7 @@ pub trait TorqueModel: Send + Sync {
     }
 }
 
-/// The torque of a model, one entry a joint (N m or N).
+/// The torque of a model, one entry per joint (N m or N).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prediction {
     /// What rigid-body dynamics say.

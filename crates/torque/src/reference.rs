@@ -22,7 +22,7 @@ pub struct Fade {
     pub end: f64,
 }
 
-/// q(t) = centre + Σ sines, one entry a joint; the sum times a factor that rises from 0 to 1 and falls again, if it fades.
+/// q(t) = centre + Σ sines, one entry per joint; the sum times a factor that rises from 0 to 1 and falls again, if it fades.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     /// rad or m.

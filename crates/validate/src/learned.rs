@@ -65,7 +65,7 @@ impl RecordedMotion<'_> {
 /// [`ValidateError::Learning`], if no row can be learned from or a regression fails.
 ///
 /// # Panics
-/// If a signal has not one row a joint of the arm, or rows of different lengths.
+/// If a signal has not one row per joint of the arm, or rows of different lengths.
 pub fn learn(arm: &Arm, training: &[RecordedMotion<'_>], options: &LearnedOptions) -> Result<Learned, ValidateError> {
     let dof = arm.dof();
     let mut samples = Samples::new(dof);

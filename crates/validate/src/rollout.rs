@@ -49,7 +49,7 @@ impl Default for RolloutOptions {
 /// How the simulated arm follows the recorded one. Joints are the arm's, base to tip.
 #[derive(Clone, Debug, Default)]
 pub struct Rollout {
-    /// RMS distance of the simulated from the measured position over all windows, one a joint (rad or m).
+    /// RMS distance of the simulated from the measured position over all windows, one per joint (rad or m).
     pub joints: Vec<JointRollout>,
     /// The windows in order of time.
     pub windows: Vec<Window>,

@@ -168,9 +168,8 @@ impl Motions {
             let before = motions.cutoff;
             motions = Self::at(inputs, quiet.max(least));
             motions.remarks.push(format!(
-                "filtered at {:.1} Hz: at {before:.0} Hz the noise of the positions alone would make {:.0} % of the torque of {}",
+                "filtered at {:.1} Hz: at {before:.0} Hz, the noise of the positions alone would be {share:.2} times the torque of {}",
                 motions.cutoff,
-                100.0 * share,
                 arm.joints()[joint].name
             ));
         }

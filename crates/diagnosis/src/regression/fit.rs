@@ -29,11 +29,11 @@ pub fn evidence_rate(tempo: f64) -> f64 {
 /// The inner products over a set of recordings.
 #[derive(Clone, Debug)]
 pub struct Products {
-    /// One a joint.
+    /// One per joint.
     gram: Arc<Vec<Gram>>,
-    /// Moving rows, one a joint.
+    /// Moving rows, one per joint.
     pub count: Vec<f64>,
-    /// Pieces of evidence, one a joint.
+    /// Pieces of evidence, one per joint.
     pub evidence: Vec<f64>,
     /// The variance due to noise, filtering and small errors of the model, one per joint.
     pub floor: Vec<f64>,
@@ -52,7 +52,7 @@ pub struct Fit {
     pub columns: Vec<usize>,
     /// How many of them are the background's.
     pub background: usize,
-    /// One coefficient a column.
+    /// One coefficient per column.
     pub coefficients: Vec<f64>,
     /// The residual sum of squares, one per joint.
     pub rss: Vec<f64>,

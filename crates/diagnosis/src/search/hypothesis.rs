@@ -139,7 +139,7 @@ fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, Diag
         if let (Some(joint), Some(other)) = (joint, other)
             && !(1..=FARTHEST_COUPLED).contains(&(joint - other))
         {
-            return Err(one.refused("is looked for between joints that are next to each other, or one apart"));
+            return Err(one.refused("acts on joints that are neighbours or have one joint between them"));
         }
         let Some(spec) = effects::spec(&one.effect) else {
             return Err(one.refused("no such effect is in the catalogue"));

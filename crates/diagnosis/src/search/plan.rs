@@ -25,7 +25,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
     for round in 1..=SUGGESTIONS {
         progress(Step::new(
             0.12 + 0.08 * round as f64,
-            &format!("looking for effects, round {round}"),
+            &format!("searching effects, round {round}"),
         ));
         let before = chosen.set.clone();
         // Unmodelled forms must not hide what the residual suggests. Neither must earlier suggestions, made with less
@@ -41,7 +41,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
             })
             .collect();
         let next = study.problem(&products).choose(named, &chosen.fit.weights);
-        study.note("looked for anew in this round", &chosen, &next);
+        study.note("searched again in this round", &chosen, &next);
         chosen = next;
         study.suggest(&chosen);
         let products = study.training_products();
@@ -70,7 +70,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
         let before = set.clone();
         chosen = problem.choose(set, &chosen.fit.weights);
         let pruned = problem.prune(chosen.clone());
-        study.note("does not pay its price", &chosen, &pruned);
+        study.note("costs more evidence than it brings", &chosen, &pruned);
         chosen = study.grown(pruned, &allowed);
         let products = study.training_products();
         let swapped = study.problem(&products).swap(chosen.clone(), &allowed, SWAPS);

@@ -194,9 +194,11 @@ impl Problem<'_> {
                     batch.push(candidate);
                 } else {
                     growth.refused.push(candidate);
-                    growth
-                        .tried
-                        .push((candidate, chosen.score, "does not predict what it was not fitted to"));
+                    growth.tried.push((
+                        candidate,
+                        chosen.score,
+                        "does not improve the prediction of recordings it was not fitted to",
+                    ));
                 }
                 if batch.len() == TRIED {
                     break;
@@ -216,7 +218,7 @@ impl Problem<'_> {
                     let (possible, pays) = (self.is_possible(added, &next.fit), next.score < chosen.score);
                     let rule = match (possible, pays) {
                         (false, _) => IMPOSSIBLE,
-                        (true, false) => "does not pay its price",
+                        (true, false) => "costs more evidence than it brings",
                         (true, true) => "another gains more",
                     };
                     growth.tried.push((added, next.score, rule));

@@ -128,7 +128,7 @@ pub fn refine(study: &mut Study, chosen: Chosen, again: bool) -> Chosen {
     study.note("a better size or form", &before, &chosen);
     let products = study.training_products();
     let pruned = study.problem(&products).prune(chosen.clone());
-    study.note("does not pay its price", &chosen, &pruned);
+    study.note("costs more evidence than it brings", &chosen, &pruned);
     pruned
 }
 

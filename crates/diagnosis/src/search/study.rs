@@ -43,7 +43,7 @@ pub struct Study {
     pub candidates: Vec<Candidate>,
     /// The variance due to noise, filtering and small errors, one per joint.
     pub floor: Vec<f64>,
-    /// The variance of the measured noise alone, one a joint.
+    /// The variance of the measured noise alone, one per joint.
     pub noise: Vec<f64>,
     /// The time between rows, one per recording (s).
     pub seconds: Vec<f64>,

@@ -37,14 +37,11 @@ pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
         match unclear(study, judged, &resampled) {
             Some((unclear, true)) => {
                 study.refuse(unclear);
-                drop_name(
-                    study,
-                    judged,
-                    unclear,
-                    "its parameters contradict each other, or its rows",
-                );
+                drop_name(study, judged, unclear, "it contradicts other effects, or its own rows");
             }
-            Some((unclear, false)) => drop_name(study, judged, unclear, "its interval holds no effect"),
+            Some((unclear, false)) => {
+                drop_name(study, judged, unclear, "its interval contains the value without effect")
+            }
             None => return resampled,
         }
     }
@@ -112,7 +109,12 @@ fn prove(study: &Study, judged: &mut Selection) {
     let Some(held) = study.held_products() else { return };
     let products = study.training_products();
     while let Some(useless) = useless(study, &products, &held, judged) {
-        drop_name(study, judged, useless, "predicts held-out recordings no better with it");
+        drop_name(
+            study,
+            judged,
+            useless,
+            "does not improve the prediction of held-out recordings",
+        );
     }
 }
 

@@ -65,7 +65,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
     while let Some(off) = off(&chosen) {
         let next = problem.without(&chosen, off);
         study.note(
-            "its torque is not that of the size at which it was simulated",
+            "its coefficient differs from one, for which it was simulated",
             &chosen,
             &next,
         );
@@ -105,7 +105,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
         let mut allowed = simple;
         allowed.retain(|&c| candidates[c].hypothesis.is_baseline() || !left.contains(&candidates[c].joint));
         let next = problem.forward(kept.clone(), &allowed);
-        study.note("stands in for what has no name", &kept, &next);
+        study.note("replaces unmodelled forms", &kept, &next);
         kept = next;
     }
     if let Some(held) = held {

@@ -41,7 +41,7 @@ pub fn unmounted(study: &mut Study, judged: &mut Selection) -> Option<Resampled>
     let products = study.training_products();
     judged.members = judge::describe(study, &study.problem(&products), &next);
     study.note_strengths(
-        "one missing body does nearly all that the background does",
+        "one missing body explains nearly as much as the background",
         &judged.named,
         &next,
     );

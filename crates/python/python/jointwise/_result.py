@@ -206,7 +206,7 @@ class Diagnosis:
         return report
 
     def to_frame(self) -> pandas.DataFrame:
-        """The effects as a pandas frame, one row a parameter."""
+        """The effects as a pandas frame, one row per parameter."""
         import pandas
 
         rows = [

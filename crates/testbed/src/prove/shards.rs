@@ -159,7 +159,7 @@ pub fn read(path: &Path) -> anyhow::Result<(Label, Vec<Row>)> {
     let label = pairs.and_then(|pairs| pairs.iter().find(|pair| pair.key == KEY)?.value.clone());
     let Some(label) = label else {
         bail!(
-            "{}: is no share of a proof; give files that --shard wrote",
+            "{}: is no part of a proof; give files that --shard wrote",
             path.display()
         );
     };
@@ -222,13 +222,13 @@ pub fn merge(folder: &Path) -> anyhow::Result<(Label, Vec<Row>)> {
             );
         }
         if let Some(twin) = there.insert(label.shard.number, path.clone()) {
-            bail!("{} and {} are the same share", twin.display(), path.display());
+            bail!("{} and {} are the same part", twin.display(), path.display());
         }
         first.get_or_insert((path, label));
         all.extend(rows);
     }
     let Some((_, label)) = first else {
-        bail!("{}: has no share of a proof (shard-k-of-n.parquet)", folder.display());
+        bail!("{}: has no part of a proof (shard-k-of-n.parquet)", folder.display());
     };
     let missing: Vec<String> = (1..=label.shard.of)
         .filter(|number| !there.contains_key(number))
@@ -236,7 +236,7 @@ pub fn merge(folder: &Path) -> anyhow::Result<(Label, Vec<Row>)> {
         .collect();
     ensure!(
         missing.is_empty(),
-        "{}: shares {} of {} are missing; run them again (--shard k/n goes on where it stopped)",
+        "{}: parts {} of {} are missing; run them again (--shard k/n goes on where it stopped)",
         folder.display(),
         missing.join(","),
         label.shard.of

@@ -78,7 +78,7 @@ impl Connection {
 
 /// The drives of all joints.
 pub(super) struct Drives {
-    /// s, one a joint.
+    /// s, one per joint.
     pub(super) delays: Vec<f64>,
     pub(super) connections: Vec<Option<Connection>>,
     pub(super) remarks: Vec<String>,

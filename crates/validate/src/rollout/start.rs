@@ -10,7 +10,7 @@ pub(super) fn side(period: f64) -> usize {
     ((HALF_SPAN / period).round() as usize).max(4)
 }
 
-/// A state of the robot, one entry a joint, as the encoders say it.
+/// A state of the robot, one entry per joint, as the encoders say it.
 pub(super) struct Start {
     pub(super) tick: usize,
     pub(super) q: Vec<f64>,

@@ -185,7 +185,7 @@ impl Study {
             }
         }
         let pruned = self.problem(&products).prune(chosen.clone());
-        self.note("does not pay its price", &chosen, &pruned);
+        self.note("costs more evidence than it brings", &chosen, &pruned);
         pruned
     }
 

@@ -86,7 +86,7 @@ pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut 
                 .min_by(|a, b| a.2[joint].total_cmp(&b.2[joint]))
         };
         let (rule, bad) = match (useless, harmful()) {
-            (Some(&(bad, ..)), _) => ("held-out recordings are likelier without it", bad),
+            (Some(&(bad, ..)), _) => ("held-out recordings are more likely without it", bad),
             (None, Some(&(bad, ..))) => (HARMS, bad),
             (None, None) => return chosen,
         };
