@@ -13,7 +13,7 @@ use crate::findings::report::{Report, Traces};
 use crate::search::hypothesis::Wanted;
 use crate::search::study::Study;
 use crate::selection::FinalFit;
-use crate::thresholds::{CUTOFF, Thresholds};
+use crate::thresholds::{CUTOFF, LARGEST_CUTOFF, LEAST_WIDTHS, Thresholds};
 use crate::trace::Decision;
 
 /// Options of a diagnosis.
@@ -107,8 +107,7 @@ fn check(arm: &Arm, inputs: &[Input<'_>], cutoff: f64) -> Result<(), DiagnosisEr
                 expected,
             });
         }
-        // The reach of both filters, and ten rows.
-        let needed = (10.0 + 6.0) * 0.235 / cutoff.min(0.235 / recording.period);
+        let needed = LEAST_WIDTHS * LARGEST_CUTOFF / cutoff.min(LARGEST_CUTOFF / recording.period);
         let longest = recording.segments.iter().map(|s| s.ticks.len()).max().unwrap_or(0) as f64 * recording.period;
         if longest < needed {
             return Err(DiagnosisError::TooShort {

@@ -38,6 +38,7 @@ pub trait Fitted {
 
 /// The range of a coefficient that should be one, with the error that linear columns leave.
 pub const UNIT: std::ops::RangeInclusive<f64> = 0.7..=1.4;
+/// The range of a coefficient that should be one, before the size of its effect is refined.
 const COARSE_UNIT: std::ops::RangeInclusive<f64> = 0.4..=2.5;
 
 /// Whether the coefficient of a simulated drive is near one. Near a resonance it quickly becomes small, so that it says little

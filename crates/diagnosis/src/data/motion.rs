@@ -6,13 +6,12 @@ use recording::RegularRecording;
 use crate::data::noise::{band_noise, white_noise};
 use crate::data::signal::{Kernel, outputs};
 use crate::thresholds::{
-    CUTOFF, CUTOFF_PERIODS, HIGHEST_CUTOFF, LEAST_CUTOFF, LEAST_CUTOFF_PERIODS, MOST_NOISE, STILL, WORTH_RAISING,
+    CUTOFF, CUTOFF_PERIODS, HIGHEST_CUTOFF, LARGEST_CUTOFF, LEAST_CUTOFF, LEAST_CUTOFF_PERIODS, MOST_NOISE, STILL,
+    WORTH_RAISING,
 };
 
 /// The ratio of the first filter's cut-off to the second's; nonlinear functions are evaluated between the two.
 const WIDER: f64 = 3.0;
-/// The largest cut-off as a share of the sampling rate, for which the kernel's width is one sample.
-const NARROWEST: f64 = 0.235;
 /// Samples of the fine grid per period of the second cut-off.
 const FINE: f64 = 8.0;
 /// Rows per period of the second cut-off.
@@ -181,7 +180,7 @@ impl Motions {
             .iter()
             .map(|input| 1.0 / input.recording.period)
             .fold(f64::INFINITY, f64::min);
-        let cutoff = wanted.min(NARROWEST * slowest);
+        let cutoff = wanted.min(LARGEST_CUTOFF * slowest);
         let seconds = |held_out: bool| -> f64 {
             let of_role = inputs.iter().filter(|input| input.held_out == held_out);
             // An empty sum is −0, and a division by it gives −∞.
@@ -274,7 +273,7 @@ impl Motions {
     fn add(&mut self, index: usize, input: &Input<'_>, used: f64, thin: f64, shift: f64) {
         let recording = input.recording;
         let rate = 1.0 / recording.period;
-        let first = Kernel::new((WIDER * self.cutoff).min(NARROWEST * rate), recording.period);
+        let first = Kernel::new((WIDER * self.cutoff).min(LARGEST_CUTOFF * rate), recording.period);
         let decimation = (rate / (FINE * self.cutoff)).floor().max(1.0) as usize;
         let period = recording.period * decimation as f64;
         let kernel = Kernel::new(self.cutoff, period);

@@ -2,6 +2,9 @@
 
 use std::borrow::Borrow;
 
+/// The 97.5 % quantile of the standard normal distribution: half of a 95 % interval over the standard deviation.
+pub const NORMAL_95: f64 = 1.96;
+
 /// The mean; zero for no values.
 pub fn mean<T: Borrow<f64>>(values: impl IntoIterator<Item = T>) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);

@@ -9,12 +9,13 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::data::motion::Input;
 use crate::data::signal::Kernel;
-use crate::data::statistics::deviation;
+use crate::data::statistics::{NORMAL_95, deviation};
 use crate::findings::report::{Finding, Parameter, Place};
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
 use crate::thresholds::{
-    CLEAR_COMPLIANCE, CLEAR_FRICTION, FOLLOWS, FRICTION_EXPLAINS, LARGEST_DEFLECTION, LEAST_BEND, SENSORS_MOVE,
+    CLEAR_COMPLIANCE, CLEAR_FRICTION, FOLLOWS, FRICTION_EXPLAINS, LARGEST_CUTOFF, LARGEST_DEFLECTION, LEAST_BEND,
+    SENSOR_ERRORS, SENSOR_ROWS, SENSORS_MOVE,
 };
 
 /// A regression on one joint over the recordings.
@@ -60,10 +61,10 @@ fn gather(
     for input in inputs {
         let recording = input.recording;
         for segment in &recording.segments {
-            let cutoff = study.motions.cutoff.min(0.235 / recording.period);
+            let cutoff = study.motions.cutoff.min(LARGEST_CUTOFF / recording.period);
             let kernel = Kernel::new(cutoff, recording.period);
             let stride = ((0.4 / cutoff / recording.period) as usize).max(1);
-            if segment.ticks.len() < 2 * kernel.reach() + 10 * stride {
+            if segment.ticks.len() < 2 * kernel.reach() + SENSOR_ROWS * stride {
                 continue;
             }
             let mut filter = |signal: &[f64], order: Order| -> Vec<f64> {
@@ -109,7 +110,7 @@ fn regress(rows: &Rows) -> Option<Regression> {
         b += *y * x;
         count += 1.0;
     }
-    if count < 10.0 * p as f64 {
+    if count < (SENSOR_ROWS * p) as f64 {
         return None;
     }
     let inverse = a.try_inverse()?;
@@ -126,13 +127,14 @@ fn regress(rows: &Rows) -> Option<Regression> {
         }
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
         let power: f64 = values.iter().map(|y| (y - mean).powi(2)).sum();
-        (values.len() >= 10 && power > 0.0).then(|| (1.0 - left / power, left))
+        (values.len() >= SENSOR_ROWS && power > 0.0).then(|| (1.0 - left / power, left))
     };
     let (train, left) = explained(false)?;
     let variance = left / (count - p as f64);
     Some(Regression {
-        // Neighbouring rows are correlated: only one in four counts as independent.
-        errors: (0..p).map(|k| 2.0 * (variance * inverse[(k, k)]).sqrt()).collect(),
+        errors: (0..p)
+            .map(|k| SENSOR_ERRORS * (variance * inverse[(k, k)]).sqrt())
+            .collect(),
         coefficients: solution.as_slice().to_vec(),
         train,
         held_out: explained(true).map(|held| held.0),
@@ -145,7 +147,7 @@ impl Regression {
     }
 
     fn parameter(&self, k: usize, unit: &'static str) -> Parameter {
-        let (value, half) = (self.coefficients[k], 1.96 * self.errors[k]);
+        let (value, half) = (self.coefficients[k], NORMAL_95 * self.errors[k]);
         Parameter {
             value,
             ci95: [value - half, value + half],
@@ -188,7 +190,10 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
     let unit = Quantity::Stiffness.unit(kind);
     let stiffness = Parameter {
         value: 1.0 / compliance,
-        ci95: [1.0 / (compliance + 1.96 * error), 1.0 / (compliance - 1.96 * error)],
+        ci95: [
+            1.0 / (compliance + NORMAL_95 * error),
+            1.0 / (compliance - NORMAL_95 * error),
+        ],
         unit,
     };
     let name = study.arm.joints()[joint].name.clone();

@@ -14,7 +14,7 @@ use crate::search::problem::Problem;
 use crate::search::study::Study;
 use crate::selection::judge::{Member, Selection};
 use crate::selection::naming::name;
-use crate::thresholds::{AS_WELL, GAIN_PIECE};
+use crate::thresholds::{AS_WELL, GAIN_PIECE, LISTED_SHARE};
 
 /// The findings, each with its candidate.
 pub fn findings(
@@ -76,7 +76,7 @@ fn finding(
         .shares
         .iter()
         .enumerate()
-        .filter(|(_, share)| **share > 1e-4)
+        .filter(|(_, share)| **share > LISTED_SHARE)
         .map(|(joint, share)| (joint_name(joint), *share))
         .collect();
     let place = place(study, candidate.hypothesis, member.candidate);

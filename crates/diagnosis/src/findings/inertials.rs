@@ -17,7 +17,7 @@ use crate::regression::fit::Products;
 use crate::search::study::{About, Study};
 use crate::selection::judge::Selection;
 use crate::selection::predict::{augmented, deviation, errors};
-use crate::thresholds::{LINK_STANDS_OUT, PARTLY, SYSTEMATIC};
+use crate::thresholds::{LINK_STANDS_OUT, LISTED_SHARE, PARTLY, SYSTEMATIC};
 
 /// The estimate of a link's inertial parameters.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -162,7 +162,7 @@ pub fn inertials(
         })
         .collect();
     let by_joint = |shares: &[f64]| -> BTreeMap<String, f64> {
-        let named = (0..dof).filter(|&joint| shares[joint] > 1e-4);
+        let named = (0..dof).filter(|&joint| shares[joint] > LISTED_SHARE);
         named
             .map(|joint| (study.arm.joints()[joint].name.clone(), shares[joint]))
             .collect()

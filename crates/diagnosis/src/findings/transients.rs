@@ -12,7 +12,9 @@ use crate::regression::small::ForceFit;
 use crate::search::scan;
 use crate::search::study::Study;
 use crate::selection::judge::Selection;
-use crate::thresholds::{BURST_PIECE, BURST_STRETCH, LEAST_BURST_ROWS, MOST_BURSTS, ONE_FORCE, OVER_THE_REST};
+use crate::thresholds::{
+    BURST_PIECE, BURST_STRETCH, LEAST_BURST_ROWS, LEAST_PUSHED, MOST_BURSTS, ONE_FORCE, OVER_THE_REST,
+};
 
 /// The largest number of bursts that are searched.
 const MOST: usize = 12;
@@ -63,9 +65,8 @@ pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
         let Some((recording, powers)) = power(study, &times, left, &weights, (from, to)) else {
             continue;
         };
-        // A push on the tool acts on more than one joint, if there are more.
         let felt = powers.iter().filter(|power| power.sqrt() > OVER_THE_REST).count();
-        if felt < study.motions.dof.min(2) {
+        if felt < study.motions.dof.min(LEAST_PUSHED) {
             continue;
         }
         let name = study.motions.sources[recording].name.clone();

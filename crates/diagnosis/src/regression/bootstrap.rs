@@ -6,6 +6,7 @@ use effects::{Size, Term};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::data::statistics::NORMAL_95;
 use crate::search::problem::Chosen;
 use crate::search::refine::{sizes, varied};
 use crate::search::study::Study;
@@ -51,7 +52,7 @@ impl Resampled {
         // Half the interquartile range of a normal distribution is 0.6745 of its standard deviation.
         let at = |share: f64| draws[(share * (draws.len() - 1) as f64).round() as usize];
         let spread = (at(0.75) - at(0.25)) / (2.0 * 0.6745);
-        let half = INFLATION * 1.96 * spread + systematic * value.abs();
+        let half = INFLATION * NORMAL_95 * spread + systematic * value.abs();
         (value, [value - half, value + half])
     }
 

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use arm::Arm;
 use effects::{Effect, Estimate, Kind, Size, Systematic, Term};
 
+use crate::data::statistics::NORMAL_95;
 use crate::findings::report::Parameter;
 use crate::regression::bootstrap::Resampled;
 use crate::search::study::Study;
@@ -84,7 +85,7 @@ impl Estimate for Reader<'_> {
         // A mass is never known more accurately than the torque constants.
         let quantity = self.kind.spec().parameter(key).map(|parameter| parameter.quantity);
         let accuracy = match (quantity, self.study.stated.gain) {
-            (Some(quantity), Some(accuracy)) if quantity.is_of_torque() => 1.96 * accuracy,
+            (Some(quantity), Some(accuracy)) if quantity.is_of_torque() => NORMAL_95 * accuracy,
             _ => 0.0,
         };
         let (value, ci95) = self.resampled.interval_within(systematic + accuracy, f);

@@ -77,7 +77,7 @@ pub static FORCE: Law = Law {
             term.sized([middle - half, middle + half])
         },
     ],
-    is_sound: |term| term.sizes[1] - term.sizes[0] > 0.05,
+    is_sound: |term| term.sizes[1] - term.sizes[0] > SHORTEST_CONTACT,
     ..Law::PLAIN
 };
 
@@ -103,6 +103,11 @@ pub fn window(term: &Term) -> Option<[f64; 2]> {
 /// The largest force of a contact as a multiple of the arm's weight. The drives could not hold a larger one.
 const MOST_CONTACT: f64 = 4.0;
 
+/// The shortest contact (s).
+const SHORTEST_CONTACT: f64 = 0.05;
+/// Contacts that are less than this apart are one contact (s).
+const SAME_CONTACT: f64 = 1.0;
+
 impl EffectKind for ExternalContact {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -113,10 +118,10 @@ impl EffectKind for ExternalContact {
         Vec::new()
     }
 
-    /// Two windows that are less than a second apart are one contact.
+    /// Two windows that are close to each other are one contact.
     fn is_same(&self, a: &Term, b: &Term) -> bool {
         let ([a, b, ..], [c, d, ..]) = (a.sizes, b.sizes);
-        a < d + 1.0 && c < b + 1.0
+        a < d + SAME_CONTACT && c < b + SAME_CONTACT
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {

@@ -40,6 +40,9 @@ pub static LINK: Law = Law {
     ..Law::PLAIN
 };
 
+/// The relative error that the mass of a link may have.
+const RELATIVE: std::ops::Range<f64> = -0.8..2.0;
+
 impl EffectKind for LinkInertialError {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -52,7 +55,7 @@ impl EffectKind for LinkInertialError {
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        (-0.8..2.0).contains(&fitted.value(0))
+        RELATIVE.contains(&fitted.value(0))
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {

@@ -47,6 +47,9 @@ pub fn columns(joint: usize, periods: f64) -> Vec<Term> {
 /// poles and teeth repeat more often.
 const LEAST_GEARED: f64 = 8.0;
 
+/// The relative difference of periods below which two ripples are the same.
+const SAME_PERIODS: f64 = 0.2;
+
 impl EffectKind for TorqueRipple {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -57,10 +60,10 @@ impl EffectKind for TorqueRipple {
         Vec::new()
     }
 
-    /// Two ripples whose periods differ by less than 20 % are not distinguished.
+    /// Two ripples of nearly the same period are not distinguished.
     fn is_same(&self, a: &Term, b: &Term) -> bool {
         let (a, b) = (a.sizes[0], b.sizes[0]);
-        (a - b).abs() < 0.2 * a.min(b)
+        (a - b).abs() < SAME_PERIODS * a.min(b)
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {

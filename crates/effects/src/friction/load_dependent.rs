@@ -43,6 +43,11 @@ pub static LOAD_SIGN: Law = Law {
     ..Law::PLAIN
 };
 
+/// The largest gain: a gear with more friction than load could not be moved by its load.
+const LARGEST_GAIN: f64 = 1.0;
+/// Without load, friction may be zero, but not negative by more than this part of the load's friction.
+const BELOW_ZERO: f64 = 0.1;
+
 impl EffectKind for LoadDependentFriction {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -57,8 +62,9 @@ impl EffectKind for LoadDependentFriction {
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        // Without load, friction may be zero, but not negative.
-        fitted.value(1) > 0.0 && fitted.value(1) < 1.0 && fitted.value(0) > -0.1 * fitted.value(1) * load(fitted)
+        fitted.value(1) > 0.0
+            && fitted.value(1) < LARGEST_GAIN
+            && fitted.value(0) > -BELOW_ZERO * fitted.value(1) * load(fitted)
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {

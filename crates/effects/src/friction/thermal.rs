@@ -72,6 +72,11 @@ fn start(begins: f64) -> f64 {
     if begins.abs() > OWN_CLOCK { begins.floor() } else { 0.0 }
 }
 
+/// The factor by which refinement may fall below the shortest time constant.
+const REFINED: f64 = 0.7;
+/// The largest additional friction of a cold drive, as a multiple of the warm friction.
+const MOST_COLD: f64 = 4.0;
+
 impl EffectKind for ThermalDrift {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -94,9 +99,8 @@ impl EffectKind for ThermalDrift {
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
         let (warm, cold) = (fitted.value(0), fitted.value(1));
-        // Refinement may change the time constant.
-        let is_slow = |term: Term| !term.is(&WARMING) || term.sizes[0] > 0.7 * FASTEST_WARMING;
-        cold > 0.0 && warm > 0.0 && cold < 4.0 * warm && (0..fitted.len()).all(|k| is_slow(fitted.term(k)))
+        let is_slow = |term: Term| !term.is(&WARMING) || term.sizes[0] > REFINED * FASTEST_WARMING;
+        cold > 0.0 && warm > 0.0 && cold < MOST_COLD * warm && (0..fitted.len()).all(|k| is_slow(fitted.term(k)))
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {

@@ -39,6 +39,9 @@ pub static SLOPE: Law = Law {
     ..Law::PLAIN
 };
 
+/// The largest offset (rad or m); a larger one is a wrong zero, which the checks of the recordings report.
+const LARGEST_OFFSET: f64 = 0.2;
+
 impl EffectKind for EncoderOffset {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -50,7 +53,7 @@ impl EffectKind for EncoderOffset {
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        fitted.value(0).abs() < 0.2
+        fitted.value(0).abs() < LARGEST_OFFSET
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {

@@ -48,6 +48,9 @@ const KNOWN_BODY: &str = "attach a body of known mass to the tool and record the
 /// tolerance.
 const USUAL_DEVIATIONS: f64 = 1.5;
 
+/// The relative deviation from one that a torque scale may have.
+const RELATIVE: std::ops::Range<f64> = -0.7..2.0;
+
 impl EffectKind for TorqueScale {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -68,7 +71,7 @@ impl EffectKind for TorqueScale {
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        (-0.7..2.0).contains(&fitted.value(0))
+        RELATIVE.contains(&fitted.value(0))
     }
 
     fn is_certain(&self, effect: &Effect, _interval: &dyn Fn(&str) -> Option<[f64; 2]>, accuracy: f64) -> bool {

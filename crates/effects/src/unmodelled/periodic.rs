@@ -28,6 +28,9 @@ pub fn columns(joint: usize, omega: f64) -> Vec<Term> {
     sine_and_cosine(&WAVE, joint, omega)
 }
 
+/// The relative difference of frequencies below which two sinusoids are the same.
+const SAME_FREQUENCY: f64 = 0.1;
+
 impl EffectKind for Periodic {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -38,9 +41,9 @@ impl EffectKind for Periodic {
         Vec::new()
     }
 
-    /// Two frequencies that differ by less than 10 % are not distinguished.
+    /// Two sinusoids of nearly the same frequency are not distinguished.
     fn is_same(&self, a: &Term, b: &Term) -> bool {
         let (a, b) = (a.sizes[0], b.sizes[0]);
-        (a - b).abs() < 0.1 * a.min(b)
+        (a - b).abs() < SAME_FREQUENCY * a.min(b)
     }
 }
