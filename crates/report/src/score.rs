@@ -70,7 +70,7 @@ pub fn opening(score: &Score) -> Vec<Block> {
     list
 }
 
-/// The strict figure in words, and beside it the one that lets off.
+/// The strict figure in words, and the macro F1 with exceptions.
 fn headline(score: &Score) -> String {
     let strict = &score.strict;
     format!(
@@ -89,7 +89,7 @@ fn headline(score: &Score) -> String {
     )
 }
 
-/// The results by how wrong the URDF was.
+/// The results by the error of the URDF.
 fn by_urdf(score: &Score) -> Block {
     let line = |what: &str, cases: usize, strict: &Strict, macro_f1: Option<f64>| {
         vec![

@@ -7,7 +7,7 @@ use scoring::{Figure, Score, StrictFamily, Target, UrdfGroup};
 use super::experiments;
 use crate::numbers::percent_to_a_tenth as percent;
 
-/// In a sentence or two.
+/// The reason in a sentence or two.
 pub fn reason(target: &Target, score: &Score) -> String {
     match target.id {
         Figure::Strict => strict(target, score),
@@ -63,7 +63,7 @@ fn tally<'a>(names: impl Iterator<Item = &'a str>) -> String {
     }
 }
 
-/// What was not found with its size, and what was named falsely: of the group of cases that the figure is of.
+/// Effects that were not found with their size, and false names, in the group of cases of the figure.
 fn strict(target: &Target, score: &Score) -> String {
     let is_meant = |group: &&UrdfGroup| target.what.ends_with(group.urdf.words());
     let strict = score
