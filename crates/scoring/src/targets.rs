@@ -6,12 +6,12 @@ use crate::intervals::Counted;
 use crate::score::{Family, Score};
 use crate::strict::{UrdfError, UrdfGroup};
 
-/// Which figure it is.
+/// The identifier of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Figure {
     /// F1 averaged over the families, counted strictly.
     Strict,
-    /// Cases with a false name, whatever is concealed in them.
+    /// Cases with a false name, whatever is injected in them.
     FalseCases,
     /// F1 averaged over the families.
     MacroF1,
@@ -23,7 +23,7 @@ pub enum Figure {
     OutsideNamed,
     /// Relative errors of the main parameters.
     ParameterErrors,
-    /// Intervals that hold the truth.
+    /// Intervals that contain the true value.
     Intervals,
     /// The truth is named, or in a finding's confusable set.
     Covered,
@@ -35,25 +35,25 @@ pub enum Figure {
     Confusions,
 }
 
-/// A figure that was asked for.
+/// A figure with its target.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Target {
     /// Which it is.
     #[serde(skip)]
     pub id: Figure,
-    /// The value in words.
+    /// The label.
     pub what: String,
-    /// The figure; `None` if nothing was there to count.
+    /// The value; `None` if there was nothing to count.
     pub figure: Option<f64>,
     /// The smallest value that meets it.
     pub at_least: Option<f64>,
     /// The largest value that meets it.
     pub at_most: Option<f64>,
-    /// What it was counted from, where it is a share.
+    /// The share that it is, with its counts.
     pub counted: Option<Counted>,
-    /// Over how many.
+    /// The number of items.
     pub of: usize,
-    /// Whether it is reached; `None` if nothing was there to count, or nothing is wanted of it: it says more of the one above.
+    /// Whether it is reached; `None` if there was nothing to count, or if there is no target.
     pub reached: Option<bool>,
 }
 
@@ -80,7 +80,7 @@ fn share(id: Figure, what: &str, counted: Counted, bounds: [Option<f64>; 2]) -> 
     }
 }
 
-/// What is asked of `score`.
+/// The figures of `score` with their targets.
 pub fn targets(score: &Score) -> Vec<Target> {
     let at_least = |value: f64| [Some(value), None];
     let at_most = |value: f64| [None, Some(value)];
@@ -199,7 +199,7 @@ pub fn targets(score: &Score) -> Vec<Target> {
     list
 }
 
-/// What is asked of cases whose URDFs are about as wrong.
+/// The targets of cases whose URDFs are similarly wrong.
 fn of_group(group: &UrdfGroup) -> [Target; 3] {
     let least = match group.urdf {
         UrdfError::Exact => 0.95,

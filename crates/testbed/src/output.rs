@@ -45,7 +45,7 @@ pub fn print(text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// Writes `value` as JSON to `path`, whole or not at all.
+/// Writes `value` as JSON to `path`, completely or not at all.
 ///
 /// # Errors
 /// If the file cannot be written.
@@ -55,7 +55,7 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Writes `text` to `path`, whole or not at all.
+/// Writes `text` to `path`, completely or not at all.
 ///
 /// # Errors
 /// If the file cannot be written.

@@ -31,7 +31,7 @@ pub trait Observer {
     fn sample(&mut self, sample: &Sample<'_>);
 }
 
-/// What came of a run.
+/// The outcome of a run.
 pub struct Outcome {
     /// Everything measured and commanded, at the control rate.
     pub recording: Recording,

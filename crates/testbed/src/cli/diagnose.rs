@@ -10,7 +10,7 @@ use super::chain::ChainArgs;
 use super::numbers::{parse_accuracy, parse_frequency};
 use super::rerun::{Rerun, parse_rerun};
 
-/// The catalogue's effects, one a line.
+/// The catalogue's effects, one per line.
 fn effects_help() -> String {
     let line = |kind: &&dyn effects::EffectKind| format!("\n  {:<24} {}", kind.spec().name, kind.spec().meaning);
     let lines: String = effects::CATALOGUE.iter().map(line).collect();

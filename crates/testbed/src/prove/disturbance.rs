@@ -32,7 +32,7 @@ const ALIAS: &str = "torque_scale";
 /// A mean squared torque error below this is rounding beside torques of tens of N m ((N m)²).
 const ROUNDING: f64 = 1e-6;
 
-/// What came of the case: `paper` in `score.json`.
+/// The outcome of the case: `paper` in `score.json`.
 #[derive(Serialize)]
 pub struct Disturbance {
     /// The URDF's masses and inertia tensors over the true ones.
@@ -75,7 +75,7 @@ pub struct Factor {
     pub truth: f64,
     /// The value less the truth.
     pub off: f64,
-    /// Whether the interval holds the truth.
+    /// Whether the interval contains the true value.
     pub is_covered: bool,
 }
 

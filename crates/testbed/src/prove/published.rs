@@ -38,7 +38,7 @@ pub struct Real {
     pub seal: Seal,
     /// What was fixed before the truth was opened: SHA-256 of each diagnosis, by robot.
     pub answers: BTreeMap<String, Option<String>>,
-    /// What came of each robot.
+    /// The outcome of each robot.
     pub robots: Vec<Tried>,
     /// Robots of the file whose folders are not there.
     pub absent: Vec<String>,

@@ -91,7 +91,7 @@ pub struct Tracked {
     pub error_without_lag: Option<f64>,
 }
 
-/// What came of a case: `tracking/CASE.json`.
+/// The outcome of a case: `tracking/CASE.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CaseTracking {
     /// The case.
