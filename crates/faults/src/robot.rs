@@ -47,7 +47,7 @@ impl Robot {
         Ok(robot)
     }
 
-    /// With the baseline inertias of its drives, seen at the joints (kg m² or kg), which its URDF leaves out.
+    /// The robot with the baseline inertias of its drives, reflected to the joints (kg m² or kg), which its URDF omits.
     ///
     /// # Errors
     /// [`FaultError::Setting`] if there is not one number per joint that is not negative.

@@ -85,7 +85,7 @@ pub fn each_row<W: Send>(
     values
 }
 
-/// As [`each_row`], with the arm's workspace.
+/// Computes the rows as [`each_row`] does, with the arm's workspace.
 pub fn each_row_of(
     arm: &Arm,
     count: usize,

@@ -9,11 +9,11 @@ use crate::{RecordingError, Warning};
 pub struct Array {
     /// Its name.
     pub name: String,
-    /// How many rows and columns.
+    /// The numbers of rows and columns.
     pub shape: (usize, usize),
-    /// Whether `values` are row after row, and not column after column.
+    /// Whether `values` are in the order of rows, and not of columns.
     pub by_rows: bool,
-    /// As many values as rows times columns.
+    /// The values, rows times columns.
     pub values: Column,
 }
 

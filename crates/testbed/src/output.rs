@@ -1,4 +1,4 @@
-//! What leaves the program: text printed, files written, and the checks before.
+//! The outputs of the program: printed text, written files, and the checks before.
 
 use std::io::Write;
 use std::path::Path;
@@ -31,7 +31,7 @@ impl Tracking {
     }
 }
 
-/// Prints `text` on standard output. Whoever stops reading (`| head`) has read enough.
+/// Prints `text` on standard output. A reader that stops (`| head`) is no error.
 ///
 /// # Errors
 /// If it cannot be written for another reason.

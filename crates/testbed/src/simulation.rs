@@ -14,13 +14,13 @@ use crate::scenario::Scenario;
 use crate::sensors::Sensors;
 use crate::telemetry::Sample;
 
-/// The learned torque's variance is dear: it is evaluated at this rate (Hz), outside the control step.
+/// The rate at which the variance of the learned torque is evaluated (Hz). It is expensive, and outside the control step.
 const VARIANCE_RATE: f64 = 50.0;
 
 /// The sensors' noise in the loop and in the training samples, apart.
 const LOOP_STREAM: u64 = 1;
 
-/// What watches a run.
+/// An observer of a run.
 pub trait Observer {
     /// Whether it wants the learned torque's variance.
     fn wants_variance(&self) -> bool {

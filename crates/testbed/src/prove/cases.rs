@@ -34,7 +34,7 @@ pub enum Cases {
         seed: u64,
         /// Robots, in turn.
         robots: Vec<Robot>,
-        /// As they were given; empty: those that come with testbed.
+        /// The robots as the user named them; empty for those that come with testbed.
         named: Vec<String>,
         /// Which of their joints are the arm.
         chain: ChainArgs,

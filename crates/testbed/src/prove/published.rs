@@ -27,7 +27,7 @@ use crate::cli::ProveArgs;
 use crate::{interrupt, output};
 use file::{File, Robot};
 
-/// What a proof on published recordings leaves for programs: `score.json`.
+/// The content of `score.json`.
 #[derive(Serialize)]
 pub struct Real {
     /// `testbed.published_proof/1`.
@@ -40,19 +40,19 @@ pub struct Real {
     pub answers: BTreeMap<String, Option<String>>,
     /// The outcome of each robot.
     pub robots: Vec<Tried>,
-    /// Robots of the file whose folders are not there.
+    /// Robots of the file without a folder.
     pub absent: Vec<String>,
 }
 
-/// A robot, its recordings and what came of them.
+/// A robot with its recordings and its results.
 #[derive(Serialize)]
 pub struct Tried {
-    /// As the file has it.
+    /// The robot in the file.
     #[serde(skip)]
     pub robot: Robot,
-    /// What the program said in place of a diagnosis.
+    /// The message of the program if there is no diagnosis.
     pub error: Option<String>,
-    /// How many names, effects on a joint or on the arm, what is published would contradict.
+    /// The number of (effect, joint) pairs that a publication excludes.
     pub deniable: usize,
     /// The score.
     pub score: RobotScore,

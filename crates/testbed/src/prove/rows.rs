@@ -1,4 +1,4 @@
-//! A case after everything was tried on it, as one row: what is scored, and what goes from a part of a campaign to the whole.
+//! A case with all its results as one row, which is scored, and which parts of a campaign pass on.
 
 use std::collections::BTreeMap;
 
@@ -38,7 +38,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// As it was sealed.
+    /// The case in the seal.
     pub fn sealed(&self) -> SealedCase {
         SealedCase {
             case: self.case.clone(),

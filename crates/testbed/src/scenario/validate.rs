@@ -1,4 +1,4 @@
-//! From what is written to what can be run.
+//! From a written scenario to a validated one.
 
 use std::path::Path;
 
