@@ -75,11 +75,6 @@ impl Plant {
         self.steps as f64 * self.step
     }
 
-    /// How long [`Self::step`] holds its torques (s).
-    pub fn step_time(&self) -> f64 {
-        self.step
-    }
-
     /// Whether dry friction holds joint `i` fast.
     pub fn is_stuck(&self, i: usize) -> bool {
         self.friction.is_stuck(i)

@@ -154,7 +154,7 @@ fn exempt(score: &Score) -> String {
     };
     format!(
         "F1 and coverage exclude the effects that a diagnosis declares not testable at their size: {} effects, the largest with an expressed share of {}, {} above {}{list}. \
-         If these count as missed and as not covered, macro F1 is {}, and the ground truth is in the finding or its confusable set in {}.",
+         If these count as missed and as not covered, macro F1 is {}, and the ground truth is in the finding or its alternatives in {}.",
         exempt().count(),
         share(largest),
         large.len(),
@@ -169,7 +169,7 @@ pub fn failures(score: &Score) -> Vec<Block> {
     let mut rows = Vec::new();
     for outcome in score.concealed.iter().filter(|o| o.counts && !o.fate.is_found()) {
         let fate = match outcome.fate {
-            Fate::Covered => "in a confusable set only",
+            Fate::Covered => "an alternative only",
             Fate::NotObservable => "declared not testable",
             Fate::Refused => "joint refused",
             Fate::Found | Fate::SameMachine | Fate::Missed => "missed",
@@ -195,7 +195,7 @@ pub fn failures(score: &Score) -> Vec<Block> {
             format!("injected there: {}", wrong.concealed_there.join(", "))
         };
         let admits = if wrong.admits_the_truth {
-            "; the ground truth is in its confusable set"
+            "; the ground truth is one of its alternatives"
         } else {
             ""
         };

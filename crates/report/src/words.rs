@@ -169,12 +169,17 @@ pub fn verdict(report: &Report) -> String {
                 format!("An unmodelled residual remains on {open}.")
             };
             match remaining(report) {
-                Some([before, after]) => format!(
-                    "Most of the mismatch is unexplained: with {effects} on {on}, the RMS torque error over the joints \
-                     only falls from {} to {} times the torque's standard deviation. {open}",
-                    numbers::nrmse(before),
-                    numbers::nrmse(after)
-                ),
+                Some(errors) => {
+                    let [before, after] = errors.map(numbers::nrmse);
+                    let change = match before == after {
+                        true => format!("remains {after}"),
+                        false => format!("only falls from {before} to {after}"),
+                    };
+                    format!(
+                        "Most of the mismatch is unexplained: with {effects} on {on}, the RMS torque error over the joints \
+                         {change} times the torque's standard deviation. {open}"
+                    )
+                }
                 None => format!("The model omits {effects} on {on}. {open}"),
             }
         }

@@ -23,7 +23,7 @@ pub struct Plain {
     pub concealed: usize,
     /// Of these found.
     pub found: usize,
-    /// Of these found or in a confusable set.
+    /// Of these found or alternative only.
     pub covered: usize,
     /// Cases with nothing but baseline effects.
     pub empty: usize,

@@ -75,7 +75,7 @@ pub struct Score {
     pub outside_with_a_wrong_name: Counted,
     /// Cases with nothing outside the catalogue in which a joint was said to be unexplained, of those answered.
     pub refused_without_cause: Counted,
-    /// Injected effects that are a finding or in a finding's confusable set.
+    /// Injected effects that are a finding or an alternative of a finding.
     pub covered: Counted,
     /// Effects covered if what was declared not testable counts as not covered.
     pub covered_strict: Counted,
@@ -128,7 +128,7 @@ pub struct Family {
     pub found: usize,
     /// Of these by another name of the same machine.
     pub same_machine: usize,
-    /// Of these found or in the confusable set of a finding.
+    /// Of these found or an alternative of a finding.
     pub covered: usize,
     /// Of these not found, and declared not testable at their size.
     pub not_observable: usize,

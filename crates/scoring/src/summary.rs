@@ -26,7 +26,7 @@ pub struct SizeBin {
     pub to: Option<f64>,
     /// Those found.
     pub found: Counted,
-    /// Those found or in a finding's confusable set.
+    /// Those found or an alternative of a finding.
     pub covered: Counted,
     /// Those not found and declared not testable; they are among those that `found` is of.
     pub not_observable: usize,

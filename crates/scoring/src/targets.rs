@@ -25,7 +25,7 @@ pub enum Figure {
     ParameterErrors,
     /// Intervals that contain the true value.
     Intervals,
-    /// The truth is named, or in a finding's confusable set.
+    /// The truth is named, or an alternative of a finding.
     Covered,
     /// Held-out errors over the true terms'.
     HeldOut,

@@ -254,7 +254,7 @@ fn prepare(
         notes.add(
             "note",
             &name,
-            format!("{gaps} more gaps (testbed inspect --json has them)"),
+            format!("further gaps: {gaps} (testbed inspect --json lists them)"),
         );
     }
     let about = |joint: &Option<String>, text: &str| match joint {

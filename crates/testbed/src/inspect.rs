@@ -178,7 +178,7 @@ fn shown(report: &FileReport<'_>) -> String {
         let _ = writeln!(text, "- {}", told.text);
     }
     if gaps > 0 {
-        let _ = writeln!(text, "- {gaps} more gaps (--json has them)");
+        let _ = writeln!(text, "- further gaps: {gaps} (--json lists them)");
     }
     for finding in &quality.findings {
         let _ = writeln!(text, "- {}{}", about(finding.joint.as_deref()), finding.text);

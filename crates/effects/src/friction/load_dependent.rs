@@ -43,7 +43,7 @@ pub static LOAD_SIGN: Law = Law {
     ..Law::PLAIN
 };
 
-/// The largest gain: a gear with more friction than load could not be moved by its load.
+/// The largest gain: with a larger one, friction would exceed the load.
 const LARGEST_GAIN: f64 = 1.0;
 /// Without load, friction may be zero, but not negative by more than this part of the load's friction.
 const BELOW_ZERO: f64 = 0.1;

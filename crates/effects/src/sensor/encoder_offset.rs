@@ -39,7 +39,7 @@ pub static SLOPE: Law = Law {
     ..Law::PLAIN
 };
 
-/// The largest offset (rad or m); a larger one is a wrong zero, which the checks of the recordings report.
+/// The largest offset (rad or m), because the column is linearised about none.
 const LARGEST_OFFSET: f64 = 0.2;
 
 impl EffectKind for EncoderOffset {

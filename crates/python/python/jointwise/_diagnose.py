@@ -26,7 +26,7 @@ _PER_JOINT = ("q", "qd", "qdd", "tau", "q_secondary", "tau_current", "current", 
 
 
 class RecordingWarning(UserWarning):
-    """Something in a recording that is doubtful, and did not prevent its use."""
+    """A doubtful property of a recording that did not prevent its use."""
 
 
 def diagnose(

@@ -37,7 +37,7 @@ pub fn reason(target: &Target, score: &Score) -> String {
             let missed = score.concealed.iter().filter(|o| o.is_asked());
             let missed = missed.filter(|o| !o.fate.is_covered());
             format!(
-                "neither in the finding nor in its confusable set: {}.",
+                "neither a finding nor an alternative: {}.",
                 tally(missed.map(|o| o.effect.as_str()))
             )
         }
