@@ -40,7 +40,7 @@ pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
                 drop_name(study, judged, unclear, "it contradicts other effects, or its own rows");
             }
             Some((unclear, false)) => {
-                drop_name(study, judged, unclear, "its interval contains the value without effect")
+                drop_name(study, judged, unclear, "its interval contains the value without effect");
             }
             None => return resampled,
         }

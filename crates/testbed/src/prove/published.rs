@@ -175,7 +175,14 @@ fn names(real: &Real) -> String {
 
 /// The robots as a table.
 fn summary(real: &Real) -> String {
-    let header = ["robot", "said, found", "not observable", "contradicted", "held out"].map(str::to_owned);
+    let header = [
+        "robot",
+        "published, named",
+        "not testable",
+        "contradicted",
+        "held-out error",
+    ]
+    .map(str::to_owned);
     let mut table = report::terminal::table(header);
     for Tried { robot, score, .. } in &real.robots {
         let count = |fates: &[SaidFate]| score.said.iter().filter(|said| fates.contains(&said.fate)).count();
