@@ -39,7 +39,7 @@ pub static SLOPE: Law = Law {
     ..Law::PLAIN
 };
 
-/// The largest offset (rad or m), because the column is linearised about none.
+/// The largest offset (rad or m): the column is linearised about zero.
 const LARGEST_OFFSET: f64 = 0.2;
 
 impl EffectKind for EncoderOffset {
