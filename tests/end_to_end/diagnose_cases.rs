@@ -44,7 +44,7 @@ fn is_sized(found: &Value, effect: &str, truth: &[(&str, f64)], tolerance: f64) 
     }
 }
 
-/// Checks that the 95 % interval of a parameter holds the truth and not zero, and is no wider than three quarters of it to either side:
+/// Checks that the 95 % interval of a parameter contains the true value and not zero, and is no wider than three quarters of it to either side:
 /// where the background acts, the interval allows a URDF that is unevenly wrong.
 fn holds(found: &Value, effect: &str, key: &str, truth: f64) {
     let mut findings = found["findings"].as_array().expect("a list").iter();

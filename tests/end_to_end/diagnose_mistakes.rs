@@ -170,7 +170,7 @@ fn zeros_signs_and_order_are_told_with_the_map_that_mends_them() {
     ] {
         let said = inspected(&case, &text);
         says(&said, &parts);
-        says(&said, &["mended, the model and friction explain"]);
+        says(&said, &["with this correction, the model and friction explain"]);
         case.sandbox.write("map.toml", &map_in(&said));
         let mended = case
             .sandbox
@@ -186,7 +186,7 @@ fn zeros_signs_and_order_are_told_with_the_map_that_mends_them() {
 
 #[test]
 fn where_all_joints_are_wrong_nothing_is_searched_and_the_map_mends_it() {
-    let first = "Units, signs, order or zeros first: no effect is searched before.";
+    let first = "Correct units, signs, order or zeros first: until then, no effect is searched.";
     let degrees = with_numbers(|row| row[1..4].iter_mut().for_each(|q| *q = q.to_degrees()));
     let currents = with_numbers(|row| {
         for (tau, constant) in row[4..].iter_mut().zip([12.0, 15.0, 9.0]) {

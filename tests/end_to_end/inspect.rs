@@ -78,7 +78,7 @@ fn flaws_are_told_with_their_place_and_are_no_failure() {
             "at 4.000 s",
             "3 of ",
             "no rows from 5.99",
-            "the stamps scatter about a clock of 250",
+            "the time stamps deviate from a clock of 250",
         ],
     );
     let json = sandbox.json("out.json");

@@ -147,7 +147,7 @@ fn shares_merged_are_the_whole() {
     sandbox.succeed(&share("2/2"));
     let merge = ["prove", "--merge", "shares", "--out", "merged"];
     let refused = sandbox.refuse(&merge);
-    assert!(refused.contains("shares 1 of 2 are missing"), "{refused}");
+    assert!(refused.contains("parts 1 of 2 are missing"), "{refused}");
     sandbox.succeed(&share("1/2"));
     sandbox.succeed(&merge);
     for name in ["score.json", "report.html"] {

@@ -185,7 +185,7 @@ fn what_cannot_be_is_refused_with_line_and_remedy() {
         (
             "[2500.0, 1500.0]",
             "[2500.0]",
-            "published.toml:22: there are 1 values; give 2, one a joint",
+            "published.toml:22: there are 1 values; give 2, one per joint",
         ),
         (
             "parameters.level",

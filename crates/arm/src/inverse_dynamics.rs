@@ -48,7 +48,7 @@ impl<T: Real> LinkMotion<T> {
 impl Arm {
     /// The joint torques (N m or N) that produce `qdd` at `q`, `qd`: τ = M(q) q̈ + C(q, q̇) q̇ + g(q).
     ///
-    /// All slices have one entry a joint. Source: Luh, Walker and Paul 1980; Um, Park and Park,
+    /// All slices have one entry per joint. Source: Luh, Walker and Paul 1980; Um, Park and Park,
     /// equations 10 to 16, gravity entering as an upward acceleration of the base.
     ///
     /// # Panics

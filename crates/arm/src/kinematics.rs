@@ -29,7 +29,7 @@ impl Arm {
     /// If a slice, the workspace or `jacobian` is of another size than the arm.
     pub fn jacobian(&self, workspace: &mut Workspace, q: &[f64], frame: &Frame, jacobian: &mut Matrix6xX<f64>) {
         self.forward_kinematics(workspace, q);
-        assert_eq!(jacobian.ncols(), self.dof(), "one column a joint");
+        assert_eq!(jacobian.ncols(), self.dof(), "one column per joint");
         jacobian.fill(0.0);
         let Some(link) = frame.link else { return };
         let point = workspace.base_from_link[link].transform_point(&frame.link_from_frame.translation);

@@ -22,7 +22,7 @@ pub(crate) trait Real:
     /// What it takes to make a constant.
     type Context: Copy;
 
-    /// The same number in every state.
+    /// A number that is equal in every state.
     fn constant(context: Self::Context, value: f64) -> Self;
 
     /// Sine and cosine, of each state as `f64::sin_cos` gives them.
@@ -43,7 +43,7 @@ impl Real for f64 {
     }
 }
 
-/// As many states as the processor's vectors hold.
+/// The states in one vector of the processor.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lanes<S: Simd> {
     pub simd: S,

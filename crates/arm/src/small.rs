@@ -40,7 +40,7 @@ impl<T: Real> Vec3<T> {
         Self::new(zero, zero, zero)
     }
 
-    /// The same vector in every state.
+    /// A vector that is equal in every state.
     #[inline(always)]
     pub fn constant(context: T::Context, v: &Vector3<f64>) -> Self {
         let of = |value| T::constant(context, value);
@@ -81,7 +81,7 @@ impl<T: Real> Mat3<T> {
         Self::new([[T::constant(context, 0.0); 3]; 3])
     }
 
-    /// The same matrix in every state.
+    /// A matrix that is equal in every state.
     #[inline(always)]
     pub fn constant(context: T::Context, m: &Matrix3<f64>) -> Self {
         let of = |value| T::constant(context, value);

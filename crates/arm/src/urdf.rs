@@ -34,10 +34,10 @@ impl Arm {
         Self::from_urdf_text(&text, path)
     }
 
-    /// As [`Self::from_urdf`], from text; `path` is what errors call it.
+    /// Reads an arm from text; `path` is its name in errors.
     ///
     /// # Errors
-    /// As [`Self::from_urdf`].
+    /// Those of [`Self::from_urdf`].
     pub fn from_urdf_text(text: &str, path: impl AsRef<Path>) -> Result<Self, ArmError> {
         Self::from_urdf_chain(text, path, &ChainOptions::default())
     }
@@ -47,7 +47,7 @@ impl Arm {
     /// its own, gravity has the direction that it has at that link.
     ///
     /// # Errors
-    /// As [`Self::from_urdf`], or if the URDF does not have what `options` name.
+    /// Those of [`Self::from_urdf`], or if the URDF does not have what `options` name.
     pub fn from_urdf_chain(text: &str, path: impl AsRef<Path>, options: &ChainOptions) -> Result<Self, ArmError> {
         let path = path.as_ref();
         let text = syntax::Text::of(text, path)?;

@@ -26,9 +26,9 @@ impl Arm {
     /// This arm with reflected rotor inertias (kg m² or kg), one per joint.
     ///
     /// # Panics
-    /// If there is not one value a joint.
+    /// If there is not one value per joint.
     pub fn with_rotor_inertias(mut self, rotor_inertias: &[f64]) -> Self {
-        assert_eq!(rotor_inertias.len(), self.dof(), "one rotor inertia a joint");
+        assert_eq!(rotor_inertias.len(), self.dof(), "one rotor inertia per joint");
         for (joint, &inertia) in self.joints.iter_mut().zip(rotor_inertias) {
             joint.rotor_inertia = inertia;
         }

@@ -9,7 +9,7 @@ use crate::pose::Pose;
 use crate::real::Real;
 use crate::small::Vec3;
 
-/// What the recursions write, an entry a joint.
+/// What the recursions write, an entry per joint.
 #[derive(Clone, Debug)]
 pub(crate) struct Scratch<T> {
     /// q and its sine and cosine.
@@ -59,7 +59,7 @@ impl Workspace {
         let n = arm.dof();
         assert_eq!(self.base_from_link.len(), n, "the workspace was made for another arm");
         for vector in vectors {
-            assert_eq!(vector.len(), n, "a joint vector has one entry a joint");
+            assert_eq!(vector.len(), n, "a joint vector has one entry per joint");
         }
     }
 }

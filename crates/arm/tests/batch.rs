@@ -20,7 +20,7 @@ fn robots() -> Vec<PathBuf> {
     robots
 }
 
-/// Joint after joint, an entry a state: a signal without repetition.
+/// Joint after joint, an entry per state: a signal without repetition.
 fn signal(dof: usize, samples: usize, phase: f64) -> Vec<f64> {
     let at = |i: usize, k: usize| 1.7 * ((k * 7 + i) as f64 * 0.37 + phase).sin();
     (0..dof * samples)

@@ -1,4 +1,4 @@
-//! Phase 1, data: recordings filtered and differentiated alike, the rigid model along them, scales and noise.
+//! Phase 1, data: recordings with one common filter, the rigid model along them, scales and noise.
 
 use arm::Arm;
 use effects::{Effect, Scales};
@@ -16,30 +16,30 @@ pub mod rigid;
 pub mod signal;
 pub mod statistics;
 
-/// What is known before anything is fitted: the recordings, filtered, and the model along them.
+/// What is known before any fit: the filtered recordings, and the model along them.
 pub struct Data {
-    /// The model as it was given, with what the user knows.
+    /// The nominal model: the URDF's, with known effects.
     pub arm: Arm,
-    /// Known effects that no torque at one time tells: they are found again, and not reported.
+    /// Known effects that are not functions of the motion at one time. They are found again, and not reported.
     pub past: Vec<Effect>,
-    /// The recordings, filtered.
+    /// The filtered recordings.
     pub motions: motion::Motions,
-    /// The model along them, one a chunk.
+    /// The model along them, one per chunk.
     pub rigid: Vec<rigid::Rigid>,
-    /// What is slow and what is large.
+    /// Typical and largest values of each joint.
     pub scales: Scales,
-    /// Measured torque on all rows (N m or N), one list a joint.
+    /// Measured torque on all rows (N m or N), one list per joint.
     pub measured: Vec<Vec<f64>>,
-    /// The variance of the measured noise, one a joint.
+    /// The variance of the measured noise, one per joint.
     pub noise: Vec<f64>,
-    /// From row to row, one a recording (s).
+    /// The time between rows, one per recording (s).
     pub seconds: Vec<f64>,
     /// Whether a recording is fitted.
     pub fitted: Vec<bool>,
 }
 
 impl Data {
-    /// Filters `inputs` and evaluates `arm`, with the effects that are known, along them.
+    /// Filters `inputs` and evaluates `arm`, with the known effects, along them.
     ///
     /// # Errors
     /// [`DiagnosisError`], if a known effect does not fit the arm.

@@ -1,4 +1,4 @@
-//! The diagnosis from end to end.
+//! The diagnosis from beginning to end: one phase after the other.
 
 use arm::Arm;
 use effects::Effect;
@@ -13,58 +13,57 @@ use crate::findings::report::{Report, Traces};
 use crate::search::hypothesis::Wanted;
 use crate::search::study::Study;
 use crate::selection::FinalFit;
-use crate::thresholds::{CUTOFF, Thresholds};
+use crate::thresholds::{CUTOFF, LARGEST_CUTOFF, LEAST_WIDTHS, Thresholds};
 use crate::trace::Decision;
 
-/// How to diagnose.
+/// Options of a diagnosis.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Half-power frequency of the low-pass filter (Hz); `None` lets the data decide.
+    /// The half-power frequency of the low-pass filter (Hz); `None` lets the data decide.
     pub cutoff: Option<f64>,
-    /// How far the URDF's masses, centres of mass and inertias may be off, as a part of each link's own (0.1: ten per cent);
+    /// The relative error of the URDF's masses, centres of mass and inertias, as a part of each link's own (0.1: ten per cent);
     /// `None` lets the recordings decide.
     pub urdf_accuracy: Option<f64>,
-    /// The relative standard deviation of each joint's torque constant; `None` if nobody knows.
+    /// The relative standard deviation of each joint's torque constant; `None` if it is unknown.
     pub torque_accuracy: Option<f64>,
-    /// Effects that the user has already: they are taken off, and not reported again.
+    /// Effects that the user knows: they are part of the nominal model, and not reported again.
     pub known: Vec<Effect>,
-    /// Fit these effects and no others, whatever comes of them: nothing is searched for, no name is earned or lost. `None`
-    /// searches the catalogue.
+    /// Fits these effects and no others: there is no search, and no effect is removed. `None` searches the catalogue.
     pub only: Option<Vec<Wanted>>,
     /// Whether to propose the next experiment.
     pub next: bool,
-    /// The most decisive thresholds, to see what hangs on them.
+    /// The most decisive thresholds, which can be varied.
     pub thresholds: Thresholds,
 }
 
-/// A diagnosis and what its figures are drawn from.
+/// A diagnosis, and the data of its figures.
 #[derive(Clone, Debug)]
 pub struct Diagnosis {
-    /// What others read.
+    /// The report.
     pub report: Report,
-    /// On the diagnosis' own grid.
+    /// The signals on the diagnosis' own grid.
     pub traces: Traces,
     /// The named effects that correct the torque model.
     pub effects: Vec<Effect>,
     /// The motion of the next experiment, if one was requested and gives more information.
     pub next: Option<Reference>,
-    /// Remarks on the use of the recordings, in sentences.
+    /// Notes on the use of the recordings, in sentences.
     pub remarks: Vec<String>,
-    /// What was tried, taken and dropped on the way, in order.
+    /// Every decision of the search, in order.
     pub trace: Vec<Decision>,
 }
 
-/// A step of a diagnosis, as it begins.
+/// A step of a diagnosis at its beginning.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<'a> {
-    /// What is being done.
+    /// A description of the step.
     pub doing: &'a str,
-    /// The part of the computing time that has usually passed by then; a repeated search begins again with a smaller one.
+    /// The part of the computing time that has usually passed by then. It falls when the search is repeated.
     pub done: f64,
 }
 
 impl<'a> Step<'a> {
-    /// The step of that name, after that part of the time.
+    /// The step with this description, at this part of the time.
     pub fn new(done: f64, doing: &'a str) -> Self {
         Self { doing, done }
     }
@@ -72,7 +71,7 @@ impl<'a> Step<'a> {
 
 /// Diagnoses where and why `inputs` differ from `arm`. `progress` receives each step as it begins.
 ///
-/// The result depends on the inputs and options alone, not on the number of threads.
+/// The result depends on the inputs and options only, not on the number of threads.
 ///
 /// # Errors
 /// [`DiagnosisError`], if there is nothing to fit or a recording does not fit the arm.
@@ -108,8 +107,7 @@ fn check(arm: &Arm, inputs: &[Input<'_>], cutoff: f64) -> Result<(), DiagnosisEr
                 expected,
             });
         }
-        // Both filters' reach, and ten rows.
-        let needed = (10.0 + 6.0) * 0.235 / cutoff.min(0.235 / recording.period);
+        let needed = LEAST_WIDTHS * LARGEST_CUTOFF / cutoff.min(LARGEST_CUTOFF / recording.period);
         let longest = recording.segments.iter().map(|s| s.ticks.len()).max().unwrap_or(0) as f64 * recording.period;
         if longest < needed {
             return Err(DiagnosisError::TooShort {

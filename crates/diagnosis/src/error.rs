@@ -1,8 +1,8 @@
-//! Why there is no diagnosis.
+//! Errors of a diagnosis.
 
 use thiserror::Error;
 
-/// What keeps recordings from being diagnosed.
+/// Why recordings cannot be diagnosed.
 #[derive(Debug, Error)]
 pub enum DiagnosisError {
     /// A recording's joints are not the arm's.
@@ -18,7 +18,7 @@ pub enum DiagnosisError {
     /// A known effect that does not fit the arm.
     #[error(transparent)]
     Known(#[from] torque::TorqueError),
-    /// An effect to be fitted that the catalogue or the arm has not.
+    /// An effect to be fitted that the catalogue or the arm does not have.
     #[error("{effect}{}: {reason}", joint.as_ref().map(|joint| format!(" on {joint}")).unwrap_or_default())]
     Wanted {
         /// Its name.
@@ -28,21 +28,21 @@ pub enum DiagnosisError {
         /// What is wrong with it.
         reason: &'static str,
     },
-    /// Nothing to fit.
+    /// There is no recording to fit.
     #[error("no recording to train on")]
     NoTraining,
-    /// All too short for the filter.
+    /// All recordings are too short for the filter.
     #[error(
         "{recording}: {seconds:.2} s are too short for a filter at {cutoff} Hz, which needs {needed:.2} s in one piece"
     )]
     TooShort {
         /// The recording.
         recording: String,
-        /// How long it is.
+        /// Its duration (s).
         seconds: f64,
         /// The cut-off (Hz).
         cutoff: f64,
-        /// How long it must be.
+        /// The least duration (s).
         needed: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! The motion before the first recording: one from which inertial parameters and friction can be estimated best, within limits.
+//! The motion of the first recording: the one from which inertial parameters and friction can be estimated best, within limits.
 //!
 //! A finite Fourier series per joint (Swevers, Ganseman, Tükel, De Schutter and Van Brussel 1997, Optimal Robot Excitation and
 //! Identification) whose coefficients maximise the determinant of the information matrix of the base parameters (D-optimality) and
@@ -34,15 +34,15 @@ const FINE: f64 = 500.0;
 const COARSE: f64 = 25.0;
 /// The random starts of the search.
 const STARTS: usize = 3;
-/// A longer motion repeats its period (s).
+/// The longest period (s); a longer motion repeats its period.
 const LONGEST_PERIOD: f64 = 37.5;
 /// The highest frequency (Hz), and the fewest and the most harmonics of a period.
 const HIGHEST: f64 = 0.8;
 const HARMONICS: (usize, usize) = (5, 20);
-/// A motion that is made smaller until it is within the limits, and never is.
+/// How often a motion is scaled down to bring it within the limits, before the search fails.
 const SHRUNK: usize = 400;
 
-/// What is asked for.
+/// The request for a motion.
 #[derive(Clone, Copy, Debug)]
 pub struct ExcitationOptions {
     /// The duration of the motion (s).
@@ -51,7 +51,7 @@ pub struct ExcitationOptions {
     pub seed: u64,
 }
 
-/// A motion, what it determines and what it needs.
+/// A motion, the parameters that it determines, and its demands on the joints.
 #[derive(Clone, Debug)]
 pub struct Excitation {
     /// The motion: periodic, at rest at its start and at its end.
@@ -62,13 +62,13 @@ pub struct Excitation {
     pub period: f64,
     /// The harmonics of the series.
     pub harmonics: usize,
-    /// The parameters that some motion determines, by kind.
+    /// The number of parameters that can be determined at all, by kind.
     pub determined: Determined,
     /// How well this motion determines them.
     pub quality: Quality,
-    /// The same of a motion with one sine per joint within the same limits; `None` where there is no such motion.
+    /// How well a motion with one sine per joint determines them, within the same limits; `None` if there is no such motion.
     pub naive: Option<Quality>,
-    /// What the motion needs of every joint, and what it may.
+    /// The position, velocity and torque that the motion needs of every joint, and the allowed values.
     pub needed: Vec<JointUse>,
 }
 
@@ -96,24 +96,24 @@ pub enum ExcitationError {
         /// `position` or `velocity`.
         what: &'static str,
     },
-    /// Limits between which there is no room.
+    /// Limits that leave no room between them.
     #[error("joint \"{joint}\": its {what} limit {value} leaves no room for a motion")]
     NoRoom {
         /// The joint.
         joint: String,
-        /// `position`, `velocity` …
+        /// The quantity, such as `position` or `velocity`.
         what: &'static str,
-        /// As given.
+        /// The limits as given.
         value: String,
     },
-    /// The arm cannot hold itself.
+    /// The arm cannot hold its own weight.
     #[error("joint \"{joint}\": holding the arm needs {torque:.3} of the {allowed:.3} N m or N that are allowed")]
     TooWeak {
         /// The joint.
         joint: String,
-        /// What it needs at the middle of the motion (N m or N).
+        /// The torque that it needs at the middle of the motion (N m or N).
         torque: f64,
-        /// What it may (N m or N).
+        /// The allowed torque (N m or N).
         allowed: f64,
     },
     /// The search failed.
@@ -121,10 +121,10 @@ pub enum ExcitationError {
     Search(String),
 }
 
-/// The motion of `arm` from which its base parameters, friction and drive inertias can be estimated best, within `limits` (one a
-/// joint). `progress` receives the part that is done, from 0 to 1.
+/// The motion of `arm` from which its base parameters, friction and drive inertias can be estimated best, within `limits` (one
+/// per joint). `progress` receives the completed part, from 0 to 1.
 ///
-/// The result depends on the arguments alone, not on the number of threads.
+/// The result depends on the arguments only, not on the number of threads.
 ///
 /// # Errors
 /// [`ExcitationError`], if a limit is missing or leaves no room.
@@ -168,8 +168,8 @@ pub fn excite(
     })
 }
 
-/// How well the motion of `inputs`, through the diagnosis' filter, determines the base parameters of `arm`, relative to
-/// `proposed`, which was found for `limits`.
+/// How well the motion of `inputs`, after the diagnosis' filter, determines the base parameters of `arm`, relative to the
+/// motion `proposed` for `limits`.
 ///
 /// # Errors
 /// If `limits` leave no room.
@@ -191,8 +191,8 @@ pub fn quality_of(
     Ok(measured.quality(&base.measure(arm, &proposed.reference, proposed.period)))
 }
 
-/// The coefficients made smaller until the motion is within what is allowed, looked at `hertz` times a second; and what it then
-/// needs. One joint's amplitude for its position, velocity and acceleration, all amplitudes for a torque.
+/// Scales the coefficients down until the motion is within what is allowed, checked at `hertz`; returns the demands of the
+/// motion. Position, velocity and acceleration scale one joint's amplitude, torque scales all amplitudes.
 fn shrunk(
     arm: &Arm,
     allowed: &Allowed,

@@ -1,4 +1,5 @@
-//! Phase 5, findings: rivals, places, what is not testable with these recordings, what stays unexplained, the verdict.
+//! Phase 5, findings: alternatives, location of the residual, effects that are not testable, unexplained residuals, the
+//! verdict.
 
 pub mod conclusion;
 pub mod dual_sensor;

@@ -1,8 +1,8 @@
 //! The next experiment: the motion within the robot's limits that best distinguishes the remaining alternatives.
 //!
-//! A motion nobody has made yet is added to the recordings on paper: the torque that the findings say it needs, the columns
-//! of the findings and of their rivals along it, an error as large as the recordings'. The rivals are then fitted in the
-//! findings' place as they are in the recordings ([`crate::findings::rivals`]), with all else refitted.
+//! A motion that has not been recorded is added to the recordings by prediction: the torque that it needs by the findings, the
+//! columns of the findings and of their alternatives along it, and an error as large as the recordings'. The alternatives are
+//! then fitted in the findings' place as in the recordings ([`crate::findings::rivals`]), with all other effects refitted.
 
 use std::collections::BTreeSet;
 
@@ -30,27 +30,27 @@ use designs::{DURATION, Design, FINE};
 use limits::Limits;
 use prospect::{Outlook, Pair, Prospect};
 
-/// A confusion counts as resolved if the rival is this many times as far off as it need be: the prediction is not perfect.
+/// A confusion counts as resolved if the evidence exceeds what is needed by this factor, because the prediction is not perfect.
 const SURE: f64 = 1.2;
-/// The parts of what is needed between which more is better.
+/// The range of the evidence over the needed one in which more evidence counts as better.
 const COUNTED: (f64, f64) = (0.05, 4.0);
-/// What shows better counts this much beside a confusion resolved.
+/// The weight of a smaller detectable size relative to a resolved confusion.
 const SECOND: f64 = 0.1;
-/// What would be seen from this part of the size on is shown better.
+/// The ratio of detectable sizes below which an effect counts as more detectable.
 const BETTER: f64 = 0.8;
-/// Joints beside those in question take this part of the speed and the room, in some of the motions tried.
+/// The part of speed and room that the other joints use in some of the tried motions.
 const ASIDE: [f64; 2] = [0.2, 0.5];
 
-/// What to do next.
+/// The next experiment.
 #[derive(Clone, Debug)]
 pub struct Next {
-    /// What others read.
+    /// The part of the report.
     pub report: NextExperiment,
-    /// The motion; `None` if none would tell more.
+    /// The motion; `None` if no motion gives more information.
     pub motion: Option<Reference>,
 }
 
-/// A confusion, ready to be tried.
+/// A confusion, with what is needed to predict it.
 struct Confusion {
     finding: Confusable,
     rival: Confusable,
@@ -60,20 +60,20 @@ struct Confusion {
     joints: Vec<usize>,
 }
 
-/// Something unseen whose torque is in proportion to its size.
+/// An effect that is not testable and whose torque is proportional to its size.
 struct Hidden<'a> {
     entry: &'a NotObservable,
     parameter: &'static str,
     before: Option<f64>,
     joint: usize,
-    /// `None` for a torque limit.
+    /// Its candidate; `None` for a torque limit.
     column: Option<(usize, f64)>,
 }
 
-/// A motion that was tried.
+/// A tried motion.
 struct Tried {
     design: Design,
-    /// The parts of speed and room that it has of what its joints may.
+    /// The parts of the allowed speed and room that it uses.
     parts: [f64; 2],
     motion: Reference,
     separations: Vec<[f64; 2]>,
@@ -81,12 +81,11 @@ struct Tried {
     worth: f64,
 }
 
-/// Proposes a motion for what `findings`, each with the candidate that it was named from, and `hidden` leave open. On joints that
-/// are `unexplained` it promises nothing. `effects`
-/// is all that is known of the robot, known before or found, beyond the model `arm`.
+/// Proposes a motion for what `findings`, each with its candidate, and `hidden` effects leave open. It predicts nothing for
+/// joints that are `unexplained`. `effects` are all effects that are known or found, in addition to the model `arm`.
 ///
 /// # Errors
-/// If the effects cannot be put into the model.
+/// If the effects cannot be added to the model.
 pub fn propose(
     study: &Study,
     products: &Products,
@@ -135,7 +134,8 @@ pub fn propose(
             list.extend(more);
         }
     }
-    // What goes a little beyond the limits between two looks is made smaller, and predicted anew; it may be the best no more.
+    // A motion that exceeds the limits a little between two samples is scaled down and predicted again; it may no longer be
+    // the best.
     while let Some(best) = best(&list) {
         let (design, parts) = (list[best].design.clone(), list[best].parts);
         match design.surely_within(&limits, parts) {
@@ -151,7 +151,7 @@ pub fn propose(
     Ok(nothing)
 }
 
-/// The first of those that are worth most.
+/// The first of the designs with the largest value.
 fn best(list: &[Tried]) -> Option<usize> {
     (0..list.len()).max_by(|&a, &b| list[a].worth.total_cmp(&list[b].worth).then(b.cmp(&a)))
 }
@@ -177,7 +177,7 @@ fn tried(
         .zip(&shows)
         .map(|(hidden, after)| match (hidden.gain(*after), after) {
             (Some(gain), _) => gain.clamp(0.0, 2.0),
-            // At no size before, at some now.
+            // Detectable at no size before, and at some size now.
             (None, Some(_)) => 1.0,
             (None, None) => 0.0,
         });
@@ -193,14 +193,14 @@ fn tried(
 }
 
 impl Hidden<'_> {
-    /// The logarithm of how many times smaller (a limit: larger) the size is from which it shows.
+    /// The logarithm of the factor by which the detectable size becomes smaller (for a limit: larger).
     fn gain(&self, after: Option<f64>) -> Option<f64> {
         let ratio = (self.before? / after?).ln();
         Some(if self.column.is_some() { ratio } else { -ratio })
     }
 }
 
-/// The sizes from which each of `hidden` would be seen.
+/// The detectable sizes of the `hidden` effects.
 fn shows(prospect: &Prospect<'_>, outlook: &Outlook, hidden: &[Hidden<'_>]) -> Vec<Option<f64>> {
     let wanted: Vec<(usize, usize)> = hidden.iter().filter_map(|h| Some((h.joint, h.column?.0))).collect();
     let mut seen = prospect.visibility(outlook, &wanted).into_iter();
@@ -211,7 +211,7 @@ fn shows(prospect: &Prospect<'_>, outlook: &Outlook, hidden: &[Hidden<'_>]) -> V
     hidden.iter().map(size).collect()
 }
 
-/// What each finding could be instead, as sets of columns. What was not named from columns (a push, a second encoder) is left out.
+/// The alternatives of each finding, as sets of columns. Findings without columns (a contact, a second encoder) are left out.
 fn confusions(
     study: &Study,
     chosen: &Chosen,
@@ -241,7 +241,7 @@ fn confusions(
             let is_alias =
                 alias.is_some_and(|(hypothesis, place)| hypothesis.name() == Some(rival.effect) && place == joint);
             let instead: Vec<(Vec<usize>, Vec<usize>)> = if is_alias {
-                // Fitted in the finding's place it is the finding itself.
+                // Fitted in the finding's place, it is the finding itself.
                 vec![(chosen.fit.columns.clone(), Vec::new())]
             } else if this.hypothesis.spec().same_on_all_joints == Some(rival.effect) {
                 let is_factor = |c: &usize| study.candidates[*c].hypothesis.name() == Some(rival.effect);
@@ -275,7 +275,7 @@ fn confusions(
     list
 }
 
-/// Those of `hidden` whose size a motion can be tried on without simulating it: torque limits, and what is linear.
+/// The `hidden` effects whose size can be predicted without simulation: torque limits, and linear effects.
 fn visible<'a>(study: &Study, chosen: &Chosen, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> {
     let of = |entry: &'a NotObservable| {
         let name = entry.joint.as_deref()?;
@@ -330,7 +330,7 @@ fn described(
         let barred = if !confusion.is_explained {
             Some(Obstacle::Unexplained)
         } else {
-            // What is told already could not be confused.
+            // A pair that is already distinguished is no confusion.
             (before[k][0] >= before[k][1].min(needed)).then_some(Obstacle::NotForetold)
         };
         if after >= SURE * needed && barred.is_none() {

@@ -1,4 +1,4 @@
-//! Phase 2, regression: each hypothesis as columns of torque, their inner products, weighted least squares, resampling.
+//! Phase 2, regression: hypotheses as columns of torque, inner products, weighted least squares, background, resampling.
 
 pub mod background;
 pub mod bodies;

@@ -1,4 +1,4 @@
-//! Phase 3, search: which effects, in which form and of which size, explain the training recordings together.
+//! Phase 3, search: the effects, forms and sizes that together explain the training recordings.
 
 pub mod candidate;
 pub mod hypothesis;

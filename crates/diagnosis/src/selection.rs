@@ -1,4 +1,4 @@
-//! Phase 4, selection: which of the effects found keep their name, by size, evidence and prediction of held-out recordings.
+//! Phase 4, selection: the effects that keep their name, by size, evidence and prediction of held-out recordings.
 
 use rayon::prelude::*;
 
@@ -16,25 +16,25 @@ pub mod naming;
 pub mod predict;
 pub mod unmounted;
 
-/// The last fit: what is named, how certain it is, and what it leaves.
+/// The final fit: the named effects, their uncertainty, and the residuals.
 pub struct FinalFit {
-    /// The names, and the forms without one.
+    /// The named effects and the unmodelled forms.
     pub judged: judge::Selection,
-    /// The named effects' coefficients, resampled.
+    /// The resampled coefficients of the named effects.
     pub resampled: Resampled,
-    /// Inner products over the recordings that were fitted.
+    /// Inner products over the training recordings.
     pub products: Products,
     /// Inner products over the held-out recordings, if there are any.
     pub held: Option<Products>,
-    /// What the named effects leave of the torque (N m or N): `[joint][row]`.
+    /// The residuals of the named effects (N m or N): `[joint][row]`.
     pub residual: Vec<Vec<f64>>,
 }
 
 impl FinalFit {
-    /// Of the effects that are searched for, or of those that `options` ask for.
+    /// The final fit of the effects that are searched, or of those that `options` request.
     ///
     /// # Errors
-    /// [`DiagnosisError::Wanted`], if an effect that was asked for cannot be fitted.
+    /// [`DiagnosisError::Wanted`], if a requested effect cannot be fitted.
     pub fn new(study: &mut Study, options: &Options, progress: &dyn Fn(Step<'_>)) -> Result<Self, DiagnosisError> {
         let (judged, resampled) = match &options.only {
             Some(wanted) => {
@@ -59,7 +59,7 @@ impl FinalFit {
     }
 }
 
-/// Searches and judges until the final fit refuses no name that it has not refused before.
+/// Repeats search and selection until the final fit refuses no further name.
 fn selected(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> (judge::Selection, Resampled) {
     loop {
         let refused = study.refused();
@@ -69,7 +69,7 @@ fn selected(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> (judge::Selection
         let mut judged = judge::judge(study, &products, held.as_ref(), chosen);
         progress(Step::new(0.61, "final fit and intervals"));
         let resampled = final_fit::settled(study, &mut judged);
-        // What turns out not to be may have kept something else from being found.
+        // A refused name may have prevented that another effect was found.
         if study.refused() == refused || refused > MOST_REFUSED {
             let resampled = unmounted::unmounted(study, &mut judged).unwrap_or(resampled);
             return (judged, resampled);

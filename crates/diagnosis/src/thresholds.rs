@@ -1,8 +1,8 @@
 //! Every number that decides on a name, in the order of the phases.
 //!
-//! A threshold that names no source was chosen on simulated cases with a known truth. Limits of iterations, guards against
-//! rounding and the design of the filters decide on no name; they stand beside their code. The physical limits of an effect
-//! stand in its file in `effects`. `docs/thresholds.md` lists all of them; it is made from these files.
+//! A threshold without a source was chosen on simulated cases with known ground truth. Limits of iterations, guards against
+//! rounding and the design of the filters do not decide on a name; they are beside their code. The physical limits of an effect
+//! are in its file in `effects`. `docs/thresholds.md` lists all thresholds and is generated from these files.
 
 mod data;
 mod findings;
@@ -21,7 +21,7 @@ pub use selection::*;
 /// Defines [`Thresholds`] with its defaults, and its fields by name.
 macro_rules! decisive {
     ($($(#[doc = $doc:literal])+ $name:ident: $value:literal,)+) => {
-        /// The most decisive thresholds, which can be varied to see what hangs on them.
+        /// The most decisive thresholds, which can be varied to see their influence.
         #[derive(Clone, Debug, PartialEq)]
         pub struct Thresholds {
             $($(#[doc = $doc])+ pub $name: f64,)+

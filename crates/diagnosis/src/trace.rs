@@ -1,4 +1,4 @@
-//! The record of a diagnosis: what was tried, taken and dropped, by which rule, with the nats that decided.
+//! The record of a diagnosis: what was tried, taken and dropped, by which rule, with the evidence that decided (nats).
 
 use std::fmt;
 use std::sync::Mutex;
@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
 
-/// What was done with an effect.
+/// A decision on an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// It was fitted beside what was selected, and not taken in this step.
@@ -33,26 +33,26 @@ impl fmt::Display for Action {
 /// One row of the record. Rows of one `step` were decided together.
 #[derive(Clone, Debug)]
 pub struct Decision {
-    /// Counts from 1.
+    /// The number of the step, from 1.
     pub step: usize,
-    /// What was done.
+    /// The decision.
     pub action: Action,
-    /// The effect's name, or that of a form without a name; of a background its strengths.
+    /// The name of the effect or of the unmodelled form; for a background, its strengths.
     pub effect: String,
-    /// The joint; `None` is the whole arm.
+    /// The joint; `None` for the whole arm.
     pub joint: Option<String>,
     /// The rule that decided.
     pub rule: &'static str,
-    /// By how much the step lowers the score, costs included (nats); negative where a rule overrides the score.
+    /// The reduction of the score by the step, costs included (nats); negative where a rule overrides the score.
     pub nats: f64,
 }
 
-/// Collects decisions. They are noted between the parallel parts of the search, so that their order is always the same.
+/// Collects decisions. They are recorded between the parallel parts of the search, so that their order is always the same.
 #[derive(Debug, Default)]
 pub struct Trace(Mutex<Vec<Decision>>);
 
 impl Trace {
-    /// Adds what was decided together, as the next step.
+    /// Adds the decisions of the next step.
     fn step(&self, decisions: impl IntoIterator<Item = (Action, String, Option<String>, &'static str, f64)>) {
         let mut list = self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let step = list.last().map_or(0, |last| last.step) + 1;
@@ -70,7 +70,7 @@ impl Trace {
         );
     }
 
-    /// All decisions so far; none are kept.
+    /// Returns and removes all decisions.
     pub fn take(&self) -> Vec<Decision> {
         std::mem::take(&mut self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner))
     }
@@ -83,7 +83,7 @@ impl Study {
         (candidate.hypothesis.spec().name.to_owned(), joint)
     }
 
-    /// Notes what `rule` made of `before`.
+    /// Records the decisions that lead from `before` to `after` by `rule`.
     pub fn note(&self, rule: &'static str, before: &Chosen, after: &Chosen) {
         let nats = before.score - after.score;
         let row = |action: Action| {
@@ -103,7 +103,7 @@ impl Study {
         }
     }
 
-    /// Notes candidates that were fitted beside `chosen`, each with the score it then had, of which none was taken.
+    /// Records candidates that were fitted in addition to `chosen` and not taken, each with the score that it would have given.
     pub fn note_tried(&self, chosen: &Chosen, tried: &[(usize, f64, &'static str)]) {
         let rows = tried.iter().map(|&(candidate, score, rule)| {
             let (effect, joint) = self.described(candidate);
@@ -114,7 +114,7 @@ impl Study {
         }
     }
 
-    /// Notes that the background has other strengths now, and what that made of `before`.
+    /// Records a change of the background's strengths since `before`.
     pub fn note_strengths(&self, rule: &'static str, before: &Chosen, after: &Chosen) {
         let strengths = self.strengths.to_string();
         let nats = before.score - after.score;

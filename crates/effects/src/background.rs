@@ -1,12 +1,12 @@
-//! Laws of what a model is off by everywhere: no effects of their own, but columns under a prior in every fit.
+//! Laws of the background: columns under a prior in every fit, for errors that every model has. They are no effects.
 
 use crate::signals::Signals;
 use crate::term::{Law, Term};
 
-/// Below this part of its largest speed a joint's friction bends.
+/// The part of a joint's largest speed below which its friction curve bends.
 const SLOW: f64 = 0.1;
 
-/// Friction of the recording `of[1]` alone: sgn q̇ (form 0) or q̇ (form 1) in it, nothing in the others.
+/// Friction in the recording `of[1]` only: sgn q̇ (form 0) or q̇ (form 1) there, zero in the other recordings.
 pub static OWN_FRICTION: Law = Law {
     name: "own friction",
     column: |term, joint, motion| {
@@ -21,7 +21,8 @@ pub static OWN_FRICTION: Law = Law {
     ..Law::PLAIN
 };
 
-/// What friction curves add to Coulomb and viscous: e^(−|q̇| / a tenth of the largest speed) sgn q̇ (form 0), q̇ |q̇| (form 1).
+/// The deviation of a friction curve from Coulomb and viscous friction: e^(−|q̇| / a tenth of the largest speed) sgn q̇ (form
+/// 0), q̇ |q̇| (form 1).
 pub static FRICTION_CURVE: Law = Law {
     name: "friction curve",
     column: friction_curve,
@@ -40,7 +41,7 @@ fn friction_curve(term: &Term, joint: usize, motion: &Signals<'_>) -> Option<Vec
     })
 }
 
-/// The rigid torque of a joint, times what its torque constant is off by.
+/// The rigid torque of a joint; its coefficient is the relative error of the torque constant.
 pub static GAIN: Law = Law {
     name: "gain",
     column: |_, joint, motion| Some(motion.rigid.tau[joint].clone()),

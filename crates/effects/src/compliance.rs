@@ -1,8 +1,8 @@
-//! The link behind a joint that gives: what its motion relative to the drive adds to the torques.
+//! The link behind a compliant joint: the torques that its motion relative to the drive adds.
 
 use crate::signals::{Rigid, Signals};
 
-/// The motion δ (link less drive) of the link behind a joint that gives, tick by tick.
+/// The motion δ (link minus drive) of the link behind a compliant joint, tick by tick.
 #[derive(Clone, Debug)]
 pub struct Behind {
     at: usize,
@@ -11,12 +11,12 @@ pub struct Behind {
 }
 
 impl Behind {
-    /// The link of joint `at`, as `sprung` or `gap` says that it moves.
+    /// The link of joint `at` with a motion δ from `sprung` or `gap`.
     pub fn new(at: usize, ticks: Vec<[f64; 3]>) -> Self {
         Self { at, ticks }
     }
 
-    /// What it adds to the torque of `joint`: M δ̈ + ∂τ/∂q̇ δ̇ + ∂τ/∂q δ.
+    /// The torque that it adds on `joint`: M δ̈ + ∂τ/∂q̇ δ̇ + ∂τ/∂q δ.
     pub fn torque(&self, joint: usize, rigid: Rigid<'_>) -> Vec<f64> {
         let (mass, drag, slope) = (
             &rigid.mass[joint][self.at],
@@ -63,7 +63,7 @@ pub fn sprung(
                 -(tau[k] + d * pace + s * place - spring * rest) / (mass[k] + 0.5 * h * d + 0.25 * h * h * s).max(1e-9)
             };
             let against = |end: f64| solve(damping(mass[k]), stiffness, end);
-            // On whichever side of the gap the link then is.
+            // The contact force acts on the side of the gap where the link is.
             acceleration = if halfgap == 0.0 {
                 against(0.0)
             } else {
@@ -79,8 +79,8 @@ pub fn sprung(
     out
 }
 
-/// δ behind a gap of ± `halfgap` with rigid ends: the link lies against one side while its torque presses it there, and
-/// moves freely from one to the other when the torque turns; impacts are inelastic.
+/// δ behind a gap of ± `halfgap` with rigid ends. The link lies against one side while its torque presses it there, and moves
+/// freely to the other side when the torque changes its sign; impacts are inelastic.
 pub fn gap(at: usize, halfgap: f64, motion: &Signals<'_>) -> Vec<[f64; 3]> {
     let (h, rigid) = (motion.period, motion.rigid);
     let tau = &rigid.tau[at];

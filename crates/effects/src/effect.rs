@@ -1,4 +1,4 @@
-//! One effect with its parameters: data, as files hold it.
+//! An effect with its parameter values: data, as in files.
 
 mod files;
 
@@ -8,12 +8,12 @@ use crate::kind::EffectKind;
 use crate::kinds::Kind;
 use crate::spec::{Parameter, Shape, Spec};
 
-/// What a parameter of an effect is.
+/// The value of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A number.
     Number(f64),
-    /// Several.
+    /// Several numbers.
     List(Vec<f64>),
     /// Points (x, y).
     Points(Vec<[f64; 2]>),
@@ -38,7 +38,7 @@ impl From<Vec<[f64; 2]>> for Value {
 }
 
 impl Value {
-    /// All its numbers.
+    /// All numbers in it.
     pub fn numbers(&self) -> Vec<f64> {
         match self {
             Self::Number(number) => vec![*number],
@@ -57,13 +57,13 @@ pub struct Effect {
     kind: Kind,
     joint: Option<String>,
     other: Option<String>,
-    /// One for each of the spec's parameters.
+    /// One value for each of the spec's parameters.
     values: Vec<Value>,
     onset: Option<f64>,
 }
 
 impl Effect {
-    /// An effect of a kind on no joint yet; what has no default and is not set is NaN, which every arm refuses.
+    /// An effect of a kind, without a joint. A parameter that has no default and is not set is NaN, which every arm refuses.
     pub fn of(kind: &'static dyn EffectKind) -> Self {
         Self::of_kind(Kind::of(kind))
     }

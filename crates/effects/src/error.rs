@@ -1,9 +1,9 @@
-//! What can be wrong with an effect.
+//! Errors of effects.
 
 /// Why an effect does not fit an arm.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EffectError {
-    /// An effect on a joint that the arm has not.
+    /// An effect on a joint that the arm does not have.
     #[error("{effect}: the robot has no joint \"{joint}\"; it has {}", known.join(", "))]
     UnknownJoint {
         /// The catalogue's name of the effect.
@@ -13,7 +13,7 @@ pub enum EffectError {
         /// The arm's joints.
         known: Vec<String>,
     },
-    /// A parameter of an effect that no physics has.
+    /// A parameter value that is physically impossible.
     #[error("{effect} of {joint}: {parameter} is {value}; it must be {requirement}")]
     Parameter {
         /// The catalogue's name of the effect.
@@ -22,9 +22,9 @@ pub enum EffectError {
         joint: String,
         /// The parameter.
         parameter: &'static str,
-        /// What was found.
+        /// The value.
         value: f64,
-        /// What it must be.
+        /// The requirement on it.
         requirement: &'static str,
     },
 }

@@ -4,18 +4,19 @@ use arm::{Arm, Joint};
 
 use crate::term::{Law, Size, Term};
 
-/// What of a value no repetition shows.
+/// The part of an interval that no resampling shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Systematic {
-    /// What filtering and a form that is not quite right leave.
+    /// The usual part: filtering, and a form that is not exact.
     Usual,
-    /// What hangs on a form that recordings hardly show: how a gap ends, how friction falls near standstill.
+    /// The larger part for a parameter that depends on a form that recordings hardly show: the ends of a gap, friction near
+    /// standstill.
     OfForm,
     /// What is in proportion to the arm's links, too, of which the URDF may be wrong.
     OfArm,
 }
 
-/// A candidate with its estimate and resamplings. A draw holds the coefficients and relative corrections of sizes.
+/// A candidate with its estimate and resamplings. A draw contains the coefficients and the relative corrections of sizes.
 pub trait Estimate {
     /// The arm.
     fn arm(&self) -> &Arm;
@@ -29,10 +30,10 @@ pub trait Estimate {
     /// The candidate's columns.
     fn terms(&self) -> Vec<Term>;
 
-    /// Where the coefficient of the candidate's k-th column stands in a draw.
+    /// The index in a draw of the coefficient of the candidate's k-th column.
     fn place(&self, k: usize) -> Option<usize>;
 
-    /// Where the relative correction of a size stands in a draw.
+    /// The index in a draw of the relative correction of a size.
     fn size_place(&self, size: Size) -> Option<usize>;
 
     /// The lowest and the highest position of the candidate's joint in the recordings (rad or m).
@@ -41,13 +42,13 @@ pub trait Estimate {
     /// The estimate, as a draw.
     fn best(&self) -> &[f64];
 
-    /// Notes a parameter that is a function of a draw, with its interval; its value.
+    /// Records a parameter that is a function of a draw, with its interval; returns its value.
     fn note_within(&mut self, systematic: Systematic, key: &'static str, f: &dyn Fn(&[f64]) -> f64) -> f64;
 
-    /// Notes when the candidate sets in (s), if it does not always act.
+    /// Records and returns the onset of the candidate (s); `None` if it always acts.
     fn onset(&mut self) -> Option<f64>;
 
-    /// Notes when a push of a `duration` (s) begins.
+    /// Records the start of a contact of a `duration` (s).
     fn start(&mut self, start: f64, duration: f64);
 }
 
@@ -57,28 +58,28 @@ impl dyn Estimate + '_ {
         &self.arm().joints()[self.joint()]
     }
 
-    /// Its name.
+    /// The name of the candidate's joint.
     pub fn joint_name(&self) -> String {
         self.arm_joint().name.clone()
     }
 
-    /// Where the coefficient of the first column of a law stands, whether it sets in or not.
+    /// The index in a draw of the coefficient of the first column of a law, with or without an onset.
     pub fn at(&self, law: &'static Law) -> Option<usize> {
         let k = self.terms().iter().position(|term| term.always().is(law))?;
         self.place(k)
     }
 
-    /// Notes a parameter that is a function of a draw; its value.
+    /// Records a parameter that is a function of a draw; returns its value.
     pub fn note(&mut self, key: &'static str, f: impl Fn(&[f64]) -> f64) -> f64 {
         self.note_within(Systematic::Usual, key, &f)
     }
 
-    /// Notes a coefficient times a factor; zero where there is none.
+    /// Records a coefficient times a factor; zero if there is no coefficient.
     pub fn coefficient(&mut self, key: &'static str, at: Option<usize>, factor: f64) -> f64 {
         at.map_or(0.0, |at| self.note(key, |draw| factor * draw[at]))
     }
 
-    /// Notes a size at its corrected value.
+    /// Records a size with its correction.
     pub fn size(&mut self, systematic: Systematic, key: &'static str, size: Size, value: f64) -> f64 {
         match self.size_place(size) {
             Some(at) => self.note_within(systematic, key, &|draw| value * (1.0 + draw[at].clamp(-0.5, 0.5))),
@@ -86,8 +87,9 @@ impl dyn Estimate + '_ {
         }
     }
 
-    /// What is simulated at its size: where its torque is in proportion to that, its coefficient and the size's correction
-    /// mean the same, and only together are they determined. `value` takes both.
+    /// Records a parameter of an effect that is simulated at its size. Where the torque is proportional to the size, the
+    /// coefficient and the correction of the size have the same meaning, and only both together are determined. `value` takes
+    /// both.
     pub fn simulated(&mut self, systematic: Systematic, key: &'static str, value: impl Fn(f64, f64) -> f64) -> f64 {
         let (first, size) = (self.place(0), self.size_place(Size::Main));
         self.note_within(systematic, key, &|draw| {

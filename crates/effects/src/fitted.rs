@@ -1,4 +1,4 @@
-//! A candidate in a fit, as the physics of its effect sees it.
+//! A candidate in a fit, as its effect sees it.
 
 use arm::Arm;
 
@@ -20,28 +20,29 @@ pub trait Fitted {
     /// The coefficient of its k-th column.
     fn value(&self, k: usize) -> f64;
 
-    /// Its k-th column on the rows of its joint; `None` if it has none there, or is of the whole arm.
+    /// Its k-th column on the rows of its joint; `None` if it has none there, or if it acts on the whole arm.
     fn column(&self, k: usize) -> Option<&[f64]>;
 
-    /// What the fit leaves on the rows of its joint (N m or N); nothing of the whole arm.
+    /// The residual of the fit on the rows of its joint (N m or N); empty for the whole arm.
     fn residual(&self) -> Vec<f64>;
 
     /// Which rows of its joint are in motion.
     fn moving(&self) -> &[bool];
 
-    /// Whether it is a size tried in refining another.
+    /// Whether it is a trial size during refinement.
     fn is_trial(&self) -> bool;
 
     /// The arm.
     fn arm(&self) -> &Arm;
 }
 
-/// Unit coefficients may be off by what linear columns leave.
+/// The range of a coefficient that should be one, with the error that linear columns leave.
 pub const UNIT: std::ops::RangeInclusive<f64> = 0.7..=1.4;
+/// The range of a coefficient that should be one, before the size of its effect is refined.
 const COARSE_UNIT: std::ops::RangeInclusive<f64> = 0.4..=2.5;
 
-/// Whether the coefficient of what is simulated behind a drive is near one. Beside a resonance it is soon small: until the size
-/// is refined, it says little.
+/// Whether the coefficient of a simulated drive is near one. Near a resonance it quickly becomes small, so that it says little
+/// before the size is refined.
 pub fn is_near_one(fitted: &dyn Fitted) -> bool {
     if fitted.is_trial() {
         UNIT.contains(&fitted.value(0))

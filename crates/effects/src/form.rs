@@ -3,21 +3,21 @@
 use crate::signals::Scales;
 use crate::term::Term;
 
-/// What the recordings say before anything is fitted, of which forms are made.
+/// What is known of the recordings before any fit; forms are made from it.
 pub struct Grounds<'a> {
-    /// What is slow and what is large, joint by joint.
+    /// Typical and largest values of each joint.
     pub scales: &'a Scales,
-    /// From the first recording to the last (s), where one clock runs through them.
+    /// The time from the first recording to the last (s), if they share one clock.
     pub span: Option<f64>,
     /// First and last time of each stretch (s).
     pub times: &'a [(f64, f64)],
-    /// The inertia that each joint alone moves, on average (kg m² or kg).
+    /// The mean inertia that each joint moves alone (kg m² or kg).
     pub mass: &'a [f64],
     /// The largest measured torque of each joint (N m or N).
     pub largest: &'a [f64],
-    /// The torque that the model says each joint needs, but for the largest tenth of a per cent (N m or N).
+    /// The torque that each joint needs by the model, without the largest 0.1 % (N m or N).
     pub needed: &'a [f64],
-    /// The standard deviation of the torque that accelerations need of each joint, over that of the measured one.
+    /// The standard deviation of the torque that accelerations need on each joint, over that of the measured torque.
     pub inertial: &'a [f64],
 }
 
@@ -27,7 +27,7 @@ impl Grounds<'_> {
         (0..self.dof()).filter(|&joint| self.scales.moves(joint))
     }
 
-    /// Pairs of joints that move: one that may feel an effect, and another that it may depend on.
+    /// Pairs of moving joints: one that an effect acts on, and another on whose motion it depends.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> {
         let others = |joint: usize| self.moving().filter(move |&other| other != joint);
         self.moving()
@@ -39,7 +39,7 @@ impl Grounds<'_> {
         self.scales.speed.len()
     }
 
-    /// Tents over the range of joint `of`, felt by `joint`, each multiplied with what `times` says.
+    /// Tent functions over the range of joint `of`, acting on `joint`, each multiplied by `times`.
     pub fn tents(&self, joint: usize, of: usize, count: usize, times: Times) -> Vec<Term> {
         let width = self.scales.range[of] / (count - 1) as f64;
         let lowest = self.scales.middle[of] - 0.5 * self.scales.range[of];
@@ -52,7 +52,7 @@ impl Grounds<'_> {
     }
 }
 
-/// What a function of a position is multiplied with, of the joint that feels it.
+/// The factor of a function of position, from the joint that it acts on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Times {
     /// One.
@@ -63,41 +63,41 @@ pub enum Times {
     Speed,
 }
 
-/// When a form's turn comes. Of forms that promise the same the earlier is tried, and sums run in this order: first what is
-/// on a joint, joint by joint; then the links and the arm; last what is simulated at a size that the recordings give, again
-/// joint by joint.
+/// The order in which forms are tried and summed. Of forms that promise equal gains, the earlier one is tried. First come the
+/// effects on joints, joint by joint; then links and the whole arm; last the effects that are simulated at sizes from the
+/// recordings, again joint by joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Turn {
     /// Friction.
     Friction,
-    /// What a drive has: its rotor, what is wrong with its torque.
+    /// Drives: rotors, torque measurement.
     Drive,
-    /// What depends on the position.
+    /// Functions of the position.
     Position,
-    /// What comes late.
+    /// Delays.
     Late,
-    /// What couples two joints.
+    /// Couplings of two joints.
     Pair,
-    /// A curve over the position.
+    /// Curves over the position.
     Curve,
-    /// What depends on other joints.
+    /// Functions of other joints.
     Others,
-    /// What depends on the past.
+    /// Functions of past motion.
     Past,
-    /// Where a joint's zero is.
+    /// Encoder zeros.
     Zero,
-    /// What is wrong with a link.
+    /// Errors of a link.
     Link,
-    /// What is wrong with the whole arm.
+    /// Errors of the whole arm.
     Arm,
-    /// What is simulated behind a drive.
+    /// Simulated drives.
     Behind,
-    /// What cuts the torque.
+    /// Torque limits.
     Limit,
 }
 
 impl Turn {
-    /// The round of turns that it is in.
+    /// The group of turns that it belongs to.
     fn round(self) -> u8 {
         match self {
             Self::Link | Self::Arm => 1,
@@ -106,20 +106,20 @@ impl Turn {
         }
     }
 
-    /// What forms are sorted by: of forms with the same key the catalogue's order holds.
+    /// The sort key of forms. Forms with equal keys stay in the catalogue's order.
     pub fn key(self, joint: Option<usize>, other: Option<usize>) -> (u8, Option<usize>, Self, Option<usize>) {
-        // Of what is wrong with links and arm, the kind comes before the joint.
+        // For errors of links and arm, the kind comes before the joint.
         let joint = if self.round() == 1 { None } else { joint };
         (self.round(), joint, self, other)
     }
 }
 
-/// One form: columns that come and go together.
+/// One form: columns that are added and removed together.
 #[derive(Clone, Debug)]
 pub struct Form {
-    /// When its turn comes.
+    /// Its turn.
     pub turn: Turn,
-    /// Where; `None` is the whole arm.
+    /// The joint; `None` for the whole arm.
     pub joint: Option<usize>,
     /// The other joint whose motion it depends on.
     pub other: Option<usize>,
@@ -159,12 +159,12 @@ impl Form {
 /// How an effect with an onset within the recordings is searched.
 #[derive(Clone, Copy, Debug)]
 pub struct SetsIn {
-    /// Its place among those that are looked for; sums run in this order.
+    /// Its place in the order of these searches and sums.
     pub turn: u8,
-    /// Its columns, always acting, on a joint (of the whole arm: any).
+    /// Its columns on a joint, without an onset (the joint is ignored for the whole arm).
     pub terms: fn(usize) -> Vec<Term>,
     /// The number of columns with which the onset is searched.
     pub looked_for_with: usize,
-    /// The numbers of columns of the candidates with an onset, one candidate for each.
+    /// The numbers of columns of the candidates with an onset; each number gives one candidate.
     pub taken: &'static [usize],
 }

@@ -1,4 +1,4 @@
-//! What an effect is: one implementation in one file for each.
+//! The trait of an effect: one implementation in one file for each.
 
 use std::fmt::Debug;
 
@@ -13,9 +13,9 @@ use crate::machine::{Machine, Place};
 use crate::spec::Spec;
 use crate::term::Term;
 
-/// A kind of effect: everything that the program knows of it.
+/// A kind of effect: everything that the program knows about it.
 pub trait EffectKind: Debug + Sync {
-    /// Its name, parameters, relations and words.
+    /// Its name, parameters, relations and texts.
     fn spec(&self) -> &'static Spec;
 
     /// Whether it depends on another joint's motion.
@@ -23,71 +23,72 @@ pub trait EffectKind: Debug + Sync {
         false
     }
 
-    /// The forms to try from the outset; what the residuals suggest comes later.
+    /// The forms to try from the beginning. Other forms are suggested by residuals later.
     fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form>;
 
-    /// How it sets in halfway, if it may.
+    /// How its onset within the recordings is searched, if it may have one.
     fn sets_in(&self) -> Option<SetsIn> {
         None
     }
 
-    /// Whether two candidates on one joint (and with one other joint) are sizes of one and the same effect, by their
-    /// first columns.
+    /// Whether two candidates on one joint (and with the same other joint) are the same effect at different sizes, judged by
+    /// their first columns.
     fn is_same(&self, _a: &Term, _b: &Term) -> bool {
         true
     }
 
-    /// Whether its coefficients are ones that physics has.
+    /// Whether its fitted coefficients are physically possible.
     fn is_possible(&self, _fitted: &dyn Fitted) -> bool {
         true
     }
 
-    /// Whether the 95 % intervals of its parameters, by their keys, leave an effect that can be, where torque constants have the
-    /// relative standard deviation `_accuracy`.
+    /// Whether the 95 % intervals of its parameters, by key, allow a physically possible effect; `_accuracy` is the relative
+    /// standard deviation of the torque constants.
     fn is_certain(&self, _effect: &Effect, _interval: &dyn Fn(&str) -> Option<[f64; 2]>, _accuracy: f64) -> bool {
         true
     }
 
-    /// Whether what else was found, `beside` it, cannot be with it.
+    /// Whether the effects found `beside` it exclude it.
     fn is_contradicted(&self, _effect: &Effect, _beside: &[Effect]) -> bool {
         false
     }
 
-    /// The level of the dry friction that it stands for (N m or N), if it is one.
+    /// The level of its dry friction (N m or N), if it is a dry friction.
     fn dry_friction(&self, _effect: &Effect) -> Option<f64> {
         None
     }
 
-    /// The effect with its parameters, each noted with its interval; `None` if it cannot be read, or has no name.
+    /// The effect with the parameters of an estimate, each recorded with its interval; `None` if it cannot be read or has no
+    /// name.
     fn read(&self, _estimate: &mut dyn Estimate) -> Option<Effect> {
         None
     }
 
-    /// What is wrong with its parameters beside their ranges: the parameter, its value and what it must be.
+    /// What is wrong with its parameters, apart from their ranges: the parameter, its value and the requirement.
     fn refuse(&self, _effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
         None
     }
 
-    /// Whether two of them, on one joint, are the same effect said twice.
+    /// Whether two of them on one joint are the same effect, given twice.
     fn is_twin(&self, _a: &Effect, _b: &Effect) -> bool {
         true
     }
 
-    /// Puts the effect into a machine.
+    /// Adds the effect to a machine.
     fn apply(&self, _effect: &Effect, _at: Place, _machine: &mut Machine) {}
 
-    /// A finding in a few words, by its parameters.
+    /// A finding as a short phrase with its parameters.
     fn sentence(&self, _effect: &Effect) -> &'static str {
         self.spec().sentence
     }
 
-    /// The region of state where it acts, in words, by its columns on a kind of joint.
+    /// The region of state where it acts, in words, from its columns on a kind of joint.
     fn region(&self, _terms: &[Term], _joint: JointKind) -> Option<String> {
         None
     }
 }
 
-/// Refuses parameters that no physics has.
+/// Refuses parameters that are physically impossible.
 ///
 /// # Errors
 /// [`EffectError::Parameter`], naming effect, joint and value.

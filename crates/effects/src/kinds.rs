@@ -1,4 +1,4 @@
-//! Kinds of effects: the catalogue's by name and in its order, then forms without a name.
+//! Kinds of effects: those of the catalogue by name and in its order, then the unmodelled forms.
 
 use std::cmp::Ordering;
 use std::hash::{Hash, Hasher};
@@ -12,12 +12,12 @@ use crate::{CATALOGUE, UNMODELLED};
 pub static NAMES: LazyLock<Vec<&'static str>> =
     LazyLock::new(|| CATALOGUE.iter().map(|kind| kind.spec().name).collect());
 
-/// What is known of the effect `name`; `None` if the catalogue has none of that name.
+/// The spec of the effect `name`; `None` if the catalogue has no such effect.
 pub fn spec(name: &str) -> Option<&'static Spec> {
     Kind::named(name).map(Kind::spec)
 }
 
-/// A kind of effect, with name or without; kinds are in the catalogue's order.
+/// A kind of effect, named or unmodelled; kinds are ordered as in the catalogue.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
     index: usize,
@@ -25,7 +25,7 @@ pub struct Kind {
 }
 
 impl Kind {
-    /// An implementation as a kind; one that is in no list comes after all that are.
+    /// An implementation as a kind. One that is in no list comes after all others.
     pub fn of(kind: &'static dyn EffectKind) -> Self {
         let same = |other: &Self| std::ptr::eq(other.spec(), kind.spec());
         let index = Self::all().position(|other| same(&other)).unwrap_or(usize::MAX);
@@ -44,12 +44,12 @@ impl Kind {
         CATALOGUE.iter().position(|kind| kind.spec().name == name).map(Self::at)
     }
 
-    /// All kinds, those with a name first.
+    /// All kinds, those of the catalogue first.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..CATALOGUE.len() + UNMODELLED.len()).map(Self::at)
     }
 
-    /// Everything the program knows of it.
+    /// Its implementation.
     pub fn get(self) -> &'static dyn EffectKind {
         self.kind
     }
@@ -59,7 +59,7 @@ impl Kind {
         self.kind.spec()
     }
 
-    /// The catalogue's name; `None` for a form without a name.
+    /// The name in the catalogue; `None` for an unmodelled form.
     pub fn name(self) -> Option<&'static str> {
         (self.index < CATALOGUE.len()).then(|| self.spec().name)
     }

@@ -4,7 +4,7 @@ use crate::form::Times;
 use crate::signals::Signals;
 use crate::term::{Cone, Law, Term};
 
-/// Sine (form 0) and cosine (form 1) of a law of waves on a joint, at one size.
+/// Sine (form 0) and cosine (form 1) of a periodic law on a joint, at one size.
 pub fn sine_and_cosine(law: &'static Law, joint: usize, size: f64) -> Vec<Term> {
     let wave = |form| Term::on(law, joint).form(form).sized([size]);
     vec![wave(0), wave(1)]
@@ -62,7 +62,8 @@ pub fn power(term: &Term) -> i32 {
     term.form as i32
 }
 
-/// A tent on the position of joint `of[1]`: sizes are its top and half its foot (rad or m), the form what it is multiplied with.
+/// A tent function of the position of joint `of[1]`. Sizes are its centre and half its width (rad or m); the form is its factor
+/// ([`Times`]).
 pub static TENT: Law = Law {
     name: "tent",
     column: |term, joint, motion| {
@@ -79,7 +80,7 @@ pub static TENT: Law = Law {
     ..Law::PLAIN
 };
 
-/// A tent: one at `centre`, zero from `width` away from it on.
+/// A tent function: one at `centre`, zero at a distance of `width` and more.
 pub fn tent(x: f64, centre: f64, width: f64) -> f64 {
     (1.0 - ((x - centre) / width).abs()).max(0.0)
 }
@@ -89,7 +90,7 @@ pub fn wave(phase: f64, cosine: bool) -> f64 {
     if cosine { phase.cos() } else { phase.sin() }
 }
 
-/// The position of joint `of` from −1 to 1 over its range.
+/// The position of joint `of`, scaled to −1 to 1 over its range.
 pub fn centred(motion: &Signals<'_>, of: usize, tick: usize) -> f64 {
     (motion.q[of][tick] - motion.scales.middle[of]) / (0.5 * motion.scales.range[of]).max(1e-9)
 }

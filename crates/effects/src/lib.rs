@@ -56,7 +56,7 @@ pub mod friction {
     pub use viscous::ViscousFriction;
 }
 
-/// What a drive adds to the torque, or does to it.
+/// Torques that a drive adds, and changes of its torque.
 pub mod drive {
     mod backlash;
     mod coupling;
@@ -75,7 +75,7 @@ pub mod drive {
     pub use saturation::TorqueSaturation;
 }
 
-/// What is wrong with a reading.
+/// Errors of sensors.
 pub mod sensor {
     mod encoder_offset;
     mod torque_offset;
@@ -86,7 +86,7 @@ pub mod sensor {
     pub use torque_scale::TorqueScale;
 }
 
-/// What is wrong with the arm's bodies, where it stands, or what pushes it.
+/// Errors of the arm's bodies and of its mounting, and forces on it.
 pub mod arm {
     mod contact;
     mod inertial_parameters;
@@ -103,7 +103,7 @@ pub mod arm {
     pub use tilt::GravityMisalignment;
 }
 
-/// What acts on a joint by where it stands.
+/// Torques that depend on a joint's position.
 pub mod joint {
     mod gravity_compensator;
     mod spring;
@@ -112,7 +112,7 @@ pub mod joint {
     pub use spring::Spring;
 }
 
-/// Forms without a name: what is none of the catalogue's effects is not to be given to the nearest.
+/// Unmodelled forms. They compete with the catalogue, so that other physics is not attributed to the most similar effect.
 pub mod unmodelled {
     mod history;
     mod other_position;
@@ -160,7 +160,7 @@ pub static CATALOGUE: &[&dyn EffectKind] = &[
     &arm::ExternalContact,
 ];
 
-/// Forms without a name: what is none of the catalogue's effects is not to be given to the nearest.
+/// Unmodelled forms. They compete with the catalogue, so that other physics is not attributed to the most similar effect.
 pub static UNMODELLED: &[&dyn EffectKind] = &[
     &unmodelled::OwnPosition,
     &unmodelled::OtherPosition,

@@ -1,4 +1,4 @@
-//! What effects are put into: an arm, and beside it torques on joints and what a drive does to them.
+//! A machine to which effects are added: an arm, torques on its joints, and changes of its drives.
 
 use std::fmt;
 use std::sync::Arc;
@@ -11,12 +11,12 @@ use crate::error::EffectError;
 use crate::kind::check;
 use crate::spec::Scope;
 
-/// −1, 0 or 1: the sign of a velocity, nothing at rest.
+/// The sign of a velocity: −1, 0 at rest, or 1.
 pub fn sign(velocity: f64) -> f64 {
     if velocity == 0.0 { 0.0 } else { velocity.signum() }
 }
 
-/// Where an effect is: the numbers of its joints, 0 where it has none.
+/// The place of an effect: indices of its joints, 0 where it has none.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
     /// The joint it is on.
@@ -25,10 +25,10 @@ pub struct Place {
     pub other: usize,
 }
 
-/// When and under which load friction acts.
+/// The time and the load at which friction is evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct Circumstance {
-    /// s on the recordings' own clock; `None` is long after (warm).
+    /// s on the recordings' own clock; `None` for a warm drive.
     pub time: Option<f64>,
     /// The rigid torque of the joint (N m or N).
     pub load: f64,
@@ -45,7 +45,7 @@ pub struct Dry {
 }
 
 impl Dry {
-    /// `level` is the most that it resists (N m or N) at a velocity.
+    /// Friction with a `level`: the largest torque that it resists (N m or N), as a function of velocity and circumstance.
     pub fn new(level: impl Fn(f64, Circumstance) -> f64 + Send + Sync + 'static) -> Self {
         Self {
             level: Arc::new(level),
@@ -68,17 +68,18 @@ impl Dry {
         self
     }
 
-    /// The most that it resists at a velocity (N m or N), on the average of both directions.
+    /// The largest torque that it resists at a velocity (N m or N), averaged over both directions.
     pub fn level(&self, qd: f64, at: Circumstance) -> f64 {
         (self.level)(qd, at)
     }
 
-    /// What it adds in both directions alike (N m or N): friction that differs by direction is a level and an offset.
+    /// The torque that it adds in both directions alike (N m or N). Friction that differs by direction is a level and an
+    /// offset.
     pub fn bias(&self) -> f64 {
         self.bias
     }
 
-    /// Whether the load matters.
+    /// Whether the level depends on the load.
     pub fn depends_on_load(&self) -> bool {
         self.depends_on_load
     }
@@ -96,7 +97,7 @@ impl fmt::Debug for Dry {
 /// The motion of all joints at one time (SI).
 #[derive(Clone, Copy, Debug)]
 pub struct State<'a> {
-    /// Positions, as the encoders say.
+    /// Positions, as the encoders report them.
     pub q: &'a [f64],
     /// Velocities.
     pub qd: &'a [f64],
@@ -111,9 +112,9 @@ type Torque = dyn Fn(usize, State<'_>) -> f64 + Send + Sync;
 pub struct Smooth {
     /// The joint.
     pub joint: usize,
-    /// From when on it acts (s); `None`: always.
+    /// Its onset (s); `None` if it always acts.
     pub onset: Option<f64>,
-    /// Its part in proportion to the joint's velocity, if that is all of it (N m s/rad or N s/m).
+    /// Its coefficient if it is proportional to the joint's velocity (N m s/rad or N s/m).
     pub viscous: Option<f64>,
     torque: Arc<Torque>,
 }
@@ -135,7 +136,7 @@ impl fmt::Debug for Smooth {
     }
 }
 
-/// A force on the tool for a while.
+/// A force on the tool for a limited time.
 #[derive(Clone, Debug)]
 pub struct Contact {
     /// s, on the recordings' own clock.
@@ -153,7 +154,7 @@ pub struct Scaled {
     pub joint: usize,
     /// The torque reported over the true one.
     pub factor: f64,
-    /// From when on (s); `None`: always.
+    /// Its onset (s); `None` if it always acts.
     pub onset: Option<f64>,
 }
 
@@ -166,16 +167,16 @@ pub struct Sprung {
     pub damping: f64,
 }
 
-/// An arm and what effects put into it and beside it; one entry a joint unless it says otherwise.
+/// An arm with the effects added to it; one entry per joint unless stated otherwise.
 #[derive(Clone, Debug)]
 pub struct Machine {
-    /// The rigid arm, but for rotors and payloads.
+    /// The rigid arm, without rotors and payloads.
     pub arm: Arm,
     /// Rotor inertias (kg m² or kg).
     pub rotors: Vec<f64>,
-    /// Bodies on the tool, and from when on (s); `None`: always.
+    /// Bodies on the tool with their onsets (s); `None` for one that is always there.
     pub payloads: Vec<(Option<f64>, Inertia)>,
-    /// How far each joint stands beyond what its encoder says (rad or m).
+    /// The true position of each joint minus the encoder's (rad or m).
     pub encoder_offsets: Vec<f64>,
     /// Dry friction, with its joint.
     pub dry: Vec<(usize, Dry)>,
@@ -187,9 +188,9 @@ pub struct Machine {
     pub limits: Vec<f64>,
     /// Forces on the tool.
     pub contacts: Vec<Contact>,
-    /// By how much a drive's torque is late (s).
+    /// The delay of each drive's torque (s).
     pub delays: Vec<f64>,
-    /// What gives between rotor and link.
+    /// The elastic transmission between rotor and link.
     pub springs: Vec<Option<Sprung>>,
     /// Half the gap between rotor and link (rad or m).
     pub gaps: Vec<f64>,
@@ -235,7 +236,8 @@ impl Machine {
         Ok(machine)
     }
 
-    /// Adds a torque on a joint, smooth in its own velocity: `torque` is of the joint's number and the motion (N m or N).
+    /// Adds a torque on a joint that is smooth in the joint's velocity: a function of the joint's index and the motion (N m or
+    /// N).
     pub fn add_torque(
         &mut self,
         joint: usize,
@@ -250,7 +252,7 @@ impl Machine {
         });
     }
 
-    /// Adds friction in proportion to the velocity (N m s/rad or N s/m).
+    /// Adds friction proportional to the velocity (N m s/rad or N s/m).
     pub fn add_viscous(&mut self, joint: usize, coefficient: f64) {
         self.smooth.push(Smooth {
             joint,
@@ -260,13 +262,13 @@ impl Machine {
         });
     }
 
-    /// Changes the arm by one of its builders.
+    /// Changes the arm with one of its builders.
     pub fn change_arm(&mut self, change: impl FnOnce(Arm) -> Arm) {
         self.arm = change(self.arm.clone());
     }
 }
 
-/// The number of the joint `name`; of no name, what is said is the empty one.
+/// The index of the joint `name`; the error for no name gives an empty name.
 fn joint_of(arm: &Arm, effect: &Effect, name: Option<&str>) -> Result<usize, EffectError> {
     let found = arm.joints().iter().position(|joint| Some(joint.name.as_str()) == name);
     found.ok_or_else(|| EffectError::UnknownJoint {

@@ -1,11 +1,11 @@
-//! What a number measures, and its SI unit at a joint.
+//! The quantity that a number measures, and its SI unit at a joint.
 
 use arm::JointKind;
 
-/// What a parameter measures.
+/// The quantity of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
-    /// A torque, of a prismatic joint a force.
+    /// A torque; for a prismatic joint, a force.
     Torque,
     /// A joint's position.
     Position,
@@ -34,7 +34,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Whether it is in proportion to the recorded torque, so that it is no better known than the torque constants.
+    /// Whether it is proportional to the recorded torque, so that it is no better known than the torque constants.
     pub fn is_of_torque(self) -> bool {
         match self {
             Self::Torque | Self::Damping | Self::Drag | Self::Inertia | Self::Stiffness | Self::Mass | Self::Force => {

@@ -1,22 +1,22 @@
-//! A stretch of motion as regressors see it.
+//! A section of motion, as regressors see it.
 
-/// What is slow and what is large, joint by joint.
+/// Typical and largest values of each joint.
 #[derive(Clone, Debug)]
 pub struct Scales {
-    /// The largest speed but for the fastest per cent (rad/s or m/s).
+    /// The largest speed without the fastest 1 % (rad/s or m/s).
     pub speed: Vec<f64>,
-    /// Below it a joint rests, and the sign of its velocity means nothing (rad/s or m/s).
+    /// The velocity deadband: below it a joint rests, and the sign of its velocity is undetermined (rad/s or m/s).
     pub rest: Vec<f64>,
     /// The middle of the positions (rad or m).
     pub middle: Vec<f64>,
-    /// From the lowest position to the highest (rad or m).
+    /// The difference of the highest and the lowest position (rad or m).
     pub range: Vec<f64>,
     /// The standard deviation of the measured torque (N m or N).
     pub torque: Vec<f64>,
 }
 
 impl Scales {
-    /// A sign that passes zero as fast as the noise of the velocity allows.
+    /// A smooth sign, whose slope at zero corresponds to the noise of the velocity.
     pub fn sign(&self, joint: usize, qd: f64) -> f64 {
         let x = qd / (0.3 * self.rest[joint]);
         x / (1.0 + x * x).sqrt()
@@ -28,7 +28,7 @@ impl Scales {
     }
 }
 
-/// The rigid model along the motion, on its ticks; joint first where there are two. A list that nothing reads may be empty.
+/// The rigid model along the motion, on its ticks; the first index is the joint. A list that is not needed may be empty.
 #[derive(Clone, Copy, Debug)]
 pub struct Rigid<'a> {
     /// τ (N m or N).
@@ -39,7 +39,7 @@ pub struct Rigid<'a> {
     pub payload: &'a [Vec<Vec<f64>>],
     /// ∂τ/∂q: `[joint][by]`.
     pub by_position: &'a [Vec<Vec<f64>>],
-    /// ∂τ/∂q̇, likewise.
+    /// ∂τ/∂q̇: `[joint][by]`.
     pub by_velocity: &'a [Vec<Vec<f64>>],
     /// The mass matrix.
     pub mass: &'a [Vec<Vec<f64>>],
@@ -51,14 +51,14 @@ pub struct Rigid<'a> {
     pub force: &'a [[Vec<f64>; 3]],
 }
 
-/// A stretch of motion on even ticks, joint by joint, with the rigid model along it.
+/// A section of motion on equidistant ticks, joint by joint, with the rigid model along it.
 #[derive(Clone, Copy, Debug)]
 pub struct Signals<'a> {
-    /// The number of the recording that it is of.
+    /// The index of its recording.
     pub recording: usize,
     /// The time of the first tick (s).
     pub start: f64,
-    /// From tick to tick (s).
+    /// The time between ticks (s).
     pub period: f64,
     /// Positions (rad or m).
     pub q: &'a [Vec<f64>],
@@ -70,7 +70,7 @@ pub struct Signals<'a> {
     pub tau: &'a [Vec<f64>],
     /// The rigid model.
     pub rigid: Rigid<'a>,
-    /// What is slow and what is large.
+    /// Typical and largest values of each joint.
     pub scales: &'a Scales,
 }
 

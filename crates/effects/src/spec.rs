@@ -1,10 +1,10 @@
-//! What is known of an effect before any recording: its name, its parameters, its relations and its words.
+//! What is known of an effect before any recording: name, parameters, relations and texts.
 
 use arm::JointKind;
 
 use crate::quantity::Quantity;
 
-/// Where an effect is.
+/// The scope of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
     /// On one joint.
@@ -60,10 +60,10 @@ pub enum Shape {
     Points,
 }
 
-/// Which values a parameter may have.
+/// The values that a parameter may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Range {
-    /// Any finite one.
+    /// Any finite value.
     Finite,
     /// Zero and above.
     NotNegative,
@@ -88,7 +88,7 @@ impl Range {
             }
     }
 
-    /// What a value must be, in words.
+    /// The requirement on a value, in words.
     pub fn requirement(self) -> &'static str {
         match self {
             Self::Finite => "finite",
@@ -109,13 +109,13 @@ pub struct Parameter {
     pub quantity: Quantity,
     /// What it holds.
     pub shape: Shape,
-    /// The values that each number of it may have.
+    /// The values that each of its numbers may have.
     pub range: Range,
-    /// What it is where a file does not say; `None` where it must.
+    /// The value if a file does not give one; `None` if a file must give it.
     pub default: Option<f64>,
     /// The value at which there is no effect.
     pub neutral: f64,
-    /// What a file says beside it instead of the unit; empty for nothing.
+    /// A remark in files instead of the unit; an empty one leaves the unit out.
     pub remark: Option<&'static str>,
 }
 
@@ -151,13 +151,13 @@ impl Parameter {
         self
     }
 
-    /// This parameter with another shape.
+    /// This parameter with a shape other than a number.
     pub const fn of(mut self, shape: Shape) -> Self {
         self.shape = shape;
         self
     }
 
-    /// This parameter with another remark than its unit.
+    /// This parameter with a remark instead of its unit.
     pub const fn remarked(mut self, remark: &'static str) -> Self {
         self.remark = Some(remark);
         self
@@ -169,27 +169,27 @@ impl Parameter {
 pub enum Unseen {
     /// No detectable size is determined.
     Never,
-    /// Below the largest torque.
+    /// A torque limit, which is detectable below the largest torque.
     Limit {
         /// Why it is not testable.
         because: &'static str,
     },
-    /// By the sizes at which it was tried.
+    /// From the sizes at which it was tried.
     Sized {
         /// Why it is not testable.
         because: &'static str,
-        /// Why it was not seen, where no size that was tried is detectable.
+        /// Why it was not found if no tried size is detectable.
         if_none: &'static str,
-        /// Whether small sizes are seen, not large ones.
+        /// Whether small sizes are detectable, instead of large ones.
         is_seen_below: bool,
     },
-    /// By the one coefficient that its torque is proportional to.
+    /// From the one coefficient that its torque is proportional to.
     Linear {
-        /// Why it was not seen where it has no form in these recordings.
+        /// Why it was not found if these recordings allow no form of it.
         if_no_form: Option<&'static str>,
-        /// Whether its size is a part of the first coefficient: without that it has none.
+        /// Whether its size is relative to the first coefficient, so that it has none without that.
         is_of_first: bool,
-        /// Whether it is a part of all of the joint's torque.
+        /// Whether its size is relative to the joint's whole torque.
         is_of_all_torque: bool,
     },
 }
@@ -215,63 +215,66 @@ pub struct Experiment {
 /// Everything that is known of an effect before any recording.
 #[derive(Clone, Copy, Debug)]
 pub struct Spec {
-    /// The catalogue's name; empty for a form without a name.
+    /// The name in the catalogue; empty for an unmodelled form.
     pub name: &'static str,
     /// Its name in two or three words.
     pub title: &'static str,
-    /// What it is, for readers who do not know it.
+    /// A description for readers who do not know it.
     pub meaning: &'static str,
     /// The recording that distinguishes it from similar effects.
     pub told_by: &'static str,
-    /// The torque that it adds, or what it does (for the documentation).
+    /// The torque that it adds, or its meaning (for the documentation).
     pub formula: &'static str,
-    /// A finding as a noun phrase: `{key}` is a parameter with its unit, `{key%}` a hundred times it, `{other}` the other joint.
+    /// A finding as a noun phrase: `{key}` is a parameter with its unit, `{key%}` the parameter in per cent, `{other}` the
+    /// other joint.
     pub sentence: &'static str,
-    /// Where it is.
+    /// Whether it acts on a joint or on the whole arm.
     pub scope: Scope,
     /// Its parameters, in the order of files.
     pub parameters: &'static [Parameter],
-    /// Numbers that findings give beside the parameters.
+    /// Numbers that findings give in addition to the parameters.
     pub derived: &'static [Parameter],
-    /// The parameters that say how large it is, the best first.
+    /// The parameters that measure its size, the best first.
     pub main: &'static [&'static str],
     /// Whether it may begin within the recordings.
     pub may_set_in: bool,
     /// Whether there may be two on one joint, or on the arm.
     pub may_repeat: bool,
-    /// The simpler effect that it is a form of.
+    /// The simpler effect that it generalises.
     pub plain: Option<&'static str>,
-    /// What it must explain beyond that, over the joint's torque.
+    /// The least part of the joint's torque (RMS over standard deviation) that it must explain beyond the simpler effect.
     pub least_beyond_plain: f64,
-    /// The effect that is fitted with it and named beside it.
+    /// The effect that is fitted with it and named in addition.
     pub brings: Option<&'static str>,
-    /// Effects that cannot stand beside it on one joint: the other side need not say so too.
+    /// Effects that cannot act on the same joint. It is sufficient that one of two effects lists the other.
     pub excludes: &'static [&'static str],
-    /// The evidence that it must bring beyond that of its coefficients (nats).
+    /// The evidence that it must bring in addition to that of its coefficients (nats).
     pub prior: f64,
-    /// Whether it is baseline: friction and rotor inertia, which a URDF usually omits, need less evidence.
+    /// Whether it is a baseline effect: friction and rotor inertia, which most URDFs omit, need less evidence.
     pub is_baseline: bool,
-    /// Whether it is the friction that every drive has.
+    /// Whether it is a friction that every drive has.
     pub is_friction: bool,
-    /// Whether it is a baseline effect, or a constant beside one.
+    /// Whether it is a baseline effect or a constant.
     pub is_simple: bool,
-    /// Whether there is but one form that it can have: it follows from rigid-body dynamics.
+    /// Whether its form is certain, because it follows from rigid-body dynamics.
     pub is_certain_in_form: bool,
-    /// Whether it may be there in one recording alone.
+    /// Whether it may be present in one recording only.
     pub is_passing: bool,
-    /// Whether its forms come from what a fit leaves, which is looked at again when more is known.
+    /// Whether residuals suggest its forms; they are suggested again when more is known.
     pub is_suggested: bool,
     /// Whether it may be a part of inertial parameters that differ from the URDF's.
     pub may_be_inertial: bool,
-    /// The effect that is the same torque if it acts on all joints.
+    /// The effect with the same torque if this one acts on all joints.
     pub same_on_all_joints: Option<&'static str>,
-    /// Effects beside which, on the same joint, it must be larger than a part of them: what their forms miss looks like it.
+    /// Effects on the same joint, with the part of each that this one must exceed, because the error of their forms resembles
+    /// it.
     pub least_beside: &'static [(&'static str, f64)],
-    /// The multiple of the structure that remains on its joint that it must exceed, where it may be a part of that.
+    /// The multiple of the residual structure on its joint that it must exceed, if it may be a part of that structure.
     pub least_beside_residual: Option<f64>,
-    /// Whether it is simulated at its size, so that its coefficient must be one; it is no function of the motion at one time.
+    /// Whether it is simulated at its size, so that its coefficient must be one. Its torque is not a function of the motion at
+    /// one time.
     pub is_simulated: bool,
-    /// Whether it says that masses are not the model's.
+    /// Whether it means that masses differ from the model's.
     pub is_wrong_mass: bool,
     /// Whether it acts on the link side of an elastic drive.
     pub is_behind_the_drive: bool,
@@ -279,7 +282,7 @@ pub struct Spec {
     pub in_urdf: InUrdf,
     /// The state against which figures show it.
     pub against: Against,
-    /// What an unattributed residual depends on, for a form without a name.
+    /// What an unattributed residual depends on, for an unmodelled form.
     pub depends_on: &'static str,
     /// How its detectable size is determined where it was not found.
     pub unseen: Unseen,
@@ -292,7 +295,7 @@ pub struct Spec {
 }
 
 impl Spec {
-    /// An effect of one joint without words, parameters and relations, for the rest of a struct.
+    /// An effect of one joint without texts, parameters and relations: the defaults for the other fields of a spec.
     pub const EMPTY: Self = Self {
         name: "",
         title: "",
@@ -333,13 +336,13 @@ impl Spec {
         experiments_against: &[],
     };
 
-    /// [`Self::EMPTY`] for a form that has no name.
+    /// [`Self::EMPTY`] for an unmodelled form.
     pub const UNNAMED: Self = Self {
         prior: 9.0,
         ..Self::EMPTY
     };
 
-    /// The parameter `key`, which may be a part of a list or a number that findings give beside the parameters.
+    /// The parameter `key`, which may be a part of a list, or a number that findings give in addition to the parameters.
     pub fn parameter(&self, key: &str) -> Option<&'static Parameter> {
         let is_part = |parameter: &&Parameter| match parameter.shape {
             Shape::List(_, parts) => parts.contains(&key),
@@ -357,5 +360,5 @@ impl Spec {
     }
 }
 
-/// When an effect sets in, on the recordings' own clock.
+/// The onset of an effect, on the recordings' own clock.
 pub static ONSET: Parameter = Parameter::new("onset", Quantity::Time);

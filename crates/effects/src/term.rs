@@ -1,4 +1,4 @@
-//! The columns of the joint fit: a law with a joint and sizes. Each law stands in the file of the effect that it is of.
+//! The columns of the joint fit: a law with a joint and sizes. Each law is in the file of its effect.
 
 use std::fmt;
 
@@ -7,90 +7,90 @@ use arm::Arm;
 use crate::compliance::Behind;
 use crate::signals::Signals;
 
-/// A size that a column is not linear in.
+/// A size on which a column depends nonlinearly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Size {
     /// A velocity, a time, a limit, a stiffness, a gap.
     Main,
     /// The damping beside a stiffness.
     Damping,
-    /// What the ends of a gap give.
+    /// The stiffness of a gap's ends.
     Stop,
-    /// How long a contact lasts.
+    /// The duration of a contact.
     Duration,
-    /// The periods of a ripple.
+    /// The number of periods of a ripple.
     Periods,
-    /// The exponent of a drag; a form rather than a size, it has no interval.
+    /// The exponent of a drag. It is a form rather than a size, and has no interval.
     Exponent,
 }
 
-/// What a law is to dry friction: at rest it may hold any torque within its cone.
+/// How a law takes part in dry friction: at rest, dry friction may hold any torque within its cone.
 #[derive(Clone, Copy)]
 pub enum Cone {
-    /// The column is none of it.
+    /// The column is no dry friction.
     No,
-    /// So much of the cone for a coefficient of one, of the term, the load (N m or N) and the time (s).
+    /// The level of the cone for a coefficient of one, as a function of the term, the load (N m or N) and the time (s).
     Level(fn(&Term, f64, f64) -> f64),
     /// It shifts the middle of the cone.
     Middle,
 }
 
-/// An arm with what a fit found in it, as far as columns are not linear in that.
+/// An arm with what a fit found in it, as far as columns depend on that nonlinearly.
 pub struct Carried {
     /// The arm.
     pub arm: Arm,
-    /// How far the joints stand beyond their encoders (rad or m).
+    /// The true positions of the joints minus the encoders' (rad or m).
     pub offset: Vec<f64>,
-    /// Ten inertial parameters on the tool.
+    /// Ten inertial parameters of a body on the tool.
     pub payload: [f64; 10],
     /// The turn of the base about x and y (rad).
     pub tilt: [f64; 2],
-    /// What gravity, seen from the base, is beyond the model's (m/s²).
+    /// The difference of gravity from the model's, in the base's frame (m/s²).
     pub gravity: [f64; 3],
 }
 
-/// What makes a term's column on a joint of a motion.
+/// The function that computes a term's column on a joint of a motion.
 pub type Column = fn(&Term, usize, &Signals<'_>) -> Option<Vec<f64>>;
 
-/// What makes another form of a term at a factor on its size, and whether it is another at all.
+/// The function that gives another form of a term, with its size multiplied by a factor, and whether the form differs.
 pub type OtherForm = fn(&Term, f64) -> (Term, bool);
 
-/// One law: what a column is.
+/// A law: the definition of a column.
 pub struct Law {
     /// Its name, for debugging.
     pub name: &'static str,
     /// The torque of a term on a joint (N m or N) for a coefficient of one; `None` if it has none there.
     pub column: Column,
-    /// Whether it depends on the model along the motion, not on the motion and the torque alone.
+    /// Whether it depends on the model along the motion, and not only on motion and torque.
     pub needs_model: bool,
     /// Whether the model's derivatives by position and velocity are needed.
     pub needs_derivatives: bool,
-    /// What its sizes are, by their places in a term.
+    /// The meaning of its sizes, by their index in a term.
     pub sizes: &'static [(Size, usize)],
-    /// A term with a size times a factor, where that is more than a product.
+    /// A term with one size multiplied by a factor, where that changes more than this size.
     pub varied: Option<fn(&Term, Size, f64) -> Term>,
-    /// The other form that it may have, at a factor on its size; whether that is another one at all.
+    /// The other form that a term may have, with its size multiplied by a factor, and whether that form differs.
     pub other_form: Option<OtherForm>,
-    /// Finer steps about what its sizes are, in turn.
+    /// Small steps of its sizes for refinement.
     pub nudges: &'static [fn(&Term, f64) -> Term],
-    /// Terms with compliant ends of the gap, for a link of an inertia (kg m² or kg).
+    /// Terms with compliant ends of a gap, for a link of an inertia (kg m² or kg).
     pub softened: fn(&Term, f64) -> Vec<Term>,
-    /// Whether a term's sizes make sense.
+    /// Whether the sizes of a term are meaningful.
     pub is_sound: fn(&Term) -> bool,
-    /// What it is to dry friction.
+    /// How it takes part in dry friction.
     pub cone: Cone,
-    /// The link's motion behind a joint that gives, simulated once for all joints.
+    /// The link's motion behind a compliant joint, simulated once for all joints.
     pub behind: Option<fn(&Term, &Signals<'_>) -> Behind>,
-    /// Puts what a fit found into the arm about which columns are formed.
+    /// Adds what a fit found to the arm about which columns are evaluated.
     pub carry: Option<fn(&Term, f64, &mut Carried)>,
-    /// Whether it is made of the measured torque: a motion on paper has that only once it is known.
+    /// Whether it is computed from the measured torque, which is not known for a planned motion.
     pub is_of_torque: bool,
-    /// Whether it cuts the torque, so that a motion on paper within the limit has nothing of it.
+    /// Whether it limits the torque, so that it is zero in a planned motion within the limit.
     pub cuts: bool,
 }
 
 impl Law {
-    /// A law of nothing but a column, for the rest of a struct.
+    /// A law with nothing but a column: the defaults for the other fields.
     pub const PLAIN: Self = Self {
         name: "",
         column: |_, _, _| None,
@@ -123,13 +123,13 @@ pub struct Term {
     pub law: &'static Law,
     /// The one joint it acts on; `None` if it may act on all.
     pub joint: Option<usize>,
-    /// The joints, the link, the parameter or the axis that it is about.
+    /// Indices of the joints, the link, the parameter or the axis.
     pub of: [usize; 2],
-    /// Which of the law's forms.
+    /// The index of the law's form.
     pub form: usize,
     /// Its sizes.
     pub sizes: [f64; 4],
-    /// From when on it acts (s, on the recordings' own clock); `None`: always.
+    /// Its onset (s, on the recordings' own clock); `None` if it always acts.
     pub from: Option<f64>,
 }
 
@@ -145,7 +145,7 @@ impl PartialEq for Term {
 }
 
 impl Term {
-    /// A law that acts on one joint alone.
+    /// A term of a law that acts on one joint only.
     pub const fn on(law: &'static Law, joint: usize) -> Self {
         Self {
             law,
@@ -157,7 +157,7 @@ impl Term {
         }
     }
 
-    /// A law that may act on all joints, about one of them, a link, a parameter or an axis.
+    /// A term of a law that may act on all joints, with the index of a joint, a link, a parameter or an axis.
     pub const fn about(law: &'static Law, about: usize) -> Self {
         Self {
             joint: None,
@@ -165,13 +165,13 @@ impl Term {
         }
     }
 
-    /// This term with another joint in it.
+    /// This term with another joint.
     pub const fn of(mut self, other: usize) -> Self {
         self.of[1] = other;
         self
     }
 
-    /// This term in one of its forms.
+    /// This term in another form.
     pub const fn form(mut self, form: usize) -> Self {
         self.form = form;
         self
@@ -183,7 +183,7 @@ impl Term {
         self
     }
 
-    /// This term from a time on (s).
+    /// This term with an onset (s).
     pub fn since(mut self, from: f64) -> Self {
         self.from = Some(from);
         self
@@ -195,17 +195,17 @@ impl Term {
         self
     }
 
-    /// When it sets in (s); `None` if it always acts.
+    /// Its onset (s); `None` if it always acts.
     pub fn onset(&self) -> Option<f64> {
         self.from
     }
 
-    /// Whether it is of this law and always acts.
+    /// Whether it is of this law and has no onset.
     pub fn is(&self, law: &'static Law) -> bool {
         self.from.is_none() && std::ptr::eq(self.law, law)
     }
 
-    /// Whether it depends on the model along the motion, not on the motion and the torque alone.
+    /// Whether it depends on the model along the motion, and not only on motion and torque.
     pub fn is_dynamic(&self) -> bool {
         self.law.needs_model
     }

@@ -1,4 +1,4 @@
-//! A motion of a small arm, and whether an effect's columns and its torque in a machine are one law.
+//! A motion of a small arm, and the check that an effect's columns and its torque in a machine are the same law.
 
 use ::arm::{Arm, PARAMETERS_PER_LINK, Vector3, Workspace};
 use nalgebra::DMatrix;
@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use crate::machine::Circumstance;
 use crate::{Effect, Machine, Rigid, Scales, Signals, State, Term, sign};
 
-/// Two axes, one after the other, the tool .5 m beyond.
+/// An arm of two joints, with the tool 0.5 m beyond the second.
 const URDF: &str = r#"<robot name="two"><link name="base"/>
 <joint name="a" type="continuous"><parent link="base"/><child link="la"/><axis xyz="0 1 0"/></joint>
 <link name="la"><inertial><origin xyz=".5 0 0"/><mass value="1"/><inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".2"/></inertial></link>
@@ -26,7 +26,7 @@ pub fn machine(effect: &Effect) -> Machine {
     Machine::new(&arm(), std::slice::from_ref(effect)).expect("it is physical")
 }
 
-/// Both joints' position, velocity and acceleration at a tick: one goes forth, the other back, never slowly.
+/// Position, velocity and acceleration of both joints at a tick. They move in opposite directions, and never slowly.
 fn state(tick: usize) -> [[f64; 2]; 3] {
     let t = tick as f64 * PERIOD;
     let (s, c) = (2.0 * t).sin_cos();
@@ -44,14 +44,14 @@ fn signals(pick: impl Fn(usize) -> [f64; 2]) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// What moves it (N m).
+/// The torque of the motion (N m).
 fn torque(arm: &Arm, [q, qd, qdd]: [[f64; 2]; 3]) -> [f64; 2] {
     let mut tau = [0.0; 2];
     arm.inverse_dynamics(&mut Workspace::new(arm), &q, &qd, &qdd, &mut tau);
     tau
 }
 
-/// A derivative of the torque by what `change` moves, at a tick.
+/// The derivative of the torque with respect to a change of the arm or the motion, at a tick.
 fn derivative(change: &dyn Fn(f64, &mut [[f64; 2]; 3]) -> Arm, tick: usize) -> [f64; 2] {
     const STEP: f64 = 1e-5;
     let at = |by: f64| {
@@ -181,7 +181,7 @@ fn along<T>(visit: impl FnOnce(&Signals<'_>) -> T) -> T {
     })
 }
 
-/// A column on a joint, and the joint's torque beside it.
+/// A column on a joint, and the joint's torque.
 pub fn column(term: &Term, joint: usize) -> (Vec<f64>, Vec<f64>) {
     along(|motion| {
         let column = term.column(joint, motion).expect("it acts on the joint");
@@ -189,7 +189,7 @@ pub fn column(term: &Term, joint: usize) -> (Vec<f64>, Vec<f64>) {
     })
 }
 
-/// Asserts that columns times coefficients are what a machine with the effect needs beyond the arm alone.
+/// Asserts that columns times coefficients equal the torque that a machine with the effect needs in addition to the arm's.
 #[track_caller]
 pub fn agree(effect: &Effect, columns: &[(Term, f64)]) {
     let machine = machine(effect);

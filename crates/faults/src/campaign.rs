@@ -1,4 +1,4 @@
-//! Which cases there are: robots, difficulty and families, decided before anything is simulated.
+//! The cases of a campaign: robots, difficulty and families, decided before anything is simulated.
 
 use rand::seq::{IndexedRandom, SliceRandom};
 use rand::{Rng, SeedableRng};
@@ -12,24 +12,24 @@ use crate::urdf_error::SIGMAS;
 /// three effects of it, every family about as often; half are easy, half hard.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Campaign {
-    /// What everything is drawn from.
+    /// The seed of all random choices.
     pub seed: u64,
-    /// How many cases there are.
+    /// The number of cases.
     pub cases: usize,
-    /// Whether half of the cases look like reality ([`CasePlan::lifelike`]).
+    /// Whether half of the cases resemble real robots ([`CasePlan::lifelike`]).
     pub lifelike: bool,
-    /// How wrong the URDFs are, about relative; `None`: 0, 0.03, 0.1 and 0.3 in turns, so that a quarter is exact.
+    /// The relative error of the URDFs; `None` for 0, 0.03, 0.1 and 0.3 in turns, so that a quarter is exact.
     pub urdf_error: Option<f64>,
 }
 
-/// What a case is to be, before sizes are drawn.
+/// The plan of a case, before sizes are drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CasePlan {
     /// The case's place in its campaign, from 0.
     pub index: usize,
     /// Its name, that of its folder.
     pub name: String,
-    /// What its sizes, motions and noise are drawn from.
+    /// The seed of its sizes, motions and noise.
     pub seed: u64,
     /// Whether it is of the harder kind: 100 to 500 Hz and sometimes 1 kHz, stamps that jitter, rows lost, functional forms that are not
     /// the textbook's, smaller effects, two training recordings instead of three.
@@ -38,16 +38,16 @@ pub struct CasePlan {
     pub background_friction: bool,
     /// Names of the effects.
     pub effects: Vec<String>,
-    /// Whether it looks like reality: every joint has a little of everything, torque constants are off, friction is another in each
-    /// recording, the torque's noise is coloured and quantised, gearboxes give, tools are drawn that are not mounted, and some files have
-    /// clocks of their own.
+    /// Whether it resembles a real robot: small effects on every joint, wrong torque constants, friction that differs between
+    /// recordings, coloured and quantised torque noise, elastic gearboxes, tools that the URDF draws and that are not mounted,
+    /// and files with clocks of their own.
     pub lifelike: bool,
-    /// How wrong the inertials of the URDF are everywhere, about relative.
+    /// The relative error of all inertial parameters of the URDF.
     pub urdf_error: f64,
 }
 
 impl Campaign {
-    /// The plan of case `index`, or of none if there are not so many.
+    /// The plan of case `index`; `None` beyond the last.
     pub fn case(&self, index: usize) -> Option<CasePlan> {
         self.plans().into_iter().nth(index)
     }
@@ -60,7 +60,7 @@ impl Campaign {
         let mut outside = Deck::new(outside());
         let mut families = Deck::new(families());
         let mut effects: Vec<(Vec<String>, bool)> = Vec::new();
-        // Every other one of each kind looks like reality.
+        // Every second case of each kind resembles a real robot.
         while effects.len() < self.cases {
             let lifelike = self.lifelike && effects.len() % 2 == 1;
             let names = match effects.len() {
@@ -74,7 +74,7 @@ impl Campaign {
             };
             effects.push((names, lifelike));
         }
-        // Where friction is and how hard a case is has nothing to do with what is in it.
+        // Friction and difficulty do not depend on the faults.
         let mut quarters: Vec<bool> = (0..self.cases).map(|i| i % 4 != 0).collect();
         let mut halves: Vec<bool> = (0..self.cases).map(|i| i % 2 == 1).collect();
         let mut errors: Vec<f64> = (0..self.cases).map(|i| SIGMAS[i % SIGMAS.len()]).collect();
@@ -91,7 +91,7 @@ impl Campaign {
                 // Fits the integers of any JSON reader.
                 seed: random.random::<u64>() >> 11,
                 hard,
-                // Every real joint has it.
+                // Every real joint has friction.
                 background_friction: friction || lifelike,
                 effects,
                 lifelike,
@@ -145,7 +145,7 @@ impl Deck {
         }
     }
 
-    /// The next `size` names that can be together; those that cannot wait.
+    /// The next `size` names that are allowed together; names that are not allowed wait.
     fn hand(&mut self, size: usize, random: &mut impl Rng) -> Vec<String> {
         self.fill(3 * self.names.len(), random);
         let mut hand: Vec<&str> = Vec::new();

@@ -1,4 +1,4 @@
-//! A case's folder and its truth, written whole or not at all.
+//! A case's folder and its ground truth, written completely or not at all.
 
 use std::path::{Path, PathBuf};
 

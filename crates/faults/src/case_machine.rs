@@ -1,4 +1,4 @@
-//! A case's true machine under a controller from outside.
+//! The true machine of a case under an external controller.
 
 use crate::error::FaultError;
 use crate::machine::{Begin, Inverse, LinkMotion, Machine, Seen};
@@ -7,7 +7,8 @@ use crate::truth::{Injected, Truth};
 
 /// The machine that a case's recordings are of.
 ///
-/// Its time is the recordings' clock: what has set in by then is there, what warms has warmed, and a contact acts in its window alone.
+/// Its time is the recordings' clock: effects with an onset before it are present, drives are warm, and a contact acts only in
+/// its window.
 pub struct CaseMachine<'a> {
     machine: Machine<'a>,
     robot: &'a Robot,
@@ -17,11 +18,11 @@ pub struct CaseMachine<'a> {
 /// A run of a machine; `[tick × dof + joint]`, ticks of 1 ms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Driven {
-    /// Where the links were (rad or m), which no encoder tells.
+    /// True positions of the links (rad or m), which no encoder measures.
     pub links: Vec<f64>,
-    /// What the encoders said (rad or m).
+    /// Positions that the encoders report (rad or m).
     pub q: Vec<f64>,
-    /// The torques commanded (N m or N).
+    /// Commanded torques (N m or N).
     pub tau: Vec<f64>,
 }
 
@@ -75,10 +76,10 @@ impl<'a> CaseMachine<'a> {
         })
     }
 
-    /// The torques that a motion of its links takes by its own laws: the exact model.
+    /// The torques that a motion of the links needs by the machine's own laws: the exact model.
     ///
-    /// Dry friction has the sign of the velocity and is nothing at rest. Left out are contacts, which are events; gaps and torque
-    /// limits, which no torque undoes; and the damping of springs. What remembers starts as a run does.
+    /// Dry friction has the sign of the velocity and is zero at rest. Contacts, which are events, gaps and torque limits, which
+    /// no torque compensates, and the damping of springs are omitted. States with memory start as in a run.
     pub fn inverse(&self, motion: &LinkMotion<'_>) -> Inverse {
         self.machine.inverse(motion)
     }
@@ -139,7 +140,8 @@ mod tests {
         })
     }
 
-    /// The machine follows its own inverse, whatever is concealed in it: in forms that the catalogue has not, with a memory, in a spring.
+    /// The machine follows its own inverse with every fault: in forms that the catalogue does not have, with memory, with a
+    /// spring.
     #[test]
     fn the_inverse_is_the_machines_own() {
         let robot = seven_axis();

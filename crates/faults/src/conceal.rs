@@ -1,4 +1,4 @@
-//! From a plan, or from given effects, to recordings and their truth.
+//! From a plan, or from given effects, to recordings and their ground truth.
 
 use recording::Recording;
 
@@ -14,12 +14,12 @@ mod stage;
 pub(crate) use stage::{AGAIN, TRAINING};
 use stage::{Kind, Stage, Stream, random};
 
-/// Recordings of a machine in which physics is concealed, and the truth about it.
+/// Recordings of a machine with injected faults, and the ground truth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Concealment {
-    /// What was concealed.
+    /// The ground truth.
     pub truth: Truth,
-    /// The URDF that the user believes.
+    /// The URDF that the user has.
     pub urdf: String,
     /// Excitation.
     pub train: Vec<Recording>,
@@ -27,24 +27,24 @@ pub struct Concealment {
     pub held_out: Recording,
 }
 
-/// How effects that are given are recorded.
+/// How given effects are recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// What motions and noise are drawn from.
+    /// The seed of motions and noise.
     pub seed: u64,
-    /// Rows a second: a part of 1000 (Hz).
+    /// The rate of the rows (Hz), a divisor of 1000.
     pub rate: u32,
     /// Whether stamps jitter by a tenth of the period.
     pub jitter: bool,
     /// Whether a hundredth of the rows is lost.
     pub lost: bool,
-    /// How many training recordings there are.
+    /// The number of training recordings.
     pub training: usize,
-    /// Whether every joint has baseline friction on top, drawn from the seed.
+    /// Whether baseline friction on every joint is added, drawn from the seed.
     pub background_friction: bool,
-    /// Whether the case looks like reality beside the effects ([`CasePlan::lifelike`]).
+    /// Whether the case resembles a real robot ([`CasePlan::lifelike`]).
     pub lifelike: bool,
-    /// How wrong the inertials of the URDF are everywhere, about relative.
+    /// The relative error of all inertial parameters of the URDF.
     pub urdf_error: f64,
 }
 
@@ -67,7 +67,7 @@ impl Default for Settings {
 /// Rates that a drive of 1 kHz can be recorded at (Hz).
 pub const RATES: [u32; 8] = [1000, 500, 250, 200, 125, 100, 50, 40];
 
-/// Conceals `effects`, as they are given, in recordings of `robot`.
+/// Injects given `effects` in recordings of `robot`.
 ///
 /// # Errors
 /// [`FaultError::Effect`] or [`FaultError::Setting`], with the remedy, if something cannot be; [`FaultError::Lost`] if the position
@@ -126,7 +126,7 @@ pub fn conceal_effects(
     stage.finish(name, effects, &runs)
 }
 
-/// Draws what `plan` says, until it shows and the machine runs soundly, and records it.
+/// Draws the faults of `plan` until they are detectable and the position loop is stable, and records the machine.
 ///
 /// # Errors
 /// [`FaultError::NotExpressed`] if no draw comes out; [`FaultError::Plant`] if the robot cannot be simulated.

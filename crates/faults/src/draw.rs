@@ -18,14 +18,14 @@ const TORQUE_CONSTANT: f64 = 0.05;
 /// How many of these deviations, and of the URDF's, a factor is off by at least that is to be told from them.
 const BEYOND: f64 = 2.0;
 
-/// How often faults set in at an onset that may.
+/// The probability of an onset for faults that may have one.
 const ONSET: f64 = 0.12;
 
-/// What sizes are drawn by.
+/// The data from which sizes are drawn.
 pub(crate) struct Scales<'a> {
     pub robot: &'a Robot,
     pub hard: bool,
-    /// Whether the case is to look like reality.
+    /// Whether the case resembles a real robot.
     pub lifelike: bool,
     /// Standard deviation of each joint's torque (N m or N), without faults.
     pub spreads: &'a [f64],
@@ -47,7 +47,7 @@ pub(crate) struct Site<'a> {
     pub robot: &'a Robot,
     /// Whether the case is of the harder kind.
     pub hard: bool,
-    /// Whether the case is to look like reality.
+    /// Whether the case resembles a real robot.
     pub lifelike: bool,
     /// When the first training recording begins and the last ends (s).
     pub span: (f64, f64),
@@ -161,7 +161,7 @@ impl<'a> Site<'a> {
     }
 }
 
-/// `bare` in another form, half of the time.
+/// `bare` in another form, with a probability of one half.
 pub(crate) fn sometimes(bare: Injected, form: &str, random: &mut ChaCha8Rng) -> Injected {
     if random.random_bool(0.5) {
         bare.formed(form)

@@ -1,22 +1,22 @@
-//! What can be wrong with a case.
+//! Errors of cases.
 
 use std::path::PathBuf;
 
 /// Why a case cannot be made or written.
 #[derive(Debug, thiserror::Error)]
 pub enum FaultError {
-    /// An effect cannot be concealed as it is given.
+    /// An effect cannot be injected as it is given.
     #[error("{effect}: {reason}")]
     Effect {
         /// The effect's name.
         effect: String,
-        /// What was found, and the remedy.
+        /// The description, with the remedy.
         reason: String,
     },
-    /// A setting of the recordings is none that a logger could have.
+    /// A setting of the recordings is impossible.
     #[error("{0}")]
     Setting(String),
-    /// The robot's URDF is none of an arm.
+    /// The robot's URDF contains no arm.
     #[error(transparent)]
     Arm(#[from] arm::ArmError),
     /// The plant cannot be built.
@@ -27,16 +27,16 @@ pub enum FaultError {
         "joint \"{joint}\" leaves its reference by {by:.2} rad or m, more than {most} rad or m; make the effects smaller"
     )]
     Lost {
-        /// The joint that is furthest away.
+        /// The joint with the largest distance.
         joint: String,
-        /// How far (rad or m).
+        /// The distance (rad or m).
         by: f64,
-        /// How far it may be.
+        /// The allowed distance.
         most: f64,
     },
-    /// No draw of the case came out as it should.
+    /// No draw of the case was accepted.
     #[error(
-        "{case}: {effects} could not be concealed on {robot} so that it shows and the position loop is sound; leave the robot out, or take another seed"
+        "{case}: {effects} could not be injected on {robot} so that it is detectable and the position loop is stable; leave the robot out, or take another seed"
     )]
     NotExpressed {
         /// The case.
@@ -46,7 +46,7 @@ pub enum FaultError {
         /// The robot's name.
         robot: String,
     },
-    /// There is something where the case would go.
+    /// The case exists already.
     #[error("{path} is there already; give another folder, nothing is overwritten")]
     Exists {
         /// The file or folder.
@@ -60,7 +60,7 @@ pub enum FaultError {
     Folder {
         /// The folder.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         reason: std::io::Error,
     },
 }

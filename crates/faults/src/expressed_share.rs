@@ -1,4 +1,4 @@
-//! How much of the torque an effect is: the runs with and without it, compared below 20 Hz.
+//! The part of the torque that is due to an effect: the runs with and without it, compared below 20 Hz.
 
 /// Half-power frequency of the comparison, both passes together taken as one (Hz).
 const CUTOFF: f64 = 20.0;

@@ -1,7 +1,7 @@
-//! The faults that can be injected, one file each: its name and forms, where it can be, how it is drawn, how its parameters are read and
-//! checked, its law, and an example that the tests run.
+//! The faults that can be injected, one file each: name and forms, where it can be, how it is drawn, how its parameters are
+//! read and checked, its law, and an example for the tests.
 //!
-//! To add a fault, write its file, and name it below: as a module, and in [`FAULTS`].
+//! To add a fault, write its file, and add its name below, as a module and in [`FAULTS`].
 
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
@@ -84,17 +84,17 @@ pub(crate) static FAULTS: [Fault; 32] = [
     multiplicative_unknown::FAULT,
 ];
 
-/// What is known of a kind of fault. The first fields repeat what the catalogue of effects says: `effects::Spec` is to replace them.
+/// The definition of a kind of fault. The first fields repeat the catalogue of effects, because `faults` does not depend on it.
 pub(crate) struct Fault {
     /// The catalogue's name, or one that ends in `_unknown`.
     pub name: &'static str,
-    /// Whether campaigns draw it. What is not drawn leaves the cases of a seed as they were.
+    /// Whether campaigns draw it. A fault that is not drawn leaves the cases of every seed as they were.
     pub is_drawn: bool,
     /// On which joints it is drawn, or on the whole arm.
     pub place: Place,
-    /// Whether the catalogue has no name for it.
+    /// Whether it is outside the catalogue.
     pub is_outside: bool,
-    /// Its forms beside the first, which is the textbook's (or the plainest).
+    /// Its forms in addition to the first, which is the textbook form (or the simplest).
     pub forms: &'static [&'static str],
     /// Its parameters, all with defaults, beyond the catalogue's.
     pub form_parameters: &'static [&'static str],
@@ -102,48 +102,48 @@ pub(crate) struct Fault {
     pub can_be_on: fn(&Robot) -> bool,
     /// Whether it may set in at an onset when it is drawn.
     pub sets_in: bool,
-    /// Those of one kind are not drawn together: one of them at a time can be told.
+    /// Its group: faults of one group are not drawn together, because they cannot be distinguished.
     pub alone_among: Option<Alike>,
-    /// What stays of it when it is taken away.
+    /// The part of it that remains when it is removed.
     pub leaves: Leaves,
     /// Whether it is a constant torque, so that its share is that of the mean, too.
     pub is_constant: bool,
     /// Whether there may be several on one joint.
     pub may_be_several: bool,
-    /// Whether a sound machine may swing with it.
+    /// Whether the position loop may oscillate with it.
     pub rattles: bool,
-    /// How it is made larger or smaller.
+    /// How it is scaled.
     pub size: Size,
-    /// Gives it a form and parameters that a robot could have, at random.
+    /// Draws a form and parameters that a robot could have.
     pub draw: fn(Injected, &Site<'_>, &mut ChaCha8Rng) -> Injected,
     /// Its parts of the machine, from its checked parameters.
     pub read: fn(&Reader<'_>) -> Result<Vec<Piece>, FaultError>,
-    /// Gives it parameters at which it shows, on axis 4 of the arm with seven axes.
+    /// Sets parameters at which it is detectable, on axis 4 of the arm with seven axes.
     #[cfg(test)]
     pub example: fn(Injected) -> Injected,
 }
 
-/// Where a fault is drawn.
+/// The joints on which a fault is drawn.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Place {
     AnyJoint,
     /// All but the first.
     OuterJoints,
-    /// All but the first and the last: the base may carry no load, and the last link may be next to nothing.
+    /// All but the first and the last: the first may carry no load, and the last link may have almost no mass.
     InnerJoints,
     /// Those whose torque is mostly what the URDF's bodies cost: the factor of what is all friction and drive is nobody's to tell.
     LoadedJoints,
     WholeArm,
 }
 
-/// Faults that look alike.
+/// Groups of similar faults.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Alike {
     BetweenCommandAndLink,
     Scales,
 }
 
-/// What stays of a fault when it is taken away.
+/// The part of a fault that remains when it is removed.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Leaves {
     Nothing,
@@ -151,18 +151,18 @@ pub(crate) enum Leaves {
     DryFriction,
     /// The rotor of a drive whose spring is rigid.
     Rotor,
-    /// A tool that the URDF has and the machine has not: without the fault it is mounted.
+    /// A tool that the URDF has and the machine does not have: without the fault, it is mounted.
     Tool,
 }
 
-/// How a fault is made `factor` as large.
+/// How a fault is scaled by a factor.
 #[derive(Clone, Copy)]
 pub(crate) enum Size {
-    /// Not at all: it has sizes that machines have.
+    /// Not at all: its sizes are those of machines.
     AsDrawn,
     /// These parameters times the factor.
     Times(&'static [&'static str]),
-    /// By the new values of some parameters, as far as physics lets it.
+    /// By the new values of some parameters, within physical limits.
     Changed(fn(&Injected, f64) -> Vec<(&'static str, Value)>),
 }
 
@@ -205,7 +205,7 @@ impl Fault {
         FAULTS.iter().find(|fault| fault.name == name)
     }
 
-    /// Makes one `factor` as large.
+    /// Scales a fault by `factor`.
     pub(crate) fn resize(&self, injected: &mut Injected, factor: f64) {
         let changed = match self.size {
             Size::AsDrawn => Vec::new(),

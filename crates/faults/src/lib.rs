@@ -1,8 +1,9 @@
-//! Injected faults: recordings of a simulated arm with faults that its URDF leaves out, and the sealed truth about them.
+//! Injected faults: recordings of a simulated arm with faults that its URDF does not have, and the sealed ground truth.
 //!
-//! A [`Robot`] is what its user believes. A [`Campaign`] decides which cases there are; [`conceal_case`] draws one, [`conceal_effects`]
-//! takes what it is given: either drives the plant in a 1 kHz position loop with faults in it, records what encoders and drives report,
-//! and keeps the [`Truth`]. [`write_case`] puts the two in different places, a [`Seal`] holds their hashes.
+//! A [`Robot`] is the user's model. A [`Campaign`] decides which cases there are; [`conceal_case`] draws one,
+//! [`conceal_effects`] takes given effects. Both drive the plant in a 1 kHz position loop with the faults, record what encoders
+//! and drives report, and return the [`Truth`]. [`write_case`] writes the two to different places, a [`Seal`] contains their
+//! hashes.
 
 mod campaign;
 mod case;

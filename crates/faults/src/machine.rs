@@ -1,4 +1,4 @@
-//! The true machine: the plant and its drives under a law, with all that its URDF leaves out.
+//! The true machine: the plant and its drives under a control law, with all injected faults.
 
 use arm::{Arm, Matrix6xX, Workspace};
 use plant::{Plant, PlantOptions};
@@ -45,7 +45,7 @@ pub(crate) struct Run {
     pub tau: Vec<f64>,
 }
 
-/// A robot with what it really has.
+/// A robot with its faults.
 pub(crate) struct Machine<'a> {
     robot: &'a Robot,
     parts: Parts,

@@ -24,11 +24,11 @@ pub(crate) struct Piece {
 /// In which machine a piece is: in the one with the fault, or in the one without it.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum There {
-    /// With the fault, from its onset on.
+    /// In the machine with the fault, from its onset on.
     With,
-    /// In both, from the start.
+    /// In both machines, from the start.
     Always,
-    /// Only without it, from the start: what the user believes to be there and is not.
+    /// Only in the machine without the fault, from the start: the user believes it to be there, and it is not.
     Without,
 }
 
@@ -53,7 +53,7 @@ pub(crate) enum What {
 }
 
 impl What {
-    /// As a piece that stays when its fault is taken away.
+    /// A piece that remains when its fault is removed.
     pub(crate) fn stays(self) -> Piece {
         Piece {
             what: self,
@@ -61,7 +61,7 @@ impl What {
         }
     }
 
-    /// As a piece that comes when its fault is taken away.
+    /// A piece that is added when its fault is removed.
     pub(crate) fn comes_without(self) -> Piece {
         Piece {
             what: self,

@@ -47,10 +47,10 @@ impl Robot {
         Ok(robot)
     }
 
-    /// With the baseline inertias of its drives, seen at the joints (kg m² or kg), which its URDF leaves out.
+    /// The robot with the baseline inertias of its drives, reflected to the joints (kg m² or kg), which its URDF omits.
     ///
     /// # Errors
-    /// [`FaultError::Setting`] if there is not one number a joint that is not negative.
+    /// [`FaultError::Setting`] if there is not one number per joint that is not negative.
     pub fn with_rotor_inertias(mut self, rotors: &[f64]) -> Result<Self, FaultError> {
         if rotors.len() != self.arm.dof() || rotors.iter().any(|&rotor| rotor.is_nan() || rotor < 0.0) {
             let reason = format!("give {} rotor inertias, none of them negative", self.arm.dof());
@@ -75,7 +75,7 @@ impl Robot {
         &self.arm
     }
 
-    /// The drives' baseline inertias (kg m² or kg), one a joint.
+    /// The drives' baseline inertias (kg m² or kg), one per joint.
     pub fn rotor_inertias(&self) -> &[f64] {
         &self.rotors
     }

@@ -1,4 +1,4 @@
-//! Saving and loading: one JSON file a model, written whole or not at all.
+//! Saving and loading: one JSON file a model, written completely or not at all.
 
 use std::fs;
 use std::io::{BufWriter, Write};
@@ -139,7 +139,7 @@ fn check_triangle(name: &str, triangle: &Triangle, rank: usize) -> Result<(), St
 }
 
 impl Gp {
-    /// Writes the model to a JSON file, whole or not at all: to a temporary file in the same folder, which then takes the name.
+    /// Writes the model to a JSON file, completely or not at all: to a temporary file in the same folder, which then takes the name.
     ///
     /// # Errors
     /// [`GpError::File`], naming the file.

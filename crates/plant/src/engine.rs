@@ -44,7 +44,7 @@ pub(crate) struct Engine {
 }
 
 impl Engine {
-    /// The multibody of `arm`, at q = 0 and at rest, with viscous friction (one value a joint, or none).
+    /// The multibody of `arm`, at q = 0 and at rest, with viscous friction (one value per joint, or none).
     pub(crate) fn new(arm: &Arm, viscous: &[f64]) -> Result<Self, PlantError> {
         let inertias = simulable_inertias(arm)?;
         let colliders = ColliderSet::new();

@@ -3,8 +3,8 @@
 /// Why a [`crate::Plant`] cannot be built or cannot go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PlantError {
-    /// A list has not one value a joint.
-    #[error("{what} has {found} values, but the arm has {expected} joints; give one a joint")]
+    /// A list has not one value per joint.
+    #[error("{what} has {found} values, but the arm has {expected} joints; give one per joint")]
     Count {
         /// The list.
         what: &'static str,

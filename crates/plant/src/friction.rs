@@ -30,7 +30,7 @@ enum Contact {
 /// The joints' dry friction.
 #[derive(Clone, Debug)]
 pub(crate) struct DryFriction {
-    /// The most that friction can resist, one a joint (N m or N).
+    /// The most that friction can resist, one per joint (N m or N).
     levels: Vec<f64>,
     contacts: Vec<Contact>,
     /// Joints that stay at rest for this step, whatever drives them.

@@ -14,9 +14,9 @@ pub struct PlantOptions {
     pub step: f64,
     /// Extrapolation order k: a step runs as 1, 2, … k rapier steps, extrapolated to none; 1 is rapier's plain step.
     pub order: usize,
-    /// Viscous friction, one value a joint (N m s/rad or N s/m); empty is none.
+    /// Viscous friction, one value per joint (N m s/rad or N s/m); empty is none.
     pub viscous: Vec<f64>,
-    /// Dry (Coulomb) friction, one value a joint (N m or N), as much at rest as in motion; empty is none.
+    /// Dry (Coulomb) friction, one value per joint (N m or N), as much at rest as in motion; empty is none.
     pub coulomb: Vec<f64>,
 }
 
@@ -72,7 +72,7 @@ fn check_values(what: &'static str, values: &[f64], arm: &Arm) -> Result<(), Pla
     Ok(())
 }
 
-/// Refuses a list that has not one value a joint.
+/// Refuses a list that has not one value per joint.
 pub(crate) fn check_count(what: &'static str, values: &[f64], expected: usize) -> Result<(), PlantError> {
     if values.len() == expected {
         return Ok(());

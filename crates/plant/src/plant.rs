@@ -13,7 +13,7 @@ const FASTEST: f64 = 1e6;
 
 /// The true arm, a rapier multibody on a fixed base, driven by joint torques.
 ///
-/// Joint vectors have one entry a joint, base to tip: rad, rad/s, rad/s² and N m, or m, m/s, m/s²
+/// Joint vectors have one entry per joint, base to tip: rad, rad/s, rad/s² and N m, or m, m/s, m/s²
 /// and N where the joint is prismatic. Positions are not wrapped, limits are not enforced.
 pub struct Plant {
     pub(crate) engine: Engine,
@@ -75,20 +75,15 @@ impl Plant {
         self.steps as f64 * self.step
     }
 
-    /// How long [`Self::step`] holds its torques (s).
-    pub fn step_time(&self) -> f64 {
-        self.step
-    }
-
     /// Whether dry friction holds joint `i` fast.
     pub fn is_stuck(&self, i: usize) -> bool {
         self.friction.is_stuck(i)
     }
 
-    /// Dry friction is `levels` from now on, one value a joint (N m or N): it may change from step to step.
+    /// Dry friction is `levels` from now on, one value per joint (N m or N): it may change from step to step.
     ///
     /// # Errors
-    /// [`PlantError::Count`] if there is not one value a joint, [`PlantError::Value`] if one is negative or not finite.
+    /// [`PlantError::Count`] if there is not one value per joint, [`PlantError::Value`] if one is negative or not finite.
     pub fn set_dry_friction(&mut self, levels: &[f64]) -> Result<(), PlantError> {
         let what = "the dry friction";
         check_count(what, levels, self.dof())?;
@@ -103,7 +98,7 @@ impl Plant {
     /// Puts the arm at `q`, moving at `qd`; the time goes on.
     ///
     /// # Errors
-    /// [`PlantError::Count`] if there is not one value a joint, [`PlantError::Diverged`] if one is out of bounds.
+    /// [`PlantError::Count`] if there is not one value per joint, [`PlantError::Diverged`] if one is out of bounds.
     pub fn set_state(&mut self, q: &[f64], qd: &[f64]) -> Result<(), PlantError> {
         check_count("the position", q, self.dof())?;
         check_count("the velocity", qd, self.dof())?;
@@ -125,7 +120,7 @@ impl Plant {
     /// Holds the torques `tau` for one step.
     ///
     /// # Errors
-    /// [`PlantError::Count`] if there is not one torque a joint; [`PlantError::Diverged`] if the
+    /// [`PlantError::Count`] if there is not one torque per joint; [`PlantError::Diverged`] if the
     /// torques or the motion leave all bounds. The state then is that of the last event within the step, or before it.
     pub fn step(&mut self, tau: &[f64]) -> Result<(), PlantError> {
         check_count("the torque", tau, self.dof())?;

@@ -69,7 +69,7 @@ pub fn read(urdf: &str) -> Arm {
 pub struct Reference<'a> {
     arm: &'a Arm,
     workspace: Workspace,
-    /// Viscous friction, one value a joint.
+    /// Viscous friction, one value per joint.
     pub viscous: Vec<f64>,
 }
 

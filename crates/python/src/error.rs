@@ -18,8 +18,8 @@ const FLAGS: &[(&str, &str)] = &[
     ("--torque-accuracy", "torque_accuracy"),
     ("--verbose lists them", "the result's notes list them"),
     (
-        "testbed inspect --json has them",
-        "testbed inspect --json FILE has them",
+        "testbed inspect --json lists them",
+        "testbed inspect --json FILE lists them",
     ),
     ("--held-out", "held_out"),
     ("--cutoff", "cutoff"),

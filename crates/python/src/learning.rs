@@ -26,7 +26,7 @@ fn unknown(what: &str, found: &str, known: &[&str]) -> PyErr {
 
 #[pymethods]
 impl Learned {
-    /// Trains one regression a joint on the part of the torque that the arm leaves.
+    /// Trains one regression per joint on the part of the torque that the arm leaves.
     #[staticmethod]
     #[pyo3(signature = (dynamics, q, qd, qdd, tau, inputs, length_scales, starts, max_iterations))]
     #[expect(clippy::too_many_arguments, reason = "the Python class gives them by name")]

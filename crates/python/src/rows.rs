@@ -1,4 +1,4 @@
-//! Arrays with a row a sample, and what is computed row by row.
+//! Arrays with a row per sample, and what is computed row by row.
 
 use arm::{Arm, Workspace};
 use numpy::{PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
@@ -10,7 +10,7 @@ use crate::error::JointwiseError;
 /// Rows that one thread computes in one go.
 const BLOCK: usize = 256;
 
-/// A copy of an array of `n` rows, one column a joint.
+/// A copy of an array of `n` rows, one column per joint.
 pub struct Rows {
     /// Row by row.
     pub values: Vec<f64>,
@@ -26,7 +26,7 @@ impl Rows {
         let found = array.shape()[1];
         if found != columns {
             return Err(JointwiseError::new_err(format!(
-                "{what} has {found} columns, and the arm has {columns} joints; give one column a joint"
+                "{what} has {found} columns, and the arm has {columns} joints; give one column per joint"
             )));
         }
         let values = array.as_slice()?.to_vec();
@@ -56,7 +56,7 @@ pub fn rows<const N: usize>(arm: &Arm, given: [(&str, &PyReadonlyArray2<'_, f64>
             && first != rows.len()
         {
             return Err(JointwiseError::new_err(format!(
-                "{what} has {} rows, and {other} has {first}; give one row a sample in each",
+                "{what} has {} rows, and {other} has {first}; give one row per sample in each",
                 rows.len()
             )));
         }
@@ -85,7 +85,7 @@ pub fn each_row<W: Send>(
     values
 }
 
-/// As [`each_row`], with the arm's workspace.
+/// Computes the rows as [`each_row`] does, with the arm's workspace.
 pub fn each_row_of(
     arm: &Arm,
     count: usize,

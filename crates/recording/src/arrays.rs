@@ -1,4 +1,4 @@
-//! Named arrays with a row a sample, and the table that they make.
+//! Named arrays with a row per sample, and the table that they make.
 
 use crate::input::Input;
 use crate::table::{Column, Table};
@@ -9,11 +9,11 @@ use crate::{RecordingError, Warning};
 pub struct Array {
     /// Its name.
     pub name: String,
-    /// How many rows and columns.
+    /// The numbers of rows and columns.
     pub shape: (usize, usize),
-    /// Whether `values` are row after row, and not column after column.
+    /// Whether `values` are in the order of rows, and not of columns.
     pub by_rows: bool,
-    /// As many values as rows times columns.
+    /// The values, rows times columns.
     pub values: Column,
 }
 
@@ -47,7 +47,7 @@ pub fn table(input: &Input, format: &'static str, arrays: &[Array]) -> Result<Ta
     if samples < 2 {
         let names: Vec<&str> = arrays.iter().map(|array| array.name.as_str()).collect();
         let reason = format!(
-            "no array of numbers is a vector with a value a sample; save t, and q and tau with a column a joint; its arrays are {}",
+            "no array of numbers is a vector with a value per sample; save t, and q and tau with a column per joint; its arrays are {}",
             if names.is_empty() {
                 "none".to_owned()
             } else {

@@ -8,23 +8,23 @@
 
 mod track;
 
-/// A gap of more than this many periods may end on another phase.
+/// A gap of more than this many periods may be followed by another phase.
 pub const PHASE_GAP: f64 = 6.5;
 /// Rows that share one phase.
 const BLOCK: usize = 128;
-/// Stamps that scatter by more than this share of the period (root mean square) have no clock.
+/// Above this scatter (root mean square, as a share of the period), stamps have no clock.
 const NO_CLOCK: f64 = 0.25;
-/// Stamps that scatter by more are put on their ticks by the rows' order, not by their phase.
+/// Above this scatter, rows are assigned to ticks by their order, not by their phase.
 const WIDE: f64 = 0.12;
-/// Steps that scatter by more about whole periods tell no phase at all (evenly spread, they do by 0.37).
+/// Above this scatter of the steps about whole periods, the stamps determine no phase (evenly distributed steps have 0.37).
 const BLURRED: f64 = 0.25;
-/// How many differences an estimate of the period uses at most.
+/// The largest number of differences in an estimate of the period.
 const SAMPLES: usize = 20_000;
-/// Steps that scatter by more about whole periods have another period (evenly spread, they scatter by 0.29).
+/// Above this scatter of the steps about whole periods, the period is another one (evenly distributed steps have 0.29).
 const NO_PULSE: f64 = 0.22;
-/// Stamps that scatter by less show a jump of the phase at once.
+/// Below this scatter of the stamps, a jump of the phase is visible at once.
 const STEADY: f64 = 0.03;
-/// A row within this share of the period from its tick is beyond doubt.
+/// A row within this share of the period from its tick is certain.
 const SURE: f64 = 0.4;
 
 /// A stretch of rows on one phase.
@@ -34,7 +34,7 @@ pub struct Piece {
     pub rows: std::ops::Range<usize>,
     /// The time of its tick 0 (s).
     pub start: f64,
-    /// How far its phase is from that of the piece before, as a share of the period; 0 if not told apart.
+    /// The difference of its phase from that of the piece before, as a share of the period; 0 if they are not distinguished.
     pub shift: f64,
 }
 
@@ -47,7 +47,7 @@ pub struct Clock {
     pub ticks: Vec<i64>,
     /// The stretches of one phase, in order.
     pub pieces: Vec<Piece>,
-    /// Whether the stamps have a clock at all; if not, the ticks mean nothing.
+    /// Whether the stamps have a clock; if not, the ticks have no meaning.
     pub regular: bool,
     /// Distance of the stamps from their ticks: root mean square and largest (s), and the row of the largest.
     pub jitter: (f64, f64, usize),
@@ -195,7 +195,7 @@ fn scatter(time: &[f64], breaks: &[usize], period: f64, lag: usize) -> f64 {
     if off.is_empty() { 0.0 } else { 1.4826 * median(&mut off) }
 }
 
-/// Whether the scatter adds up from row to row: then rows were taken when they were stamped.
+/// Whether the deviations accumulate from row to row, so that rows were sampled at their stamps.
 fn accumulates(time: &[f64], pieces: &[std::ops::Range<usize>], period: f64, near: f64) -> bool {
     let breaks: Vec<usize> = pieces.iter().skip(1).map(|rows| rows.start).collect();
     let far = scatter(time, &breaks, period, 16);
@@ -279,7 +279,7 @@ fn assign(stamps: &[f64], phases: &[(f64, f64)], period: f64) -> Vec<i64> {
     if sure { nearest } else { likeliest(&exact, &nearest) }
 }
 
-/// A row may be this many ticks later than stamped, and one less earlier than that.
+/// The number of ticks that a row may be later than its stamp; it may be one less earlier.
 const CANDIDATES: usize = 5;
 const EARLIEST: i64 = -3;
 

@@ -1,4 +1,4 @@
-//! Anybody's headers, units, signs and joint order, told in TOML.
+//! Column maps: headers, units, signs and the order of the joints, in TOML.
 
 mod joint;
 pub(crate) mod template;
@@ -14,14 +14,14 @@ use self::joint::RawJoint;
 use crate::header::{Channel, Plan, TimeColumn};
 use crate::{Quantity, RecordingError, nearest, toml_reason, units};
 
-/// Which column holds what, in which unit: `docs/recordings.md` has the keys.
+/// The assignment of columns, with their units; `docs/recordings.md` describes the keys.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColumnMap {
     path: PathBuf,
     delimiter: Option<u8>,
     /// The topics to read of a file that has topics.
     topics: Vec<String>,
-    /// Of a ready map: the system, the columns by which it is known, and what to do where it has no torques.
+    /// For a ready map: the system, the columns by which it is recognised, and the remedy where it has no torques.
     pub(crate) system: Option<System>,
     time: Option<Time>,
     /// The columns whose cells are the joints' names.
@@ -31,15 +31,15 @@ pub struct ColumnMap {
     entries: Vec<Entry>,
 }
 
-/// Whose columns a ready map names.
+/// The system of a ready map.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct System {
     /// The system's name.
     pub name: String,
-    /// The columns by which it is known.
+    /// The columns by which it is recognised.
     pub known_by: Vec<String>,
-    /// What to do where a column is missing.
+    /// The remedy where a column is missing.
     pub remedy: String,
 }
 
@@ -118,7 +118,7 @@ impl ColumnMap {
         Self::parse(&text, path)
     }
 
-    /// Understands the text of a map; `path` is for the errors.
+    /// Parses the text of a map; `path` is its name in errors.
     ///
     /// # Errors
     /// [`RecordingError::Map`] with the line; an unknown key comes with the nearest known one.
@@ -193,7 +193,7 @@ impl ColumnMap {
         !self.joints.is_empty()
     }
 
-    /// As `self`, for these topics alone.
+    /// This map for these topics only.
     pub(crate) fn with_topics(&self, topics: &[String]) -> Self {
         Self {
             topics: topics.to_vec(),

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::{Quantity, Recording, RecordingError, write_whole};
 
 impl Recording {
-    /// Writes the recording to `path`, whole or not at all; numbers read back to the same bits.
+    /// Writes the recording to `path`, completely or not at all; numbers read back to the same bits.
     ///
     /// # Errors
     /// [`RecordingError::Write`] if the file cannot be written.

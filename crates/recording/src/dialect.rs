@@ -1,4 +1,4 @@
-//! The columns that known systems write: ready column maps, chosen by what the header looks like.
+//! The columns of known systems: ready column maps, chosen by the header.
 
 use std::path::Path;
 use std::sync::LazyLock;
@@ -14,7 +14,7 @@ macro_rules! ready {
     };
 }
 
-/// The first whose columns are there is taken.
+/// The ready maps; the first one whose columns are present is used.
 const MAPS: &[(&str, &str)] = &[
     ready!("ur_rtde"),
     ready!("libfranka"),

@@ -1,4 +1,4 @@
-//! What can be wrong with a recording's file.
+//! Errors of recordings.
 
 use std::path::PathBuf;
 
@@ -23,7 +23,7 @@ pub enum RecordingError {
         /// The system's reason.
         reason: std::io::Error,
     },
-    /// The header lacks what a recording needs.
+    /// The header lacks a required column.
     #[error("{path}:1: {reason}")]
     Header {
         /// The file.
@@ -31,7 +31,7 @@ pub enum RecordingError {
         /// What is missing or doubled, and the remedy.
         reason: String,
     },
-    /// The file is damaged, or holds no recording that its format allows for.
+    /// The file is damaged, or contains no recording that its format allows.
     #[error("{path}: {format}: {reason}")]
     Format {
         /// The file.
@@ -41,7 +41,7 @@ pub enum RecordingError {
         /// What was found, and the remedy.
         reason: String,
     },
-    /// A row is not what the header promises.
+    /// A row does not agree with the header.
     #[error("{path}{}: {reason}", place.suffix())]
     Row {
         /// The file.
@@ -51,7 +51,7 @@ pub enum RecordingError {
         /// What was found, and the remedy.
         reason: String,
     },
-    /// A cell does not hold a number that can be used.
+    /// A cell does not contain a usable number.
     #[error("{path}{}: column \"{column}\" is \"{found}\", {what}; {remedy}", place.suffix())]
     Value {
         /// The file.
@@ -64,10 +64,10 @@ pub enum RecordingError {
         found: String,
         /// What that is.
         what: &'static str,
-        /// How to mend it.
+        /// The remedy.
         remedy: &'static str,
     },
-    /// A column map is not what it should be.
+    /// A column map is invalid.
     #[error("{path}:{line}: {reason}")]
     Map {
         /// The map's file.
@@ -80,9 +80,9 @@ pub enum RecordingError {
     /// Too few samples for a clock.
     #[error("the recording has {rows} rows, too few to estimate its clock, which needs at least {needed}")]
     TooShort {
-        /// The rows there are.
+        /// The number of rows.
         rows: usize,
-        /// The rows it takes.
+        /// The least number of rows.
         needed: usize,
     },
     /// Rows follow one another faster than any drive records them.
@@ -91,7 +91,7 @@ pub enum RecordingError {
          time in a column map"
     )]
     Period {
-        /// From row to row (s).
+        /// The time between rows (s).
         period: f64,
     },
     /// Time stamps that a program gave do not increase.
@@ -106,7 +106,7 @@ pub enum RecordingError {
     },
 }
 
-/// How to mend a file that cannot be written.
+/// The remedy for a file that cannot be written.
 pub fn write_remedy(reason: &std::io::Error) -> &'static str {
     use std::io::ErrorKind;
     match reason.kind() {

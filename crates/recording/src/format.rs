@@ -1,4 +1,4 @@
-//! The formats that a recording can have, and how one is told from the file's content.
+//! The formats of recordings, and their recognition by the file's content.
 
 mod csv;
 mod csv_text;
@@ -16,12 +16,12 @@ use crate::rows::Rows;
 use crate::table::{Column, Table};
 use crate::{ColumnMap, Recording, RecordingError, dialect, header};
 
-/// Of a file with more values, means over longer times are kept (1 GiB).
+/// Above this number of values, a file is reduced to means over longer times (1 GiB).
 const MOST_VALUES: usize = 1 << 27;
 
 /// A format of files with recordings.
 trait Format {
-    /// Whether a file that begins so, or a folder of that name, has this format.
+    /// Whether a file with this beginning, or a folder with this name, has this format.
     fn matches(&self, input: &Input) -> bool;
 
     /// The file as a table of named columns.
@@ -31,15 +31,15 @@ trait Format {
     fn read(&self, input: Input, options: &Options<'_>) -> Result<Table, RecordingError>;
 }
 
-/// What a column map says of how to read a file.
+/// The options of a column map for reading a file.
 pub(crate) struct Options<'a> {
-    /// What separates the cells of text.
+    /// The separator of the cells of text.
     pub delimiter: Option<u8>,
     /// The topics to read of a file that has topics; all if there are none.
     pub topics: &'a [String],
 }
 
-/// The formats there are; the first that matches is taken.
+/// The formats; the first one that matches is used.
 const FORMATS: &[&dyn Format] = &[
     &mcap::Mcap,
     &rosbag2::Rosbag2,
@@ -64,10 +64,10 @@ impl Recording {
         Self::read_with(path, None)
     }
 
-    /// As [`Self::read`], with the columns that `map` names.
+    /// Reads a recording as [`Self::read`] does, with the columns that `map` names.
     ///
     /// # Errors
-    /// As [`Self::read`], and [`RecordingError::Map`] if the file lacks a column that the map names.
+    /// Those of [`Self::read`], and [`RecordingError::Map`] if the file lacks a column that the map names.
     pub fn read_with(path: &Path, map: Option<&ColumnMap>) -> Result<Self, RecordingError> {
         Self::read_within(path, map, MOST_VALUES)
     }
@@ -91,7 +91,7 @@ impl Recording {
     /// `name` is what errors call it.
     ///
     /// # Errors
-    /// As [`Self::read_with`], and if the columns are not of one length.
+    /// Those of [`Self::read_with`], and if the columns have different lengths.
     pub fn of_columns(
         name: &str,
         columns: Vec<(String, Column)>,
@@ -102,7 +102,7 @@ impl Recording {
             return Err(RecordingError::Header {
                 path: name.into(),
                 reason: format!(
-                    "column \"{header}\" has {} values, column \"{}\" has {length}; give one value a sample in each",
+                    "column \"{header}\" has {} values, column \"{}\" has {length}; give one value per sample in each",
                     column.len(),
                     columns[0].0
                 ),

@@ -1,10 +1,10 @@
-//! The columns that were read, put together as a recording.
+//! The columns that were read, combined into a recording.
 
 use crate::header::Plan;
 use crate::table::Place;
 use crate::{PartialSignal, Quantity, Recording, Signal, Warning, wraps};
 
-/// What is known of a channel.
+/// The state of a channel while it is read.
 #[derive(Clone, Debug, PartialEq)]
 pub enum State {
     /// Nothing yet.

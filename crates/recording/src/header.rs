@@ -1,4 +1,4 @@
-//! What a file's columns are: by their names, or by a column map.
+//! The meaning of a file's columns: by their names, or by a column map.
 
 use crate::{Quantity, nearest};
 
@@ -11,7 +11,7 @@ pub struct Channel {
     pub header: String,
     /// What it holds.
     pub quantity: Quantity,
-    /// Of which joint, from 0.
+    /// The index of the joint, from 0.
     pub joint: usize,
     /// The value in SI is factor × cell + offset.
     pub factor: f64,
@@ -53,7 +53,7 @@ impl TimeColumn {
     }
 }
 
-/// What to read from where.
+/// The plan of the columns to read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// The joints' names, in order.

@@ -1,10 +1,10 @@
-//! Rows that repeat the sample before: a logger that is faster than what it logs.
+//! Rows that repeat the sample before them, from a logger that is faster than the drive.
 
 use crate::{PartialSignal, Recording, Warning};
 
-/// Rows that repeat others make a pattern only in so many samples.
+/// The least number of samples in which repetitions make a pattern.
 const LEAST_RUNS: usize = 20;
-/// So large a part of all samples is held for the same number of rows.
+/// The least part of all samples that is held for the same number of rows.
 const ALIKE: f64 = 0.8;
 
 /// The recording with each sample once, and a warning, if each was written several times; `None` if rows are samples.

@@ -47,7 +47,7 @@ pub type Signal = Vec<Vec<f64>>;
 /// One quantity of some joints: `signal[joint]` is `None` where it was not recorded. Empty if no joint has it.
 pub type PartialSignal = Vec<Option<Vec<f64>>>;
 
-/// Motion and torque of named joints over time; every channel has one value a sample.
+/// Motion and torque of named joints over time; every channel has one value per sample.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recording {
     /// The joints' names, in the order of every [`Signal`].

@@ -7,7 +7,7 @@ use crate::held::without_held;
 use crate::interpolate::between;
 use crate::{PartialSignal, Quantity, Recording, RecordingError, Signal, Warning, spikes};
 
-/// As many missing ticks in a row are interpolated; more part the recording.
+/// The largest number of consecutive missing ticks that are interpolated; a longer gap divides the recording.
 const FILLED: i64 = 5;
 /// No drive records faster (s).
 const SHORTEST_PERIOD: f64 = 5e-6;
@@ -33,7 +33,7 @@ pub struct RegularRecording {
     pub joints: Vec<String>,
     /// The time of the first tick (s).
     pub start: f64,
-    /// From tick to tick (s).
+    /// The time between ticks (s).
     pub period: f64,
     /// The stretches without a long gap, in order; they hold every tick.
     pub segments: Vec<Segment>,
@@ -121,7 +121,7 @@ impl Recording {
         self.on_its_clock()
     }
 
-    /// The same for rows that are samples.
+    /// The regular recording of rows that are samples.
     fn on_its_clock(&self) -> Result<(RegularRecording, Vec<Warning>), RecordingError> {
         let rows = self.len();
         if rows < 2 {

@@ -47,7 +47,7 @@ const TORQUE: &[Unit] = &[
     (&["N"], 1.0),
     (&["kN"], 1e3),
 ];
-/// As torque, these need a scale (N m/A, or N m for the whole).
+/// Units that need a scale to become a torque (N m/A, or N m for the whole).
 const CURRENT: &[Unit] = &[(&["A"], 1.0), (&["mA"], 1e-3)];
 const SHARE: &[Unit] = &[(&["%"], 1e-2)];
 const TEMPERATURE: &[Unit] = &[(&["C", "°C", "degC"], 1.0), (&["K"], 1.0)];

@@ -158,7 +158,7 @@ pub enum Warning {
     },
     /// There is no velocity; it has to be differentiated from the position.
     NoVelocity,
-    /// Stamps scatter about the regular clock; rows were put on its ticks.
+    /// The time stamps deviate from the regular clock; rows were assigned to its ticks.
     Jitter {
         /// Root mean square (s).
         rms: f64,
@@ -292,15 +292,15 @@ impl fmt::Display for Warning {
             ),
             Self::Jitter { rms, max, time, period } => write!(
                 f,
-                "the stamps scatter about a clock of {:.6} Hz by {:.1} % of its period (at most {:.0} %, at {time:.3} s); \
-                 rows were put on its ticks",
+                "the time stamps deviate from a clock of {:.6} Hz by {:.1} % of its period (at most {:.0} %, at {time:.3} s); \
+                 rows were assigned to its ticks",
                 1.0 / period,
                 100.0 * rms / period,
                 100.0 * max / period
             ),
             Self::NoRegularClock { share, period } => write!(
                 f,
-                "no regular clock fits the stamps (they scatter by {:.0} % of the period about {:.3} Hz); resampled by \
+                "no regular clock fits the time stamps (they deviate by {:.0} % of the period from {:.3} Hz); resampled by \
                  interpolation, which makes derivatives less accurate: record with the drive's own clock",
                 100.0 * share,
                 1.0 / period

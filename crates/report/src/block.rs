@@ -10,20 +10,20 @@ pub enum Block {
     Section(String),
     /// A paragraph.
     Text(String),
-    /// A table; the columns after the first `words` hold numbers.
+    /// A table; the columns after the first `words` contain numbers.
     Table {
-        /// Over the columns.
+        /// The titles of the columns.
         head: Vec<String>,
-        /// Cells.
+        /// The rows.
         rows: Vec<Vec<String>>,
-        /// How many columns hold words.
+        /// The number of columns with words.
         words: usize,
     },
-    /// A drawing and what it shows; only on the page.
+    /// A drawing with its caption; only on the page.
     Figure {
         /// SVG.
         svg: String,
-        /// In words.
+        /// The caption.
         caption: String,
     },
     /// Commands.

@@ -1,18 +1,18 @@
-//! Blocks as one HTML page that needs nothing beside it.
+//! Blocks as one self-contained HTML page.
 
 use maud::{Markup, PreEscaped, html};
 
 use crate::block::Block;
 use crate::shell::shell;
 
-/// What these pages have beside the style of all.
+/// The additional style of these pages.
 const STYLE: &str = concat!(
     "pre { background: var(--raised); border: 1px solid var(--line); border-radius: 6px; padding: .7rem 1rem; overflow-x: auto; }\n",
     "figure { max-width: 800px; }\n",
     ".wide table { font-size: .8rem; } .wide th { max-width: 6.5rem; } .wide td, .wide th { padding-right: .45rem; }\n",
 );
 
-/// The page of `blocks`: its title, what stands over it, and its last line.
+/// The page of `blocks`: its title, the line above them, and its last line.
 pub fn block_page(title: &str, eyebrow: &str, blocks: &[Block], made: &str) -> String {
     let body = html! {
         p.eyebrow { (inline(eyebrow)) }

@@ -7,7 +7,7 @@ use maud::Escaper;
 use crate::numbers;
 use crate::statistics::quantile;
 
-/// A straight map from values to places in the figure.
+/// A linear map from values to positions in the figure.
 #[derive(Clone, Copy)]
 pub struct Scale {
     from: [f64; 2],
@@ -15,7 +15,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Of the values `from` onto the places `to`; an empty range is widened.
+    /// The map of the values `from` to the positions `to`; an empty range is widened.
     pub fn new(from: [f64; 2], to: [f64; 2]) -> Self {
         let [low, high] = from;
         let from = if high - low > 1e-12 * (low.abs() + high.abs()) && high > low {
@@ -27,7 +27,7 @@ impl Scale {
         Self { from, to }
     }
 
-    /// The place of `value`.
+    /// The position of `value`.
     pub fn place(&self, value: f64) -> f64 {
         let share = (value - self.from[0]) / (self.from[1] - self.from[0]);
         self.to[0] + share * (self.to[1] - self.to[0])
@@ -59,7 +59,7 @@ pub struct Svg {
 }
 
 impl Svg {
-    /// An empty one; `label` says what it shows to who cannot see it.
+    /// An empty one; `label` is the text for readers who cannot see it.
     pub fn new(width: f64, height: f64, label: &str) -> Self {
         let mut text = format!("<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"");
         let _ = Escaper::new(&mut text).write_str(label);
@@ -67,7 +67,7 @@ impl Svg {
         Self { text }
     }
 
-    /// An empty one as wide as the page, of a fixed height: places across are percentages.
+    /// An empty one as wide as the page, of a fixed height: horizontal positions are percentages.
     pub fn stretched(height: f64, label: &str) -> Self {
         let mut text =
             format!("<svg class=\"stretched\" width=\"100%\" height=\"{height}\" role=\"img\" aria-label=\"");
@@ -82,12 +82,12 @@ impl Svg {
         self.text
     }
 
-    /// Adds an element as it stands.
+    /// Adds an element as it is.
     pub fn raw(&mut self, element: std::fmt::Arguments<'_>) {
         let _ = self.text.write_fmt(element);
     }
 
-    /// A text at a place; `anchor` is start, middle or end.
+    /// A text at a position; `anchor` is start, middle or end.
     pub fn text(&mut self, [x, y]: [f64; 2], class: &str, anchor: &str, words: &str) {
         self.raw(format_args!(
             "<text x=\"{x:.1}\" y=\"{y:.1}\" class=\"{class}\" text-anchor=\"{anchor}\">"
@@ -96,7 +96,7 @@ impl Svg {
         self.text.push_str("</text>");
     }
 
-    /// A text that reads upwards, centred on a place.
+    /// A text that reads upwards, centred on a position.
     pub fn upwards(&mut self, [x, y]: [f64; 2], class: &str, words: &str) {
         self.raw(format_args!(
             "<text transform=\"translate({x:.1} {y:.1}) rotate(-90)\" class=\"{class}\" text-anchor=\"middle\">"
@@ -204,7 +204,7 @@ pub fn thinned(rows: &[[f64; 2]], columns: usize) -> Vec<Vec<[f64; 2]>> {
     runs
 }
 
-/// `most` of the points at the most, drawn evenly but in no step with any motion.
+/// At most `most` of the points, drawn evenly and not in step with any motion.
 pub fn sampled<T: Copy>(points: &[T], most: usize) -> Vec<T> {
     if points.len() <= most {
         return points.to_vec();

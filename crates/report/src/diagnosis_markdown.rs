@@ -1,4 +1,4 @@
-//! A diagnosis as Markdown: verdict, findings with their parameters, errors, what is open, and the next experiment.
+//! A diagnosis as Markdown: verdict, findings with their parameters, errors, open questions, and the next experiment.
 
 use std::collections::BTreeMap;
 
@@ -37,7 +37,7 @@ fn blocks(report: &Report, arm: &Arm) -> Vec<Block> {
     blocks
 }
 
-/// A name as it is, which Markdown might otherwise read as emphasis; it does not end its own code span.
+/// A name as code, which Markdown might otherwise read as emphasis; it does not end its own code span.
 fn code(name: &str) -> String {
     format!("`{}`", name.replace('`', "'").replace('\n', " "))
 }

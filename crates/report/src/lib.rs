@@ -1,8 +1,7 @@
-//! What people read of a diagnosis and of a proof: blocks, charts, pages, Markdown, terminal. It returns strings and writes no files.
+//! The texts of a diagnosis and of a proof: blocks, charts, pages, Markdown, terminal. It returns strings and writes no files.
 //!
-//! A diagnosis is a [`page`](page()) with figures of its own, a text for the [`terminal`], and
-//! [Markdown](diagnosis_markdown()). Any other report is a list of
-//! [`block`]s, which [`block_page`] and [`markdown`] both render; [`score`] has those that say what a proof is worth.
+//! A diagnosis is a [`page`](page()) with figures, a text for the [`terminal`], and [Markdown](diagnosis_markdown()). Any other
+//! report is a list of [`block`]s, which [`block_page`] and [`markdown`] both render; [`score`] makes those of a proof.
 
 pub mod block;
 mod block_page;

@@ -42,7 +42,8 @@ fn line(cells: &[String]) -> String {
     format!("| {} |\n", cells.join(" | "))
 }
 
-/// The text without HTML, which Markdown would pass on: names from files are no part of a page. A code span shows what it holds.
+/// The text with HTML escaped, which Markdown would pass on, because names from files must not become part of a page. A code
+/// span is left as it is.
 fn without_tags(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for (index, span) in text.split('`').enumerate() {

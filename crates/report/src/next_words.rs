@@ -43,7 +43,7 @@ pub fn sentences(next: &NextExperiment) -> Vec<String> {
     list
 }
 
-/// `A from B`, joints of one rival counted together.
+/// `A from B`, with the joints of one alternative counted together.
 fn pairs<'a>(pairs: impl Iterator<Item = (&'a Confusable, &'a Confusable)>) -> Vec<String> {
     let mut groups: Vec<(&Confusable, &'static str, Vec<&Confusable>)> = Vec::new();
     for (finding, rival) in pairs {

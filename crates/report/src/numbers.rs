@@ -1,4 +1,4 @@
-//! Numbers for engineers: prefixes, intervals, errors as they are read.
+//! Formats of numbers: prefixes, intervals, errors.
 
 use diagnosis::Parameter;
 
@@ -10,7 +10,7 @@ pub struct Scaled {
     pub unit: String,
 }
 
-/// The prefix under which values of `magnitude` read well; none where it would be unusual (kg m²).
+/// The usual prefix for values of `magnitude`; none where it would be unusual (kg m²).
 pub fn scaled(magnitude: f64, unit: &str) -> Scaled {
     let first = unit.split([' ', '/']).next().unwrap_or_default();
     let prefixes: &[(f64, f64, &str)] = match first {
@@ -36,7 +36,7 @@ pub fn scaled(magnitude: f64, unit: &str) -> Scaled {
     }
 }
 
-/// A proper minus before what is less than zero, and none before a zero.
+/// Replaces the hyphen by a minus sign, and removes it before a zero.
 fn signed(text: &str) -> String {
     match text.strip_prefix('-') {
         Some(rest) if rest.chars().any(|digit| ('1'..='9').contains(&digit)) => format!("−{rest}"),
@@ -172,7 +172,7 @@ pub fn with_interval(name: &str, parameter: &Parameter) -> String {
     join(format!("{sign}{text}"), &unit)
 }
 
-/// The value and its interval apart: `1.90 kN m/rad` and `1.78 … 2.02`.
+/// The value and its interval separately: `1.90 kN m/rad` and `1.78 … 2.02`.
 pub fn value_and_interval(name: &str, parameter: &Parameter) -> (String, String) {
     let shown = shown(name, parameter);
     let [low, high] = shown.ci95.map(|bound| fixed(bound, shown.decimals));
@@ -214,7 +214,7 @@ pub fn percent(share: f64) -> String {
     }
 }
 
-/// A ratio to a standard deviation: `12 %`, and from one on a factor, `3.2 ×`.
+/// A ratio to a standard deviation: `12 %`, or a factor from one on, `3.2 ×`.
 pub fn share(ratio: f64) -> String {
     if ratio.is_finite() && ratio >= 1.005 {
         format!("{} ×", factor(ratio))
@@ -237,7 +237,7 @@ fn factor(ratio: f64) -> String {
     fixed(ratio, usize::from(ratio < 9.95))
 }
 
-/// Per cents, to a tenth where they are not whole.
+/// Per cent, to a tenth where it is not a whole number.
 pub fn percent_to_a_tenth(share: f64) -> String {
     let percent = 100.0 * share;
     if (percent - percent.round()).abs() < 0.05 {
@@ -260,7 +260,7 @@ pub fn rounded(value: f64, digits: usize) -> String {
     }
 }
 
-/// A probability is never 0 or 100 %; a dash where there is none.
+/// A probability between 0 and 100 %, both excluded; a dash if there is none.
 pub fn probability(value: Option<f64>) -> String {
     match value {
         None => "–".into(),
@@ -270,7 +270,7 @@ pub fn probability(value: Option<f64>) -> String {
     }
 }
 
-/// Five significant digits without prefix or unit, as a program reads them.
+/// Five significant digits without prefix or unit, for programs.
 pub fn for_programs(value: f64) -> String {
     if !value.is_finite() {
         return "–".into();

@@ -21,10 +21,10 @@ use crate::words;
 use figures::Figures;
 use table::name;
 
-/// Points that all figures of a page share, and the most that one line or cloud has.
+/// The number of points that all figures of a page share, and the largest number in one line or cloud.
 const ALL_POINTS: usize = 80_000;
 const MOST_POINTS: usize = 1500;
-/// Rows that all figures in time share where they can be zoomed, and the fewest that one has.
+/// The number of rows that all figures in time share if they can be zoomed, and the least number in one.
 const ALL_ROWS: usize = 60_000;
 const FEWEST_ROWS: usize = 2000;
 
@@ -124,7 +124,7 @@ impl<'a> Page<'a> {
     }
 }
 
-/// The library that draws the figures that can be zoomed, with its licence; then what gives it their data.
+/// The library that draws the figures that can be zoomed, with its licence; then the script that gives it the data.
 const UPLOT: &str = concat!(
     "/*\n",
     include_str!("../../../assets/uplot/LICENSE"),

@@ -70,14 +70,14 @@ pub fn opening(score: &Score) -> Vec<Block> {
     list
 }
 
-/// The strict figure in words, and beside it the one that lets off.
+/// The strict figure in words, and the macro F1 with exceptions.
 fn headline(score: &Score) -> String {
     let strict = &score.strict;
     format!(
-        "**Strict macro F1 {}**: every concealed effect with an expressed share of at least {} is asked for, every name that is not true is false, and each is found \
-         only with its size within {} of the truth's, where the two can be compared. {} were found so, {} more with another size; {} false names, and {} of baseline \
-         friction and drive inertia. Beside it, macro F1 without sizes, which lets off what was declared not observable at its size and takes two names of one machine \
-         for one: {}.",
+        "**Strict macro F1 {}**: every injected effect with an expressed share of at least {} is required, every name that is not true is false, and an effect \
+         counts as found only if its size is within {} of the true one, where the two can be compared. {} were found with their size, {} more with another size; \
+         false names: {}, and {} of baseline friction and drive inertia. Macro F1 without sizes, without effects that were declared not testable at their size, \
+         and with equivalent names counted as right: {}.",
         number(strict.macro_f1),
         percent(LEAST_SHARE),
         percent(SIZE_WITHIN),
@@ -89,7 +89,7 @@ fn headline(score: &Score) -> String {
     )
 }
 
-/// The results by how wrong the URDF was.
+/// The results by the error of the URDF.
 fn by_urdf(score: &Score) -> Block {
     let line = |what: &str, cases: usize, strict: &Strict, macro_f1: Option<f64>| {
         vec![
@@ -116,7 +116,7 @@ fn by_urdf(score: &Score) -> Block {
         "found with the size",
         "false names",
         "cases with one",
-        "95 % intervals that hold the truth",
+        "95 % intervals that contain the true value",
     ];
     table(&head, 1, rows)
 }
@@ -154,7 +154,7 @@ fn exempt(score: &Score) -> String {
     };
     format!(
         "F1 and coverage exclude the effects that a diagnosis declares not testable at their size: {} effects, the largest with an expressed share of {}, {} above {}{list}. \
-         If these count as missed and as not covered, macro F1 is {}, and the ground truth is in the finding or its confusable set in {}.",
+         If these count as missed and as not covered, macro F1 is {}, and the ground truth is in the finding or its alternatives in {}.",
         exempt().count(),
         share(largest),
         large.len(),
@@ -169,7 +169,7 @@ pub fn failures(score: &Score) -> Vec<Block> {
     let mut rows = Vec::new();
     for outcome in score.concealed.iter().filter(|o| o.counts && !o.fate.is_found()) {
         let fate = match outcome.fate {
-            Fate::Covered => "in a confusable set only",
+            Fate::Covered => "an alternative only",
             Fate::NotObservable => "declared not testable",
             Fate::Refused => "joint refused",
             Fate::Found | Fate::SameMachine | Fate::Missed => "missed",
@@ -195,7 +195,7 @@ pub fn failures(score: &Score) -> Vec<Block> {
             format!("injected there: {}", wrong.concealed_there.join(", "))
         };
         let admits = if wrong.admits_the_truth {
-            "; the ground truth is in its confusable set"
+            "; the ground truth is one of its alternatives"
         } else {
             ""
         };

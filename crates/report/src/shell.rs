@@ -1,4 +1,4 @@
-//! What every page has around its body: one style, no network, and scripts only as an addition.
+//! The frame of every page: one style, no network, and scripts only as an addition.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -9,7 +9,7 @@ const STYLE: &str = concat!(
     include_str!("page/style.css")
 );
 
-/// What a browser may load and run: nothing that is not in the page.
+/// What a browser may load and run: only what the page contains.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 
 /// A whole page; `more_style` comes after [`STYLE`], `scripts` after `body`.

@@ -1,12 +1,12 @@
-//! Figures of several values in one.
+//! Statistics of several values.
 
-/// The root mean square of `values`, in the order in which they come; `None` of none.
+/// The root mean square of `values`, in their order; `None` for no values.
 pub fn rms(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let squares: Vec<f64> = values.into_iter().map(|value| value.powi(2)).collect();
     (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
 }
 
-/// The value below which `share` of the values lie; 0 of none.
+/// The value below which `share` of the values lie; 0 for no values.
 pub fn quantile(values: &mut [f64], share: f64) -> f64 {
     if values.is_empty() {
         return 0.0;

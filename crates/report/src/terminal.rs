@@ -29,7 +29,7 @@ pub fn table(header: impl IntoIterator<Item = String>) -> Table {
     table
 }
 
-/// The most next steps of the short text.
+/// The largest number of next steps in the short text.
 const STEPS: usize = 3;
 
 /// The result of a diagnosis on one screen: verdict, table, next steps; it ends with a newline.
@@ -45,8 +45,8 @@ pub fn diagnosis(report: &Report) -> String {
     text
 }
 
-/// All that is said of a diagnosis: also the findings' further parameters and alternatives, what is not testable, and the
-/// simulated motion; it ends with a newline.
+/// The complete text of a diagnosis: with the findings' further parameters and alternatives, effects that are not testable, and
+/// the simulated motion; it ends with a newline.
 pub fn complete(report: &Report) -> String {
     let mut text = opening(report);
     for finding in &report.findings {
@@ -75,7 +75,7 @@ pub fn complete(report: &Report) -> String {
     text
 }
 
-/// What changed, the verdict, and the table.
+/// The changes, the verdict, and the table.
 fn opening(report: &Report) -> String {
     let changed = report.changed.as_ref().map(|list| wrapped(&words::changed(list), ""));
     let mut text = changed.unwrap_or_default();
@@ -120,7 +120,7 @@ fn unexplained(open: &Unexplained) -> String {
     }
 }
 
-/// What the table does not show of a finding: its further parameters, and its alternatives. Empty if there are neither.
+/// What the table does not show of a finding: further parameters, and alternatives. Empty if there are neither.
 fn details(finding: &Finding) -> String {
     let place = finding.joint.as_deref().unwrap_or("whole arm");
     let start = format!("{place}, {}", words::effect(finding));
@@ -140,7 +140,7 @@ fn details(finding: &Finding) -> String {
     }
 }
 
-/// What the table's last two columns are.
+/// The explanation of the table's last two columns.
 fn columns(report: &Report) -> String {
     let recordings = if report.recordings.held_out.is_empty() {
         "training"
@@ -178,7 +178,7 @@ fn findings(report: &Report) -> String {
         if index < 3 {
             column.set_cell_alignment(CellAlignment::Left);
         }
-        // Only effects are wrapped, between words: a column narrower than a word would break it.
+        // Only effects are wrapped, between words; a column narrower than a word would break the word.
         column.set_constraint(if index == 1 {
             ColumnConstraint::LowerBoundary(Width::Fixed(longest))
         } else {
@@ -283,7 +283,7 @@ fn rollout(report: &Report) -> String {
     )
 }
 
-/// Breaks `text` between words; the first line begins with `start`, the others are indented as far. It ends with a newline.
+/// Breaks `text` between words; the first line begins with `start`, the others have the same indent. It ends with a newline.
 pub fn wrapped(text: &str, start: &str) -> String {
     let indent = " ".repeat(start.chars().count());
     let mut lines = String::new();

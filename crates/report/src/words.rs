@@ -1,4 +1,4 @@
-//! What the catalogue's names mean to a person.
+//! Texts for the names of the catalogue.
 
 use std::collections::BTreeSet;
 
@@ -8,19 +8,19 @@ use diagnosis::{Finding, JointFit, NotObservable, Parameter, Report, Verdict};
 use crate::numbers;
 use crate::statistics::rms;
 
-/// How an effect is spoken of.
+/// The texts of an effect.
 pub struct Wording {
-    /// Its name in two or three words.
+    /// Its title in two or three words.
     pub name: &'static str,
-    /// What it is, for readers who do not know it.
+    /// Its meaning, for readers who do not know it.
     pub meaning: &'static str,
     /// Which experiment distinguishes it from similar effects.
     pub told_by: &'static str,
-    /// The parameters that say how large it is, the best first.
+    /// The parameters that measure its size, the best first.
     main: &'static [&'static str],
 }
 
-/// The title of a finding's effect. Friction that only the motor's current shows is on the motor's side of the torque sensor.
+/// The title of a finding's effect. Friction that only the motor's current shows is between motor and torque sensor.
 pub fn effect(finding: &Finding) -> String {
     let name = wording(finding.effect).name;
     if !finding.corrects && finding.effect.ends_with("_friction") {
@@ -30,7 +30,7 @@ pub fn effect(finding: &Finding) -> String {
     }
 }
 
-/// A finding's effect with its parameters, as a noun phrase; of a finding between two sensors, also where it acts.
+/// A finding's effect with its parameters, as a noun phrase; for a finding between two sensors, with its place.
 pub fn described(finding: &Finding) -> String {
     let text = diagnosis::described(finding, &numbers::quantity);
     match &finding.place.state {
@@ -39,7 +39,7 @@ pub fn described(finding: &Finding) -> String {
     }
 }
 
-/// The wording of a catalogue name; an unknown name stands for itself.
+/// The texts of a catalogue name; an unknown name is its own title.
 pub fn wording(effect: &'static str) -> Wording {
     match effects::spec(effect) {
         Some(spec) => Wording {
@@ -57,7 +57,7 @@ pub fn wording(effect: &'static str) -> Wording {
     }
 }
 
-/// The parameter that says how large a finding is, with its name.
+/// The parameter that measures the size of a finding, with its name.
 pub fn main_parameter(finding: &Finding) -> Option<(&'static str, &Parameter)> {
     let main = wording(finding.effect).main;
     let named = main
@@ -110,7 +110,7 @@ pub fn list(items: &[String]) -> String {
     }
 }
 
-/// The joint on which a finding shows most: its own, or the largest share of a whole-arm effect.
+/// The joint on which a finding is largest: its own, or the one with the largest share.
 pub fn shows_on(finding: &Finding) -> Option<&str> {
     finding.joint.as_deref().or_else(|| {
         let shares = finding.share_by_joint.iter();
@@ -169,12 +169,17 @@ pub fn verdict(report: &Report) -> String {
                 format!("An unmodelled residual remains on {open}.")
             };
             match remaining(report) {
-                Some([before, after]) => format!(
-                    "Most of the mismatch is unexplained: with {effects} on {on}, the RMS torque error over the joints \
-                     only falls from {} to {} times the torque's standard deviation. {open}",
-                    numbers::nrmse(before),
-                    numbers::nrmse(after)
-                ),
+                Some(errors) => {
+                    let [before, after] = errors.map(numbers::nrmse);
+                    let change = match before == after {
+                        true => format!("remains {after}"),
+                        false => format!("only falls from {before} to {after}"),
+                    };
+                    format!(
+                        "Most of the mismatch is unexplained: with {effects} on {on}, the RMS torque error over the joints \
+                         {change} times the torque's standard deviation. {open}"
+                    )
+                }
                 None => format!("The model omits {effects} on {on}. {open}"),
             }
         }
@@ -212,7 +217,7 @@ pub fn detectable_sizes(entry: &NotObservable, kind: JointKind) -> String {
         let unit = effects::spec(entry.effect).and_then(|spec| spec.unit(name, kind));
         let size = numbers::round_quantity(*size, unit.filter(|unit| *unit != "1").unwrap_or_default());
         match name.strip_suffix("factor") {
-            // A factor shows by what it differs from one.
+            // A factor is measured by its distance from one.
             Some(_) => format!("{} off by more than {size}", name.replace('_', " ")),
             None => format!("{} {side} {size}", name.replace('_', " ")),
         }

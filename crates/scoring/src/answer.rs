@@ -1,30 +1,30 @@
-//! A diagnosis as others read it: the fields of `testbed.diagnosis/1` that are scored.
+//! The fields of a diagnosis (`testbed.diagnosis/1`) that are scored.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-/// A diagnosis; what is not scored is not read.
+/// A diagnosis; fields that are not scored are not read.
 #[derive(Clone, Debug, Default, Deserialize)]
 pub struct Answer {
-    /// In one word.
+    /// The verdict.
     #[serde(default)]
     pub verdict: String,
     /// The effects named.
     pub findings: Vec<Named>,
-    /// The joints with structure that was given no name.
+    /// The joints with an unexplained residual.
     #[serde(default)]
     pub unexplained: Vec<Refused>,
-    /// What the recordings could not show.
+    /// The effects that are not testable with the recordings.
     #[serde(default)]
     pub not_observable: Vec<DeclaredUnseen>,
     /// Errors of prediction, by joint.
     #[serde(default)]
     pub fit: BTreeMap<String, JointErrors>,
-    /// How far the simulated arm goes from the recorded motion, by joint.
+    /// How closely the simulated arm follows the recorded motion, by joint.
     #[serde(default)]
     pub rollout: BTreeMap<String, Rollout>,
-    /// The motion it proposes, where it was asked for one.
+    /// The proposed motion, if one was requested.
     #[serde(default)]
     pub next_experiment: Option<NextExperiment>,
 }
@@ -32,29 +32,29 @@ pub struct Answer {
 /// A proposed experiment.
 #[derive(Clone, Debug, Default, Deserialize)]
 pub struct NextExperiment {
-    /// The confusions that it should resolve.
+    /// The confusions that it is predicted to resolve.
     pub separates: Vec<Separated>,
-    /// Those that it leaves.
+    /// The confusions that it does not resolve.
     pub not_separated: Vec<NotSeparated>,
 }
 
-/// A confusion that a motion should resolve.
+/// A confusion that a motion is predicted to resolve.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Separated {
-    /// What was named.
+    /// The finding.
     pub finding: EffectOnJoint,
-    /// What it could be instead.
+    /// The alternative.
     pub rival: EffectOnJoint,
 }
 
-/// A confusion that it leaves.
+/// A confusion that the motion does not resolve.
 #[derive(Clone, Debug, Deserialize)]
 pub struct NotSeparated {
-    /// What was named.
+    /// The finding.
     pub finding: EffectOnJoint,
-    /// What it could be instead.
+    /// The alternative.
     pub rival: EffectOnJoint,
-    /// Why, in a word.
+    /// The reason in one word.
     #[serde(default)]
     pub kind: String,
 }
@@ -66,27 +66,27 @@ pub struct Named {
     pub effect: String,
     /// The joint; `None` for the whole arm.
     pub joint: Option<String>,
-    /// The joint that turns this one's drive, too, of a coupling.
+    /// The other joint of a coupling.
     #[serde(default)]
     pub other: Option<String>,
-    /// Its numbers.
+    /// Its parameters.
     #[serde(default)]
     pub parameters: BTreeMap<String, Number>,
-    /// How likely it is said to be right.
+    /// The stated probability that it is right.
     #[serde(default)]
     pub probability: Option<f64>,
-    /// Its part of the joint's torque.
+    /// Its share of the joint's torque.
     #[serde(default)]
     pub share: f64,
-    /// What it could be instead.
+    /// Its alternatives.
     #[serde(default)]
     pub confusable_with: Vec<EffectOnJoint>,
-    /// In words.
+    /// Its sentence.
     #[serde(default)]
     pub sentence: String,
 }
 
-/// An effect, and where it is.
+/// An effect and its joint.
 #[derive(Clone, Debug, Deserialize)]
 pub struct EffectOnJoint {
     /// The catalogue's name.
@@ -105,42 +105,42 @@ pub struct Number {
 }
 
 impl Number {
-    /// Whether the interval holds `value`; one that is open at both ends says nothing, and holds nothing.
+    /// Whether the interval contains `value`; an interval that is open at both ends contains nothing.
     pub fn holds(&self, value: f64) -> bool {
         let [low, high] = self.ci95;
         (low.is_some() || high.is_some()) && low.is_none_or(|low| low <= value) && high.is_none_or(|high| value <= high)
     }
 }
 
-/// Structure that was given no name.
+/// An unexplained residual.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Refused {
     /// The joint.
     pub joint: String,
 }
 
-/// An effect that is said not to show.
+/// An effect that is declared not testable.
 #[derive(Clone, Debug, Deserialize)]
 pub struct DeclaredUnseen {
     /// The catalogue's name.
     pub effect: String,
     /// The joint; `None` for the whole arm.
     pub joint: Option<String>,
-    /// The size from which it would have been seen; none at all if this and the other are empty.
+    /// The size from which it is detectable; no size at all if this and the other are empty.
     #[serde(default)]
     pub would_be_seen_above: BTreeMap<String, Option<f64>>,
-    /// The size below which it would have been seen.
+    /// The size below which it is detectable.
     #[serde(default)]
     pub would_be_seen_below: BTreeMap<String, Option<f64>>,
 }
 
-/// Errors of prediction of a joint (NRMSE).
+/// Prediction errors of a joint (NRMSE).
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 pub struct JointErrors {
     /// Standard deviation of the measured torque (N m or N).
     #[serde(default)]
     pub torque_std: f64,
-    /// Of the model as it was given, on the recording held out.
+    /// Of the nominal model, on the held-out recording.
     #[serde(default)]
     pub held_out_nrmse_nominal: Option<f64>,
     /// With the effects named.
@@ -154,7 +154,7 @@ pub struct JointErrors {
 /// Root mean square distance of a joint's simulated motion from the recorded one (rad or m).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Rollout {
-    /// Of the model as it was given.
+    /// With the nominal model.
     #[serde(rename = "nominal_rms_rad")]
     pub nominal: f64,
     /// With the effects named.

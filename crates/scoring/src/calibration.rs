@@ -1,4 +1,4 @@
-//! Whether findings said to be right with some probability are right as often.
+//! Whether stated probabilities agree with the relative frequencies of right findings.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,18 +7,18 @@ use crate::intervals::Counted;
 /// The bounds between bins of probability.
 const BOUNDS: [f64; 5] = [0.6, 0.75, 0.85, 0.92, 0.97];
 
-/// Probabilities against what came of them.
+/// Stated probabilities against outcomes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
-    /// From improbable to probable; bins without findings are left out.
+    /// The bins in ascending order; bins without findings are left out.
     pub bins: Vec<Bin>,
-    /// The mean square of probability less outcome (Brier 1950): 0 is perfect.
+    /// The mean square of probability minus outcome (Brier 1950); 0 is perfect.
     pub brier: Option<f64>,
-    /// The mean distance of said and found share, bins weighted by what is in them.
+    /// The mean distance between stated and observed frequency, weighted by the number of findings in each bin.
     pub error: Option<f64>,
 }
 
-/// Findings of about one probability.
+/// Findings of similar probability.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bin {
     /// The lower end of the bin.
@@ -31,7 +31,7 @@ pub struct Bin {
     pub right: Counted,
 }
 
-/// Of findings with a probability and whether they were right.
+/// The calibration of findings, each with its probability and whether it is right.
 pub fn calibration(findings: &[(f64, bool)]) -> Calibration {
     if findings.is_empty() {
         return Calibration::default();

@@ -1,24 +1,25 @@
-//! What the score knows of effects by name. It repeats the catalogue of effects: `effects::Spec` is to replace it.
+//! Properties of effects that the score needs, by name. They repeat a part of the catalogue, because `scoring` does not depend
+//! on `effects`.
 
-/// What every machine has and a URDF leaves out: it is scored apart.
+/// Effects that every machine has and most URDFs omit; they are scored separately.
 pub const BASELINE: &[&str] = &["coulomb_friction", "viscous_friction"];
 
 /// The baseline effects where the robot's drives have inertia that its URDF omits.
 pub const BASELINE_WITH_DRIVES: &[&str] = &["coulomb_friction", "viscous_friction", DRIVE_INERTIA];
 
-/// The inertia of a drive.
+/// The inertia of a drive's rotor.
 pub const DRIVE_INERTIA: &str = "rotor_inertia";
 
 /// A general change of links' masses, centres of mass and inertias.
 pub const INERTIALS: &str = "inertial_parameters";
 
-/// A link whose inertial is wrong.
+/// A link with wrong inertial parameters.
 pub const LINK_INERTIAL: &str = "link_inertial_error";
 
 /// A common factor of all masses and inertias.
 pub const ALL_INERTIALS: &str = "inertial_scale";
 
-/// Names that a wrong term on a joint is taken from.
+/// Effects from which a wrong term on a joint is chosen.
 pub const ON_A_JOINT: [&str; 9] = [
     "quadratic_drag",
     "rotor_inertia",
@@ -31,10 +32,10 @@ pub const ON_A_JOINT: [&str; 9] = [
     "encoder_offset",
 ];
 
-/// Names that a wrong term on the whole arm is taken from.
+/// Effects from which a wrong term on the whole arm is chosen.
 pub const ON_THE_ARM: [&str; 3] = ["payload", "gravity_misalignment", "inertial_scale"];
 
-/// The catalogue's name, also of what was written under another.
+/// The name in the catalogue, also for effects that were written under an older name.
 pub fn canonical(effect: &str) -> &str {
     match effect {
         "link_mass_error" => "link_inertial_error",
@@ -43,13 +44,13 @@ pub fn canonical(effect: &str) -> &str {
     }
 }
 
-/// Whether no name of the catalogue fits it.
+/// Whether the effect is outside the catalogue.
 pub fn is_outside(effect: &str) -> bool {
     effect.ends_with("_unknown")
 }
 
-/// The scored parameters of an effect, the main one first. Phases, times of day, directions and what depends on a choice of zero
-/// have no relative error and are left out.
+/// The scored parameters of an effect, the main one first. Phases, times of day, directions and values that depend on the
+/// choice of a zero have no relative error and are left out.
 pub fn parameters(effect: &str) -> &'static [&'static str] {
     match effect {
         "viscous_friction" | "quadratic_drag" => &["coefficient"],
@@ -77,7 +78,7 @@ pub fn parameters(effect: &str) -> &'static [&'static str] {
     }
 }
 
-/// Whether a number of an effect on a joint is in proportion to the torque that it was weighed with.
+/// Whether a parameter of an effect on a joint is proportional to the recorded torque.
 pub fn is_weighed(effect: &str, parameter: &str) -> bool {
     match parameter {
         "coefficient" | "level" | "positive" | "negative" | "breakaway" | "coulomb" | "viscous" | "inertia"
@@ -95,12 +96,12 @@ pub fn is_dry_friction(effect: &str) -> bool {
     )
 }
 
-/// Whether an effect is a part of a joint's friction against speed.
+/// Whether an effect is a part of a joint's friction curve.
 pub fn is_friction_curve(effect: &str) -> bool {
     is_dry_friction(effect) && effect != "thermal_drift" || matches!(effect, "viscous_friction" | "quadratic_drag")
 }
 
-/// The value of an effect's size at which it changes nothing: one of a factor.
+/// The value of an effect's main parameter without effect: one for a factor.
 pub fn neutral(effect: &str) -> f64 {
     if matches!(effect, "torque_scale" | "inertial_scale") {
         1.0
@@ -109,8 +110,8 @@ pub fn neutral(effect: &str) -> f64 {
     }
 }
 
-/// What comes with an effect, and is neither right nor wrong beside it: plain friction is a part of every friction curve,
-/// the drive's inertia moves behind a spring or a gap.
+/// Effects that accompany an effect and are neither right nor wrong beside it: Coulomb friction is a part of every friction
+/// curve, and the rotor inertia moves behind a spring or a gap.
 pub fn brings(effect: &str) -> &'static [&'static str] {
     match effect {
         "stribeck_friction" | "load_dependent_friction" | "thermal_drift" => &["coulomb_friction"],

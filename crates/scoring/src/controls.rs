@@ -1,4 +1,4 @@
-//! The four controls of a case: which effects are fitted in them, and what they leave of the held-out torque.
+//! The four controls of a case: their effects, and their held-out torque errors.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use crate::catalogue::{ON_A_JOINT, ON_THE_ARM, brings, parameters};
 use crate::rules::{Key, Name, is_baseline};
 use crate::truth::Truth;
 
-/// The effects of the control "the true terms": all that is concealed and has a name, fitted by name, with no search.
+/// The effects of the control "the true terms": all injected faults with a name, fitted by name, without a search.
 pub fn true_terms(truth: &Truth) -> Vec<Name> {
     Key::new(truth).known.into_iter().collect()
 }
@@ -15,16 +15,16 @@ pub fn true_terms(truth: &Truth) -> Vec<Name> {
 /// The control "a wrong term".
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WrongTerm {
-    /// What is right.
+    /// The true effect.
     pub instead_of: Name,
-    /// What is fitted in its place.
+    /// The effect that is fitted in its place.
     pub wrong: Name,
-    /// All that is fitted.
+    /// All fitted effects.
     pub terms: Vec<Name>,
 }
 
-/// The true terms, with another name on the same joint in place of the most expressed one that is not baseline; which, is
-/// told by `number`, the case's. `None` where nothing but baseline effects is concealed.
+/// The true terms with another effect on the same joint in place of the largest one that is not a baseline effect; `number`,
+/// that of the case, selects which. `None` if only baseline effects are injected.
 pub fn wrong_term(truth: &Truth, number: usize) -> Option<WrongTerm> {
     let named = truth.of_note().filter(|concealed| {
         !concealed.is_outside_the_catalogue()
@@ -39,7 +39,7 @@ pub fn wrong_term(truth: &Truth, number: usize) -> Option<WrongTerm> {
     let key = Key::new(truth);
     let fits = |name: &str| {
         let name = (name.to_owned(), joint.clone());
-        // Neither true, nor a part of what is true, nor a whole that it is a part of.
+        // // Neither a true effect, nor a part of one, nor a generalisation of one.
         !key.known.contains(&name) && !key.brought.contains(&name) && !brings(&name.0).contains(&effect)
     };
     let list: &[&str] = if joint.is_some() { &ON_A_JOINT } else { &ON_THE_ARM };
@@ -56,18 +56,18 @@ pub fn wrong_term(truth: &Truth, number: usize) -> Option<WrongTerm> {
     })
 }
 
-/// What models leave of the held-out torque: the root mean square over the joints of the NRMSE.
+/// Held-out errors of the models: the root mean square over the joints of the NRMSE.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HeldOut {
     /// The case.
     pub case: String,
-    /// Whether something outside the catalogue is concealed: the true terms then lack what has no name.
+    /// Whether a fault outside the catalogue is injected, which the true terms do not contain.
     pub outside_the_catalogue: bool,
-    /// Whether the URDF is wrong everywhere, or joints have the small things of real ones: the true terms then lack these.
+    /// Whether the URDF is wrong everywhere, or joints have small effects, which the true terms do not contain.
     pub beside_the_terms: bool,
-    /// The model as it was given.
+    /// The nominal model.
     pub nominal: Option<f64>,
-    /// With what the diagnosis named.
+    /// With the findings.
     pub diagnosed: Option<f64>,
     /// With the true terms.
     pub true_terms: Option<f64>,
@@ -78,7 +78,7 @@ pub struct HeldOut {
 }
 
 impl HeldOut {
-    /// Whether the true terms are all that is concealed, so that they are a standard.
+    /// Whether the true terms are complete, so that they can serve as a reference.
     pub fn has_all_terms(&self) -> bool {
         !self.outside_the_catalogue && !self.beside_the_terms
     }

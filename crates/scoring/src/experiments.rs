@@ -1,4 +1,4 @@
-//! What the proposed experiment is worth: confusions before it and after it.
+//! The success of the proposed experiments: confusions before and after.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,45 +12,45 @@ use crate::score::Tried;
 /// A second diagnosis, with the recording of the motion that the first proposed.
 #[derive(Clone, Debug)]
 pub enum Again {
-    /// What it said.
+    /// The second diagnosis.
     Answer(Box<Answer>),
     /// Why there is none: the motion could not be recorded, or the program gave no answer.
     Failed(String),
 }
 
-/// What came of a confusion.
+/// The outcome of a confusion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum After {
-    /// What is concealed is named, and what it was confused with is neither named nor among what it could be instead.
+    /// The injected effect is named, and the other is neither named nor an alternative.
     Resolved,
-    /// What is concealed is named, and could still be the other.
+    /// The injected effect is named, and the other is still an alternative.
     StillConfused,
-    /// The other is named, and what is concealed is not.
+    /// The other is named, and the injected effect is not.
     WrongNamed,
-    /// What is concealed is not named, nor is the other.
+    /// Neither is named.
     NeitherNamed,
     /// There is no second diagnosis.
     NoAnswer,
 }
 
-/// A finding of a first diagnosis and what it could be instead, one of the two concealed.
+/// A finding of a first diagnosis and one of its alternatives, where one of the two is injected.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Confusion {
     /// The case.
     pub case: String,
-    /// What was named.
+    /// The finding.
     pub finding: Name,
-    /// What it could be instead.
+    /// The alternative.
     pub rival: Name,
-    /// Whether the rival is what is concealed.
+    /// Whether the alternative is the injected effect.
     pub rival_is_true: bool,
-    /// Whether a motion was proposed that should tell.
+    /// Whether a motion was proposed for it.
     pub proposed: bool,
-    /// Why not, in the diagnosis' own words, without figures.
+    /// Why not, in the words of the diagnosis, without numbers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub because: Option<String>,
-    /// What came of it; `None` if the case was not tried again.
+    /// The outcome; `None` if the case was not examined.
     pub after: Option<After>,
 }
 
@@ -77,28 +77,28 @@ pub struct InCase {
 pub struct Experiments {
     /// Cases diagnosed again.
     pub cases: usize,
-    /// Every confusion of the first diagnoses with one of the two concealed.
+    /// All confusions of the first diagnoses in which one effect is injected.
     pub confusions: Vec<Confusion>,
-    /// Of those for which a motion was proposed and made: resolved.
+    /// Resolved, of those for which a motion was proposed and recorded.
     pub resolved: Counted,
-    /// Of those in the cases tried again for which no motion was proposed: resolved.
+    /// Resolved, of those without a proposed motion in the same cases.
     pub resolved_unasked: Counted,
-    /// Of all in the cases tried again, whether a motion was proposed for them or not: resolved. The diagnosis chooses what it
-    /// proposes for; this is without its choice.
+    /// Resolved, of all in the same cases, with or without a proposed motion. This figure does not depend on the diagnosis'
+    /// choice.
     pub resolved_of_all: Counted,
-    /// The two effects, in the order of their names, of which most of those that `resolved` counts are.
+    /// The most frequent pair of effects in `resolved`, in the order of their names.
     pub most_frequent: Option<[String; 2]>,
-    /// What `resolved` is without these.
+    /// `resolved` without this pair.
     pub resolved_of_rarer: Counted,
-    /// Of what the first diagnosis declared not observable, in the cases tried again: named in the second.
+    /// Effects that the first diagnosis declared not testable and the second names.
     pub unseen_named: Counted,
-    /// Injected, and named in the second diagnosis alone.
+    /// Injected, and named only in the second diagnosis.
     pub gained: Vec<InCase>,
-    /// Injected, and named in the first diagnosis alone.
+    /// Injected, and named only in the first diagnosis.
     pub lost: Vec<InCase>,
-    /// Named falsely in the second diagnosis alone.
+    /// Named falsely only in the second diagnosis.
     pub false_added: Vec<InCase>,
-    /// Named falsely in the first diagnosis alone.
+    /// Named falsely only in the first diagnosis.
     pub false_dropped: Vec<InCase>,
 }
 
@@ -225,7 +225,7 @@ fn after(confusion: &Confusion, second: Option<&Answer>, key: &Key) -> After {
         (&confusion.finding, &confusion.rival)
     };
     let names = found(second);
-    // Where both are concealed, both are to be named; what comes with the truth is no confusion.
+    // Where both are injected, both are to be named; what comes with the truth is no confusion.
     let is_wrong = names.contains(other) && !key.allows(other);
     if !names.contains(truth) {
         return if is_wrong {
@@ -279,7 +279,8 @@ mod tests {
         }
     }
 
-    /// A confusion is resolved only if the truth is named, the other is not, and nothing is left between them.
+    /// A confusion is resolved only if the injected effect is named, the other is not, and neither is an alternative of the
+    /// other.
     #[test]
     fn a_confusion_is_resolved_when_the_truth_stands_alone() {
         let viscous =
@@ -303,7 +304,7 @@ mod tests {
         }
     }
 
-    /// The diagnosis chooses what it proposes for; counts without its choice, and without the most frequent pair, stand beside.
+    /// The figures of all confusions, and of those without the most frequent pair, are given in addition.
     #[test]
     fn the_figure_is_shown_without_what_flatters_it() {
         let mut case = tried(Some(r#"{"findings": [{"effect": "viscous_friction", "joint": "a"}]}"#));
@@ -334,7 +335,7 @@ mod tests {
         assert_eq!(counts(result.resolved_of_rarer), (0, 0));
     }
 
-    /// What is named anew, and what is lost, is told.
+    /// Names that are gained and lost are listed.
     #[test]
     fn regressions_are_shown() {
         let result = experiments(&[tried(Some(r#"{"findings": [{"effect": "spring", "joint": "a"}]}"#))]);

@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-/// So many of so many, with the interval that holds the share behind it with 95 %.
+/// A share k of n, with its 95 % confidence interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counted {
-    /// How many.
+    /// k.
     pub hits: usize,
-    /// Of how many.
+    /// n.
     pub of: usize,
-    /// Wilson's interval of the share (Wilson 1927), z = 1.96; from 0 to 1 where nothing was counted.
+    /// Wilson's interval of the share (Wilson 1927), z = 1.96; from 0 to 1 if n is 0.
     pub wilson: [f64; 2],
 }
 
@@ -30,13 +30,13 @@ impl Counted {
         Self::new(hits, of)
     }
 
-    /// The share; `None` where nothing was counted.
+    /// The share; `None` if n is 0.
     pub fn share(&self) -> Option<f64> {
         (self.of > 0).then(|| self.hits as f64 / self.of as f64)
     }
 }
 
-/// Wilson's interval of a share, `hits` of `of`, with 95 %.
+/// Wilson's 95 % interval of a share `hits` of `of`.
 pub fn wilson(hits: usize, of: usize) -> [f64; 2] {
     if of == 0 {
         return [0.0, 1.0];
@@ -47,13 +47,13 @@ pub fn wilson(hits: usize, of: usize) -> [f64; 2] {
     let scale = 1.0 + Z * Z / n;
     let middle = p + Z * Z / (2.0 * n);
     let half = Z * (p * (1.0 - p) / n + Z * Z / (4.0 * n * n)).sqrt();
-    // None of none, or all of all, end at the bound but for rounding.
+    // // With no hits, or only hits, the interval ends at the bound up to rounding.
     let low = if hits == 0 { 0.0 } else { (middle - half) / scale };
     let high = if hits == of { 1.0 } else { (middle + half) / scale };
     [low, high]
 }
 
-/// The value below which `share` of the values are, linear between them; `None` if there are none.
+/// The quantile of `share` of the values, linear between them; `None` for no values.
 pub fn quantile(values: &[f64], share: f64) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn wilsons_interval_is_the_one_in_books() {
-        // statsmodels.stats.proportion.proportion_confint(15, 20, method="wilson") is (.5313, .8881).
+        // // statsmodels.stats.proportion.proportion_confint(15, 20, method="wilson") is (0.5313, 0.8881).
         let [low, high] = wilson(15, 20);
         assert!(
             (low - 0.5313).abs() < 1e-4 && (high - 0.8881).abs() < 1e-4,

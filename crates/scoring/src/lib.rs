@@ -1,7 +1,8 @@
-//! The score of diagnoses: truths against answers, as pure functions.
+//! The score of diagnoses: ground truths against answers, as pure functions.
 //!
-//! A [`Tried`] case holds its [`Truth`] and the [`Answer`]s to it; [`score()`] adds up what came of all. [`Published`] is what publishers
-//! say of a real robot, where nobody made a truth. Both kinds of file are read through this crate's own types.
+//! A [`Tried`] case contains its [`Truth`] and the [`Answer`]s to it; [`score()`] computes the score of all cases.
+//! [`Published`] contains the published values of a real robot, without a ground truth. Both kinds of files are read with this
+//! crate's own types.
 
 mod answer;
 mod calibration;

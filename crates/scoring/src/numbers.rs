@@ -1,4 +1,4 @@
-//! The numbers of an effect that are scored, and how far a finding's are from the truth's.
+//! The scored parameters of an effect, and the errors of a finding's parameters.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use crate::answer::Named;
 use crate::catalogue::{is_dry_friction, is_friction_curve, is_weighed, neutral, parameters};
 use crate::truth::{Injected, Truth};
 
-/// One number of a finding against the truth's.
+/// A parameter of a finding and its true value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScoredNumber {
     /// The case.
@@ -17,20 +17,20 @@ pub struct ScoredNumber {
     pub joint: Option<String>,
     /// The parameter's name in the catalogue.
     pub parameter: String,
-    /// Whether it is the number that says how large the effect is.
+    /// Whether it is the main parameter of the effect.
     pub main: bool,
-    /// What it is, in the unit of the joint's recorded torque.
+    /// The true value, in the unit of the joint's recorded torque.
     pub truth: f64,
-    /// What was said.
+    /// The estimate.
     pub value: f64,
-    /// |said − true| over |true|; of a factor, over its distance from one; of a centre of mass, over its distance from the
-    /// tool's origin.
+    /// |estimate − truth| over |truth|; for a factor, over its distance from one; for a centre of mass, over its distance from
+    /// the tool's origin.
     pub error: f64,
-    /// Whether the 95 % interval holds the truth.
+    /// Whether the 95 % interval contains the true value.
     pub covered: bool,
 }
 
-/// A parameter of the truth under the name that findings have for it.
+/// A parameter of the ground truth under the name that findings use.
 pub fn truth_value(concealed: &Injected, parameter: &str) -> Option<f64> {
     let at = |key: &str, k: usize| concealed.parameters.get(key)?.get(k)?.as_f64();
     match parameter {
@@ -45,7 +45,7 @@ pub fn truth_value(concealed: &Injected, parameter: &str) -> Option<f64> {
     }
 }
 
-/// What an error is told in parts of.
+/// The denominator of a relative error.
 fn scale(concealed: &Injected, parameter: &str, truth: f64) -> f64 {
     if parameter.starts_with("com_") {
         let com = ["com_x", "com_y", "com_z"].map(|key| truth_value(concealed, key).unwrap_or(0.0));
@@ -54,14 +54,14 @@ fn scale(concealed: &Injected, parameter: &str, truth: f64) -> f64 {
     (truth - neutral(concealed.name())).abs()
 }
 
-/// Whether several forms of dry friction are on the joint: how much of the level is whose is then a matter of words.
+/// Whether several forms of dry friction act on the joint, so that the split of the level between them is arbitrary.
 fn shares_a_level(truth: &Truth, concealed: &Injected) -> bool {
     let same = |other: &&Injected| other.joint == concealed.joint && is_dry_friction(other.name());
     is_dry_friction(concealed.name()) && truth.of_note().filter(same).count() > 1
 }
 
-/// Whether the numbers mean something else than the catalogue's: the effect, or another part of the joint's friction curve, has
-/// another form than the textbook's.
+/// Whether the parameters have a meaning other than the catalogue's, because the effect, or another part of the joint's
+/// friction curve, has a form other than the textbook form.
 fn is_of_another_form(truth: &Truth, concealed: &Injected) -> bool {
     let bends = |other: &Injected| {
         let of_the_curve = is_friction_curve(other.name()) && is_friction_curve(concealed.name());
@@ -70,7 +70,7 @@ fn is_of_another_form(truth: &Truth, concealed: &Injected) -> bool {
     concealed.form.is_some() || truth.of_note().any(bends)
 }
 
-/// The numbers of a finding of `concealed`.
+/// The parameters of a finding of `concealed`.
 pub fn sized(truth: &Truth, concealed: &Injected, finding: &Named) -> Vec<ScoredNumber> {
     let is_level = |key: &str| matches!(key, "level" | "coulomb" | "breakaway" | "positive" | "negative");
     let shared = shares_a_level(truth, concealed);

@@ -1,4 +1,4 @@
-//! What came of each thing concealed in a case.
+//! The outcome of each injected fault in a case.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,25 +11,25 @@ use crate::rules::{
 use crate::score::Tried;
 use crate::truth::Injected;
 
-/// What came of a concealed effect.
+/// The outcome of an injected fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Fate {
     /// Named, on its joint.
     Found,
-    /// Named by another name of the same machine, with this one as what it could be instead.
+    /// Named by an equivalent name, with this one as an alternative.
     SameMachine,
-    /// In the confusable set of a finding.
+    /// An alternative of a finding.
     Covered,
-    /// Not named, and said not to show at its size.
+    /// Not named, and declared not testable at its size.
     NotObservable,
-    /// Not named, and its joint said to be unexplained.
+    /// Not named, and its joint is unexplained.
     Refused,
     /// None of these.
     Missed,
 }
 
-/// A concealed effect that is not baseline.
+/// An injected fault that is not a baseline effect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
     /// The case.
@@ -43,14 +43,14 @@ pub struct Outcome {
     pub form: Option<String>,
     /// Its expressed share.
     pub share: Option<f64>,
-    /// Its standard deviation over that of the noise on one sample of its joint's torque; of the whole arm, of the joints'
-    /// middle noise.
+    /// The standard deviation of its torque over that of the noise on one sample of its joint's torque; for the whole arm, with
+    /// the median noise of the joints.
     pub over_noise: Option<f64>,
-    /// Whether it is large enough to be asked for.
+    /// Whether it is large enough to be required.
     pub counts: bool,
-    /// What came of it.
+    /// The outcome.
     pub fate: Fate,
-    /// The name it was found by, where that is another of the same machine.
+    /// The equivalent name by which it was found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub found_as: Option<Name>,
     /// False names on its joint or on the whole arm, the largest first.
@@ -58,25 +58,25 @@ pub struct Outcome {
 }
 
 impl Fate {
-    /// Whether the diagnosis is right about it.
+    /// Whether the diagnosis names it, also by an equivalent name.
     pub fn is_found(self) -> bool {
         matches!(self, Self::Found | Self::SameMachine)
     }
 
-    /// Whether it is right, or says that it could be that.
+    /// Whether the diagnosis names it or lists it as an alternative.
     pub fn is_covered(self) -> bool {
         self.is_found() || self == Self::Covered
     }
 }
 
 impl Outcome {
-    /// Whether it counts, and was not declared not observable.
+    /// Whether it is required and was not declared not testable.
     pub fn is_asked(&self) -> bool {
         self.counts && self.fate != Fate::NotObservable
     }
 }
 
-/// A finding that is neither concealed nor brought by what is, nor baseline.
+/// A finding that is neither injected, nor accompanying, nor a baseline effect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FalseName {
     /// The case.
@@ -85,51 +85,51 @@ pub struct FalseName {
     pub effect: String,
     /// The joint; `None` for the whole arm.
     pub joint: Option<String>,
-    /// The share it was given.
+    /// Its stated share.
     pub share: f64,
-    /// The probability it was given.
+    /// Its stated probability.
     pub probability: Option<f64>,
-    /// What is concealed on its joint or on the whole arm.
+    /// The injected faults on its joint or on the whole arm.
     pub concealed_there: Vec<String>,
-    /// Whether what is true is in its confusable set.
+    /// Whether an injected fault is one of its alternatives.
     pub admits_the_truth: bool,
 }
 
-/// A case that should be refused, or was without cause.
+/// A case with an unexplained joint, or that should have one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OutsideOutcome {
     /// The case.
     pub case: String,
-    /// What is outside the catalogue, with its joint.
+    /// The faults outside the catalogue, with their joints.
     pub concealed: Vec<Name>,
     /// Its largest expressed share.
     pub share: Option<f64>,
-    /// Whether such a joint was called unexplained.
+    /// Whether such a joint is unexplained.
     pub refused: bool,
-    /// The joints that were.
+    /// The unexplained joints.
     pub unexplained: Vec<String>,
     /// False names in the case.
     pub named: Vec<Name>,
 }
 
-/// All of a case.
+/// The results of a case.
 #[derive(Clone, Debug, Default)]
 pub struct CaseOutcome {
-    /// What is concealed, is not baseline and has a name.
+    /// The injected faults of the catalogue that are not baseline effects.
     pub concealed: Vec<Outcome>,
     /// The false names that are not baseline.
     pub false_names: Vec<FalseName>,
-    /// Whether each baseline effect that is concealed was found.
+    /// Whether each baseline effect that is injected was found.
     pub baseline_found: Vec<bool>,
     /// Baseline names that are false.
     pub baseline_false: usize,
-    /// Whether nothing but baseline effects is concealed.
+    /// Whether only baseline effects are injected.
     pub is_empty: bool,
-    /// What is outside the catalogue.
+    /// The fault outside the catalogue.
     pub outside: Option<OutsideOutcome>,
-    /// A refusal with nothing outside the catalogue.
+    /// An unexplained joint without a fault outside the catalogue.
     pub refused_without_cause: Option<OutsideOutcome>,
-    /// The numbers of right findings.
+    /// The parameters of right findings.
     pub sizes: Vec<ScoredNumber>,
     /// Probabilities of findings that are not baseline, and whether they are right.
     pub said: Vec<(f64, bool)>,
@@ -139,13 +139,13 @@ pub struct CaseOutcome {
 }
 
 impl CaseOutcome {
-    /// Whether a number is of a baseline effect.
+    /// Whether a parameter belongs to a baseline effect.
     pub fn is_baseline(&self, sized: &ScoredNumber) -> bool {
         self.baseline.contains(&sized.effect.as_str())
     }
 }
 
-/// What came of a case. One without an answer is one in which nothing was found.
+/// The results of a case. In a case without an answer, nothing is found.
 pub fn outcomes(case: &Tried) -> CaseOutcome {
     let truth = &case.truth;
     let empty = Answer::default();
@@ -154,7 +154,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
     let named = found(answer);
     let covered = found_or_confusable(answer);
     let baseline = |name: &Name| is_baseline(truth, &name.0);
-    // What is concealed by the name that it was given, where that is another of the same machine.
+    // What is injected by the name that it was given, where that is another of the same machine.
     let other_names: Vec<(Name, Name)> = truth
         .of_note()
         .filter_map(|concealed| {
@@ -191,7 +191,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
         .collect();
     result.baseline_false = named.iter().filter(|n| !key.allows(n) && baseline(n)).count();
     for name in key.known.iter().filter(|name| !baseline(name)) {
-        // Of several of one name, the most expressed.
+        // // Of several effects of one name, the largest.
         let same = truth.of_note().filter(|c| c.name() == name.0 && c.joint == name.1);
         let Some(concealed) = same.max_by(|a, b| share(a).total_cmp(&share(b))) else {
             continue;
@@ -275,7 +275,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
             }
         }
         let same = truth.of_note().filter(|c| c.name() == name.0 && c.joint == name.1);
-        // Of several of one name, the one that it is nearest to.
+        // // Of several effects of one name, the nearest.
         let nearest = same.map(|concealed| sized(truth, concealed, finding)).min_by(|a, b| {
             let first = |list: &Vec<ScoredNumber>| list.first().map_or(f64::INFINITY, |sized| sized.error);
             first(a).total_cmp(&first(b))
@@ -293,8 +293,8 @@ fn share(concealed: &Injected) -> f64 {
     concealed.expressed_share.unwrap_or(0.0)
 }
 
-/// An effect's torque over the noise on one sample. The spread of a joint's torque is a fact of its recordings, which any
-/// diagnosis reports.
+/// An effect's torque over the noise on one sample. The standard deviation of a joint's torque is a property of its recordings,
+/// which every diagnosis reports.
 fn over_noise(case: &Tried, answer: &Answer, concealed: &Injected) -> Option<f64> {
     let noise_share = |joint: usize| -> Option<f64> {
         let spread = answer.fit.get(case.joints.get(joint)?)?.torque_std;

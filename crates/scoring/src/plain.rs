@@ -1,5 +1,5 @@
-//! The count of the open cases' own script: every concealed effect counts, whatever its size, and what was said not to show
-//! counts as missed.
+//! The count of the open cases' own script: every injected fault counts, whatever its size, and faults declared not testable
+//! count as missed.
 
 use std::collections::BTreeMap;
 
@@ -9,31 +9,31 @@ use crate::answer::Answer;
 use crate::rules::{Key, Name, found, found_or_confusable, is_baseline, plainly_counted_findings};
 use crate::score::Tried;
 
-/// The numbers that the script prints.
+/// The results of the script.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Plain {
-    /// Found and concealed, by family.
+    /// Found and injected, by family.
     pub families: BTreeMap<String, [usize; 2]>,
     /// False names that are not baseline, by family.
     pub false_names: BTreeMap<String, usize>,
-    /// Baseline effects concealed, found, named falsely.
+    /// Baseline effects injected, found, named falsely.
     #[serde(rename = "ordinary")]
     pub baseline: [usize; 3],
     /// Injected effects, not baseline.
     pub concealed: usize,
     /// Of these found.
     pub found: usize,
-    /// Of these found or in a confusable set.
+    /// Of these found or alternative only.
     pub covered: usize,
     /// Cases with nothing but baseline effects.
     pub empty: usize,
-    /// Of these without another name.
+    /// Of these, without another name.
     pub clean: usize,
     /// Cases with something outside the catalogue.
     pub outside: usize,
     /// Of these refused on the right joint.
     pub refused: usize,
-    /// Cases refused with nothing outside the catalogue.
+    /// Cases with an unexplained joint and nothing outside the catalogue.
     pub refused_without_cause: usize,
     /// Cases without an answer.
     pub missing: usize,
@@ -41,12 +41,12 @@ pub struct Plain {
     pub held_out: Option<f64>,
     /// Over all effects.
     pub micro_f1: f64,
-    /// F1 averaged over the families concealed.
+    /// F1 averaged over the injected families.
     pub macro_f1: f64,
 }
 
 impl Plain {
-    /// False names in all.
+    /// All false names.
     pub fn false_in_all(&self) -> usize {
         self.false_names.values().sum()
     }

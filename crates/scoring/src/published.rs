@@ -1,4 +1,4 @@
-//! What publishers say of a real robot, and what a diagnosis that was not told makes of its recordings.
+//! Published values of a real robot, and the comparison of a blind diagnosis with them.
 
 mod readings;
 
@@ -15,26 +15,26 @@ use readings::{Reading, readings};
 /// What publishers know of a robot that its URDF leaves out: the truth of a case whose truth nobody made.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Published {
-    /// The robot, the name of its folder.
+    /// The robot: the name of its folder.
     pub robot: String,
-    /// What they say is there.
+    /// The published effects.
     pub said: Vec<Said>,
-    /// What they say is not there.
+    /// The effects that a publication excludes.
     pub denied: Vec<Denied>,
 }
 
-/// An effect that is said to be there.
+/// A published effect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Said {
-    /// Names of the catalogue; where there are several, one of them is meant, and it is not said which.
+    /// Names in the catalogue; if there are several, the publication leaves open which one is meant.
     pub effects: Vec<String>,
     /// The joint; `None` for the whole arm.
     pub joint: Option<String>,
-    /// Its numbers, by the catalogue's names.
+    /// Its parameters, by the catalogue's names.
     pub parameters: BTreeMap<String, PublishedNumber>,
-    /// How well it is known.
+    /// The kind of evidence.
     pub evidence: Evidence,
-    /// Where it is said.
+    /// The source.
     pub place: String,
 }
 
@@ -47,98 +47,98 @@ pub struct PublishedNumber {
     pub unit: String,
 }
 
-/// How well something is known.
+/// The kind of evidence of a published effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Evidence {
-    /// The publishers give the number, as a result of measuring this machine or its kind.
+    /// The publishers give the value, as a result of measurements on this machine or its type.
     Number,
-    /// It follows from a law that they give.
+    /// The value follows from a law that they give.
     Derived,
-    /// A constant of a model that they use, of which it is not said that it was measured on this machine.
+    /// A constant of a model that they use, without a statement that it was measured on this machine.
     Constant,
-    /// They say that it is there, or it almost surely is; no number is known.
+    /// The effect is stated, or almost certainly present, without a value.
     Statement,
 }
 
-/// Effects that are said not to be there: naming one is wrong.
+/// Effects that are excluded by the publication: naming one is wrong.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Denied {
     /// Names of the catalogue.
     pub effects: Vec<String>,
-    /// On these joints; empty: anywhere.
+    /// The joints; any joint if empty.
     pub joints: Vec<String>,
-    /// Where it is said.
+    /// The source.
     pub place: String,
 }
 
-/// What came of something said.
+/// The outcome of a published effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SaidFate {
     /// Named, on its joint.
     Named,
-    /// Other words for the torque were used: asymmetric friction is Coulomb friction and an offset, a friction curve holds
-    /// Coulomb friction, a coupling acts on both its joints.
+    /// Named by an equivalent parameterisation: asymmetric friction is Coulomb friction with an offset, a friction curve
+    /// contains Coulomb friction, a coupling acts on both of its joints.
     SameTorque,
-    /// In the confusable set of a finding.
+    /// An alternative of a finding.
     Confusable,
-    /// Not named, and said not to show at its size; of unknown size, said not to show.
+    /// Not named, and declared not testable at its size; if the size is unknown, declared not testable.
     NotObservable,
-    /// Not named, and its joint said to have structure without a name.
+    /// Not named, and its joint is unexplained.
     Unexplained,
     /// None of these.
     Missed,
 }
 
-/// Something said, and what came of it.
+/// A published effect with its outcome.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SaidOutcome {
-    /// What was said.
+    /// The published effect.
     pub said: Said,
-    /// What came of it.
+    /// The outcome.
     pub fate: SaidFate,
-    /// The finding that it is, or whose confusable set has it.
+    /// The finding that agrees with it, or that has it as an alternative.
     pub named_as: Option<Name>,
-    /// All findings that it is, in words.
+    /// All findings that agree with it, in words.
     pub sentences: Vec<String>,
-    /// Its numbers beside the finding's.
+    /// Its parameters, with those of the finding.
     pub numbers: Vec<Compared>,
 }
 
-/// A published number beside the one found.
+/// A published value with the estimate.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Compared {
     /// The parameter's name in the catalogue.
     pub parameter: String,
-    /// As published (SI).
+    /// The published value (SI).
     pub published: f64,
     /// The SI unit.
     pub unit: String,
-    /// As found; `None` where the finding has no such number.
+    /// The estimate; `None` if the finding has no such parameter.
     pub found: Option<f64>,
     /// Its 95 % interval; `None` where it is open.
     pub ci95: [Option<f64>; 2],
     /// (found − published) over |published|.
     pub difference: Option<f64>,
-    /// Whether the interval holds the published number.
+    /// Whether the interval contains the published value.
     pub covered: bool,
 }
 
-/// A finding that nobody published.
+/// A finding that is not published.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Besides {
     /// The finding.
     pub name: Name,
-    /// Where publishers say that it is not there.
+    /// The source that excludes it.
     pub contradicted_by: Option<String>,
-    /// Whether it comes with something that is said: plain friction under a friction curve, a drive behind a spring.
+    /// Whether it accompanies a published effect: Coulomb friction with a friction curve, a rotor inertia with a spring.
     pub comes_with: bool,
-    /// Its part of the joint's torque.
+    /// Its share of the joint's torque.
     pub share: f64,
-    /// How likely it is said to be right.
+    /// Its stated probability.
     pub probability: Option<f64>,
-    /// What it could be instead.
+    /// Its alternatives.
     pub confusable_with: Vec<Name>,
     /// In words.
     pub sentence: String,
@@ -149,28 +149,28 @@ pub struct Besides {
 pub struct HeldOutErrors {
     /// Of the URDF's model.
     pub nominal: Option<f64>,
-    /// With what was named.
+    /// With the findings.
     pub diagnosed: Option<f64>,
-    /// With what publishers say, its sizes fitted to the same recordings.
+    /// With the published effects, fitted to the same recordings.
     pub said: Option<f64>,
     /// With a learned correction.
     pub learned: Option<f64>,
 }
 
-/// What a diagnosis made of a robot.
+/// The comparison for one robot.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RobotScore {
     /// The robot.
     pub robot: String,
     /// The verdict; `None` without an answer.
     pub verdict: Option<String>,
-    /// Everything said, in its order.
+    /// All published effects, in their order.
     pub said: Vec<SaidOutcome>,
-    /// Findings that nobody published.
+    /// Findings that are not published.
     pub besides: Vec<Besides>,
-    /// Joints with structure that was given no name.
+    /// Joints with an unexplained residual.
     pub unexplained: Vec<String>,
-    /// What could not be seen: joints, by effect; the whole arm is left out.
+    /// Effects declared not testable, with their joints; without the whole arm.
     pub not_observable: BTreeMap<String, Vec<String>>,
     /// Held-out errors, by joint.
     pub held_out: BTreeMap<String, HeldOutErrors>,
@@ -178,7 +178,7 @@ pub struct RobotScore {
     pub rollout: BTreeMap<String, Rollout>,
 }
 
-/// The parameters of an effect that may be published: those that are scored, and where a spring is at rest.
+/// The parameters of an effect that may be published: the scored ones, and the rest position of a spring.
 pub fn compared_parameters(effect: &str) -> Vec<&'static str> {
     let mut list = parameters(effect).to_vec();
     if effect == "spring" {
@@ -188,7 +188,7 @@ pub fn compared_parameters(effect: &str) -> Vec<&'static str> {
 }
 
 impl Published {
-    /// Everything said in the form that `--only` fits, each once: of several names the first.
+    /// All published effects in the form of `--only`, each once; of several names, the first.
     pub fn terms(&self) -> Vec<Name> {
         let mut list = Vec::new();
         for said in &self.said {
@@ -200,7 +200,7 @@ impl Published {
         list
     }
 
-    /// What `answer`, the blind diagnosis, made of it; `with_said` is the fit of [`Self::terms`] alone. Without an answer
+    /// The comparison with `answer`, the blind diagnosis; `with_said` is the fit of [`Self::terms`] alone. Without an answer,
     /// everything is missed.
     pub fn score(&self, answer: Option<&Answer>, with_said: Option<&Answer>) -> RobotScore {
         let nothing = Answer::default();
@@ -238,7 +238,7 @@ impl Published {
         }
     }
 
-    /// The findings that are nothing that was said, in whatever words.
+    /// The findings that agree with no published effect, also under other names.
     fn besides(&self, answer: &Answer, readings: &[Reading]) -> Vec<Besides> {
         let is_said = |name: &Name| self.said.iter().any(|said| said.is(name));
         let known: BTreeSet<usize> = readings
@@ -276,12 +276,12 @@ impl Published {
 }
 
 impl Said {
-    /// Whether a name is what is said.
+    /// Whether a finding agrees with a published effect.
     fn is(&self, (effect, joint): &Name) -> bool {
         *joint == self.joint && self.effects.contains(effect)
     }
 
-    /// As a truth is asked whether it was declared unseen.
+    /// The published effect as a fault of a ground truth, to test whether it was declared not testable.
     fn concealed(&self, effect: &str) -> Injected {
         let values = self.parameters.iter();
         Injected {
@@ -295,7 +295,7 @@ impl Said {
         }
     }
 
-    /// Whether each effect that may be meant is declared not to show; of unknown size it is enough that it is listed.
+    /// Whether each possible effect is declared not testable; if the size is unknown, it is sufficient that it is listed.
     fn is_unseen(&self, answer: &Answer) -> bool {
         self.effects.iter().all(|effect| {
             if !self.parameters.is_empty() {

@@ -1,4 +1,4 @@
-//! What counts as right: names, what an effect brings with it, what is baseline, what cannot be seen.
+//! The rules of the score: right names, accompanying effects, baseline effects, effects that are not testable.
 
 use std::collections::BTreeSet;
 
@@ -10,18 +10,18 @@ use crate::truth::{Injected, Truth};
 /// An effect's name and its joint; `None` is the whole arm.
 pub type Name = (String, Option<String>);
 
-/// An effect below this expressed share is not asked for.
+/// The expressed share below which an effect is not required.
 pub const LEAST_SHARE: f64 = 0.015;
 
 /// A common factor of all inertials within so many standard deviations of a URDF's error is a part of that error.
 const WITHIN_THE_URDF: f64 = 3.0;
 
-/// Whether it is in the machine's baseline, and scored apart.
+/// Whether it is a baseline effect of the machine, which is scored separately.
 pub fn is_baseline(truth: &Truth, effect: &str) -> bool {
     truth.baseline().contains(&effect)
 }
 
-/// Another name for the very machine that `concealed` makes: no recording tells the two apart. Dry friction that differs by
+/// The equivalent name of the machine with `concealed`: no recording distinguishes the two. Dry friction that depends on the
 /// direction is a level and a constant, ½ (F₊ + F₋) sgn q̇ + ½ (F₊ − F₋), in motion and, as its two limits, at rest.
 pub fn same_machine(truth: &Truth, concealed: &Injected) -> Option<Name> {
     let other = match concealed.name() {
@@ -38,7 +38,7 @@ pub fn same_machine(truth: &Truth, concealed: &Injected) -> Option<Name> {
     let is_plain = concealed.form.is_none();
     let same = match (concealed.name(), beside.as_slice()) {
         ("friction_asymmetry", []) => is_plain,
-        // A constant beyond the level of friction would push by itself.
+        // // A constant larger than the level would move the joint by itself.
         ("torque_offset", [friction]) => {
             let (offset, level) = (number(concealed, "offset")?, number(friction, "level")?);
             let start = |of: &Injected| of.onset.unwrap_or(f64::NEG_INFINITY);
@@ -53,14 +53,14 @@ pub fn same_machine(truth: &Truth, concealed: &Injected) -> Option<Name> {
     same.then(|| (other.to_owned(), concealed.joint.clone()))
 }
 
-/// What is true of a case.
+/// What is true in a case.
 #[derive(Clone, Debug, Default)]
 pub struct Key {
     /// Injected, and in the catalogue.
     pub known: BTreeSet<Name>,
     /// Injected, and outside the catalogue.
     pub unknown: BTreeSet<Name>,
-    /// Brought by what is concealed, or one of the small things of real joints.
+    /// Accompanying an injected fault, or one of the small effects of real joints.
     pub brought: BTreeSet<Name>,
 }
 
@@ -101,13 +101,13 @@ impl Key {
         }
     }
 
-    /// Whether a finding is right, or comes with what is: otherwise it is false.
+    /// Whether a finding is right or accompanies a right one; otherwise it is false.
     pub fn allows(&self, name: &Name) -> bool {
         self.known.contains(name) || self.brought.contains(name)
     }
 }
 
-/// What a diagnosis names.
+/// The names that a diagnosis gives.
 pub fn found(answer: &Answer) -> BTreeSet<Name> {
     answer
         .findings
@@ -116,7 +116,7 @@ pub fn found(answer: &Answer) -> BTreeSet<Name> {
         .collect()
 }
 
-/// What a diagnosis names or says that it could be instead.
+/// The names and the alternatives that a diagnosis gives.
 pub fn found_or_confusable(answer: &Answer) -> BTreeSet<Name> {
     let rivals = answer.findings.iter().flat_map(|f| &f.confusable_with);
     let mut set = found(answer);
@@ -183,7 +183,7 @@ fn is_of_the_urdf(truth: &Truth, scale: &Injected) -> bool {
         .is_some_and(|sigma| factor.ln().abs() <= WITHIN_THE_URDF * sigma)
 }
 
-/// Whether a diagnosis says that an effect of this size would not show in these recordings.
+/// Whether a diagnosis declares an effect of this size not testable with these recordings.
 pub fn is_declared_unseen(answer: &Answer, concealed: &Injected) -> bool {
     answer
         .not_observable

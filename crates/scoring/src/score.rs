@@ -1,4 +1,4 @@
-//! The score: truths against diagnoses, as numbers.
+//! The score: ground truths against diagnoses.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -18,14 +18,14 @@ use crate::summary::{Curve, Errors, ParameterScore, curves, errors, parameter_sc
 use crate::targets::{Target, targets};
 use crate::truth::{Injected, Truth};
 
-/// A case after everything was tried on it.
+/// A case with all its results.
 #[derive(Clone, Debug)]
 pub struct Tried {
-    /// What was concealed.
+    /// The ground truth.
     pub truth: Truth,
-    /// The joints' names, base to tip: the order of the truth's noise.
+    /// The joints' names, base to tip: the order of the noise in the ground truth.
     pub joints: Vec<String>,
-    /// What was diagnosed; `None` if the program gave no answer.
+    /// The diagnosis; `None` if the program gave no answer.
     pub answer: Option<Answer>,
     /// The true terms fitted by name.
     pub true_terms: Option<Answer>,
@@ -35,22 +35,23 @@ pub struct Tried {
     pub tracking_over_exact: Option<f64>,
     /// The tracking error over that with the exact model in a loop without the velocity filter's lag, where nothing but the model differs.
     pub tracking_over_exact_without_lag: Option<f64>,
-    /// A second diagnosis, with the experiment that the first proposed; `None` if it was not tried.
+    /// A second diagnosis, with the proposed experiment; `None` if there was none.
     pub again: Option<Again>,
 }
 
-/// What the diagnoses of all cases are worth. Everything is counted in names: an effect on a joint.
+/// The score of all cases. Everything is counted in names: an effect on a joint.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Score {
-    /// Cases scored.
+    /// The number of cases.
     pub cases: usize,
-    /// Cases that got no answer: nothing was found in them. In shares of names given, in errors and in intervals they do not count.
+    /// Cases without an answer: nothing is found in them. They are excluded from shares of given names, from errors and from
+    /// intervals.
     pub unanswered: Vec<String>,
     /// Cases with nothing but baseline effects.
     pub empty: usize,
-    /// The figures that were asked for, and whether they are reached.
+    /// The targets, and whether they are reached.
     pub targets: Vec<Target>,
-    /// The headline: everything asked for, every name that is not true false, sizes within 20 %.
+    /// The strict figures.
     pub strict: Strict,
     /// The strict figures by how wrong the URDF was; groups without a case are left out.
     pub by_urdf: Vec<UrdfGroup>,
@@ -58,7 +59,7 @@ pub struct Score {
     pub families: BTreeMap<String, Family>,
     /// F1 of each family, averaged over the families concealed.
     pub macro_f1: Option<f64>,
-    /// Macro F1 if what was declared not observable counts as missed, and another name of the same machine as false.
+    /// Macro F1 if what was declared not testable counts as missed, and another name of the same machine as false.
     pub macro_f1_strict: Option<f64>,
     /// Baseline friction and drive inertia: found.
     #[serde(rename = "ordinary")]
@@ -74,9 +75,9 @@ pub struct Score {
     pub outside_with_a_wrong_name: Counted,
     /// Cases with nothing outside the catalogue in which a joint was said to be unexplained, of those answered.
     pub refused_without_cause: Counted,
-    /// Injected effects that are a finding or in a finding's confusable set.
+    /// Injected effects that are a finding or an alternative of a finding.
     pub covered: Counted,
-    /// Effects covered if what was declared not observable counts as not covered.
+    /// Effects covered if what was declared not testable counts as not covered.
     pub covered_strict: Counted,
     /// Detection against the effect's size.
     pub detection: Vec<Curve>,
@@ -84,7 +85,7 @@ pub struct Score {
     pub parameters: Vec<ParameterScore>,
     /// Of the main parameters of all effects that are not baseline: relative errors.
     pub main_parameters: Errors,
-    /// Of all scored parameters of these effects: intervals that hold the truth.
+    /// Of all scored parameters of these effects: intervals that contain the true value.
     pub intervals: Counted,
     /// Errors of prediction on the recording held out, over the true terms', case by case.
     pub over_true_terms: Errors,
@@ -94,7 +95,7 @@ pub struct Score {
     pub tracking_over_exact: Errors,
     /// Tracking errors over those with the exact model, without the velocity filter's lag.
     pub tracking_over_exact_without_lag: Errors,
-    /// What was concealed (rows) against what it was called (columns).
+    /// What was injected (rows) against what it was called (columns).
     pub confusion: BTreeMap<String, BTreeMap<String, usize>>,
     /// Probability against outcome, of findings that are not baseline.
     pub calibration: Calibration,
@@ -102,7 +103,7 @@ pub struct Score {
     pub calibration_of_all: Calibration,
     /// The count of the open cases' own script, without any of the distinctions above.
     pub plain: Plain,
-    /// Every concealed effect that is not baseline, with its fate.
+    /// Every injected effect that is not a baseline effect, with its outcome.
     pub concealed: Vec<Outcome>,
     /// Every false name that is not baseline.
     pub false_names: Vec<FalseName>,
@@ -127,26 +128,26 @@ pub struct Family {
     pub found: usize,
     /// Of these by another name of the same machine.
     pub same_machine: usize,
-    /// Of these found or in the confusable set of a finding.
+    /// Of these found or an alternative of a finding.
     pub covered: usize,
-    /// Of these not found, and declared not observable at their size.
+    /// Of these not found, and declared not testable at their size.
     pub not_observable: usize,
     /// Of these not found, and the joint refused instead.
     pub refused: usize,
-    /// Injected with a smaller share: nobody asks for these.
+    /// Injected with a smaller share: these are not required.
     pub too_small: usize,
     /// Of those too small, found.
     pub too_small_found: usize,
     /// Named where they were not.
     pub false_names: usize,
-    /// 2 found over (asked for + found + false); what was declared not observable is not asked for.
+    /// 2 found over (required + found + false); what was declared not testable is not required.
     pub f1: Option<f64>,
-    /// F1 if that is asked for, too, and another name of the same machine is false.
+    /// F1 if that is required, too, and another name of the same machine is false.
     pub f1_strict: Option<f64>,
 }
 
 impl Family {
-    /// Those asked for: visible, or not declared otherwise.
+    /// Those required: visible, or not declared otherwise.
     pub fn asked(&self) -> usize {
         self.concealed - self.not_observable
     }
@@ -334,8 +335,8 @@ fn by_joint(case: &Tried) -> Vec<f64> {
     answer.fit.iter().filter_map(ratio).collect()
 }
 
-/// Rows: what was concealed and asked for, "outside the catalogue", "nothing there". Columns: names, "refused",
-/// "not observable", "not named".
+/// Rows: what was concealed and required, "outside the catalogue", "nothing there". Columns: names, "refused",
+/// "not testable", "not named".
 fn confusion(
     concealed: &[Outcome],
     false_names: &[FalseName],

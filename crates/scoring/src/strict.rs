@@ -1,4 +1,4 @@
-//! The strict figure: everything large enough is asked for, every name that is not true is false, and a size must be right, too.
+//! The strict figure: everything large enough is required, every name that is not true is false, and a size must be right, too.
 
 use std::collections::BTreeMap;
 
@@ -9,16 +9,16 @@ use crate::intervals::Counted;
 use crate::numbers::ScoredNumber;
 use crate::outcome::{CaseOutcome, Fate};
 
-/// A size further from the truth than this, relative, is not found.
+/// The relative error above which a size is not right.
 pub const SIZE_WITHIN: f64 = 0.2;
 
-/// Cases, counted strictly: what was declared not observable is asked for, another name of the same machine is false, and a size that
+/// Cases, counted strictly: what was declared not testable is required, another name of the same machine is false, and a size that
 /// can be compared must be within [`SIZE_WITHIN`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Strict {
     /// F1 averaged over the families concealed.
     pub macro_f1: Option<f64>,
-    /// Effects found with their size, of those asked for.
+    /// Effects found with their size, of those required.
     pub right: Counted,
     /// Those named, but with another size.
     pub wrong_size: usize,
@@ -29,7 +29,7 @@ pub struct Strict {
     pub baseline_false: usize,
     /// Cases with a false name that is not baseline, of those answered.
     pub cases_with_a_false_name: Counted,
-    /// 95 % intervals that hold the truth, of effects that are not baseline.
+    /// 95 % intervals that contain the true value, of effects that are not baseline.
     pub intervals: Counted,
     /// By family.
     pub families: BTreeMap<String, StrictFamily>,
@@ -46,7 +46,7 @@ pub struct StrictFamily {
     pub wrong_size: usize,
     /// Named where they were not.
     pub false_names: usize,
-    /// 2 right over (asked + right + wrong size + false): as any F1, 2 right over all that is asked for and all that is named.
+    /// 2 right over (asked + right + wrong size + false): as any F1, 2 right over all that is required and all that is named.
     pub f1: Option<f64>,
 }
 
@@ -116,15 +116,15 @@ pub fn strict<'a>(cases: impl Iterator<Item = (&'a CaseOutcome, bool)>) -> Stric
     }
 }
 
-/// How wrong a case's URDF is.
+/// How wrong the URDF of a case is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum UrdfError {
-    /// Exact but for what is concealed.
+    /// Exact, apart from the injected faults.
     Exact,
-    /// Up to 20 %: of a robot that was measured, or drawn with care.
+    /// Up to 20 %: a robot that was measured, or modelled with care.
     Some,
-    /// More: masses from a CAD drawing without cables and covers.
+    /// More: masses from a CAD model without cables and covers.
     Much,
 }
 
@@ -160,6 +160,6 @@ pub struct UrdfGroup {
     pub cases: usize,
     /// F1 averaged over the families, not counted strictly.
     pub macro_f1: Option<f64>,
-    /// What came of them.
+    /// The outcome of them.
     pub strict: Strict,
 }

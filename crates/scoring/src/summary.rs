@@ -26,9 +26,9 @@ pub struct SizeBin {
     pub to: Option<f64>,
     /// Those found.
     pub found: Counted,
-    /// Those found or in a finding's confusable set.
+    /// Those found or an alternative of a finding.
     pub covered: Counted,
-    /// Those not found and declared not observable; they are among those that `found` is of.
+    /// Those not found and declared not testable; they are among those that `found` is of.
     pub not_observable: usize,
 }
 
@@ -54,7 +54,7 @@ pub struct ParameterScore {
     pub main: bool,
     /// Relative errors.
     pub errors: Errors,
-    /// Intervals that hold the truth.
+    /// Intervals that contain the true value.
     pub covered: Counted,
 }
 
@@ -68,7 +68,7 @@ pub fn errors(values: impl IntoIterator<Item = f64>) -> Errors {
     }
 }
 
-/// Detection against both measures of size, over all concealed effects, also the small ones.
+/// Detection against both measures of size, over all injected effects, also the small ones.
 pub fn curves(concealed: &[Outcome]) -> Vec<Curve> {
     let shares: &[f64] = &[0.0, 0.0075, 0.015, 0.03, 0.06, 0.12, 0.25];
     let noises: &[f64] = &[0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0];

@@ -6,12 +6,12 @@ use crate::intervals::Counted;
 use crate::score::{Family, Score};
 use crate::strict::{UrdfError, UrdfGroup};
 
-/// Which figure it is.
+/// The identifier of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Figure {
     /// F1 averaged over the families, counted strictly.
     Strict,
-    /// Cases with a false name, whatever is concealed in them.
+    /// Cases with a false name, whatever is injected in them.
     FalseCases,
     /// F1 averaged over the families.
     MacroF1,
@@ -23,9 +23,9 @@ pub enum Figure {
     OutsideNamed,
     /// Relative errors of the main parameters.
     ParameterErrors,
-    /// Intervals that hold the truth.
+    /// Intervals that contain the true value.
     Intervals,
-    /// The truth is named, or in a finding's confusable set.
+    /// The truth is named, or an alternative of a finding.
     Covered,
     /// Held-out errors over the true terms'.
     HeldOut,
@@ -35,25 +35,25 @@ pub enum Figure {
     Confusions,
 }
 
-/// A figure that was asked for.
+/// A figure with its target.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Target {
     /// Which it is.
     #[serde(skip)]
     pub id: Figure,
-    /// The value in words.
+    /// The label.
     pub what: String,
-    /// The figure; `None` if nothing was there to count.
+    /// The value; `None` if there was nothing to count.
     pub figure: Option<f64>,
     /// The smallest value that meets it.
     pub at_least: Option<f64>,
     /// The largest value that meets it.
     pub at_most: Option<f64>,
-    /// What it was counted from, where it is a share.
+    /// The share that it is, with its counts.
     pub counted: Option<Counted>,
-    /// Over how many.
+    /// The number of items.
     pub of: usize,
-    /// Whether it is reached; `None` if nothing was there to count, or nothing is wanted of it: it says more of the one above.
+    /// Whether it is reached; `None` if there was nothing to count, or if there is no target.
     pub reached: Option<bool>,
 }
 
@@ -80,7 +80,7 @@ fn share(id: Figure, what: &str, counted: Counted, bounds: [Option<f64>; 2]) -> 
     }
 }
 
-/// What is asked of `score`.
+/// The figures of `score` with their targets.
 pub fn targets(score: &Score) -> Vec<Target> {
     let at_least = |value: f64| [Some(value), None];
     let at_most = |value: f64| [None, Some(value)];
@@ -89,14 +89,16 @@ pub fn targets(score: &Score) -> Vec<Target> {
     let (tracking, stricter) = (score.tracking_over_exact, score.tracking_over_exact_without_lag);
     let experiments = &score.experiments;
     let without = match &experiments.most_frequent {
-        Some([a, b]) => format!("… of those proposed for, without `{a}` and `{b}`, the most frequent pair"),
-        None => "… of those proposed for, without the most frequent pair".to_owned(),
+        Some([a, b]) => format!(
+            "resolved, of the confusions with a proposed experiment, without the most frequent pair, `{a}` and `{b}`"
+        ),
+        None => "resolved, of the confusions with a proposed experiment, without the most frequent pair".to_owned(),
     };
     let (wrong, refused) = (score.outside_with_a_wrong_name, score.outside_refused);
     let strict = &score.strict;
     let mut list = vec![target(
         Figure::Strict,
-        "macro F1, strict: all from 1.5 % on asked for, every untrue name false, sizes within 20 %",
+        "strict macro F1: all effects from 1.5 % on required, every untrue name false, sizes within 20 %",
         strict.macro_f1,
         [None, None],
         strict.right.of,
@@ -118,13 +120,13 @@ pub fn targets(score: &Score) -> Vec<Target> {
         ),
         share(
             Figure::OutsideRefused,
-            "outside the catalogue, refused on the right joint",
+            "effects outside the catalogue: unexplained residual on the right joint",
             refused,
             at_least(0.90),
         ),
         share(
             Figure::OutsideNamed,
-            "outside the catalogue, given a wrong name",
+            "effects outside the catalogue: cases with a wrong name",
             wrong,
             at_most(0.03),
         ),
@@ -137,13 +139,13 @@ pub fn targets(score: &Score) -> Vec<Target> {
         ),
         share(
             Figure::Intervals,
-            "95 % intervals that hold the truth",
+            "95 % intervals that contain the true value",
             score.intervals,
             [Some(0.90), Some(0.99)],
         ),
         share(
             Figure::Covered,
-            "truth in the finding or its confusable set",
+            "ground truth in the finding or its alternatives",
             score.covered,
             at_least(0.98),
         ),
@@ -170,20 +172,20 @@ pub fn targets(score: &Score) -> Vec<Target> {
         ),
         target(
             Figure::Tracking,
-            "tracking error likewise, without the velocity filter’s lag, median",
+            "tracking error over the exact model’s, without the velocity filter’s lag, median",
             stricter.median,
             at_most(1.5),
             stricter.count,
         ),
         share(
             Figure::Confusions,
-            "confusions resolved by the proposed experiment, of those it was proposed for",
+            "resolved, of the confusions with a proposed experiment",
             experiments.resolved,
             at_least(0.70),
         ),
         share(
             Figure::Confusions,
-            "… of all in the cases tried",
+            "resolved, of all confusions in the same cases",
             experiments.resolved_of_all,
             [None, None],
         ),
@@ -197,7 +199,7 @@ pub fn targets(score: &Score) -> Vec<Target> {
     list
 }
 
-/// What is asked of cases whose URDFs are about as wrong.
+/// The targets of cases whose URDFs are similarly wrong.
 fn of_group(group: &UrdfGroup) -> [Target; 3] {
     let least = match group.urdf {
         UrdfError::Exact => 0.95,
@@ -208,20 +210,20 @@ fn of_group(group: &UrdfGroup) -> [Target; 3] {
     [
         target(
             Figure::Strict,
-            &format!("… URDF {urdf}"),
+            &format!("strict macro F1, URDF {urdf}"),
             strict.macro_f1,
             [Some(least), None],
             strict.right.of,
         ),
         share(
             Figure::FalseCases,
-            &format!("… cases with a false name, URDF {urdf}"),
+            &format!("cases with a false name, URDF {urdf}"),
             strict.cases_with_a_false_name,
             [None, Some(0.02)],
         ),
         share(
             Figure::Intervals,
-            &format!("… 95 % intervals that hold the truth, URDF {urdf}"),
+            &format!("95 % intervals that contain the true value, URDF {urdf}"),
             strict.intervals,
             [Some(0.90), Some(0.99)],
         ),

@@ -1,7 +1,8 @@
-//! The truth about a case, as far as it is scored.
+//! The ground truth of a case, as far as it is scored.
 //!
-//! The files are written by whoever made the case, here by the crate `faults`. This crate reads them through types of its own, as it reads
-//! diagnoses: so neither of the two crates depends on the other, and cases that others made are scored alike.
+//! The files are written by the author of the case, here by the crate `faults`. This crate reads them with types of its own, as
+//! it reads diagnoses. The two crates therefore do not depend on each other, and cases of other authors are scored in the same
+//! way.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +10,7 @@ use serde::Deserialize;
 
 use crate::catalogue::{BASELINE, BASELINE_WITH_DRIVES, DRIVE_INERTIA, canonical, is_outside};
 
-/// What a case's machine has and its URDF has not; what is not scored is not read.
+/// The faults that a machine has and its URDF does not have; fields that are not scored are not read.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct Truth {
     /// The case's name, that of its folder.
@@ -30,7 +31,7 @@ pub struct Injected {
     pub effect: String,
     /// The URDF joint's name; `None` for the whole arm.
     pub joint: Option<String>,
-    /// The functional form, where it is not the textbook's.
+    /// The functional form, if it is not the textbook form.
     #[serde(default)]
     pub form: Option<String>,
     /// When it sets in (s, on the recordings' clock), where it is not there from the start.
@@ -40,7 +41,7 @@ pub struct Injected {
     /// without it; `None` where nobody said.
     #[serde(default)]
     pub expressed_share: Option<f64>,
-    /// Whether it is one of the small things that every real joint has: neither asked for, nor false when named.
+    /// Whether it is one of the small effects of real joints: neither required, nor false when named.
     #[serde(default)]
     pub minor: bool,
     /// The catalogue's parameters (SI), by name.
@@ -70,7 +71,7 @@ impl Truth {
         self.urdf_sigma.is_some_and(|sigma| sigma > 0.0)
     }
 
-    /// What is injected and asked for, or baseline: all but the small things of real joints.
+    /// What is injected and required, or baseline: all but the small things of real joints.
     pub fn of_note(&self) -> impl Iterator<Item = &Injected> {
         self.concealed.iter().filter(|injected| !injected.minor)
     }

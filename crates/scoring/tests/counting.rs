@@ -1,4 +1,4 @@
-//! What counts as right, covered, not observable, refused and false, on cases made by hand.
+//! What counts as right, covered, not testable, refused and false, on cases made by hand.
 
 use scoring::{Answer, Fate, Score, Tried, Truth, score, true_terms, wrong_term};
 use serde_json::{Value, json};
@@ -165,7 +165,7 @@ fn numbers_are_compared_in_parts_of_the_truth() {
     let concealed = json!([{"effect": "torque_scale", "joint": "a", "factor": 1.2, "expressed_share": 0.2}]);
     let wide = scored(concealed, answer(json!([open]), json!([]), json!([])));
     assert_eq!((wide.intervals.hits, wide.intervals.of), (0, 1));
-    // What is baseline is not among the figures asked for.
+    // What is baseline is not among the figures required.
     assert_eq!((score.main_parameters.count, score.intervals.of), (1, 1));
 }
 
@@ -197,7 +197,7 @@ fn outside_the_catalogue_is_refused_on_its_joint_or_not() {
     assert_eq!(empty.over_true_terms.median, Some(1.0));
 }
 
-/// No answer is no merit: nothing is found, and no empty case is clean for it. What is declared not observable is not covered, strictly.
+/// No answer is no merit: nothing is found, and no empty case is clean for it. What is declared not testable is not covered, strictly.
 #[test]
 fn no_answer_and_no_claim_are_no_merit() {
     let tried = |concealed: Value, answer: Option<Answer>| Tried {
@@ -304,7 +304,7 @@ fn inertials_of_the_whole_arm_stand_for_a_small_common_factor() {
     }
 }
 
-/// The small things of real joints are not asked for, and not false; what is weighed beside a torque constant is in its unit.
+/// The small things of real joints are not required, and not false; what is weighed beside a torque constant is in its unit.
 #[test]
 fn minor_effects_are_not_scored() {
     let small = json!([
@@ -349,7 +349,7 @@ fn minor_effects_are_not_scored() {
     assert_eq!((empty.empty, empty.plain.clean), (1, 1));
 }
 
-/// Strictly, a wrong size is no find, what was declared not observable is missed, and each group of URDFs stands by itself.
+/// Strictly, a wrong size is no find, what was declared not testable is missed, and each group of URDFs stands by itself.
 #[test]
 fn the_strict_figure_asks_for_sizes_and_is_told_by_urdf() {
     let drag = || json!([{"effect": "quadratic_drag", "joint": "a", "coefficient": 4.0, "expressed_share": 0.015}]);

@@ -9,7 +9,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Names of a case's concealed effects as a diagnosis would give them, some dropped, one invented: what is scored need not
+/// Names of a case's injected effects as a diagnosis would give them, some dropped, one invented: what is scored need not
 /// be good, but must be counted alike.
 fn made_up(truth: &Truth, number: usize) -> serde_json::Value {
     let finding = |effect: &str, joint: &Option<String>, rival: &str| {

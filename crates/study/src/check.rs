@@ -1,4 +1,4 @@
-//! What in a recording does not fit the robot's URDF: names, limits, signs, order, motor side.
+//! Checks of a recording against the robot's URDF: names, limits, signs, order, motor side.
 
 mod column_map;
 mod smooth;
@@ -21,22 +21,22 @@ use self::torque_unit::MOTOR_SIDE;
 const GAIN: f64 = 2.0;
 /// An assumption must be better than the next one by at least this reduction of the mean log residual.
 const LEAD: f64 = 1.0;
-/// A torque more than this times the model's is in another unit.
+/// A torque of more than this multiple of the model's is in another unit.
 const OTHER_UNIT: f64 = 100.0;
-/// A speed above this times the URDF's limit is no robot's; many URDFs have limits of the normal operation.
+/// The largest speed of a robot, as a multiple of the URDF's limit; many URDFs have limits of the normal operation.
 const BEYOND: f64 = 5.0;
 
-/// Something that does not fit.
+/// A contradiction between recording and URDF.
 #[derive(Debug, Serialize)]
 pub struct Misfit {
-    /// The joint, if it is about one.
+    /// The joint, if it concerns one.
     pub joint: Option<String>,
-    /// What was found, and the remedy.
+    /// A description, with the remedy.
     pub text: String,
     /// Whether it must be corrected before the robot can be diagnosed.
     #[serde(skip)]
     pub spoils: bool,
-    /// The keys of a column map that mend it.
+    /// The keys of a column map that correct it.
     #[serde(skip)]
     pub changes: Vec<Change>,
 }
@@ -52,7 +52,7 @@ impl Misfit {
     }
 }
 
-/// The column map that mends `misfits` of `recording`, which was read with a map of the user's (`mapped`) or not.
+/// The column map that corrects `misfits` of `recording`, which was read with the user's map (`mapped`) or without one.
 pub fn column_map(misfits: &[Misfit], recording: &Recording, mapped: bool) -> Option<String> {
     let changes: Vec<Change> = misfits
         .iter()
@@ -63,8 +63,8 @@ pub fn column_map(misfits: &[Misfit], recording: &Recording, mapped: bool) -> Op
     column_map::text(&recording.joints, &changes, own, recording.qd.is_some())
 }
 
-/// Whether the positions span two turns and more than the URDF's limits allow, and fit into them as degrees. A zero
-/// that is off by turns keeps the span, and many a motion exceeds the limits of its URDF.
+/// Whether the positions span two turns and more than the URDF's limits allow, and are within them as degrees. A zero that is
+/// wrong by turns does not change the span, and many motions exceed the limits of their URDF.
 fn is_in_degrees(joint: &Joint, measured: &JointQuality) -> bool {
     let (low, high) = measured.q_range;
     let limits = joint.limits;
@@ -85,7 +85,7 @@ fn degrees(joint: &Joint, measured: &JointQuality) -> Misfit {
         joint.limits.upper
     );
     let mut changes = vec![Change::new(&joint.name, "q_unit", Value::Text("deg"))];
-    // Velocities that are the positions' slopes are in the same unit.
+    // Velocities that are the positions' slopes have the same unit.
     if measured
         .velocity_ratio
         .is_some_and(|ratio| (0.5..2.0).contains(&ratio.abs()))
@@ -95,7 +95,7 @@ fn degrees(joint: &Joint, measured: &JointQuality) -> Misfit {
     Misfit::new(Some(&joint.name), text, changes)
 }
 
-/// What in `regular` does not fit `arm`.
+/// The contradictions between `regular` and `arm`.
 pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Misfit> {
     let mut misfits = names(arm, regular);
     for (joint, measured) in arm.joints().iter().filter_map(|joint| {
@@ -134,7 +134,7 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
             ));
         }
     }
-    // All of them are spoilt together, because each position is a part of all torques.
+    // All of them are wrong together, because all torques depend on each position.
     let in_degrees = misfits.iter().filter(|misfit| !misfit.changes.is_empty()).count();
     let moving = quality.joints.iter().filter(|joint| joint.moves).count();
     if in_degrees > 0 && in_degrees >= moving {
@@ -150,7 +150,7 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
     if let Some(order) = order {
         let moves: Vec<bool> = order.iter().map(|&joint| quality.joints[joint].moves).collect();
         let smooth = Smooth::of(regular, &order);
-        // Positions in degrees or of another joint leave nothing to compare torques with.
+        // With positions in degrees or of another joint, torques cannot be compared.
         let doubted = quality.findings.iter().any(|finding| {
             matches!(
                 finding.kind,
@@ -196,7 +196,7 @@ fn names(arm: &Arm, regular: &RegularRecording) -> Vec<Misfit> {
     misfits
 }
 
-/// What the torques say about units, signs, order and zeros.
+/// Contradictions in units, signs, order and zeros that the torques show.
 fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
     let names: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
     let as_it_is = fit(arm, smooth, Supposition::AsItIs);
@@ -231,7 +231,7 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
     misfits
 }
 
-/// The one supposition that explains the torques far better than all others.
+/// The supposition that explains the torques far better than all others, if there is one.
 fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_it_is: &Fit) -> Option<Misfit> {
     let mut scored: Vec<(f64, Supposition, Fit)> = Supposition::all(arm, moves)
         .into_iter()
@@ -252,11 +252,11 @@ fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_it_is
         scored[1..].iter().filter(near).map(|(_, other, _)| *other)
     };
     let good = |joint: &usize| fit.left[*joint] < EXPLAINED && as_it_is.left[*joint] > 3.0 * fit.left[*joint].max(0.02);
-    // The joint at which the supposition is told best, and by how much.
+    // How much better the supposition explains a joint's torque.
     let evidence = |joint: usize| {
-        let share = |fit: &Fit| (100.0 * (1.0 - fit.left[joint])).round();
+        let share = |fit: &Fit| (100.0 * (1.0 - fit.left[joint]).max(0.0)).round();
         format!(
-            "mended, the model and friction explain {} % of the torque's variance at {}, and {} % as it is",
+            "with this correction, the model and friction explain {} % of the torque's variance at {}; without it, {} %",
             share(fit),
             names[joint],
             share(as_it_is)
@@ -313,11 +313,11 @@ fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_it_is
         }
         Supposition::Swapped(a, b) if good(&a) && good(&b) => exchanged("columns", &["q", "qd", "tau"], a, a, b),
         Supposition::TorquesSwapped(a, b) if good(&a) && good(&b) => exchanged("torques", &["tau"], a, a, b),
-        // All joints' torques depend on the positions: that one of the two is explained is enough.
+        // All joints' torques depend on the positions: it is sufficient that one of the two is explained.
         Supposition::PositionsSwapped(a, b) if good(&a) || good(&b) => {
             exchanged("positions", &["q", "qd"], if good(&a) { a } else { b }, a, b)
         }
-        // Its own gravity torque tells a zero, or that of the joints that carry it.
+        // A zero shows in the joint's own gravity torque, or in that of the joints that carry it.
         Supposition::Zero(joint, added) if rivals().next().is_none() => {
             let told_at = (0..=joint).rev().find(good)?;
             let turn = match added {

@@ -1,4 +1,4 @@
-//! Effects as a TOML file: what `--known` takes, and the corrected model that a diagnosis writes.
+//! Effects as a TOML file: the argument of `--known`, and the corrected model that a diagnosis writes.
 
 use std::ops::Range;
 use std::path::Path;
@@ -13,13 +13,13 @@ use torque::{Corrected, TorqueError};
 
 use crate::source::Source;
 
-/// What the `schema` line says.
+/// The value of the key `schema`.
 const SCHEMA: &str = "testbed.model/1";
 
-/// No parameter is larger (SI).
+/// The largest absolute value of a parameter (SI).
 const MOST: f64 = 1e12;
 
-/// Effects, and whose they are.
+/// Effects, and the robot that they belong to.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EffectFile {
     /// The robot's name in its URDF, if the file gives it.
@@ -41,8 +41,8 @@ impl EffectFile {
     /// Reads the file at `path`, whose effects must fit `arm`.
     ///
     /// # Errors
-    /// With file, line, reason and remedy: unreadable, no such TOML, another robot's, an effect or joint that is not
-    /// there, a parameter that no physics has.
+    /// With file, line, reason and remedy: if the file is unreadable, is no such TOML, or is another robot's; if an effect or
+    /// joint does not exist; if a parameter is physically impossible.
     pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Self> {
         let text = std::fs::read_to_string(path).with_context(|| {
             let path = path.display();
@@ -51,10 +51,10 @@ impl EffectFile {
         Self::parse(text, path, arm)
     }
 
-    /// As [`Self::load`], from text; `path` is what errors call it.
+    /// Reads effects from text; `path` is its name in errors.
     ///
     /// # Errors
-    /// As [`Self::load`].
+    /// Those of [`Self::load`].
     pub fn parse(text: String, path: &Path, arm: &Arm) -> anyhow::Result<Self> {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let path = path.to_owned();
@@ -108,7 +108,7 @@ impl EffectFile {
         Ok(text)
     }
 
-    /// Writes the file whole or not at all.
+    /// Writes the file completely or not at all.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -122,7 +122,7 @@ fn fail(source: &Source, span: Range<usize>, reason: &str) -> anyhow::Error {
     anyhow!("{}: {reason}", source.place(span))
 }
 
-/// The robot and the tables of effects of a file whose schema, and whose robot, are right.
+/// The robot and the tables of effects of a file, after a check of its schema and its robot.
 ///
 /// # Errors
 /// With file, line, reason and remedy.
@@ -154,7 +154,7 @@ pub fn tables(source: &Source, arm: &Arm) -> anyhow::Result<(Option<String>, Vec
     Ok((raw.robot.map(Spanned::into_inner), raw.effects))
 }
 
-/// The largest number in a value, without its sign.
+/// The largest absolute number in a value.
 fn largest(value: &toml::Value) -> f64 {
     match value {
         toml::Value::Float(number) => number.abs(),
@@ -165,7 +165,7 @@ fn largest(value: &toml::Value) -> f64 {
     }
 }
 
-/// The effect of a table that stands at `span` in the file, which must fit `arm`.
+/// The effect of a table at `span` in the file, which must fit `arm`.
 ///
 /// # Errors
 /// With file, line, reason and remedy.
@@ -192,14 +192,14 @@ pub fn effect(source: &Source, span: Range<usize>, table: toml::Table, arm: &Arm
     Ok(effect)
 }
 
-/// Whether two effects are one and the same, said twice (perhaps with other sizes).
+/// Whether two effects are the same, given twice (perhaps with other sizes).
 fn is_twin(a: &Effect, b: &Effect) -> bool {
-    // What sets in later comes on top of what always acts.
+    // An effect with an onset is in addition to one that always acts.
     let same = a.kind() == b.kind() && a.onset() == b.onset() && a.joint() == b.joint();
     same && a.kind().get().is_twin(a, b)
 }
 
-/// What TOML's or serde's message means to the one who wrote the file.
+/// The message of TOML or serde, in words for the user.
 fn reason(message: &str, arm: &Arm) -> String {
     if let Some((unknown, known)) = unknown_effect(message) {
         let hint = nearest(&unknown, &known).map_or(String::new(), |near| format!("did you mean \"{near}\"? "));
@@ -228,7 +228,7 @@ fn joints(arm: &Arm) -> Vec<String> {
     arm.joints().iter().map(|joint| joint.name.clone()).collect()
 }
 
-/// The key that an effect is refused for, and why.
+/// The key for which an effect is refused, and the reason.
 fn refusal(error: &TorqueError) -> (Option<String>, String) {
     match error {
         TorqueError::Effect(EffectError::UnknownJoint { joint, known, .. }) => {

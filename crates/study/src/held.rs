@@ -1,32 +1,32 @@
-//! What other programs' formats hold of the effects: the common part of the URDF and the MJCF that a diagnosis writes.
+//! What formats of other programs can hold of the effects: the common part of URDF and MJCF.
 
 use arm::Joint;
 use effects::drive::RotorInertia;
 use effects::friction::{CoulombFriction, FrictionAsymmetry, LoadDependentFriction, StribeckFriction, ViscousFriction};
 use effects::{Effect, InUrdf};
 
-/// A robot in a format of other programs.
+/// A robot in the format of another program.
 #[derive(Debug)]
 pub struct Export {
-    /// The file's text.
+    /// The text of the file.
     pub text: String,
     /// What the format cannot hold, one line each.
     pub left: Vec<String>,
 }
 
-/// What a format holds of an effect.
+/// The part of an effect that a format can hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Held {
-    /// All.
+    /// All of it.
     Whole,
-    /// All but this.
+    /// All but this part.
     Without(&'static str),
     /// Nothing.
     Nothing,
 }
 
-/// What dry friction of one level, the same at every speed and in both directions, holds of an effect, with that level
-/// (N m or N); `None` if it is no dry friction.
+/// The part of an effect that dry friction of one level, the same at every speed and in both directions, can hold, with that
+/// level (N m or N); `None` if it is no dry friction.
 pub fn level(effect: &Effect) -> Option<(f64, Held)> {
     if effect.onset().is_some() {
         None
@@ -49,7 +49,7 @@ pub fn level(effect: &Effect) -> Option<(f64, Held)> {
     }
 }
 
-/// What damping, one level of friction and inertia hold of an effect: the part that URDF and MJCF have in common.
+/// The part of an effect that damping, one level of friction and inertia can hold, which URDF and MJCF have in common.
 pub fn in_common(effect: &Effect) -> Held {
     if effect.onset().is_some() {
         Held::Nothing
@@ -62,8 +62,8 @@ pub fn in_common(effect: &Effect) -> Held {
     }
 }
 
-/// The damping (N m s/rad or N s/m) and the level of dry friction (N m or N) that effects give a joint, if they say
-/// anything of its friction.
+/// The damping (N m s/rad or N s/m) and the level of dry friction (N m or N) of a joint with these effects, if any of them is a
+/// friction.
 pub fn friction(joint: &Joint, effects: &[Effect]) -> Option<(f64, f64)> {
     let on_joint = effects
         .iter()
@@ -83,7 +83,7 @@ pub fn friction(joint: &Joint, effects: &[Effect]) -> Option<(f64, f64)> {
     found
 }
 
-/// The effects that a format leaves out, wholly or in part, one line each.
+/// The effects that a format cannot hold, completely or in part, one line each.
 ///
 /// # Errors
 /// If an effect cannot be written.

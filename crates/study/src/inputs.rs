@@ -12,14 +12,14 @@ use self::joints::{order, reordered};
 use crate::notes::{Notes, shortened};
 use crate::{check, named};
 
-/// A recording that a diagnosis is to read.
+/// A recording to be read for a diagnosis.
 #[derive(Clone, Debug)]
 pub enum Given {
     /// A file of any format that `recording` reads.
     File(PathBuf),
     /// Columns in memory, named as those of a file.
     Columns {
-        /// What messages and the report call the recording.
+        /// Its name in messages and in the report.
         name: String,
         /// The columns with their headers.
         columns: Vec<(String, Column)>,
@@ -27,7 +27,7 @@ pub enum Given {
 }
 
 impl Given {
-    /// What messages and the report call it.
+    /// Its name in messages and in the report.
     pub fn name(&self) -> String {
         match self {
             Self::File(path) => path.display().to_string(),
@@ -51,11 +51,11 @@ impl Given {
 /// The recordings of a diagnosis.
 #[derive(Clone, Debug, Default)]
 pub struct Recordings {
-    /// Those of before something happened.
+    /// Recordings from before something happened.
     pub before: Vec<Given>,
-    /// Those that the effects are fitted to.
+    /// Training recordings.
     pub train: Vec<Given>,
-    /// Those that the fit is validated on.
+    /// Held-out recordings.
     pub held_out: Vec<Given>,
     /// The column map of files and columns with other headers or units.
     pub map: Option<PathBuf>,
@@ -63,24 +63,24 @@ pub struct Recordings {
 
 /// A recording ready to be diagnosed.
 pub struct Prepared {
-    /// As the user named it.
+    /// The name that the user gave.
     pub name: String,
-    /// On its clock, joints in the arm's order.
+    /// The recording on its clock, with the joints in the arm's order.
     pub regular: RegularRecording,
-    /// What it is for.
+    /// Its role.
     pub role: Role,
-    /// The column map that mends what does not fit the arm.
+    /// The column map that corrects contradictions with the arm.
     column_map: Option<String>,
 }
 
-/// What a recording is for.
+/// The role of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Fitted; made before something happened.
+    /// Fitted, and made before something happened.
     Before,
-    /// Fitted.
+    /// Training recording.
     Train,
-    /// Not fitted: the proof.
+    /// Held-out recording.
     HeldOut,
 }
 
@@ -90,7 +90,7 @@ impl Role {
     }
 }
 
-/// Whether a moving stretch of `b` is in `a`, sample for sample: a part of a recording under another name.
+/// Whether `a` contains a moving stretch of `b`, sample for sample: a part of a recording under another name.
 fn overlap(a: &RegularRecording, b: &RegularRecording) -> bool {
     const STRETCH: usize = 50;
     let (Some(last), Some(first)) = (a.len().checked_sub(STRETCH), b.len().checked_sub(STRETCH)) else {
@@ -108,7 +108,7 @@ fn overlap(a: &RegularRecording, b: &RegularRecording) -> bool {
     })
 }
 
-/// The recordings that a diagnosis is to read, of which the first was read already: its joints choose the arm.
+/// The recordings to be read, the first of which has been read: its joints choose the arm.
 pub struct Opened<'a> {
     map: Option<(&'a Path, ColumnMap)>,
     list: Vec<(&'a Given, Role)>,
@@ -140,7 +140,7 @@ impl<'a> Opened<'a> {
         Ok(Self { map, list, first })
     }
 
-    /// The joints of the first recording; none if it only numbers them.
+    /// The joints of the first recording; none if they only have numbers.
     pub fn joints(&self) -> &[String] {
         self.first.as_ref().map_or(&[], named::named_joints)
     }
@@ -177,7 +177,7 @@ pub fn read(
         if let Some(map) = &prepared.column_map
             && list.iter().all(|other| other.column_map.as_ref() != Some(map))
         {
-            let text = format!("a column map that mends it (--map):\n{map}");
+            let text = format!("a column map that corrects it (--map):\n{map}");
             notes.add("note", &prepared.name, text);
         }
         // The same samples under another name.
@@ -254,7 +254,7 @@ fn prepare(
         notes.add(
             "note",
             &name,
-            format!("{gaps} more gaps (testbed inspect --json has them)"),
+            format!("further gaps: {gaps} (testbed inspect --json lists them)"),
         );
     }
     let about = |joint: &Option<String>, text: &str| match joint {
@@ -278,9 +278,9 @@ fn prepare(
             .joint
             .as_ref()
             .map_or_else(String::new, |joint| format!("{joint}: "));
-        let map = column_map.map_or_else(String::new, |map| format!(" A column map that mends it:\n{map}"));
+        let map = column_map.map_or_else(String::new, |map| format!(" A column map that corrects it:\n{map}"));
         bail!(
-            "{name}: {joint}{}. Units, signs, order or zeros first: no effect is searched before.{map}",
+            "{name}: {joint}{}. Correct units, signs, order or zeros first: until then, no effect is searched.{map}",
             misfit.text
         );
     }
@@ -296,10 +296,10 @@ fn prepare(
     })
 }
 
-/// A drive is not sampled more slowly (Hz).
+/// The least sampling rate of a drive (Hz).
 const SLOWEST: f64 = 10.0;
 
-/// Why a recording cannot be diagnosed for any arm, and the remedy.
+/// Why a recording cannot be diagnosed for any arm, with the remedy.
 fn unusable(regular: &RegularRecording, quality: &Quality) -> Option<String> {
     if quality.rate < SLOWEST {
         return Some(format!(

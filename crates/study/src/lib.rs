@@ -1,8 +1,8 @@
 //! A diagnosis from its inputs to its outputs, for programs that offer one: the command line and the Python package.
 //!
-//! [`Request`] says what to diagnose; [`Request::run`] reads the robot and the recordings, checks them against each other,
-//! diagnoses and completes the report. [`effect_file`], [`urdf_file`] and [`mjcf_file`] are the corrected model in three
-//! formats. The errors are sentences for the one who made the files: place, reason and remedy.
+//! A [`Request`] describes a diagnosis; [`Request::run`] reads the robot and the recordings, checks them against each other,
+//! diagnoses and completes the report. [`effect_file`], [`urdf_file`] and [`mjcf_file`] write the corrected model in three
+//! formats. The errors are sentences for users: place, reason and remedy.
 
 pub mod check;
 pub mod effect_file;
@@ -23,7 +23,7 @@ pub use diagnosis::Step;
 pub use request::{Diagnosed, Known, Listener, Request, wanted};
 pub use source::Source;
 
-/// Whether two paths are one file, which need not be there yet.
+/// Whether two paths are the same file, which need not exist.
 pub fn is_same(a: &Path, b: &Path) -> bool {
     let place = |path: &Path| {
         path.canonicalize().or_else(|_| {
@@ -35,7 +35,7 @@ pub fn is_same(a: &Path, b: &Path) -> bool {
     matches!((place(a), place(b)), (Ok(a), Ok(b)) if a == b)
 }
 
-/// The error and its causes in one line; a cause that its error has quoted already is not repeated.
+/// The error and its causes in one line, without causes that the error already contains.
 pub fn sentence(error: &anyhow::Error) -> String {
     let mut line = error.to_string();
     for cause in error.chain().skip(1).map(ToString::to_string) {

@@ -15,7 +15,7 @@ use torque::Corrected;
 
 use crate::held::{self, Export, Held};
 
-/// MuJoCo wants a mass and moments of inertia above 1e-15; what a URDF leaves massless gets these (kg, kg m²).
+/// The mass and moment of inertia of links that the URDF leaves massless (kg, kg m²); MuJoCo requires more than 1e-15.
 const LEAST_MASS: f64 = 1e-12;
 const LEAST_MOMENT: f64 = 1e-13;
 /// The share of a body's largest second moment of mass by which its smallest may be negative, for rounding.
@@ -49,7 +49,7 @@ pub fn mjcf(arm: &Arm, effects: &[Effect]) -> anyhow::Result<Export> {
     Ok(Export { text, left })
 }
 
-/// What MJCF holds of an effect.
+/// The part of an effect that MJCF can hold.
 fn held_of(effect: &Effect) -> Held {
     if effect.onset().is_some() {
         return Held::Nothing;
@@ -67,7 +67,7 @@ fn is_body(body: &Inertia) -> bool {
 }
 
 struct Model<'a> {
-    /// With all that changes bodies, gravity and rotors.
+    /// The arm with all effects that change bodies, gravity and rotors.
     arm: &'a Arm,
     corrected: &'a Corrected,
     effects: &'a [Effect],
@@ -104,7 +104,7 @@ impl Model<'_> {
             &[("gravity", gravity), ("integrator", "implicitfast".into())],
         )?;
         open(&mut xml, "worldbody", &[])?;
-        // MuJoCo's own name of what stands still.
+        // MuJoCo's name of the fixed frame.
         let has_base = self.arm.base_link() != "world";
         if has_base {
             open(&mut xml, "body", &[("name", self.arm.base_link().to_owned())])?;
@@ -127,7 +127,7 @@ impl Model<'_> {
         Ok(String::from_utf8(xml.into_inner())? + "\n")
     }
 
-    /// A link, without its end: the next one is inside it.
+    /// A link without its closing tag, because the next link is inside it.
     fn body(&self, xml: &mut Xml, j: usize, joint: &Joint) -> anyhow::Result<()> {
         let mut attributes = vec![("name", joint.link_name.clone())];
         attributes.extend(placed(&joint.parent_from_joint));
@@ -165,7 +165,7 @@ impl Model<'_> {
             ("type", kind.to_owned()),
             ("axis", words(joint.axis.as_slice())),
         ];
-        // The encoder says less than where the joint stands, and all positions in the file are the encoder's.
+        // The encoder reports less than the true position, and all positions in the file are the encoder's.
         let offset = self.corrected.encoder_offsets()[j];
         let (lower, upper) = (joint.limits.lower - offset, joint.limits.upper - offset);
         let mut add = |key: &'static str, value: f64| {
@@ -191,7 +191,7 @@ impl Model<'_> {
         attributes
     }
 
-    /// All straight springs of a joint as one: stiffness (N m/rad or N/m) and where it is at rest (rad or m).
+    /// All straight springs of a joint as one: stiffness (N m/rad or N/m) and rest position (rad or m).
     fn spring(&self, joint: &Joint) -> (f64, f64) {
         let springs = self.effects.iter().filter(|effect| {
             effect.is(&Spring) && effect.joint() == Some(joint.name.as_str()) && held_of(effect) == Held::Whole
@@ -217,7 +217,7 @@ impl Model<'_> {
     }
 }
 
-/// The body with a mass and a tensor that MuJoCo takes, and whether the tensor was of no body.
+/// The body with a mass and a tensor that MuJoCo accepts, and whether the tensor was physically impossible.
 fn nearest_body(body: &Inertia) -> (Inertia, bool) {
     // The second moments of mass, ½ tr(I) 1 − I, of a body are not negative.
     let second = Matrix3::identity() * (0.5 * body.tensor.trace()) - body.tensor;

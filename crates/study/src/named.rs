@@ -1,4 +1,4 @@
-//! Recordings as the commands read them: of any format, with the names that the robot gives to numbered joints.
+//! Recordings with the names that the robot gives to numbered joints, in any format.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use recording::{ColumnMap, Recording, RecordingError};
 /// Reads the recording at `path`, with the names of the joints of `arm`.
 ///
 /// # Errors
-/// As [`Recording::read_with`].
+/// Those of [`Recording::read_with`].
 pub fn read(path: &Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> Result<Recording, RecordingError> {
     let mut recording = Recording::read_with(path, map)?;
     if let Some(arm) = arm {
@@ -33,7 +33,7 @@ pub fn named_joints(recording: &Recording) -> &[String] {
     &recording.joints
 }
 
-/// The names of numbered joints, of which the lowest is the first; none if they are not numbered, or not as many.
+/// The names of numbered joints, in order; none if they are not numbered, or if there are not as many.
 fn named(joints: &[String], names: &[&str]) -> Option<Vec<String>> {
     let numbers: Vec<usize> = joints.iter().map(|joint| joint.parse().ok()).collect::<Option<_>>()?;
     // A robot may have joints with such names.

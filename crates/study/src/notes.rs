@@ -1,20 +1,20 @@
-//! The notes on a diagnosis' inputs, grouped by what they say: many recordings often have the same flaw.
+//! The notes on the inputs of a diagnosis, grouped by their text, because many recordings often have the same flaw.
 
 use std::collections::BTreeSet;
 
 use recording::Warning;
 
-/// More gaps than this are counted, and not listed.
+/// The number of gaps from which they are counted instead of listed.
 const MOST_GAPS: usize = 3;
 
-/// One note: how serious it is, what it is about, and what it says.
+/// One note: its severity, its subject and its text.
 #[derive(Clone, Debug)]
 pub struct Note {
     /// `note` or `warning`.
     pub weight: &'static str,
     /// The recording.
     pub file: String,
-    /// What there is to say about it.
+    /// The text.
     pub text: String,
 }
 
@@ -25,7 +25,7 @@ pub struct Notes {
 }
 
 impl Notes {
-    /// Adds what there is to say about `file`; `weight` is `note` or `warning`.
+    /// Adds the notes on `file`; `weight` is `note` or `warning`.
     pub fn add(&mut self, weight: &'static str, file: &str, text: String) {
         self.list.push(Note {
             weight,
@@ -39,8 +39,8 @@ impl Notes {
         self.list.iter()
     }
 
-    /// One line for each note, or (`is_short`) for all notes that only differ in file, numbers and `joints`: the first of them, and
-    /// how many more there are.
+    /// One line for each note, or (`is_short`) for all notes that only differ in file, numbers and `joints`: the first of them,
+    /// with the number of the others.
     pub fn lines(&self, joints: &[&str], is_short: bool) -> Vec<String> {
         let mut groups: Vec<(String, Vec<&Note>)> = Vec::new();
         for note in &self.list {
@@ -75,7 +75,7 @@ fn line(group: &[&Note]) -> String {
     if group.iter().all(|note| note.text == *text) {
         return format!("{weight}: {} files: {text} (--verbose lists them)", files.len());
     }
-    // The first in full: its joint and numbers say what the others are like.
+    // The first one in full, as an example of the others.
     let more = group.len() - 1;
     let place = match files.len() {
         1 => "in this file".to_owned(),

@@ -1,4 +1,4 @@
-//! What to diagnose, and the way from there to a complete report.
+//! The request for a diagnosis, and the way from there to a complete report.
 
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ pub enum Known {
     Text(String),
 }
 
-/// What to diagnose, and how.
+/// The inputs and options of a diagnosis.
 #[derive(Clone, Debug, Default)]
 pub struct Request {
     /// The path of the robot's URDF, or the name of a robot that comes with testbed.
@@ -35,13 +35,13 @@ pub struct Request {
     pub known: Option<Known>,
     /// The hypothesis to fit in place of a search: `effect:joint,…`, or a file that a diagnosis wrote.
     pub only: Option<String>,
-    /// Which friction in the URDF is known.
+    /// Which friction in the URDF is known friction.
     pub urdf_friction: UrdfFriction,
     /// Half-power frequency of the low-pass filter (Hz); `None` lets the data decide.
     pub cutoff: Option<f64>,
-    /// How far the URDF's inertial parameters may be off, relative; `None` lets the recordings decide.
+    /// The relative error of the URDF's inertial parameters; `None` lets the recordings decide.
     pub urdf_accuracy: Option<f64>,
-    /// The relative standard deviation of the torque constants; `None` if nobody knows.
+    /// The relative standard deviation of the torque constants; `None` if it is unknown.
     pub torque_accuracy: Option<f64>,
     /// Whether to leave out the simulation and the learned correction.
     pub torques_only: bool,
@@ -49,25 +49,25 @@ pub struct Request {
     pub next: bool,
 }
 
-/// Who hears what a study does.
+/// The receiver of progress and notes.
 pub trait Listener {
-    /// What is being done.
+    /// A description of the present step.
     fn doing(&self, step: Step<'_>);
 
     /// A note on the robot or the result.
     fn note(&self, text: &str);
 
-    /// The notes on the recordings of an arm with these joints, also where an error follows.
+    /// The notes on the recordings of an arm with these joints; also called before an error.
     fn recordings(&self, notes: &Notes, joints: &[&str]);
 }
 
 /// A complete diagnosis.
 pub struct Diagnosed {
-    /// The robot as it was read.
+    /// The robot.
     pub robot: RobotFile,
     /// Its arm.
     pub arm: Arm,
-    /// The diagnosis, whose report has the comparisons.
+    /// The diagnosis, with the comparisons in its report.
     pub diagnosis: Diagnosis,
     /// The corrected model: the known effects and those found.
     pub effects: Vec<Effect>,
@@ -124,7 +124,7 @@ impl Request {
                 listener.note(&format!("simulation: {remark}"));
             }
         }
-        // The known effects are a part of the model that the findings correct.
+        // The known effects are part of the model that the findings correct.
         let effects = summed(&options.known, &diagnosis.effects);
         Ok(Diagnosed {
             robot,
@@ -159,7 +159,7 @@ impl Request {
 /// The effects that `only` asks for: `effect:joint,…`, or a file that a diagnosis wrote.
 ///
 /// # Errors
-/// If the file cannot be used; whether the catalogue has the effects is seen when they are fitted.
+/// If the file cannot be used. Effects that are not in the catalogue are refused when they are fitted.
 pub fn wanted(only: &str, arm: &Arm) -> anyhow::Result<Vec<Wanted>> {
     let path = Path::new(only);
     if path.extension().is_some_and(|extension| extension == "toml") {

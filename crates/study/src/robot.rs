@@ -1,4 +1,4 @@
-//! The robots that come with testbed, and where others are found.
+//! The robots that come with testbed, and the search for others.
 
 use std::path::{Path, PathBuf};
 
@@ -27,7 +27,7 @@ pub fn is_built_in(robot: &str) -> bool {
 pub struct RobotFile {
     /// Its file, or `assets/<name>.urdf` for one that comes with testbed.
     pub path: PathBuf,
-    /// What it says.
+    /// The text of the file.
     pub text: String,
 }
 
@@ -41,7 +41,7 @@ impl RobotFile {
     }
 }
 
-/// The robot named on the command line: the path of a URDF, or the name of one that comes with testbed.
+/// The robot of a command line: the path of a URDF, or the name of one that comes with testbed.
 ///
 /// # Errors
 /// If there is none.
@@ -81,7 +81,7 @@ pub fn find_robot(robot: &str, folder: &Path) -> anyhow::Result<RobotFile> {
     Ok(RobotFile { path, text })
 }
 
-/// Refuses a file that does not begin as XML does: a recording, say.
+/// Refuses a file that does not begin as XML does, such as a recording.
 fn refuse_no_xml(path: &Path) -> anyhow::Result<()> {
     use std::io::Read;
     let mut start = Vec::new();

@@ -1,16 +1,16 @@
-//! A text file whose errors say the line.
+//! A text file whose errors name the line.
 
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// The text of a file and where it came from.
+/// The text of a file and its origin.
 #[derive(Clone, Debug)]
 pub struct Source {
     /// The name of what it describes.
     pub name: String,
-    /// Its file, or where it would be if it did not come with the program.
+    /// Its path; for a text that comes with the program, the path that it has in the repository.
     pub path: PathBuf,
-    /// What it says.
+    /// Its text.
     pub text: String,
 }
 
@@ -22,7 +22,7 @@ impl Source {
         format!("{}:{line}", self.path.display())
     }
 
-    /// The line of the text that holds byte `position`, without its comment.
+    /// The line of the text that contains byte `position`, without its comment.
     pub fn line(&self, position: usize) -> &str {
         let position = self.text.floor_char_boundary(position.min(self.text.len()));
         let start = self.text[..position].rfind('\n').map_or(0, |newline| newline + 1);

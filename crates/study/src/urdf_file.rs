@@ -1,4 +1,4 @@
-//! The corrected model as a URDF: the user's own file, with what URDF can hold put in.
+//! The corrected model as a URDF: the user's own file with the effects that a URDF can hold.
 
 mod scan;
 #[cfg(test)]
@@ -16,20 +16,20 @@ use torque::Corrected;
 use self::scan::{JointPlaces, LinkPlaces, Place, Places};
 use crate::held::{self, Export, Held};
 
-/// The attribute of a `<dynamics>` whose friction a diagnosis found; other programs do not read it.
+/// The attribute of a `<dynamics>` element whose friction a diagnosis found; other programs ignore it.
 const SOURCE: (&str, &str) = ("source", "testbed");
 /// The name space of what Drake reads beyond URDF.
 const DRAKE: &str = "xmlns:drake=\"http://drake.mit.edu\"";
 
-/// The text `urdf` of `arm` with what it can hold of `effects`: inertials, friction as `<dynamics damping friction>` in place
-/// of what was there, and drive inertias as Drake's `<drake:rotor_inertia>` (with a gear ratio of 1, because they are those
-/// at the joint). All else stays as it was, to the byte; a comment names what a URDF cannot hold.
+/// The text `urdf` of `arm` with those of `effects` that it can hold: inertials, friction as `<dynamics damping friction>` in
+/// place of the previous one, and drive inertias as Drake's `<drake:rotor_inertia>` (with a gear ratio of 1, because they are
+/// reflected to the joint). Everything else is unchanged, byte for byte; a comment lists what a URDF cannot hold.
 ///
 /// # Errors
 /// If an effect does not fit the arm or the text is not the arm's.
 pub fn corrected_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Result<Export> {
     let places = Places::of(urdf).context("the URDF cannot be edited")?;
-    // A drive that the file describes without its inertia is not described twice.
+    // A drive that the file describes without its inertia is not described again.
     let is_described = |effect: &Effect| {
         let drive = effect.joint().and_then(|joint| places.drives.get(joint));
         drive.is_some_and(|drive| drive.rotor.is_none())
@@ -57,10 +57,10 @@ pub fn corrected_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Resu
     Ok(Export { text, left })
 }
 
-/// As [`corrected_urdf`], but without a word about what was done to it: the URDF of an arm that is believed to be so.
+/// The corrected URDF of [`corrected_urdf`] without comments: the nominal model of an arm.
 ///
 /// # Errors
-/// As [`corrected_urdf`].
+/// Those of [`corrected_urdf`].
 pub fn changed_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Result<String> {
     let places = Places::of(urdf).context("the URDF cannot be edited")?;
     edited(urdf, &places, arm, effects, String::new())
@@ -142,7 +142,7 @@ fn edited(urdf: &str, places: &Places, arm: &Arm, effects: &[Effect], remark: St
     Ok(text)
 }
 
-/// The URDF links whose inertials change, each with its new body in its own frame; `None` is none.
+/// The URDF links whose inertials change, each with its new body in its own frame; `None` for no body.
 fn changed_links(arm: &Arm, effects: &[Effect], places: &Places) -> anyhow::Result<Vec<(String, Option<Inertia>)>> {
     let always: Vec<Effect> = effects
         .iter()
@@ -164,7 +164,7 @@ fn changed_links(arm: &Arm, effects: &[Effect], places: &Places) -> anyhow::Resu
             .filter(on_joint)
             .any(|effect| effect.is(&InertialParameters))
         {
-            // The recordings tell the body of all welded links together: it is given to the first.
+            // The recordings only determine the body of all welded links together, which is written to the first.
             changed.push((joint.link_name.clone(), Some(corrected.arm().joints()[j].inertia)));
             changed.extend(welded.map(|link| (link.clone(), None)));
             continue;
@@ -201,7 +201,7 @@ fn changed_links(arm: &Arm, effects: &[Effect], places: &Places) -> anyhow::Resu
     Ok(changed)
 }
 
-/// The drive inertia that `effects` say of `joint` (kg m² at the joint).
+/// The drive inertia of `joint` by `effects` (kg m² at the joint).
 fn drive_inertia(effects: &[Effect], joint: &str) -> f64 {
     let on_joint = |effect: &&Effect| effect.is(&RotorInertia) && effect.joint() == Some(joint);
     effects
@@ -230,7 +230,7 @@ fn drives(places: &Places, effects: &[Effect]) -> String {
 }
 
 impl LinkPlaces {
-    /// What takes the place of the link's inertial; nothing, if it has none and is to have none.
+    /// The new element in place of the link's inertial; nothing, if it has none and needs none.
     fn edit(&self, body: Option<Inertia>) -> Option<(Range<usize>, String)> {
         let Some(body) = body else {
             return match &self.inertial {
@@ -258,7 +258,7 @@ impl LinkPlaces {
 }
 
 impl JointPlaces {
-    /// What takes the place of the joint's dynamics.
+    /// The new element in place of the joint's dynamics.
     fn edit(&self, damping: f64, friction: f64) -> (Range<usize>, String) {
         let (key, value) = SOURCE;
         let dynamics = format!("<dynamics damping=\"{damping}\" friction=\"{friction}\" {key}=\"{value}\"/>");

@@ -1,4 +1,4 @@
-//! Friction and drive inertias that the URDF has already, as known effects.
+//! Friction and drive inertias in the URDF, as known effects.
 
 use arm::Arm;
 use effects::drive::RotorInertia;
@@ -12,7 +12,7 @@ use crate::urdf_file::{diagnosed_joints, stated_drive_inertias};
 /// Which friction in a URDF is known friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum UrdfFriction {
-    /// That which a diagnosis wrote.
+    /// The friction that a diagnosis wrote.
     #[default]
     Diagnosed,
     /// All.
@@ -21,9 +21,9 @@ pub enum UrdfFriction {
     Ignored,
 }
 
-/// The friction in the `<dynamics>` of `robot` that `which` takes as known, beside the effects `known`: what those say of
-/// a joint's friction takes its place. The drive inertias that it states for Drake are known, too, unless friction is ignored:
-/// nobody writes them as a placeholder. A second value says what was not taken.
+/// The friction in the `<dynamics>` of `robot` that `which` takes as known, in addition to the effects `known`, which take
+/// precedence on their joints. Drive inertias for Drake are also known, unless friction is ignored, because nobody writes them
+/// as a placeholder. The second value describes what was not used.
 ///
 /// # Errors
 /// If the URDF cannot be read again.
@@ -93,8 +93,8 @@ pub fn known_friction(
     Ok((effects, remark))
 }
 
-/// The known effects and those found beside them: friction or a drive inertia that is found on top of a known one of the same
-/// kind is one effect with both.
+/// The known effects and the findings in addition to them: a friction or a drive inertia that is found in addition to a known
+/// one of the same kind becomes one effect with the sum.
 pub fn summed(known: &[Effect], found: &[Effect]) -> Vec<Effect> {
     let mut sum = known.to_vec();
     for effect in found {
@@ -131,7 +131,7 @@ mod tests {
         (RobotFile { path, text }, arm)
     }
 
-    /// What a diagnosis wrote is known to the next; what was in the file before is a placeholder.
+    /// Friction that a diagnosis wrote is known in the next one; friction of the original file is a placeholder.
     #[test]
     fn diagnosed_friction_is_known_and_other_friction_where_it_is_asked_for() {
         let (file, arm) = robot(TWO);
@@ -148,7 +148,7 @@ mod tests {
         let (known, remark) = known_friction(&file, &arm, UrdfFriction::Diagnosed, &[]).expect("it reads");
         assert_eq!(known, found);
         assert!(remark.expect("it says so").contains("of a is not used"));
-        // The next findings come on top of it, as one effect of each kind.
+        // The next findings are in addition to it, and become one effect of each kind.
         let level = Effect::of(&CoulombFriction).on("b").with("level", 0.25);
         let other = Effect::of(&ViscousFriction).on("a").with("coefficient", 4.0);
         let more = summed(&known, &[level, found[0].clone(), other]);
@@ -156,7 +156,7 @@ mod tests {
         let (_, arm) = robot(&corrected_urdf(&file.text, &arm, &more).expect("it is written").text);
         let joint = &arm.joints()[1];
         assert_eq!((joint.damping, joint.friction), (3.0, 0.25));
-        // A drive inertia that was written is known, at the joint, and what is found on top of it takes its place.
+        // A written drive inertia is known, at the joint, and is replaced by the sum with the found one.
         let drive = |inertia: f64| Effect::of(&RotorInertia).on("a").with("inertia", inertia);
         let geared = corrected_urdf(TWO, &arm, &[drive(0.5)]).expect("it is written").text;
         let geared = geared.replace("gear_ratio value=\"1\"", "gear_ratio value=\"10\"");
@@ -174,7 +174,7 @@ mod tests {
         assert!(none.is_empty());
         let (file, arm) = robot(TWO);
         let (file, arm) = robot(&corrected_urdf(&file.text, &arm, &found).expect("it is written").text);
-        // What --known says of a joint's damping takes the place of the file's.
+        // The damping of --known on a joint replaces the file's.
         let (known, _) = known_friction(&file, &arm, UrdfFriction::Diagnosed, &found).expect("it reads");
         assert!(known.iter().all(|effect| effect.is(&CoulombFriction)), "{known:?}");
     }

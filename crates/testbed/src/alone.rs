@@ -1,4 +1,4 @@
-//! One program a folder: two that write into the same one would replace each other's files.
+//! One program per folder: two that write into the same one would replace each other's files.
 
 use std::fs::{File, TryLockError};
 use std::path::Path;

@@ -152,9 +152,9 @@ pub struct ProveArgs {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
 
-    /// Whether half of the cases resemble real robots: small amounts of every effect on every joint, torque constants that are off,
-    /// friction that differs between recordings, coloured and quantised torques, elastic gearboxes, tools that are drawn but not
-    /// mounted, files with clocks of their own
+    /// Whether half of the cases resemble real robots: small amounts of every effect on every joint, wrong torque constants,
+    /// friction that differs between recordings, coloured and quantised torques, elastic gearboxes, tools that the URDF draws and
+    /// that are not mounted, files with clocks of their own
     #[arg(long, value_name = "BOOL", num_args = 0..=1, default_value_t = true, default_missing_value = "true", action = clap::ArgAction::Set)]
     pub lifelike: bool,
 
@@ -220,9 +220,9 @@ pub struct ConcealArgs {
     #[arg(long, value_name = "K", default_value_t = 1, conflicts_with = "effects", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub cases: u32,
 
-    /// Whether half of the cases (with --effects: the case) resemble real robots: small amounts of every effect on every joint, torque constants that are off,
-    /// friction that differs between recordings, coloured and quantised torques, elastic gearboxes, tools that are drawn but not
-    /// mounted, files with clocks of their own
+    /// Whether half of the cases (with --effects: the case) resemble real robots: small amounts of every effect on every joint, wrong torque constants,
+    /// friction that differs between recordings, coloured and quantised torques, elastic gearboxes, tools that the URDF draws and
+    /// that are not mounted, files with clocks of their own
     #[arg(long, value_name = "BOOL", num_args = 0..=1, default_value_t = false, default_missing_value = "true", action = clap::ArgAction::Set)]
     pub lifelike: bool,
 

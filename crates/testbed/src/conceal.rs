@@ -30,7 +30,7 @@ pub fn run(args: &ConcealArgs) -> anyhow::Result<()> {
 fn conceal(args: &ConcealArgs) -> anyhow::Result<()> {
     ensure!(
         args.effects.is_some() || args.seed.is_some(),
-        "nothing says what to conceal; give --seed N to draw cases, or --effects FILE with the effects to inject"
+        "there is nothing to inject; give --seed N to draw cases, or --effects FILE with the effects to inject"
     );
     let robots = robots(&args.robot, &args.chain)?;
     let truths = args.out.join("truth");
@@ -111,7 +111,7 @@ fn drawn(args: &ConcealArgs, robots: &[Robot], truths: &Path) -> anyhow::Result<
             let folder = write_case(&concealment, &args.out, truths)?;
             let done = 1 + count.fetch_add(1, Ordering::Relaxed);
             let share = done as f64 / plans.len() as f64;
-            progress.done(share, format!("{done} of {} cases are concealed", plans.len()));
+            progress.done(share, format!("{done} of {} cases are made", plans.len()));
             Ok(format!("written: {}\n", folder.display()))
         })
         .collect();
@@ -123,7 +123,7 @@ fn drawn(args: &ConcealArgs, robots: &[Robot], truths: &Path) -> anyhow::Result<
             Err(error) => failed.push(error),
         }
     }
-    output::print(&format!("the truth: {}\n", truths.display()))?;
+    output::print(&format!("ground truth: {}\n", truths.display()))?;
     let count = failed.len();
     match failed.into_iter().next() {
         None => Ok(()),
@@ -143,5 +143,5 @@ fn write(concealment: &Concealment, args: &ConcealArgs, truths: &Path) -> anyhow
     let folder = write_case(concealment, &args.out, truths)?;
     output::print(&format!("written: {}\n", folder.display()))?;
     let truth = truths.join(format!("{}.json", concealment.truth.case));
-    output::print(&format!("the truth: {}\n", truth.display()))
+    output::print(&format!("ground truth: {}\n", truth.display()))
 }

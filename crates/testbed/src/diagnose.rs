@@ -1,4 +1,4 @@
-//! `testbed diagnose`: which physics the model leaves out, as a table, a page, a timeline, and a corrected model.
+//! `testbed diagnose`: the effects that a model omits, as a table, a page, a timeline, and a corrected model.
 
 mod command;
 mod next_file;

@@ -30,7 +30,7 @@ struct FileReport<'a> {
     quality: Quality,
     /// What does not fit the robot's model.
     against_robot: Vec<check::Misfit>,
-    /// The column map (TOML) that mends it.
+    /// The column map (TOML) that corrects it.
     column_map: Option<String>,
     warnings: Vec<Told>,
 }
@@ -178,7 +178,7 @@ fn shown(report: &FileReport<'_>) -> String {
         let _ = writeln!(text, "- {}", told.text);
     }
     if gaps > 0 {
-        let _ = writeln!(text, "- {gaps} more gaps (--json has them)");
+        let _ = writeln!(text, "- further gaps: {gaps} (--json lists them)");
     }
     for finding in &quality.findings {
         let _ = writeln!(text, "- {}{}", about(finding.joint.as_deref()), finding.text);
@@ -187,7 +187,7 @@ fn shown(report: &FileReport<'_>) -> String {
         let _ = writeln!(text, "- {}{}", about(misfit.joint.as_deref()), misfit.text);
     }
     if let Some(map) = &report.column_map {
-        let _ = write!(text, "- a column map that mends it (--map):\n{map}");
+        let _ = write!(text, "- a column map that corrects it (--map):\n{map}");
     }
     if report.warnings.is_empty() && quality.findings.is_empty() && report.against_robot.is_empty() {
         let _ = writeln!(text, "- no remarks");

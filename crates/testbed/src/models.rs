@@ -15,9 +15,9 @@ pub enum ModelKind {
     Gp,
     /// Rigid body plus regression on (q, q̇, q̈) (the paper's "RBD+GPR")
     Hybrid,
-    /// Rigid body plus one regression a joint on the 12 Newton-Euler inputs (the paper's IJL)
+    /// Rigid body plus one regression per joint on the 12 Newton-Euler inputs (the paper's IJL)
     IndependentJoint,
-    /// The same with the model's own torque as the 13th input
+    /// The independent-joint model with its own rigid torque as the 13th input
     #[value(name = "independent-joint-13")]
     IndependentJoint13,
 }

@@ -1,4 +1,4 @@
-//! What leaves the program: text printed, files written, and the checks before.
+//! The outputs of the program: printed text, written files, and the checks before.
 
 use std::io::Write;
 use std::path::Path;
@@ -14,9 +14,9 @@ use crate::simulation::Outcome;
 pub struct Tracking {
     /// The model.
     pub model: ModelKind,
-    /// Root mean square, one a joint (rad, or m).
+    /// Root mean square, one per joint (rad, or m).
     pub rms_error_rad: Vec<f64>,
-    /// Largest, one a joint (rad, or m).
+    /// Largest, one per joint (rad, or m).
     pub max_error_rad: Vec<f64>,
 }
 
@@ -31,7 +31,7 @@ impl Tracking {
     }
 }
 
-/// Prints `text` on standard output. Whoever stops reading (`| head`) has read enough.
+/// Prints `text` on standard output. A reader that stops (`| head`) is no error.
 ///
 /// # Errors
 /// If it cannot be written for another reason.
@@ -45,7 +45,7 @@ pub fn print(text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// Writes `value` as JSON to `path`, whole or not at all.
+/// Writes `value` as JSON to `path`, completely or not at all.
 ///
 /// # Errors
 /// If the file cannot be written.
@@ -55,7 +55,7 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Writes `text` to `path`, whole or not at all.
+/// Writes `text` to `path`, completely or not at all.
 ///
 /// # Errors
 /// If the file cannot be written.

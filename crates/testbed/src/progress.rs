@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
-/// What ends sooner needs no time left and no plain lines.
+/// Tasks that end sooner have no time left and no plain lines.
 const SHORT: Duration = Duration::from_secs(2);
-/// Between plain lines passes at least this part of the time so far, so that hours do not fill a log.
+/// The least pause between plain lines, as a part of the time so far, so that hours do not fill a log.
 const SPARSE: f64 = 0.1;
 
 /// The progress of one task.
@@ -19,18 +19,18 @@ pub struct Progress {
     is_plain: bool,
 }
 
-/// How much of a task is done since when.
+/// The progress of a task in time.
 struct Clock {
     started: Instant,
-    /// The part that is done, and since when.
+    /// The part that is done, and the time at which it was reached.
     done: f64,
     at: Instant,
-    /// When the last plain line was written.
+    /// The time of the last plain line.
     said: Option<Instant>,
 }
 
 impl Clock {
-    /// The time left, if the rest takes as long as what is done; none at the beginning, where that says little.
+    /// The time left if the rest is as fast as the part that is done; `None` at the beginning, where it says little.
     fn left(&self, now: Instant) -> Option<Duration> {
         if self.done < 0.02 || now - self.started < SHORT {
             return None;
@@ -69,7 +69,7 @@ impl Progress {
         }
     }
 
-    /// Progress that nobody sees.
+    /// Hidden progress.
     pub fn hidden() -> Self {
         let mut progress = Self::new("");
         progress.bar = ProgressBar::hidden();
@@ -77,12 +77,12 @@ impl Progress {
         progress
     }
 
-    /// Says what is being done; how much of the task is done stays.
+    /// Shows a message; the part that is done does not change.
     pub fn doing(&self, message: impl Into<String>) {
         self.done(0.0, message);
     }
 
-    /// Says what is being done after the part `done` of the task, which never falls.
+    /// Shows a message after the part `done` of the task, which never decreases.
     pub fn done(&self, done: f64, message: impl Into<String>) {
         let message = message.into();
         self.bar.set_message(message.clone());

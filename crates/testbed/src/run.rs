@@ -42,7 +42,7 @@ struct Summary<'a> {
     saturated: Vec<f64>,
     real_time_factor: f64,
     control_step_us: Percentiles,
-    /// The regressions of the model, one a joint; none if it does not learn.
+    /// The regressions of the model, one per joint; none if it does not learn.
     regressions: Vec<Regression>,
 }
 

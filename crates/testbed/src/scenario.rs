@@ -14,7 +14,7 @@ use crate::cli::{ChainArgs, LengthScalesArg};
 use crate::models::ModelKind;
 use crate::sensors::SensorNoise;
 
-/// A validated scenario. Vectors have one entry a joint of the arm.
+/// A validated scenario. Vectors have one entry per joint of the arm.
 #[derive(Clone, Debug)]
 pub struct Scenario {
     /// The name it was asked for by, without folder and extension.
@@ -64,10 +64,10 @@ impl Scenario {
         Self::load_chain(name, &ChainArgs::default())
     }
 
-    /// As [`Self::load`], with the arm's joints that `chain` chooses in place of those that the file does.
+    /// Loads a scenario as [`Self::load`] does, with the joints that `chain` chooses in place of the file's.
     ///
     /// # Errors
-    /// As [`Self::load`].
+    /// Those of [`Self::load`].
     pub fn load_chain(name: &str, chain: &ChainArgs) -> anyhow::Result<Self> {
         Self::read(&crate::library::find_scenario(name)?, chain)
     }
@@ -87,7 +87,7 @@ impl Scenario {
         validate::scenario(source, raw, chain)
     }
 
-    /// The arm as the controller believes it to be: masses and inertia tensors off by the named factor.
+    /// The arm in the controller's model: masses and inertia tensors multiplied by the scenario's factor.
     pub fn nominal_arm(&self) -> Arm {
         self.arm.clone().with_scaled_inertias(self.inertia_scale)
     }

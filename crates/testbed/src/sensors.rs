@@ -4,7 +4,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// Standard deviations of the sensors' noise, one a joint.
+/// Standard deviations of the sensors' noise, one per joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SensorNoise {
     /// rad or m.

@@ -14,13 +14,13 @@ use crate::scenario::Scenario;
 use crate::sensors::Sensors;
 use crate::telemetry::Sample;
 
-/// The learned torque's variance is dear: it is evaluated at this rate (Hz), outside the control step.
+/// The rate at which the variance of the learned torque is evaluated (Hz). It is expensive, and outside the control step.
 const VARIANCE_RATE: f64 = 50.0;
 
 /// The sensors' noise in the loop and in the training samples, apart.
 const LOOP_STREAM: u64 = 1;
 
-/// What watches a run.
+/// An observer of a run.
 pub trait Observer {
     /// Whether it wants the learned torque's variance.
     fn wants_variance(&self) -> bool {
@@ -31,15 +31,15 @@ pub trait Observer {
     fn sample(&mut self, sample: &Sample<'_>);
 }
 
-/// What came of a run.
+/// The outcome of a run.
 pub struct Outcome {
     /// Everything measured and commanded, at the control rate.
     pub recording: Recording,
-    /// Root mean square of the tracking error, one a joint (rad or m).
+    /// Root mean square of the tracking error, one per joint (rad or m).
     pub rms_error: Vec<f64>,
-    /// Largest tracking error, one a joint (rad or m).
+    /// Largest tracking error, one per joint (rad or m).
     pub max_error: Vec<f64>,
-    /// Share of the steps in which the effort limit cut the torque, one a joint.
+    /// Share of the steps in which the effort limit cut the torque, one per joint.
     pub saturated: Vec<f64>,
     /// Simulated time over the time it took.
     pub real_time_factor: f64,

@@ -48,7 +48,7 @@ struct Table {
 pub struct Row {
     /// Which.
     pub model: ModelKind,
-    /// (N m)², one a joint.
+    /// (N m)², one per joint.
     pub mse: Vec<f64>,
     /// Over the joints.
     pub mean: f64,

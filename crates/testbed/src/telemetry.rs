@@ -1,7 +1,7 @@
 //! One control step of a run, as the recording and the viewer see it.
 #![cfg_attr(not(feature = "viewer"), expect(dead_code, reason = "the viewer is its reader"))]
 
-/// One control step; slices have one entry a joint, in rad and N m (or m and N).
+/// One control step; slices have one entry per joint, in rad and N m (or m and N).
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<'a> {
     /// Time since the start of the run (s).

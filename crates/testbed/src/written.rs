@@ -1,4 +1,4 @@
-//! The files of a command, written one after the other: one that cannot be written costs neither the others nor the answer.
+//! The files of a command, written one after the other. If one cannot be written, the others and the answer are still given.
 
 use std::path::{Path, PathBuf};
 

@@ -5,7 +5,7 @@ use arm::{Arm, DMatrix};
 use crate::error::TorqueError;
 use crate::model::{Prediction, TorqueModel, Workspace};
 
-/// How the position and velocity errors become torque; one gain a joint.
+/// The feedback of position and velocity errors; one gain per joint.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Feedback {
     /// τ = M(q) (K_p e + K_d ė) with the controller's own mass matrix; K_p in 1/s², K_d in 1/s.
@@ -24,7 +24,7 @@ pub enum Feedback {
     },
 }
 
-/// The torques of one control step, one entry a joint (N m or N).
+/// The torques of one control step, one entry per joint (N m or N).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Command {
     /// The model's feed-forward, in parts.
@@ -33,12 +33,12 @@ pub struct Command {
     pub feedback: Vec<f64>,
     /// Their sum within the joints' effort limits.
     pub torque: Vec<f64>,
-    /// Whether the limit cut the sum.
+    /// Whether the limit reduced the sum.
     pub saturated: Vec<bool>,
 }
 
 impl Command {
-    /// No torque for `dof` joints.
+    /// A command without torque for `dof` joints.
     pub fn new(dof: usize) -> Self {
         Self {
             feedforward: Prediction::new(dof),
@@ -63,8 +63,7 @@ pub struct Controller<'a> {
 }
 
 impl<'a> Controller<'a> {
-    /// A controller that feeds `model` forward; `arm` is the rigid-body model it takes the mass matrix
-    /// and the effort limits from.
+    /// A controller with the feed-forward of `model`; the mass matrix and the effort limits are those of `arm`.
     ///
     /// # Errors
     /// [`TorqueError`] if the model is of another arm, or a gain is negative, not finite, or missing.

@@ -1,4 +1,4 @@
-//! A rigid model with named effects put in: the corrected model of a diagnosis.
+//! A rigid model with named effects: the corrected model of a diagnosis.
 
 mod loads;
 #[cfg(test)]
@@ -10,7 +10,7 @@ use effects::{Circumstance, Effect, Machine, Scaled, State, sign};
 use crate::error::TorqueError;
 use crate::model::{Prediction, TorqueModel, Workspace};
 
-/// An arm and the [`Effect`]s that its URDF leaves out.
+/// An arm and the [`Effect`]s that its URDF omits.
 ///
 /// The torque of joint j, in N m (N) as the drive reports it, is
 ///
@@ -29,14 +29,14 @@ use crate::model::{Prediction, TorqueModel, Workspace};
 /// Friction that the URDF gives is not part of it.
 #[derive(Clone, Debug)]
 pub struct Corrected {
-    /// The arm with all that is ever picked up, and what the effects put beside it.
+    /// The arm with all payloads, and the effects that are not part of it.
     machine: Machine,
-    /// The arm before something is picked up, until when (s), the earliest first.
+    /// The arms before payloads are picked up, with the times until which they hold (s), the earliest first.
     earlier: Vec<(f64, Arm)>,
     tool: Frame,
 }
 
-/// Whether what sets in at `onset` acts at `time`.
+/// Whether an effect with this onset acts at `time`.
 fn acts(onset: Option<f64>, time: Option<f64>) -> bool {
     !matches!((onset, time), (Some(onset), Some(time)) if time < onset)
 }
@@ -69,17 +69,17 @@ impl Corrected {
         })
     }
 
-    /// The rigid arm with all that changes its inertia or gravity, and all that is ever picked up.
+    /// The rigid arm with all effects on its inertia or gravity, and with all payloads.
     pub fn arm(&self) -> &Arm {
         &self.machine.arm
     }
 
-    /// How far each joint stands beyond what its encoder says (rad or m).
+    /// The true position of each joint minus the encoder's (rad or m).
     pub fn encoder_offsets(&self) -> &[f64] {
         &self.machine.encoder_offsets
     }
 
-    /// What the effects put beside the arm: drives that are late or give, and the rest. Its rotors and payloads are in
+    /// The effects that are not part of the arm: delays, springs, gaps and the others. Rotors and payloads are in
     /// [`Self::arm`].
     pub fn machine(&self) -> &Machine {
         &self.machine
@@ -98,8 +98,8 @@ impl Corrected {
         &self.machine.limits
     }
 
-    /// As [`TorqueModel::predict`], at `time` (s on the recordings' own clock): friction that drifts is as it was then, and
-    /// a contact acts while it lasts.
+    /// Predicts as [`TorqueModel::predict`] does, at `time` (s on the recordings' own clock): with the friction of that time,
+    /// and with a contact while it lasts.
     ///
     /// # Panics
     /// If a slice or the workspace is of another size than the arm.
@@ -144,12 +144,12 @@ impl Corrected {
         for (joint, effect) in effects.iter_mut().enumerate() {
             let limit = self.machine.limits[joint];
             let total = self.torque_factor(joint, time) * (rigid[joint] + *effect);
-            // What is not rigid is an effect, a scale and a cut too.
+            // // Everything but the rigid torque counts as an effect, also a scale and a limit.
             *effect = total.clamp(-limit, limit) - rigid[joint];
         }
     }
 
-    /// The inverse dynamics at the angles where the joints stand, of the arm as it is at `time`.
+    /// The inverse dynamics at the true positions of the joints, of the arm at `time`.
     fn rigid_torque(&self, time: Option<f64>, workspace: &mut Workspace, [q, qd, qdd]: [&[f64]; 3], rigid: &mut [f64]) {
         let Workspace {
             arm: scratch, input, ..
@@ -164,7 +164,7 @@ impl Corrected {
         arm.inverse_dynamics(scratch, standing, qd, qdd, rigid);
     }
 
-    /// Adds all but rigid body and dry friction to `tau`; the workspace knows where the joints stand.
+    /// Adds everything but rigid body and dry friction to `tau`; the workspace contains the true positions.
     fn add_smooth(
         &self,
         time: Option<f64>,

@@ -1,4 +1,4 @@
-//! What can go wrong with a torque model.
+//! Errors of torque models and controllers.
 
 /// Why a torque model or a controller could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -6,7 +6,7 @@ pub enum TorqueError {
     /// A joint vector of another size than the arm.
     #[error("{what}: {found} values for an arm of {expected} joints")]
     Joints {
-        /// What was given.
+        /// The vector.
         what: String,
         /// How many values it has.
         found: usize,
@@ -20,10 +20,10 @@ pub enum TorqueError {
         what: &'static str,
         /// The joint, from 1.
         joint: usize,
-        /// What was found.
+        /// The value.
         value: f64,
     },
-    /// Nothing to learn from.
+    /// There are no samples.
     #[error("no training samples")]
     NoSamples,
     /// The regression of one joint failed.
@@ -31,7 +31,7 @@ pub enum TorqueError {
     Regression {
         /// The joint, from 1.
         joint: usize,
-        /// What the regression says.
+        /// The error of the regression.
         source: gp::GpError,
     },
     /// An effect that does not fit the arm.

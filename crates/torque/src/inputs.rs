@@ -1,8 +1,8 @@
-//! What a learned correction takes as its inputs.
+//! The inputs of a learned correction.
 
 use crate::model::Workspace;
 
-/// The inputs of the regressions, one regression a joint.
+/// The inputs of the regressions, one regression per joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inputs {
     /// q, q̇ and q̈ of all joints, the same for every joint (the paper's "Lagrangian" form).
@@ -24,7 +24,7 @@ impl Inputs {
         }
     }
 
-    /// The inputs for `joint` of the motion whose features are in `workspace`.
+    /// Computes the inputs for `joint` from the features in `workspace`.
     pub(crate) fn of(self, joint: usize, workspace: &Workspace) -> &[f64] {
         match self {
             Self::JointMotion => &workspace.input,

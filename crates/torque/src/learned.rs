@@ -9,12 +9,12 @@ use crate::inputs::Inputs;
 use crate::model::{Prediction, TorqueModel, Workspace};
 use crate::samples::Samples;
 
-/// How to train; the default is the paper's way.
+/// Options of the training; the default is the paper's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrainingOptions {
-    /// One length scale for all inputs (the paper's equation 4), or one an input.
+    /// One length scale for all inputs (the paper's equation 4), or one per input.
     pub lengths: LengthScales,
-    /// Starts that the likelihood search climbs from, at least 1: [`FitOptions::starts`].
+    /// The number of starts of the likelihood search, at least 1: [`FitOptions::starts`].
     pub starts: usize,
     /// Iterations from each start: [`FitOptions::max_iterations`].
     pub max_iterations: u64,
@@ -34,7 +34,7 @@ impl Default for TrainingOptions {
     }
 }
 
-/// A rigid-body model (or none) plus one regression a joint for what is left of the torque.
+/// A rigid-body model (or none) plus one regression per joint for the residual torque.
 #[derive(Clone, Debug)]
 pub struct Learned {
     rigid_body: Option<Arm>,
@@ -51,9 +51,8 @@ impl Learned {
         Self::train(None, Inputs::JointMotion, samples, options)
     }
 
-    /// What `arm` leaves of the torque, from `inputs`: the paper's "RBD + GPR" on
-    /// [`Inputs::JointMotion`], and Independent Joint Learning on the Newton-Euler inputs
-    /// (algorithm 2).
+    /// Learns the residual torque of `arm` from `inputs`: the paper's "RBD + GPR" on [`Inputs::JointMotion`], and Independent
+    /// Joint Learning on the Newton-Euler inputs (algorithm 2).
     ///
     /// # Errors
     /// [`TorqueError`] if there are no samples, they are of another arm, or a regression fails.
@@ -123,7 +122,7 @@ impl Learned {
         Ok(model)
     }
 
-    /// Leaves the rigid-body torque and what the regressions need in the workspace.
+    /// Computes the rigid-body torque and the inputs of the regressions in the workspace.
     fn evaluate_features(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64]) {
         let dof = q.len();
         match &self.rigid_body {

@@ -10,21 +10,21 @@ pub trait TorqueModel: Send + Sync {
     /// The number of joints.
     fn dof(&self) -> usize;
 
-    /// The torques (N m or N) for the motion `q`, `qd`, `qdd`, in parts, without allocating; parts that the
-    /// model has not are set to zero.
+    /// The torques (N m or N) for the motion `q`, `qd`, `qdd`, in parts, without allocating; parts that the model does not have
+    /// are set to zero.
     ///
     /// # Panics
     /// If a slice or the workspace is of another size than the arm.
     fn predict(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64], prediction: &mut Prediction);
 
-    /// The variance ((N m)² or N²) of the learned part for each joint, likewise; `None` from a model
-    /// without a learned part. Much dearer than [`Self::predict`].
+    /// The variance ((N m)² or N²) of the learned part for each joint; `None` for a model without a learned part. It costs much
+    /// more than [`Self::predict`].
     ///
     /// # Panics
     /// If a slice or the workspace is of another size than the arm.
     fn variance<'w>(&self, workspace: &'w mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64]) -> Option<&'w [f64]>;
 
-    /// The regressions of the learned part, one a joint; none in a model without a learned part.
+    /// The regressions of the learned part, one per joint; none in a model without a learned part.
     fn regressions(&self) -> &[Gp] {
         &[]
     }
@@ -46,14 +46,14 @@ pub trait TorqueModel: Send + Sync {
     }
 }
 
-/// The torque of a model, one entry a joint (N m or N).
+/// The torque of a model, one entry per joint (N m or N).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prediction {
-    /// What rigid-body dynamics say.
+    /// The rigid-body torque.
     pub rigid: Vec<f64>,
-    /// What named effects add to it (and a scale or a limit takes off it).
+    /// The torque of the named effects, including scales and limits.
     pub effects: Vec<f64>,
-    /// What was learned on top.
+    /// The learned torque.
     pub learned: Vec<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! The motion a run is to follow: sums of sines, faded in and out where that is asked for.
+//! The reference motion: sums of sines, optionally with a fade-in and a fade-out.
 
 use std::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ pub struct Sine {
     pub phase: Vec<f64>,
 }
 
-/// From rest at the start, and back to rest at the end.
+/// A fade-in from rest at the start, and a fade-out to rest at the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fade {
     /// How long either takes (s).
@@ -22,7 +22,7 @@ pub struct Fade {
     pub end: f64,
 }
 
-/// q(t) = centre + Σ sines, one entry a joint; the sum times a factor that rises from 0 to 1 and falls again, if it fades.
+/// q(t) = centre + Σ sines, one entry per joint; the sum times a factor that rises from 0 to 1 and falls again, if it fades.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     /// rad or m.

@@ -12,7 +12,7 @@ pub struct Samples {
     tau: Vec<f64>,
 }
 
-/// One row of [`Samples`]; a slice has one entry a joint.
+/// One row of [`Samples`]; a slice has one entry per joint.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<'a> {
     /// Positions (rad or m).
@@ -34,7 +34,7 @@ impl Samples {
     /// Adds one sample.
     ///
     /// # Errors
-    /// [`TorqueError::Joints`] if a slice has not one entry a joint.
+    /// [`TorqueError::Joints`] if a slice has not one entry per joint.
     pub fn push(&mut self, sample: Sample<'_>) -> Result<(), TorqueError> {
         for (what, values) in [
             ("q", sample.q),

@@ -1,4 +1,4 @@
-//! The report, completed: what `diagnosis` cannot know without a learned model and a simulated arm.
+//! The completed report: with the figures that need a learned model and a simulated arm.
 
 use arm::Arm;
 use diagnosis::{Diagnosis, Input, JointRollout, Report, Step, Trace};
@@ -15,19 +15,19 @@ use crate::statistics::{mean_square, variance};
 pub struct Complete {
     /// The diagnosis' report, with `held_out_nrmse_learned` of each joint and `rollout`.
     pub report: Report,
-    /// What the simulation omits, or why there is none; in sentences.
+    /// What the simulation omits, or why there is none, in sentences.
     pub remarks: Vec<String>,
 }
 
 /// Completes the report of `diagnosis`, which was made of `recordings` with the effects `known` in the model.
 ///
-/// A correction is learned from the training traces and held against the held-out ones. The plant, with and without the
-/// effects named, is driven by the torques of the last recording held out, or of the last there is; where nothing was named
-/// there is nothing to compare. `progress` receives each step as it begins.
+/// A correction is learned from the training traces and tested on the held-out ones. The plant is driven by the torques of the
+/// last held-out recording (or of the last recording), with and without the named effects; without named effects, nothing is
+/// compared. `progress` receives each step as it begins.
 ///
 /// # Errors
-/// [`ValidateError::Learning`]. An arm that cannot be simulated (a link without mass) is a remark: a diagnosis in torque is of use
-/// without.
+/// [`ValidateError::Learning`]. An arm that cannot be simulated (a link without mass) is a note, because the torques alone are
+/// also useful.
 pub fn complete(
     arm: &Arm,
     known: &[Effect],
@@ -45,7 +45,7 @@ pub fn complete(
         .or(recordings.last())
         .filter(|_| !diagnosis.effects.is_empty());
     let remarks = simulated.map_or_else(Vec::new, |input| {
-        // What is known is part of the model that the findings come on top of.
+        // Known effects are part of the model to which the findings are added.
         let corrected = [known, &diagnosis.effects].concat();
         simulate(arm, known, &corrected, input.recording, &mut report)
     });
@@ -62,7 +62,7 @@ fn motion(trace: &Trace) -> RecordedMotion<'_> {
     }
 }
 
-/// Fills in the held-out error of a correction learned from the same recordings.
+/// Adds the held-out error of a correction learned from the same recordings.
 fn learn(arm: &Arm, traces: &[Trace], report: &mut Report) -> Result<(), ValidateError> {
     let of = |held_out: bool| -> Vec<&Trace> { traces.iter().filter(|trace| trace.held_out == held_out).collect() };
     let (train, held) = (of(false), of(true));
@@ -78,7 +78,7 @@ fn learn(arm: &Arm, traces: &[Trace], report: &mut Report) -> Result<(), Validat
     let tried: Vec<RecordedMotion<'_>> = held.iter().map(|trace| motion(trace)).collect();
     let predicted = learned::predict(arm, &training, &tried, &LearnedOptions::default())?;
     for (joint, described) in arm.joints().iter().enumerate() {
-        // Where the joint moves, as the other errors are; over all where it hardly does.
+        // The samples in motion, as for the other errors; all samples where the joint hardly moves.
         let moving: usize = held
             .iter()
             .map(|trace| trace.moving[joint].iter().filter(|&&m| m).count())
@@ -100,7 +100,7 @@ fn learn(arm: &Arm, traces: &[Trace], report: &mut Report) -> Result<(), Validat
     Ok(())
 }
 
-/// Drives the simulated arm with the recorded torques, with and without the effects found; returns remarks for the user.
+/// Drives the simulated arm by the recorded torques, with and without the effects found; returns notes for the user.
 fn simulate(
     arm: &Arm,
     known: &[Effect],

@@ -1,9 +1,9 @@
-//! Why a diagnosis cannot be compared.
+//! Errors of the comparisons.
 
 use plant::PlantError;
 use torque::TorqueError;
 
-/// What keeps a correction from being learned or an arm from being simulated.
+/// Why a correction cannot be learned or an arm cannot be simulated.
 #[derive(Debug, thiserror::Error)]
 pub enum ValidateError {
     /// There is no row to learn from, or a regression failed.
@@ -15,7 +15,7 @@ pub enum ValidateError {
         /// The joint's name.
         joint: String,
     },
-    /// The recording's period or the plant's step is no length of time.
+    /// The recording's period or the plant's step is not positive.
     #[error("the recording's period is {period} s; it must be positive")]
     Period {
         /// The recording's period (s).
@@ -32,7 +32,7 @@ pub enum ValidateError {
     Effects {
         /// Which of the two arms.
         which: &'static str,
-        /// What is wrong with the effect.
+        /// The error of the effect.
         source: TorqueError,
     },
     /// The plant cannot simulate the arm.
@@ -40,7 +40,7 @@ pub enum ValidateError {
     Plant {
         /// Which of the two arms.
         which: &'static str,
-        /// What the plant says.
+        /// The error of the plant.
         source: PlantError,
     },
 }

@@ -1,11 +1,11 @@
-//! The learned correction beside the named one: Independent Joint Learning on a few hundred samples of the same recordings.
+//! The learned correction, for comparison: Independent Joint Learning on a few hundred samples of the same recordings.
 
 use arm::Arm;
 use torque::{Inputs, Learned, LengthScales, Prediction, Sample, Samples, TorqueModel, TrainingOptions, Workspace};
 
 use crate::error::ValidateError;
 
-/// Motion and torque of one recording, `[joint][row]`, joints as the arm's: rad, rad/s, rad/s², N m (or m …, N).
+/// Motion and torque of one recording, `[joint][row]`, joints in the arm's order: rad, rad/s, rad/s², N m (or m …, N).
 #[derive(Clone, Copy)]
 pub struct RecordedMotion<'a> {
     /// Positions.
@@ -14,19 +14,19 @@ pub struct RecordedMotion<'a> {
     pub qd: &'a [Vec<f64>],
     /// Accelerations.
     pub qdd: &'a [Vec<f64>],
-    /// Torques, filtered as the motion is. Not looked at in prediction.
+    /// Torques, with the same filter as the motion. Not used in prediction.
     pub tau: &'a [Vec<f64>],
-    /// Whether a joint moves: at rest friction may be anything.
+    /// Whether a joint moves. At rest, friction is undetermined.
     pub moving: &'a [Vec<bool>],
 }
 
-/// How the correction is learned.
+/// Options of the learned correction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LearnedOptions {
-    /// Samples learned from at most. The cost grows with the cube, and more of them predict other motions no better where
-    /// the Newton-Euler inputs do not tell what the torque depends on (the speed of a joint parallel to the one before it).
+    /// The largest number of samples. The cost grows with its cube, and more samples do not improve the prediction of other
+    /// motions where the Newton-Euler inputs do not determine the torque (the speed of a joint parallel to the one before it).
     pub samples: usize,
-    /// How the regressions are fitted.
+    /// Options of the regressions.
     pub training: TrainingOptions,
 }
 
@@ -56,16 +56,16 @@ impl RecordedMotion<'_> {
     }
 }
 
-/// Learns what `arm` leaves of the torques in `training`.
+/// Learns the residual of `arm` in `training`.
 ///
-/// Rows to learn from are spread evenly over those at which all joints move that ever do, or, where those are too few,
-/// over those at which any moves. The same inputs give the same bits.
+/// The rows are spread evenly over those in which all joints move that ever move, or, if these are too few, over those in which
+/// any joint moves. Equal inputs give equal bits.
 ///
 /// # Errors
 /// [`ValidateError::Learning`], if no row can be learned from or a regression fails.
 ///
 /// # Panics
-/// If a signal has not one row a joint of the arm, or rows of different lengths.
+/// If a signal has not one row per joint of the arm, or rows of different lengths.
 pub fn learn(arm: &Arm, training: &[RecordedMotion<'_>], options: &LearnedOptions) -> Result<Learned, ValidateError> {
     let dof = arm.dof();
     let mut samples = Samples::new(dof);
@@ -83,13 +83,13 @@ pub fn learn(arm: &Arm, training: &[RecordedMotion<'_>], options: &LearnedOption
     Learned::on_top_of(arm, Inputs::NewtonEuler13, &samples, &options.training).map_err(ValidateError::Learning)
 }
 
-/// Learns as [`learn`] does, and predicts the whole torque of the rows of `held_out`: `[recording][joint][row]` (N m or N).
+/// Learns as [`learn`] does, and predicts the torque of the rows of `held_out`: `[recording][joint][row]` (N m or N).
 ///
 /// # Errors
-/// As [`learn`].
+/// Those of [`learn`].
 ///
 /// # Panics
-/// As [`learn`].
+/// Those of [`learn`].
 pub fn predict(
     arm: &Arm,
     training: &[RecordedMotion<'_>],
@@ -164,7 +164,7 @@ mod tests {
                 let qdd: Vec<f64> = (0..6).map(|j| -omega(j).powi(2) * q[j]).collect();
                 model.predict(&mut workspace, &q, &qd, &qdd, &mut prediction);
                 for j in 0..6 {
-                    // A little noise, the same every time.
+                    // A little deterministic noise.
                     let noise = 0.02 * ((row * 7919 + j * 104_729) % 1000) as f64 / 1000.0;
                     for (signal, value) in self_signals(&mut data.0, j).into_iter().zip([
                         q[j],

@@ -1,7 +1,7 @@
-//! The simulated arm, with and without the named effects, driven by the recorded torques: does it move as the robot did?
+//! The motion of the simulated arm, with and without the named effects, driven by the recorded torques.
 //!
-//! Over windows short enough that nothing has to hold the arm on its path (no tracking loop hides what the model lacks):
-//! each starts from the measured state, and the plant then runs on the recorded torques alone.
+//! The windows are so short that no controller is needed to keep the arm near its path; a controller would hide what the model
+//! omits. Each window starts at the measured state, and the plant then runs on the recorded torques alone.
 
 mod drive;
 #[cfg(test)]
@@ -22,12 +22,12 @@ use self::variant::Variant;
 use crate::error::ValidateError;
 use crate::statistics::mean_square;
 
-/// How a rollout is run.
+/// Options of a rollout.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RolloutOptions {
     /// The length of a window (s).
     pub window: f64,
-    /// Windows are spread evenly over the recording; together they are no longer than this (s).
+    /// The total length of the windows (s), which are spread evenly over the recording.
     pub simulated: f64,
     /// The longest step of the plant (s); the step divides the recording's period, or is a whole number of them.
     pub step: f64,
@@ -46,10 +46,10 @@ impl Default for RolloutOptions {
     }
 }
 
-/// How the simulated arm follows the recorded one. Joints are the arm's, base to tip.
+/// How closely the simulated arm follows the recorded one. Joints are the arm's, base to tip.
 #[derive(Clone, Debug, Default)]
 pub struct Rollout {
-    /// RMS distance of the simulated from the measured position over all windows, one a joint (rad or m).
+    /// RMS distance of the simulated from the measured position over all windows, one per joint (rad or m).
     pub joints: Vec<JointRollout>,
     /// The windows in order of time.
     pub windows: Vec<Window>,
@@ -61,21 +61,21 @@ pub struct Rollout {
     pub remarks: Vec<String>,
 }
 
-/// One window; signals are `[joint][instant]`, positions as the encoders say them (rad or m).
+/// One window; signals are `[joint][instant]`, positions as the encoders report them (rad or m).
 #[derive(Clone, Debug, Default)]
 pub struct Window {
-    /// As recorded.
+    /// Recorded positions.
     pub measured: Vec<Vec<f64>>,
-    /// Simulated without the effects. After a runaway the distance to the measured stays as it was.
+    /// Simulated positions without the effects. After the arm has left the window, the distance stays constant.
     pub nominal: Vec<Vec<f64>>,
-    /// Simulated with the effects, likewise.
+    /// Simulated positions with the effects.
     pub augmented: Vec<Vec<f64>>,
 }
 
 /// The recording's grid, its columns in the arm's order, and the plant's step on it.
 struct Course<'a> {
     recording: &'a RegularRecording,
-    /// The arm's joints among the recording's.
+    /// The columns of the arm's joints in the recording.
     columns: Vec<usize>,
     /// Ticks between two instants that are compared.
     stride: usize,
@@ -88,8 +88,8 @@ struct Course<'a> {
 
 /// Drives the plant of `arm`, and that of `arm` with `effects`, by the torques of `recording` over windows.
 ///
-/// The same inputs give the same bits. A window that a variant leaves counts with the distance at which it left (a lower
-/// bound) and is counted in [`Rollout`].
+/// Equal inputs give equal bits. A window that a variant leaves counts with its distance at that time (a lower bound) and is
+/// counted in [`Rollout`].
 ///
 /// # Errors
 /// [`ValidateError`], if a joint is not in the recording, an effect does not fit the arm, no window fits in the recording, or the plant
@@ -135,7 +135,7 @@ pub fn rollout(
         let mut acting = effects.to_vec();
         let mut paths = Vec::with_capacity(starts.len());
         for start in &starts {
-            // What is picked up within a window is not there in it.
+            // A payload that is picked up within a window is not simulated in that window.
             let time = recording.time(start.tick);
             let is_there = |effect: &&Effect| !effect.is(&Payload) || effect.onset().is_none_or(|onset| onset <= time);
             let now: Vec<Effect> = effects.iter().filter(is_there).cloned().collect();
@@ -180,7 +180,7 @@ pub fn rollout(
     Ok(result)
 }
 
-/// Where one variant went.
+/// The positions of one variant.
 struct Path {
     q: Vec<Vec<f64>>,
     ran_away: bool,
@@ -197,7 +197,7 @@ impl Run {
     }
 }
 
-/// The root of the mean square of simulated less measured over all windows (their common start left out).
+/// The root of the mean square of simulated minus measured position over all windows, without their common start.
 fn rms(windows: &[Window], joint: usize, simulated: impl Fn(&Window) -> &Vec<Vec<f64>>) -> f64 {
     let distances = windows.iter().flat_map(|window| {
         let pairs = simulated(window)[joint].iter().zip(&window.measured[joint]);

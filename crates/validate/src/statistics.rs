@@ -1,6 +1,6 @@
-//! Mean square and variance, in the order in which the values come.
+//! Mean square and variance, computed in the order of the values.
 
-/// The mean of the squares of `values`; 0 of none.
+/// The mean of the squares of `values`; 0 for no values.
 pub(crate) fn mean_square(values: impl IntoIterator<Item = f64>) -> f64 {
     let (mut sum, mut count) = (0.0, 0_u32);
     for value in values {
@@ -10,7 +10,7 @@ pub(crate) fn mean_square(values: impl IntoIterator<Item = f64>) -> f64 {
     sum / f64::from(count.max(1))
 }
 
-/// The mean square distance of `values` from their mean; 0 of none.
+/// The mean square distance of `values` from their mean; 0 for no values.
 pub(crate) fn variance(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
     mean_square(values.iter().map(|value| value - mean))

@@ -27,4 +27,4 @@ for name, urdf in robots.items():
         pin.computeRNEADerivatives(model, data, q, qd, qdd)
         rows.append(np.concatenate([q, qd, qdd, data.dtau_dq.ravel(), data.dtau_dv.ravel()]))
     np.array(rows, dtype="<f8").tofile(here / f"{name}_derivatives.bin")
-    print(name, len(rows[0]), "values a state; Pinocchio", pin.__version__)
+    print(name, len(rows[0]), "values per state; Pinocchio", pin.__version__)

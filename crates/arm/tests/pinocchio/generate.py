@@ -69,4 +69,4 @@ for name, (urdf, tool) in robots.items():
             features(model, data, q, qd, qdd) @ np.sin(np.arange(12) + 1.0),
         ]))
     np.array(rows, dtype="<f8").tofile(here / f"{name}.bin")
-    print(name, n, "joints,", len(rows[0]), "values a state; Pinocchio", pin.__version__)
+    print(name, n, "joints,", len(rows[0]), "values per state; Pinocchio", pin.__version__)

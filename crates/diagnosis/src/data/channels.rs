@@ -1,4 +1,4 @@
-//! Torque channels that hold no torque: dead ones, idle ones, other quantities and other signals.
+//! Torque channels that hold no torque: dead and idle channels, other quantities, other signals.
 
 use std::collections::HashMap;
 
@@ -11,11 +11,11 @@ use crate::data::rigid::Rigid;
 use crate::data::statistics::mean;
 use crate::thresholds::{CHANNEL_MOVES, FAR_TOO_SMALL, IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED};
 
-/// Samples on either side of which positions are compared.
+/// The number of samples on either side over which positions are compared.
 const STEP: usize = 5;
-/// Stretches that are left out in turn.
+/// The number of stretches, each of which is left out once.
 const FOLDS: usize = 5;
-/// A ridge on columns of unit power, against columns that hang together.
+/// The ridge on columns of unit power, against collinear columns.
 const RIDGE: f64 = 1e-4;
 
 /// Why a channel holds no torque.
@@ -25,14 +25,14 @@ pub enum Why {
     Dead,
     /// It shows one value in this part of the samples in motion.
     Idle(f64),
-    /// Its root mean square is this part of the model's.
+    /// Its root mean square is this multiple of the model's.
     FarTooSmall(f64),
     /// Neither the model nor friction, position, weight or masses of any size explain more than this part of its power.
     Unrelated(f64),
 }
 
 impl Why {
-    /// The remark on the joint `name`.
+    /// The note on the joint `name`.
     pub fn remark(self, name: &str) -> String {
         let what = match self {
             Self::Dead => "the measured torque is almost constant while the model's varies".to_owned(),
@@ -52,7 +52,8 @@ impl Why {
     }
 }
 
-/// The joints whose channels hold no torque, and why; `scales` say how fast the joints are and how their channels vary.
+/// The joints whose channels hold no torque, with the reason. `scales` give the speeds of the joints and the variation of the
+/// channels.
 pub fn without_torque(inputs: &[Input<'_>], motions: &Motions, rigid: &[Rigid], scales: &Scales) -> Vec<(usize, Why)> {
     let dead = measure::dead(motions, rigid, &scales.torque);
     let list: Vec<(usize, Why)> = (0..motions.dof)
@@ -67,13 +68,13 @@ pub fn without_torque(inputs: &[Input<'_>], motions: &Motions, rigid: &[Rigid], 
             Some((joint, why?))
         })
         .collect();
-    // Where nothing explains any joint, it is not a channel that is wrong.
+    // If nothing explains any joint, the model is wrong and not a channel.
     let is_all = list.len() == motions.dof;
     let stays = |(_, why): &(usize, Why)| is_all && matches!(why, Why::Unrelated(_));
     list.into_iter().filter(|one| !stays(one)).collect()
 }
 
-/// The part of the samples in motion that hold the commonest value, if that is most of them.
+/// The part of the samples in motion with the most frequent value, if that is most of them.
 fn idle(inputs: &[Input<'_>], joint: usize) -> Option<f64> {
     let speed = |input: &Input<'_>, tick: usize| {
         let q = &input.recording.q[joint];
@@ -87,7 +88,7 @@ fn idle(inputs: &[Input<'_>], joint: usize) -> Option<f64> {
     let mut all = 0;
     for input in fitted() {
         for tick in ticks(input).filter(|&tick| speed(input, tick) > least) {
-            // −0 is 0.
+            // −0 equals 0.
             *counts
                 .entry((input.recording.tau[joint][tick] + 0.0).to_bits())
                 .or_default() += 1;
@@ -101,17 +102,17 @@ fn idle(inputs: &[Input<'_>], joint: usize) -> Option<f64> {
 
 /// Moving rows of a joint in the recordings to be fitted.
 struct Rows {
-    /// Measured (N m or N).
+    /// Measured torque (N m or N).
     torque: Vec<f64>,
-    /// What the model as it is needs (N m or N).
+    /// The torque of the nominal model (N m or N).
     needed: Vec<f64>,
-    /// Columns that friction, a constant and the model alone would have.
+    /// Columns of friction, a constant and the model.
     plain: Vec<Vec<f64>>,
-    /// Those of positions, weight and masses of any size besides.
+    /// Further columns: positions, weight and masses of any size.
     more: Vec<Vec<f64>>,
 }
 
-/// Why the channel is not the joint's torque, if it is not, by what the model and regressions say of it.
+/// Why the channel is not the joint's torque, judged by the model and by regressions; `None` if it may be.
 fn of_another_kind(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Option<Why> {
     let rows = rows(motions, rigid, scales, joint);
     if rows.torque.len() < LEAST_CHANNEL_ROWS {
@@ -176,7 +177,7 @@ fn rows(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Ro
     rows
 }
 
-/// What columns leave (NRMSE) of `y` on stretches left out one after the other, each less the mean of the rest.
+/// The NRMSE that columns leave of `y` on stretches left out one after the other, each minus the mean of the others.
 fn left(columns: &[&Vec<f64>], y: &[f64]) -> f64 {
     let n = columns.len();
     let scaled: Vec<f64> = columns

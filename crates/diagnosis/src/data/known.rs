@@ -1,4 +1,4 @@
-//! Effects that the user has already.
+//! Effects that the user knows.
 
 use arm::Arm;
 use effects::Effect;
@@ -7,12 +7,12 @@ use torque::{Corrected, Prediction, Workspace};
 use crate::data::motion::Motions;
 use crate::error::DiagnosisError;
 
-/// The model with what is known in it.
+/// The model with the known effects.
 pub struct Known {
     /// The arm, with known payloads, link errors, drives and gravity.
     pub arm: Arm,
     model: Option<Corrected>,
-    /// Known effects that no torque at one time tells: they are found again, and not reported.
+    /// Known effects that are not functions of the motion at one time. They are found again, and not reported.
     pub past: Vec<Effect>,
 }
 
@@ -38,7 +38,7 @@ impl Known {
         })
     }
 
-    /// Takes what is known off the torques, and puts the positions where the joints stand.
+    /// Subtracts known effects from the torques, and corrects the positions for known encoder offsets.
     pub fn take_off(&self, motions: &mut Motions) {
         let Some(model) = &self.model else { return };
         let dof = self.arm.dof();

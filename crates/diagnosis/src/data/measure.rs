@@ -1,4 +1,4 @@
-//! What is measured of the recordings before anything is fitted: scales, noise, the largest torques.
+//! Measurements on the recordings before any fit: scales, noise, the largest torques.
 
 use effects::Scales;
 
@@ -15,7 +15,7 @@ pub fn largest(motions: &Motions) -> Vec<f64> {
         .collect()
 }
 
-/// The torque that the model says each joint needs, but for the largest tenth of a per cent (N m or N).
+/// The torque that each joint needs by the model, without the largest 0.1 % (N m or N).
 pub fn needed(motions: &Motions, rigid: &[Rigid]) -> Vec<f64> {
     let needed = |joint: usize| {
         let mut needed: Vec<f64> = rigid
@@ -32,8 +32,8 @@ pub fn needed(motions: &Motions, rigid: &[Rigid]) -> Vec<f64> {
     (0..motions.dof).map(needed).collect()
 }
 
-/// The standard deviation of the torque that accelerations need of each joint in the recordings to be fitted, through both
-/// filters, over that of the measured torque; zero without one.
+/// The standard deviation of the torque that accelerations need on each joint in the training recordings, after both filters,
+/// over that of the measured torque; zero if there is no measured torque.
 pub fn inertial(motions: &Motions, rigid: &[Rigid], torque: &[f64]) -> Vec<f64> {
     let needed = |joint: usize| -> Vec<f64> {
         let chunks = motions.chunks.iter().zip(rigid);
@@ -60,7 +60,7 @@ pub fn inertial(motions: &Motions, rigid: &[Rigid], torque: &[f64]) -> Vec<f64> 
     (0..motions.dof).map(share).collect()
 }
 
-/// The standard deviation of each joint's measured torque in the recordings to be fitted (N m or N).
+/// The standard deviation of each joint's measured torque in the training recordings (N m or N).
 pub fn deviations(motions: &Motions) -> Vec<f64> {
     let chunks = || motions.chunks.iter().filter(|chunk| is_fitted(motions, chunk));
     (0..motions.dof)
@@ -68,7 +68,7 @@ pub fn deviations(motions: &Motions) -> Vec<f64> {
         .collect()
 }
 
-/// The joints whose `torque` does not vary as the model's does: a dead channel, whatever noise it has.
+/// The joints whose `torque` does not vary as the model's does: dead channels, whatever their noise.
 pub fn dead(motions: &Motions, rigid: &[Rigid], torque: &[f64]) -> Vec<usize> {
     let fitted = || {
         let chunks = motions.chunks.iter().zip(rigid);
@@ -129,7 +129,7 @@ pub fn scales(motions: &Motions, torque: Vec<f64>) -> Scales {
     scales
 }
 
-/// From row to row of each recording (s).
+/// The time between rows of each recording (s).
 pub fn seconds(motions: &Motions) -> Vec<f64> {
     let mut seconds = vec![0.0; motions.sources.len()];
     for chunk in &motions.chunks {
@@ -147,7 +147,7 @@ pub fn spans(motions: &Motions) -> Vec<Vec<(f64, f64)>> {
     spans
 }
 
-/// The variance of the filtered torque's noise and of the rigid torque's, by the positions' noise.
+/// The variance of the filtered torque's noise, and of the rigid torque's noise due to that of the positions.
 pub fn noise(motions: &Motions, rigid: &[Rigid], fitted: &[bool]) -> Vec<f64> {
     (0..motions.dof)
         .map(|joint| {

@@ -1,4 +1,4 @@
-//! Recordings, filtered: positions, their derivatives and torques on a grid fine enough for nonlinear functions of them.
+//! Filtered recordings: positions, their derivatives and torques on a grid that is fine enough for nonlinear functions of them.
 
 use arm::Arm;
 use recording::RegularRecording;
@@ -6,52 +6,52 @@ use recording::RegularRecording;
 use crate::data::noise::{band_noise, white_noise};
 use crate::data::signal::{Kernel, outputs};
 use crate::thresholds::{
-    CUTOFF, CUTOFF_PERIODS, HIGHEST_CUTOFF, LEAST_CUTOFF, LEAST_CUTOFF_PERIODS, MOST_NOISE, STILL, WORTH_RAISING,
+    CUTOFF, CUTOFF_PERIODS, HIGHEST_CUTOFF, LARGEST_CUTOFF, LEAST_CUTOFF, LEAST_CUTOFF_PERIODS, MOST_NOISE, STILL,
+    WORTH_RAISING,
 };
 
-/// The first filter passes this many times more than the second: nonlinear functions are formed between them.
+/// The ratio of the first filter's cut-off to the second's; nonlinear functions are evaluated between the two.
 const WIDER: f64 = 3.0;
-/// The first filter's cut-off is at most this share of the sampling rate: a width of one sample.
-const NARROWEST: f64 = 0.235;
-/// Samples of the fine grid in a period of the second cut-off.
+/// Samples of the fine grid per period of the second cut-off.
 const FINE: f64 = 8.0;
-/// Rows in a period of the second cut-off.
+/// Rows per period of the second cut-off.
 const ROWS: f64 = 2.5;
-/// Longer stretches are cut, so that memory is bounded (s).
+/// The longest chunk (s); longer ones are cut, so that memory is bounded.
 const LONGEST: f64 = 60.0;
-/// Of longer recordings to be fitted, or held out, stretches spread evenly are used, so long together (s).
+/// The total duration that is used of training recordings, and of held-out recordings (s). Of longer ones, evenly spread
+/// windows are used.
 const MOST_SECONDS: f64 = 900.0;
-/// The length of the stretches that are used of long recordings, if the recording allows (s).
+/// The length of these windows, if the recording allows (s).
 const WINDOW: f64 = 20.0;
-/// Multiples of it, less their whole parts, are spread evenly.
+/// The golden ratio; the fractional parts of its multiples are spread evenly.
 const GOLDEN: f64 = 0.618_033_988_749_895;
-/// More rows than this in all are thinned out.
+/// The largest number of rows; beyond it, rows are thinned out.
 const MOST_ROWS: f64 = 12_000.0;
 
-/// Between recordings without a common clock (s).
+/// The pause between recordings without a common clock (s).
 const BETWEEN: f64 = 10.0;
 
 /// A recording to be diagnosed, with its name and role.
 #[derive(Clone, Copy, Debug)]
 pub struct Input<'a> {
-    /// As the user named it.
+    /// The name that the user gave.
     pub name: &'a str,
-    /// On its regular clock, joints in the arm's order.
+    /// The recording on its regular clock, with the joints in the arm's order.
     pub recording: &'a RegularRecording,
-    /// Not to be fitted.
+    /// Whether it is held out: not to be fitted.
     pub held_out: bool,
-    /// Made before something happened: what the others show that this one does not is what changed. Such recordings come first.
+    /// Whether it was made before something happened (`--before`). Such recordings come first.
     pub before: bool,
 }
 
-/// A stretch of a recording on the fine grid, all signals through the first filter: `[joint][tick]`.
+/// A chunk of a recording on the fine grid, all signals after the first filter: `[joint][tick]`.
 #[derive(Clone, Debug)]
 pub struct Chunk {
-    /// The recording it is of.
+    /// The index of its recording.
     pub recording: usize,
     /// The time of the first tick (s).
     pub start: f64,
-    /// From tick to tick (s).
+    /// The time between ticks (s).
     pub period: f64,
     /// Positions (rad or m).
     pub q: Vec<Vec<f64>>,
@@ -63,7 +63,7 @@ pub struct Chunk {
     pub tau: Vec<Vec<f64>>,
     /// The second filter, from ticks to rows.
     pub kernel: Kernel,
-    /// Ticks from row to row.
+    /// The number of ticks between rows.
     pub stride: usize,
 }
 
@@ -83,7 +83,7 @@ impl Chunk {
         self.start + tick as f64 * self.period
     }
 
-    /// The tick that a row is centred on.
+    /// The tick at the centre of a row.
     pub fn tick_of(&self, row: usize) -> usize {
         row * self.stride + self.kernel.reach()
     }
@@ -94,20 +94,20 @@ impl Chunk {
     }
 }
 
-/// What is known of one recording.
+/// Properties of one recording.
 #[derive(Clone, Debug)]
 pub struct SourceRecording {
-    /// As the user named it.
+    /// The name that the user gave.
     pub name: String,
-    /// Not to be fitted.
+    /// Whether it is held out: not to be fitted.
     pub held_out: bool,
-    /// What the clock of the diagnosis is ahead of the recording's own (s).
+    /// The time of the diagnosis' clock minus that of the recording's own (s).
     pub shift: f64,
-    /// Noise of the filtered torque, one a joint (N m or N).
+    /// Noise of the filtered torque, one per joint (N m or N).
     pub torque_noise: Vec<f64>,
-    /// Noise of the twice filtered acceleration, one a joint (rad/s² or m/s²).
+    /// Noise of the acceleration after both filters, one per joint (rad/s² or m/s²).
     pub acceleration_noise: Vec<f64>,
-    /// Noise of the velocity after the first filter, one a joint (rad/s or m/s).
+    /// Noise of the velocity after the first filter, one per joint (rad/s or m/s).
     pub velocity_noise: Vec<f64>,
 }
 
@@ -116,29 +116,30 @@ pub struct SourceRecording {
 pub struct Motions {
     /// The number of joints.
     pub dof: usize,
-    /// In order of the recordings and of time.
+    /// The chunks, in the order of recordings and time.
     pub chunks: Vec<Chunk>,
-    /// One a recording.
+    /// Properties of the recordings, one each.
     pub sources: Vec<SourceRecording>,
     /// The half-power frequency of the second filter (Hz).
     pub cutoff: f64,
-    /// The frequency of each joint's motion in the recordings to be fitted: that of a sinusoid with its speed and
-    /// acceleration (Hz); zero without motion.
+    /// The frequency of each joint's motion in the training recordings (Hz): that of a sinusoid with the same speed and
+    /// acceleration; zero without motion.
     pub tempo: Vec<f64>,
-    /// Whether one clock runs through all recordings. If not, each begins where the one before it ended.
+    /// Whether all recordings share one clock. If not, each begins after the previous one.
     pub one_clock: bool,
     /// The first time of all recordings (s).
     pub begins: f64,
-    /// When the recordings from before end and the others begin, on the diagnosis' clock (s); `None` if there are none from before.
+    /// The time at which the recordings from before end and the others begin, on the diagnosis' clock (s); `None` if there are
+    /// none from before.
     pub changed_at: Option<f64>,
-    /// What was left out, in sentences.
+    /// Notes on omitted data, in sentences.
     pub remarks: Vec<String>,
 }
 
 impl Motions {
-    /// Filters `inputs` with the second filter at `cutoff` (Hz), or at what the slowest recording allows. Without a `cutoff` the
-    /// data decide: the usual one, more if the motion is quick, less if what the positions' noise makes of the torques of `arm`
-    /// would be a large part of them.
+    /// Filters `inputs` with the second filter at `cutoff` (Hz), or at the highest frequency that the slowest recording allows.
+    /// Without a `cutoff`, the data decide: the usual cut-off, a higher one if the motion is quick, a lower one if the noise of
+    /// the positions would be a large part of the torques of `arm`.
     pub fn new(inputs: &[Input<'_>], cutoff: Option<f64>, arm: &Arm) -> Self {
         let wanted = cutoff.unwrap_or(CUTOFF);
         let mut motions = Self::at(inputs, wanted);
@@ -160,15 +161,14 @@ impl Motions {
         }
         let (share, joint) = motions.noise_share(arm);
         if share > MOST_NOISE {
-            // The acceleration's white noise grows with the power 5/2 of the cut-off.
+            // The noise of the acceleration grows with the power 5/2 of the cut-off.
             let quiet = motions.cutoff * (MOST_NOISE / share).powf(0.4);
             let least = LEAST_CUTOFF.max(LEAST_CUTOFF_PERIODS * tempo).min(motions.cutoff);
             let before = motions.cutoff;
             motions = Self::at(inputs, quiet.max(least));
             motions.remarks.push(format!(
-                "filtered at {:.1} Hz: at {before:.0} Hz the noise of the positions alone would make {:.0} % of the torque of {}",
+                "filtered at {:.1} Hz: at {before:.0} Hz, the noise of the positions alone would be {share:.2} times the torque of {}",
                 motions.cutoff,
-                100.0 * share,
                 arm.joints()[joint].name
             ));
         }
@@ -180,10 +180,10 @@ impl Motions {
             .iter()
             .map(|input| 1.0 / input.recording.period)
             .fold(f64::INFINITY, f64::min);
-        let cutoff = wanted.min(NARROWEST * slowest);
+        let cutoff = wanted.min(LARGEST_CUTOFF * slowest);
         let seconds = |held_out: bool| -> f64 {
             let of_role = inputs.iter().filter(|input| input.held_out == held_out);
-            // An empty sum is −0, by which nothing may be divided.
+            // An empty sum is −0, and a division by it gives −∞.
             0.0 + of_role
                 .map(|input| input.recording.len() as f64 * input.recording.period)
                 .sum::<f64>()
@@ -192,7 +192,7 @@ impl Motions {
         let total: f64 = [false, true].map(|role| used(role) * seconds(role)).iter().sum();
         let thin = (total * ROWS * cutoff / MOST_ROWS).max(1.0);
         let has_before = inputs.iter().any(|input| input.before);
-        // Recordings from before are laid on a clock of their own: what changed did so between them and the others.
+        // Recordings from before get a clock of their own: the change happened between them and the others.
         let overlap = if has_before { None } else { overlapping(inputs) };
         let mut motions = Self {
             dof: inputs.first().map_or(0, |input| input.recording.joints.len()),
@@ -241,7 +241,7 @@ impl Motions {
 
     fn tempo(&self) -> Vec<f64> {
         let fitted = |chunk: &&Chunk| !self.sources[chunk.recording].held_out;
-        // Through the second filter too: the acceleration's noise between the two is many times the motion's.
+        // After the second filter: between the two filters, the acceleration's noise is many times the motion's.
         let power = |signal: &dyn Fn(&Chunk) -> &Vec<f64>| -> f64 {
             let rows = self
                 .chunks
@@ -253,7 +253,7 @@ impl Motions {
         (0..self.dof)
             .map(|joint| {
                 let (speed, acceleration) = (power(&|chunk| &chunk.qd[joint]), power(&|chunk| &chunk.qdd[joint]));
-                // Of a joint that holds still only noise would be seen.
+                // On a joint that does not move, only noise would be measured.
                 let noise = self
                     .sources
                     .iter()
@@ -273,7 +273,7 @@ impl Motions {
     fn add(&mut self, index: usize, input: &Input<'_>, used: f64, thin: f64, shift: f64) {
         let recording = input.recording;
         let rate = 1.0 / recording.period;
-        let first = Kernel::new((WIDER * self.cutoff).min(NARROWEST * rate), recording.period);
+        let first = Kernel::new((WIDER * self.cutoff).min(LARGEST_CUTOFF * rate), recording.period);
         let decimation = (rate / (FINE * self.cutoff)).floor().max(1.0) as usize;
         let period = recording.period * decimation as f64;
         let kernel = Kernel::new(self.cutoff, period);
@@ -286,7 +286,8 @@ impl Motions {
             for piece in 0..pieces {
                 let from = segment.ticks.start + piece * length;
                 let to = (from + length).min(segment.ticks.end);
-                // Where the stretch lies in its piece varies (by the golden ratio): pieces may be repetitions of one motion.
+                // The position of the window in its section varies (by the golden ratio), because sections may repeat one
+                // motion.
                 let kept = (used * (to - from) as f64).ceil() as usize;
                 let place = (GOLDEN * self.chunks.len() as f64).fract();
                 let from = from + (place * (to - from - kept) as f64) as usize;
@@ -334,12 +335,12 @@ impl Motions {
         });
     }
 
-    /// A time of the diagnosis' clock on the clock of a recording (s).
+    /// Converts a time of the diagnosis' clock to the clock of a recording (s).
     pub fn own_time(&self, recording: usize, time: f64) -> f64 {
         time - self.sources[recording].shift
     }
 
-    /// The first and the last time of a recording with rows, on the diagnosis' clock (s).
+    /// The first and the last time of a row in a recording, on the diagnosis' clock (s).
     pub fn span(&self, recording: usize) -> [f64; 2] {
         let chunks = self.chunks.iter().filter(|chunk| chunk.recording == recording);
         chunks.fold([f64::INFINITY, f64::NEG_INFINITY], |[first, last], chunk| {
@@ -350,7 +351,7 @@ impl Motions {
         })
     }
 
-    /// The training recording that a time of the diagnosis' clock is in.
+    /// The training recording at a time of the diagnosis' clock.
     pub fn recording_at(&self, time: f64) -> Option<usize> {
         let inside = |chunk: &&Chunk| {
             !self.sources[chunk.recording].held_out && chunk.start <= time && time <= chunk.time(chunk.ticks())
@@ -366,7 +367,7 @@ impl Motions {
     }
 }
 
-/// Two recordings that overlap in time, if there are any: they are not on one clock.
+/// Two recordings that overlap in time and therefore do not share a clock, if there are any.
 fn overlapping<'a>(inputs: &[Input<'a>]) -> Option<[&'a str; 2]> {
     let mut spans: Vec<(f64, f64, &str)> = inputs
         .iter()

@@ -1,4 +1,4 @@
-//! The noise of recorded signals: white, held for some samples, or stronger just above the motion's band.
+//! The noise of recorded signals: white, held for some samples, or stronger just above the band of the motion.
 
 use std::f64::consts::TAU;
 
@@ -12,18 +12,18 @@ use crate::data::measure;
 use crate::data::motion::{Chunk, Motions, SourceRecording};
 use crate::thresholds::NOISE_BAND;
 
-/// Bins of a spectrum that a band needs.
+/// The least number of bins of a spectrum in a band.
 const LEAST_BINS: usize = 16;
-/// A logger holds values for no more samples.
+/// The largest number of samples for which a logger holds a value.
 const LONGEST_HOLD: usize = 20;
-/// Changes of a value that say whether it is held.
+/// The number of changes of a value that show whether it is held.
 const LEAST_CHANGES: usize = 20;
 
-/// Poses of a stretch at which the mass matrix is formed to judge the noise.
+/// The number of poses of a section at which the mass matrix is evaluated to judge the noise.
 const POSES: usize = 10;
 
 impl Motions {
-    /// The largest part of a joint's torque that the noise of the positions makes, carried through the mass matrix, and the joint.
+    /// The largest part of a joint's torque that the noise of the positions causes through the mass matrix, and the joint.
     pub fn noise_share(&self, arm: &Arm) -> (f64, usize) {
         let mut workspace = Workspace::new(arm);
         let mut mass = DMatrix::zeros(self.dof, self.dof);
@@ -54,8 +54,8 @@ impl Motions {
     }
 }
 
-/// The strength of a signal's white noise: its third differences have 20 times the variance. A signal that is held for some
-/// samples is taken every so many.
+/// The standard deviation of a signal's white noise: its third differences have 20 times the variance. Of a signal that is held
+/// for several samples, one sample each is used.
 pub fn white_noise(signal: &[f64], recording: &RegularRecording) -> f64 {
     let mut squares = Vec::new();
     for segment in &recording.segments {
@@ -73,15 +73,15 @@ pub fn white_noise(signal: &[f64], recording: &RegularRecording) -> f64 {
     if squares.is_empty() {
         return 0.0;
     }
-    // The mean of the lower nine tenths: what jumps (a reversal, a contact) is not noise. A normal variable's
-    // squares up to their 90 % quantile average .6245 of its variance.
+    // The mean of the lower nine tenths, because jumps (a reversal, a contact) are no noise. For a normal variable, the mean
+    // of the squares up to their 90 % quantile is 0.6245 of the variance.
     let keep = (squares.len() * 9 / 10).max(1);
     squares.sort_by(f64::total_cmp);
     (squares[..keep].iter().sum::<f64>() / keep as f64 / 0.6245).sqrt()
 }
 
-/// For how many samples a logger holds each value; one if it does not. A slow encoder repeats its values too, but not at an
-/// even pace.
+/// The number of samples for which a logger holds each value; one if it does not hold them. A slow encoder also repeats its
+/// values, but at irregular intervals.
 fn held_for(values: &[f64]) -> usize {
     let changes: Vec<usize> = (1..values.len()).filter(|&k| values[k] != values[k - 1]).collect();
     let mut steps: Vec<usize> = changes.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -98,8 +98,8 @@ fn held_for(values: &[f64]) -> usize {
     }
 }
 
-/// The strength of a white noise that has the power of `signal` just above the `cutoff` (Hz): noise that is not white, as that of
-/// uneven stamps, is stronger there than its strength at the highest frequencies says.
+/// The standard deviation of a white noise with the power of `signal` just above the `cutoff` (Hz). Noise that is not white,
+/// such as that of uneven time stamps, is stronger there than at the highest frequencies.
 pub fn band_noise(signal: &[f64], recording: &RegularRecording, cutoff: f64) -> f64 {
     let mut strongest = 0.0_f64;
     for segment in &recording.segments {
@@ -113,7 +113,7 @@ pub fn band_noise(signal: &[f64], recording: &RegularRecording, cutoff: f64) -> 
         if to >= n / 2 || to < from + LEAST_BINS {
             continue;
         }
-        // Without its line from end to end and under a Hann window, the motion does not leak into the band.
+        // With the line from end to end subtracted and a Hann window, the motion does not leak into the band.
         let slope = (values[n - 1] - values[0]) / (n - 1) as f64;
         let mut power = 0.0;
         let mut spectrum: Vec<Complex<f64>> = (0..n)

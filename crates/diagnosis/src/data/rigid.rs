@@ -1,11 +1,11 @@
-//! The rigid model along the recorded motion: torques, and their derivatives by what may be wrong with it.
+//! The rigid model along the recorded motion: torques, and their derivatives with respect to possible errors.
 
 use arm::{Arm, PARAMETERS_PER_LINK, Workspace};
 use nalgebra::{DMatrix, Matrix6xX, Vector3};
 
 use crate::data::motion::Chunk;
 
-/// Signals on the ticks of one chunk; joint first where there are two.
+/// Signals on the ticks of one chunk; the first index is the joint.
 #[derive(Clone, Debug, Default)]
 pub struct Rigid {
     /// τ (N m or N).
@@ -16,7 +16,7 @@ pub struct Rigid {
     pub payload: Vec<Vec<Vec<f64>>>,
     /// ∂τ/∂q: `[joint][by]`.
     pub by_position: Vec<Vec<Vec<f64>>>,
-    /// ∂τ/∂q̇, likewise.
+    /// ∂τ/∂q̇: `[joint][by]`.
     pub by_velocity: Vec<Vec<Vec<f64>>>,
     /// The mass matrix.
     pub mass: Vec<Vec<Vec<f64>>>,
@@ -26,22 +26,22 @@ pub struct Rigid {
     pub gravity: Vec<[Vec<f64>; 3]>,
     /// The torque of a unit force on the tool along x, y, z of the base.
     pub force: Vec<[Vec<f64>; 3]>,
-    /// The part of τ that comes from the links' inertial parameters being others than the URDF's; empty if they are not.
+    /// The part of τ that is due to inertial parameters other than the URDF's; empty if there are none.
     pub background: Vec<Vec<f64>>,
-    /// The arm that it is of.
+    /// The arm.
     arm: Option<Arm>,
-    /// How far the joints stand beyond their encoders (rad or m).
+    /// The true positions of the joints minus the encoders' (rad or m).
     offset: Vec<f64>,
 }
 
 impl Rigid {
-    /// Of `arm` with joints that stand `offset` (rad or m) beyond their encoders, along `chunk`; the links' shares are those
-    /// of links with the inertial parameters `nominal`.
+    /// Evaluates `arm` along `chunk`, with joints that are `offset` (rad or m) beyond their encoders. The links' shares are
+    /// those of links with the inertial parameters `nominal`.
     pub fn new(arm: &Arm, nominal: &[f64], offset: &[f64], chunk: &Chunk) -> Self {
         Self::with_derivatives(arm, nominal, offset, chunk, true)
     }
 
-    /// τ of `arm`, for the same joints, is no part of the background: what is more or less is.
+    /// Sets the background to the difference of the torque from that of `arm` for the same positions of the joints.
     pub fn set_background(&mut self, arm: &Arm, chunk: &Chunk) {
         let mut workspace = Workspace::new(arm);
         let at = |signal: &[Vec<f64>], tick: usize| -> Vec<f64> { signal.iter().map(|joint| joint[tick]).collect() };
@@ -63,7 +63,7 @@ impl Rigid {
         }
     }
 
-    /// As [`Self::new`]; without `derivatives` those by position and velocity stay zero.
+    /// Evaluates as [`Self::new`] does; without `derivatives`, ∂τ/∂q and ∂τ/∂q̇ stay zero.
     pub fn with_derivatives(arm: &Arm, nominal: &[f64], offset: &[f64], chunk: &Chunk, derivatives: bool) -> Self {
         let n = arm.dof();
         let ticks = chunk.ticks();
@@ -88,7 +88,7 @@ impl Rigid {
         let gravity = *arm.gravity();
         let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
         let along = axes.map(|axis| arm.clone().with_gravity(axis));
-        // Turning the base by a small angle about x turns gravity by its opposite, seen from the base.
+        // Turning the base by a small angle about x turns gravity by the opposite angle in the base's frame.
         let turned = [Vector3::x(), Vector3::y()].map(|axis| -axis.cross(&gravity));
         let (mut q, mut qd, mut qdd) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
         let (mut tau, mut pull) = (vec![0.0; n], vec![0.0; n]);
@@ -161,7 +161,7 @@ impl Rigid {
         rigid
     }
 
-    /// The torque on each joint for a unit of each inertial parameter of each link, on the rows of `chunk`:
+    /// The torque on each joint per unit of each inertial parameter of each link, on the rows of `chunk`:
     /// `[joint][10 link + parameter]`, empty for links before the joint.
     pub fn inertial_columns(&self, chunk: &Chunk) -> Vec<Vec<Vec<f64>>> {
         let Some(arm) = &self.arm else { return Vec::new() };
@@ -199,7 +199,7 @@ impl Rigid {
     }
 }
 
-/// How the ten parameters of a body in the tool's frame become those in the last link's: `[link's][tool's]`.
+/// The matrix from the ten parameters of a body in the tool's frame to those in the last link's: `[link's][tool's]`.
 pub fn payload_to_link(arm: &Arm) -> [[f64; 10]; 10] {
     let pose = arm.tool_frame().link_from_frame;
     let (r, p) = (pose.rotation, pose.translation);

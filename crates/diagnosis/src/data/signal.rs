@@ -1,10 +1,10 @@
-//! One low-pass kernel for everything, and its derivatives.
+//! One low-pass kernel for all signals, and its derivatives.
 
 use std::f64::consts::PI;
 
-/// The kernel reaches this many widths to either side.
+/// The reach of the kernel to either side, in widths.
 const REACH: f64 = 5.0;
-/// The half-power frequency times the width, (1 + u) e^(−u) = 1/√2 at u = (2π f σ)² / 2, in cycles.
+/// The half-power frequency times the width: (1 + u) e^(−u) = 1/√2 at u = (2π f σ)² / 2.
 const HALF_POWER: f64 = 1.4683 / (2.0 * PI);
 
 /// The zero-phase low-pass K(x) = φ(x) (3 − x²) / 2, φ the standard normal density, of some width, and its first
@@ -30,13 +30,13 @@ impl Kernel {
         let x: Vec<f64> = (-reach..=reach).map(|tick| tick as f64 / scale).collect();
         let density = |x: f64| (-0.5 * x * x).exp() / (2.0 * PI).sqrt();
         let mut smooth: Vec<f64> = x.iter().map(|&x| density(x) * (3.0 - x * x) / 2.0).collect();
-        // Convolution turns the kernel round: the weights at +x are those of the derivative at −x.
+        // Convolution reverses the kernel: the weights at +x are those of the derivative at −x.
         let mut first: Vec<f64> = x.iter().map(|&x| -density(x) * (x * x * x - 5.0 * x) / 2.0).collect();
         let mut second: Vec<f64> = x
             .iter()
             .map(|&x| density(x) * (-x.powi(4) + 8.0 * x * x - 5.0) / 2.0)
             .collect();
-        // The moments exact on the samples too: 1 → 1, t → 1, t² / 2 → 1, and constants → 0.
+        // Makes the moments exact on the samples: 1 → 1, t → 1, t² / 2 → 1, and constants → 0.
         let time: Vec<f64> = (-reach..=reach).map(|tick| tick as f64 * period).collect();
         let moment =
             |weights: &[f64], power: i32| -> f64 { weights.iter().zip(&time).map(|(w, t)| w * t.powi(power)).sum() };
@@ -58,7 +58,7 @@ impl Kernel {
         }
     }
 
-    /// Samples to either side that a filtered one needs.
+    /// The number of samples on either side that a filtered sample needs.
     pub fn reach(&self) -> usize {
         self.smooth.len() / 2
     }
@@ -68,40 +68,40 @@ impl Kernel {
         self.width
     }
 
-    /// The smoothed signal at every `stride`-th sample from the first that has all its neighbours.
+    /// The smoothed signal at every `stride`-th sample, from the first one with all its neighbours.
     pub fn smooth(&self, signal: &[f64], stride: usize) -> Vec<f64> {
         apply(&self.smooth, signal, stride)
     }
 
-    /// Its first derivative (1/s), likewise.
+    /// The first derivative of the smoothed signal (1/s), at the same samples.
     pub fn first(&self, signal: &[f64], stride: usize) -> Vec<f64> {
         apply(&self.first, signal, stride)
     }
 
-    /// Its second derivative (1/s²), likewise.
+    /// The second derivative of the smoothed signal (1/s²), at the same samples.
     pub fn second(&self, signal: &[f64], stride: usize) -> Vec<f64> {
         apply(&self.second, signal, stride)
     }
 
-    /// What white noise of unit strength leaves in the smoothed signal and its second derivative (root mean square).
+    /// The root mean square of the smoothed signal and of its second derivative, for white noise of unit strength.
     pub fn noise_gains(&self) -> (f64, f64) {
         let norm = |weights: &[f64]| weights.iter().map(|w| w * w).sum::<f64>().sqrt();
         (norm(&self.smooth), norm(&self.second))
     }
 
-    /// The root mean square of the first derivative of white noise of unit strength, behind the filter.
+    /// The root mean square of the first derivative of the smoothed signal, for white noise of unit strength.
     pub fn first_noise_gain(&self) -> f64 {
         self.first.iter().map(|w| w * w).sum::<f64>().sqrt()
     }
 
-    /// How much of a sinusoid of `omega` (rad/s) passes.
+    /// The gain for a sinusoid of `omega` (rad/s).
     pub fn gain(&self, omega: f64) -> f64 {
         let u = 0.5 * (omega * self.width).powi(2);
         (1.0 + u) * (-u).exp()
     }
 }
 
-/// How many outputs [`Kernel`]s give for `samples` inputs.
+/// The number of outputs that [`Kernel`]s give for `samples` inputs.
 pub fn outputs(samples: usize, reach: usize, stride: usize) -> usize {
     if samples <= 2 * reach {
         0

@@ -2,7 +2,10 @@
 
 use std::borrow::Borrow;
 
-/// The mean; zero of nothing.
+/// The 97.5 % quantile of the standard normal distribution: half of a 95 % interval over the standard deviation.
+pub const NORMAL_95: f64 = 1.96;
+
+/// The mean; zero for no values.
 pub fn mean<T: Borrow<f64>>(values: impl IntoIterator<Item = T>) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for value in values {
@@ -12,18 +15,18 @@ pub fn mean<T: Borrow<f64>>(values: impl IntoIterator<Item = T>) -> f64 {
     if count > 0.0 { sum / count } else { 0.0 }
 }
 
-/// The mean and the variance about it; zero of nothing.
+/// The mean and the variance about it; zero for no values.
 pub fn moments<T: Borrow<f64>>(values: impl Iterator<Item = T> + Clone) -> (f64, f64) {
     let middle = mean(values.clone());
     (middle, mean(values.map(|value| (value.borrow() - middle).powi(2))))
 }
 
-/// The standard deviation; zero of nothing.
+/// The standard deviation; zero for no values.
 pub fn deviation<T: Borrow<f64>>(values: impl Iterator<Item = T> + Clone) -> f64 {
     moments(values).1.sqrt()
 }
 
-/// The root of the mean square; `None` of nothing.
+/// The root of the mean square; `None` for no values.
 pub fn rms(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let mut values = values.into_iter().peekable();
     values.peek()?;

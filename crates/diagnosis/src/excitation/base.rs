@@ -1,4 +1,5 @@
-//! The base parameters: what some motion determines of the inertial parameters, friction and drive inertias; and how well one does.
+//! The base parameters: the combinations of inertial parameters, friction and drive inertias that motions determine, and how
+//! well one motion does.
 
 use arm::{Arm, PARAMETERS_PER_LINK, Workspace};
 use nalgebra::{DMatrix, DVector};
@@ -11,56 +12,56 @@ use super::bounds::Allowed;
 
 /// The states in which columns are compared.
 const STATES: usize = 120;
-/// Columns of friction and of drive inertia per joint.
+/// The number of columns of friction and drive inertia per joint.
 const OWN: usize = 3;
-/// A column that differs from a combination of others by less than this part of itself is that combination.
+/// A column whose distance from the span of others is below this part of its norm depends on them.
 const DEPENDENT: f64 = 1e-7;
-/// Speeds below this part of the allowed one count as rest to dry friction, by a smooth step.
+/// The part of the allowed speed within which dry friction changes its sign, by a smooth step.
 const REST: f64 = 0.01;
-/// The rate of the samples by which a motion is measured (Hz).
+/// The rate of the samples on which a motion is evaluated (Hz).
 const SAMPLED: f64 = 50.0;
-/// The highest frequency by which the size of accelerations is estimated (Hz).
+/// The frequency from which the typical accelerations follow (Hz).
 const TYPICAL: f64 = 0.4;
-/// An eigenvalue below this part of the largest is zero.
+/// The ratio to the largest eigenvalue below which one counts as zero.
 const SINGULAR: f64 = 1e-15;
 
-/// How many parameters some motion determines. The rest no motion tells from them: only sums enter the torque.
+/// The number of parameters that can be determined. Only sums of the others enter the torque, in every motion.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Determined {
     /// Combinations of the links' inertial parameters.
     pub inertial: usize,
-    /// All of these: ten a link.
+    /// All inertial parameters: ten per link.
     pub of_inertial: usize,
     /// Coefficients of viscous friction and levels of Coulomb friction.
     pub friction: usize,
-    /// Drive inertias that differ from the links' inertial parameters.
+    /// Drive inertias that can be distinguished from the links' inertial parameters.
     pub drive: usize,
-    /// The joints whose drive inertia no motion tells from the links' inertia.
+    /// The joints whose drive inertia cannot be distinguished from the links' inertia in any motion.
     pub drive_with_link: Vec<String>,
 }
 
 impl Determined {
-    /// All of them.
+    /// The number of all determined parameters.
     pub fn total(&self) -> usize {
         self.inertial + self.friction + self.drive
     }
 }
 
-/// The columns that no others explain, and their scales.
+/// The independent columns, and their scales.
 #[derive(Clone, Debug)]
 pub struct Base {
     dof: usize,
-    /// Which columns: 10 a link, then viscous, Coulomb and drive, one a joint each.
+    /// The indices of the columns: 10 per link, then viscous friction, Coulomb friction and drive inertia, one per joint each.
     pub columns: Vec<usize>,
-    /// One over the root mean square of each of these, over typical states.
+    /// The reciprocal of each column's root mean square over typical states.
     pub scales: Vec<f64>,
-    /// One over the torque scale of each joint: the torque that is allowed, or what it typically needs.
+    /// The reciprocal of each joint's torque scale: the allowed torque, or the one that it typically needs.
     pub weights: Vec<f64>,
     /// The speed within which dry friction changes sign (rad/s or m/s).
     pub rest: Vec<f64>,
 }
 
-/// Everything that one evaluation of the columns writes.
+/// Workspace for one evaluation of the columns.
 pub struct Scratch {
     workspace: Workspace,
     /// dof × 10 dof.
@@ -68,7 +69,7 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// For `arm`.
+    /// A workspace for `arm`.
     pub fn new(arm: &Arm) -> Self {
         let dof = arm.dof();
         Self {
@@ -77,14 +78,14 @@ impl Scratch {
         }
     }
 
-    /// Puts the torque regressor at a state into `regressor`.
+    /// Computes the torque regressor at a state into `regressor`.
     pub fn regress(&mut self, arm: &Arm, [q, qd, qdd]: [&[f64]; 3]) {
         arm.torque_regressor(&mut self.workspace, q, qd, qdd, &mut self.regressor);
     }
 }
 
 impl Base {
-    /// Of `arm` within what is `allowed`.
+    /// The base parameters of `arm` within what is `allowed`.
     pub fn new(arm: &Arm, allowed: &Allowed) -> Self {
         let dof = arm.dof();
         let rest: Vec<f64> = allowed.velocity.iter().map(|speed| REST * speed).collect();
@@ -165,7 +166,7 @@ impl Base {
         }
     }
 
-    /// What they are.
+    /// The numbers of the base parameters by kind.
     pub fn determined(&self, arm: &Arm) -> Determined {
         let inertial = PARAMETERS_PER_LINK * self.dof;
         let kind = |column: &usize| column.checked_sub(inertial).map(|own| own / self.dof);
@@ -222,7 +223,7 @@ impl Base {
     }
 }
 
-/// The columns of `rows` that no earlier ones explain, and one over the root mean square of each.
+/// The columns of `rows` that are independent of earlier ones, and the reciprocal of each one's root mean square.
 fn independent(rows: &DMatrix<f64>) -> (Vec<usize>, Vec<f64>) {
     let size: Vec<f64> = rows
         .column_iter()
@@ -254,14 +255,14 @@ fn independent(rows: &DMatrix<f64>) -> (Vec<usize>, Vec<f64>) {
 
 /// The information matrices of a motion, per sample.
 pub struct Measured {
-    /// Of the rows as they are.
+    /// With the rows as they are.
     plain: DMatrix<f64>,
-    /// Of the rows over the joints' torque scales.
+    /// With the rows over the joints' torque scales.
     weighted: DMatrix<f64>,
 }
 
 impl Measured {
-    /// What they are worth beside those of the `proposed` motion.
+    /// How well they determine the parameters, compared with the `proposed` motion.
     pub fn quality(&self, proposed: &Self) -> Quality {
         let norms = self.plain.diagonal().map(f64::sqrt);
         let scaled = DMatrix::from_fn(norms.len(), norms.len(), |a, b| {
@@ -295,7 +296,7 @@ impl Measured {
     }
 }
 
-/// The condition number of the rows whose products with themselves are `matrix`.
+/// The condition number of rows with the Gram matrix `matrix`.
 fn condition(matrix: &DMatrix<f64>) -> f64 {
     let values = matrix.clone().symmetric_eigenvalues();
     let (least, most) = (values.min(), values.max());

@@ -1,4 +1,4 @@
-//! What a motion may ask of the joints.
+//! Limits of a motion, joint by joint.
 
 use arm::{Arm, JointKind, Workspace};
 use rand::Rng;
@@ -8,15 +8,16 @@ use super::ExcitationError;
 
 /// The part of a joint's range that is kept free at either end.
 const MARGIN: f64 = 0.05;
-/// The part of a velocity, an acceleration and an effort limit that a motion may take: the controller needs the rest.
+/// The part of a velocity, acceleration and effort limit that a motion may use: the controller needs the rest.
 const WITHIN: f64 = 0.8;
-/// The part of the allowed torque that holding the arm may need where the search starts, and the places that are looked at.
+/// The part of the allowed torque that may be needed for holding the arm where the search starts, and the number of places that
+/// are tried.
 const HELD: f64 = 0.8;
 const PLACES: usize = 2000;
-/// How far a revolute joint without position limits may turn to either side (rad).
+/// The range of a revolute joint without position limits, to either side (rad).
 const HALF_TURN: f64 = std::f64::consts::PI;
 
-/// What a joint can do; what is not limited is infinite.
+/// The limits of a joint; infinite where there is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionLimits {
     /// Lowest and highest position (rad or m).
@@ -30,7 +31,7 @@ pub struct MotionLimits {
 }
 
 impl MotionLimits {
-    /// Those of the URDF, one a joint; a URDF has none for the acceleration.
+    /// The limits in the URDF, one per joint; a URDF has none for the acceleration.
     pub fn of(arm: &Arm) -> Vec<Self> {
         let of = |joint: &arm::Joint| Self {
             position: [joint.limits.lower, joint.limits.upper],
@@ -42,13 +43,13 @@ impl MotionLimits {
     }
 }
 
-/// What a motion may do, joint by joint: the limits less a margin.
+/// The allowed motion of each joint: the limits with a margin.
 #[derive(Clone, Debug)]
 pub struct Allowed {
     names: Vec<String>,
     /// The middle between the position limits (rad or m).
     pub middle: Vec<f64>,
-    /// How far from there (rad or m).
+    /// The allowed distance from the middle (rad or m).
     pub room: Vec<f64>,
     /// rad/s or m/s.
     pub velocity: Vec<f64>,
@@ -58,31 +59,31 @@ pub struct Allowed {
     pub torque: Vec<f64>,
 }
 
-/// What a motion needs of a joint, and what it may.
+/// The demands of a motion on a joint, and the allowed values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointUse {
     /// The joint.
     pub joint: String,
     /// Lowest and highest position (rad or m).
     pub position: [f64; 2],
-    /// Where it may be (rad or m).
+    /// The allowed positions (rad or m).
     pub position_allowed: [f64; 2],
     /// Largest speed (rad/s or m/s).
     pub velocity: f64,
-    /// The speed that it may have (rad/s or m/s).
+    /// The allowed speed (rad/s or m/s).
     pub velocity_allowed: f64,
     /// Largest acceleration (rad/s² or m/s²).
     pub acceleration: f64,
-    /// The acceleration that it may have (rad/s² or m/s²); infinite where it is not limited.
+    /// The allowed acceleration (rad/s² or m/s²); infinite where it is not limited.
     pub acceleration_allowed: f64,
     /// Largest torque by the nominal model (N m or N).
     pub torque: f64,
-    /// The torque that it may need (N m or N); infinite where it is not limited.
+    /// The allowed torque (N m or N); infinite where it is not limited.
     pub torque_allowed: f64,
 }
 
 impl JointUse {
-    /// The factor by which position (about `centre`), velocity or acceleration is beyond what is allowed; at most 1 within.
+    /// The ratio of position (about `centre`), velocity or acceleration to the allowed value; at most 1 within the limits.
     pub fn beyond_motion(&self, centre: f64) -> f64 {
         let [low, high] = self.position;
         let [least, most] = self.position_allowed;
@@ -95,7 +96,7 @@ impl JointUse {
 }
 
 impl Allowed {
-    /// Of the joints of `arm` with `limits`.
+    /// The allowed motion of the joints of `arm` with `limits`.
     ///
     /// # Errors
     /// If a limit that is needed is missing, or leaves no room.
@@ -149,7 +150,7 @@ impl Allowed {
         Ok(allowed)
     }
 
-    /// What `reference` needs of each joint over `duration` (s) by the model of `arm`, looked at `hertz` times a second.
+    /// The demands of `reference` on each joint over `duration` (s) by the model of `arm`, evaluated at `hertz`.
     pub fn needed(
         &self,
         arm: &Arm,
@@ -188,10 +189,10 @@ impl Allowed {
         needed
     }
 
-    /// A place at which no joint needs more than [`HELD`] of its torque to hold the arm, in parts of the room about the middle: the
-    /// middle itself, or a random place.
+    /// A place at which no joint needs more than [`HELD`] of its torque to hold the arm, relative to the room about the middle:
+    /// the middle itself, or a random place.
     ///
-    /// # Errors
+    /// If no tried place is one.
     /// If none of many places is one.
     pub fn holdable(&self, arm: &Arm, random: &mut impl Rng) -> Result<Vec<f64>, ExcitationError> {
         let mut workspace = Workspace::new(arm);
@@ -210,7 +211,7 @@ impl Allowed {
         Err(self.too_weak(arm, &mut workspace, &self.middle))
     }
 
-    /// Positions (rad or m) at a place in parts of the room.
+    /// The positions (rad or m) of a place given relative to the room.
     fn at(&self, place: &[f64]) -> Vec<f64> {
         let parts = self.middle.iter().zip(&self.room).zip(place);
         parts.map(|((middle, room), part)| middle + room * part).collect()
@@ -223,7 +224,7 @@ impl Allowed {
         torque
     }
 
-    /// Which joint is too weak to hold the arm at the positions `q`.
+    /// The joint that is too weak to hold the arm at the positions `q`, if there is one.
     pub fn too_weak(&self, arm: &Arm, workspace: &mut Workspace, q: &[f64]) -> ExcitationError {
         let torque = self.static_torque(arm, workspace, q);
         let part = |j: &usize| torque[*j].abs() / self.torque[*j];
@@ -243,7 +244,8 @@ mod tests {
 
     use super::*;
 
-    /// An arm that cannot be held at the middle of its ranges is held elsewhere; one that is held nowhere is refused.
+    /// An arm that cannot be held at the middle of its ranges is held at another place; one that cannot be held at any place is
+    /// refused.
     #[test]
     fn a_place_is_found_at_which_the_arm_can_be_held() {
         let text = include_str!("../../../../assets/puma560.urdf");

@@ -1,5 +1,5 @@
-//! What the search makes small: the parameters' standard deviations (D-optimality) and the condition number of the base regressor,
-//! with penalties beyond what is allowed.
+//! The cost function of the search: the parameters' standard deviations (D-optimality) and the condition number of the base
+//! regressor, with penalties beyond the limits.
 
 use arm::{Arm, PARAMETERS_PER_LINK};
 use nalgebra::{DMatrix, DVector};
@@ -9,19 +9,19 @@ use super::base::{Base, Scratch};
 use super::bounds::Allowed;
 use super::fourier::Series;
 
-/// Samples in a period of the highest harmonic.
+/// Samples per period of the highest harmonic.
 const SAMPLES: usize = 14;
-/// Steps of the differences of the regressor: by positions, where it is smooth; by velocities, in which it is quadratic, and by
-/// accelerations, in which it is linear.
+/// Step sizes for differences of the regressor: by positions, in which it is smooth; by velocities, in which it is quadratic;
+/// by accelerations, in which it is linear.
 const STEPS: [f64; 3] = [1e-5, 1.0, 1.0];
 /// Added to the scaled information, so that it has an inverse.
 const RIDGE: f64 = 1e-10;
-/// How much the logarithm of the condition number counts beside the mean logarithm of the parameters' standard deviations. Alone,
-/// the latter leaves a few combinations of parameters behind for the many.
+/// The weight of the logarithm of the condition number relative to the mean logarithm of the parameters' standard deviations.
+/// Without it, a few combinations of parameters may be determined poorly.
 const CONDITION: f64 = 0.5;
-/// The exponent of the norm that stands for a largest eigenvalue.
+/// The exponent of the norm that approximates the largest eigenvalue.
 const SMOOTH: i32 = 2;
-/// The search stays within this part of what is allowed, because between its samples a motion may go further.
+/// The search stays within this part of the limits, because a motion may go further between the samples.
 const INSIDE: f64 = 0.995;
 
 /// The function that is minimised, with its gradient.
@@ -45,7 +45,7 @@ struct Sample {
 }
 
 impl<'a> Criterion<'a> {
-    /// For the motions of `series`.
+    /// The cost function for the motions of `series`.
     pub fn new(arm: &'a Arm, base: &'a Base, allowed: &'a Allowed, series: &'a Series) -> Self {
         let count = SAMPLES * series.harmonics;
         let factors = (0..count).map(|k| series.factors(series.period * k as f64 / count as f64));
@@ -92,7 +92,8 @@ impl<'a> Criterion<'a> {
         (value, gradient)
     }
 
-    /// The value without penalties; and by joint the matrix that makes of a row of the regressor the gradient by that row.
+    /// The value without penalties; and for each joint, the matrix that maps a row of the regressor to the gradient with
+    /// respect to that row.
     fn information(&self, samples: &[Sample]) -> (f64, Vec<DMatrix<f64>>) {
         let (dof, width) = (self.arm.dof(), self.base.columns.len());
         let count = samples.len() as f64;
@@ -137,7 +138,7 @@ impl<'a> Criterion<'a> {
         Sample { state, rows, torque }
     }
 
-    /// The penalty of a sample, and the gradient of the whole by its position, velocity and acceleration.
+    /// The penalty of a sample, and the gradient of the cost with respect to its position, velocity and acceleration.
     fn gradient(
         &self,
         scratch: &mut Scratch,
@@ -163,7 +164,7 @@ impl<'a> Criterion<'a> {
                 0.0
             }
         };
-        // What the regressor's change is multiplied with: the information's part, and the torques' penalty.
+        // The factors of the regressor's change: from the information, and from the penalties of the torques.
         let mut with = DMatrix::zeros(dof, inertial);
         for j in 0..dof {
             by[0][j] = beyond(q[j] - self.allowed.middle[j], self.allowed.room[j]);
@@ -274,7 +275,8 @@ mod tests {
         }
     }
 
-    /// The smooth condition number is close to the condition number, and above it by no more than the number of values allows.
+    /// The smooth condition number is at least the condition number, and larger by no more than the number of eigenvalues
+    /// allows.
     #[test]
     fn the_spread_is_the_condition_number() {
         let matrix = DMatrix::from_diagonal(&DVector::from_vec(vec![400.0, 9.0, 1.0, 0.04]));

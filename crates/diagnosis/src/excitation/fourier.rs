@@ -6,22 +6,22 @@ use torque::{Reference, Sine};
 
 use super::bounds::Allowed;
 
-/// The motions that are searched: q = middle + room (c + Σ (a sin kωt + b cos kωt) / k), k from 1 to `harmonics`.
+/// The motions in the search space: q = middle + room (c + Σ (a sin kωt + b cos kωt) / k), k from 1 to `harmonics`.
 ///
-/// The coefficients of a joint are c, then all a, then all b. Σ a = 0 and Σ k b = 0 hold in [`Self::project`]ed coefficients, which
-/// are velocity and acceleration zero at the time 0 and at every multiple of the period.
+/// The coefficients of a joint are c, then all a, then all b. [`Self::project`]ed coefficients satisfy Σ a = 0 and Σ k b = 0,
+/// so that velocity and acceleration are zero at the time 0 and at every multiple of the period.
 #[derive(Clone, Debug)]
 pub struct Series {
     middle: Vec<f64>,
     room: Vec<f64>,
-    /// How many.
+    /// The number of harmonics.
     pub harmonics: usize,
-    /// s.
+    /// The period (s).
     pub period: f64,
 }
 
 impl Series {
-    /// About the middle of what is allowed.
+    /// The allowed motion; the series are about its middle.
     pub fn new(allowed: &Allowed, harmonics: usize, period: f64) -> Self {
         Self {
             middle: allowed.middle.clone(),
@@ -45,7 +45,7 @@ impl Series {
         1 + 2 * self.harmonics
     }
 
-    /// The nearest coefficients of a motion at rest at its ends.
+    /// The nearest coefficients of a motion that is at rest at its ends.
     pub fn project(&self, coefficients: &mut [f64]) {
         let harmonics = self.harmonics;
         let weights: f64 = (1..=harmonics).map(|k| (k * k) as f64).sum();
@@ -60,7 +60,7 @@ impl Series {
         }
     }
 
-    /// Makes a start of the search of random numbers: about `centre`, in parts of the room, at rest at its ends.
+    /// Makes a start of the search from random numbers: about `centre`, relative to the room, at rest at its ends.
     pub fn start(&self, coefficients: &mut [f64], centre: &[f64]) {
         for (joint, centre) in coefficients.chunks_exact_mut(self.per_joint()).zip(centre) {
             joint[0] = *centre;
@@ -73,7 +73,7 @@ impl Series {
         self.middle[joint] + self.room[joint] * coefficients[joint * self.per_joint()]
     }
 
-    /// Makes a joint's motion smaller about its centre. A centre beyond the limits is brought back first.
+    /// Scales a joint's motion about its centre. A centre beyond the limits is moved within them first.
     pub fn shrink(&self, coefficients: &mut [f64], joint: usize, factor: f64) {
         let own = &mut coefficients[joint * self.per_joint()..(joint + 1) * self.per_joint()];
         own[0] = own[0].clamp(-0.95, 0.95);
@@ -143,7 +143,8 @@ impl Series {
         signals
     }
 
-    /// Adds to the gradient by the coefficients what the gradients by q, q̇ and q̈ at one time are in it.
+    /// Adds to the gradient with respect to the coefficients the part from the gradients with respect to q, q̇ and q̈ at one
+    /// time.
     pub fn add_gradient(&self, gradient: &mut [f64], by: &[Vec<f64>; 3], factors: &[Vec<f64>; 3]) {
         for (joint, own) in gradient.chunks_exact_mut(self.per_joint()).enumerate() {
             for (by, factors) in by.iter().zip(factors) {

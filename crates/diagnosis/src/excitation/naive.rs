@@ -1,4 +1,4 @@
-//! The motion that one would make without a search: one sine per joint.
+//! A motion without a search, for comparison: one sine per joint.
 
 use arm::Arm;
 use torque::{Corrected, Reference};
@@ -7,7 +7,7 @@ use super::bounds::Allowed;
 use crate::next::designs::{Design, Mix};
 use crate::next::limits::Limits;
 
-/// One sine per joint, all of different frequencies, as large and as fast as is `allowed`; `None` if that is no motion at all.
+/// One sine per joint, all of different frequencies, as large and as fast as `allowed`; `None` if there is no such motion.
 pub fn motion(arm: &Arm, allowed: &Allowed) -> Option<Reference> {
     let limits = Limits {
         names: arm.joints().iter().map(|joint| joint.name.clone()).collect(),

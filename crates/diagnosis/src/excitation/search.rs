@@ -1,4 +1,4 @@
-//! The search for the best motion: L-BFGS from a few starts, with limits that harden.
+//! The search for the best motion: L-BFGS from a few starts, with penalties that are increased.
 
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -9,15 +9,15 @@ use argmin::solver::quasinewton::LBFGS;
 
 use super::criterion::Criterion;
 
-/// The hardness of the limits, and how many iterations are made at it: on every start, then on the best.
+/// The weight of the penalties, and the number of iterations with it: for every start, then for the best.
 const EACH: [(f64, u64); 2] = [(30.0, 40), (300.0, 40)];
 const BEST: [(f64, u64); 2] = [(1000.0, 60), (10_000.0, 60)];
-/// Steps that L-BFGS remembers.
+/// The number of steps that L-BFGS stores.
 const MEMORY: usize = 12;
-/// Points looked at in vain before a search ends, and the gain that is none.
+/// The number of evaluations without a gain after which a search ends, and the gain that counts as none.
 const PATIENCE: usize = 25;
 const NO_GAIN: f64 = 1e-5;
-/// Evaluations per iteration, about.
+/// The approximate number of evaluations per iteration.
 const LOOKS: f64 = 1.15;
 
 /// The best motion that the search finds from `starts`.
@@ -62,7 +62,7 @@ pub fn best(
 
 type Look<'a> = dyn Fn(&[f64], f64) -> (f64, Vec<f64>) + 'a;
 
-/// The lowest value on the way down from `start`, and its place.
+/// The lowest value on the descent from `start`, and its coefficients.
 fn descend(look: &Look<'_>, start: Vec<f64>, hardness: f64, most: u64) -> Result<(f64, Vec<f64>), Error> {
     let problem = Problem {
         look,
@@ -80,7 +80,7 @@ fn descend(look: &Look<'_>, start: Vec<f64>, hardness: f64, most: u64) -> Result
         .ctrlc(false)
         .timer(false)
         .run();
-    // An error is the search's own end, with the best point seen.
+    // An error is the end of the line search; the best point so far is the result.
     drop(run);
     let seen = seen.borrow();
     Ok((seen.best, seen.best_at.clone()))
@@ -92,7 +92,7 @@ struct Problem<'a> {
     seen: RefCell<Seen>,
 }
 
-/// The last point asked for (the search asks for value and gradient separately), and the best one.
+/// The last evaluated point (argmin asks for value and gradient separately), and the best one.
 struct Seen {
     last: Vec<f64>,
     value: f64,
@@ -116,7 +116,7 @@ impl Default for Seen {
 }
 
 impl Problem<'_> {
-    /// Makes `seen` hold value and gradient at `at`.
+    /// Evaluates value and gradient at `at` and stores them in `seen`.
     fn look(&self, at: &[f64]) -> Result<(), Error> {
         let mut seen = self.seen.borrow_mut();
         if seen.last == at {
@@ -145,7 +145,7 @@ impl Problem<'_> {
     }
 }
 
-/// The problem as argmin wants it: owned by the executor.
+/// The problem in the form that argmin's executor owns.
 struct Borrowed<'a, 'b>(&'a Problem<'b>);
 
 impl CostFunction for Borrowed<'_, '_> {

@@ -1,4 +1,4 @@
-//! What the last fit means: findings, what is left unexplained, what is not testable, and the report of all that.
+//! The conclusions from the final fit: findings, unexplained residuals, effects that are not testable, and the report.
 
 use std::collections::BTreeMap;
 
@@ -22,9 +22,9 @@ use crate::search::study::Study;
 use crate::selection::FinalFit;
 use crate::selection::predict::{errors, exported};
 
-/// What the last fit means.
+/// The conclusions from the final fit.
 pub struct Conclusion {
-    /// The findings, the largest share first, each with the candidate that it was named from.
+    /// The findings, the largest share first, each with its candidate.
     findings: Vec<(Finding, Option<usize>)>,
     inertials: Inertials,
     located: Vec<Located>,
@@ -37,7 +37,7 @@ pub struct Conclusion {
 }
 
 impl Conclusion {
-    /// Of the fit `last`; `identified` is each joint's held-out error with full linear identification.
+    /// The conclusions from the fit `last`; `identified` is each joint's held-out error with full linear identification.
     pub fn new(
         study: &Study,
         last: &FinalFit,
@@ -67,7 +67,7 @@ impl Conclusion {
         findings.extend(others.into_iter().map(|finding| (finding, None)));
         let not_enough_data = not_enough(study, products);
         if !not_enough_data.is_empty() {
-            // So little data does not support any finding.
+            // With so few data, no finding is supported.
             findings.clear();
         }
         let by_exported: Vec<Vec<f64>> = (0..study.motions.dof)
@@ -103,10 +103,10 @@ impl Conclusion {
         }
     }
 
-    /// The next experiment on `arm`, if `options` ask for one and there are enough data to propose it.
+    /// The next experiment on `arm`, if `options` request one and there are enough data to propose it.
     ///
     /// # Errors
-    /// If the effects cannot be put into the model.
+    /// If the effects cannot be added to the model.
     pub fn next(
         &self,
         study: &mut Study,
@@ -143,7 +143,7 @@ impl Conclusion {
         found.chain(&self.inertials.effects).cloned()
     }
 
-    /// All of it, with the next experiment.
+    /// The report, with the next experiment.
     pub fn diagnosis(self, arm: &Arm, mut study: Study, next: Option<Next>) -> Diagnosis {
         let names = |held_out: bool| {
             let sources = study.motions.sources.iter();
@@ -183,7 +183,7 @@ impl Conclusion {
     }
 }
 
-/// How well each joint's torque is predicted; `left` is the residual of the augmented model, and of the one that is exported.
+/// How well each joint's torque is predicted; `left` is the residual of the augmented model, and that of the exported model.
 fn fit(study: &Study, left: [&[Vec<f64>]; 2], identified: &[Option<f64>]) -> BTreeMap<String, JointFit> {
     let of = |(joint, residual): (usize, &Vec<f64>)| {
         let of_exported = errors(study, joint, &left[1][joint]);

@@ -1,4 +1,4 @@
-//! What two sensors of one joint tell: an encoder on either side of a spring, a torque on either side of a gearbox.
+//! Findings from two sensors of one joint: encoders on either side of a spring, torques on either side of a gearbox.
 
 use std::collections::BTreeMap;
 
@@ -9,12 +9,13 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::data::motion::Input;
 use crate::data::signal::Kernel;
-use crate::data::statistics::deviation;
+use crate::data::statistics::{NORMAL_95, deviation};
 use crate::findings::report::{Finding, Parameter, Place};
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
 use crate::thresholds::{
-    CLEAR_COMPLIANCE, CLEAR_FRICTION, FOLLOWS, FRICTION_EXPLAINS, LARGEST_DEFLECTION, LEAST_BEND, SENSORS_MOVE,
+    CLEAR_COMPLIANCE, CLEAR_FRICTION, FOLLOWS, FRICTION_EXPLAINS, LARGEST_CUTOFF, LARGEST_DEFLECTION, LEAST_BEND,
+    SENSOR_ERRORS, SENSOR_ROWS, SENSORS_MOVE,
 };
 
 /// A regression on one joint over the recordings.
@@ -33,7 +34,7 @@ struct Regression {
     held_out: Option<f64>,
 }
 
-/// Findings from second encoders and from motor currents beside torque sensors.
+/// Findings from second encoders, and from motor currents beside torque sensors.
 pub fn findings(study: &Study, named: &Chosen, inputs: &[Input<'_>]) -> Vec<Finding> {
     let mut list = Vec::new();
     for joint in 0..study.motions.dof {
@@ -60,10 +61,10 @@ fn gather(
     for input in inputs {
         let recording = input.recording;
         for segment in &recording.segments {
-            let cutoff = study.motions.cutoff.min(0.235 / recording.period);
+            let cutoff = study.motions.cutoff.min(LARGEST_CUTOFF / recording.period);
             let kernel = Kernel::new(cutoff, recording.period);
             let stride = ((0.4 / cutoff / recording.period) as usize).max(1);
-            if segment.ticks.len() < 2 * kernel.reach() + 10 * stride {
+            if segment.ticks.len() < 2 * kernel.reach() + SENSOR_ROWS * stride {
                 continue;
             }
             let mut filter = |signal: &[f64], order: Order| -> Vec<f64> {
@@ -89,7 +90,7 @@ fn gather(
     rows
 }
 
-/// Which derivative to take.
+/// The derivative to take of a signal.
 #[derive(Clone, Copy)]
 enum Order {
     Value,
@@ -109,7 +110,7 @@ fn regress(rows: &Rows) -> Option<Regression> {
         b += *y * x;
         count += 1.0;
     }
-    if count < 10.0 * p as f64 {
+    if count < (SENSOR_ROWS * p) as f64 {
         return None;
     }
     let inverse = a.try_inverse()?;
@@ -126,13 +127,14 @@ fn regress(rows: &Rows) -> Option<Regression> {
         }
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
         let power: f64 = values.iter().map(|y| (y - mean).powi(2)).sum();
-        (values.len() >= 10 && power > 0.0).then(|| (1.0 - left / power, left))
+        (values.len() >= SENSOR_ROWS && power > 0.0).then(|| (1.0 - left / power, left))
     };
     let (train, left) = explained(false)?;
     let variance = left / (count - p as f64);
     Some(Regression {
-        // Neighbouring rows are not independent: as if one in four were.
-        errors: (0..p).map(|k| 2.0 * (variance * inverse[(k, k)]).sqrt()).collect(),
+        errors: (0..p)
+            .map(|k| SENSOR_ERRORS * (variance * inverse[(k, k)]).sqrt())
+            .collect(),
         coefficients: solution.as_slice().to_vec(),
         train,
         held_out: explained(true).map(|held| held.0),
@@ -145,7 +147,7 @@ impl Regression {
     }
 
     fn parameter(&self, k: usize, unit: &'static str) -> Parameter {
-        let (value, half) = (self.coefficients[k], 1.96 * self.errors[k]);
+        let (value, half) = (self.coefficients[k], NORMAL_95 * self.errors[k]);
         Parameter {
             value,
             ci95: [value - half, value + half],
@@ -158,7 +160,7 @@ impl Regression {
     }
 }
 
-/// The spring between a joint's two encoders: their difference follows its torque.
+/// The spring between a joint's two encoders: their difference is proportional to the torque.
 fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Finding> {
     let rows = gather(study, joint, inputs, |input, filter| {
         let secondary = input.recording.q_secondary.get(joint)?.as_ref()?;
@@ -166,7 +168,7 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
         let difference: Vec<f64> = secondary.iter().zip(q).map(|(link, motor)| link - motor).collect();
         let y = filter(&difference, Order::Value);
         let ones = vec![1.0; y.len()];
-        // A gear ratio that is slightly off shows as a part of the position.
+        // An error of the gear ratio appears as a part of the position.
         let place = filter(q, Order::Value);
         let tau: Vec<f64> = filter(&input.recording.tau[joint], Order::Value);
         let friction: Vec<f64> = filter(q, Order::First).iter().map(|v| v.signum()).collect();
@@ -188,7 +190,10 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
     let unit = Quantity::Stiffness.unit(kind);
     let stiffness = Parameter {
         value: 1.0 / compliance,
-        ci95: [1.0 / (compliance + 1.96 * error), 1.0 / (compliance - 1.96 * error)],
+        ci95: [
+            1.0 / (compliance + NORMAL_95 * error),
+            1.0 / (compliance - NORMAL_95 * error),
+        ],
         unit,
     };
     let name = study.arm.joints()[joint].name.clone();
@@ -211,7 +216,7 @@ fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>])
         let current = input.recording.tau_current.get(joint)?.as_ref()?;
         let sensor = &input.recording.tau[joint];
         let difference: Vec<f64> = current.iter().zip(sensor).map(|(a, b)| a - b).collect();
-        // Both columns the same signal: there is nothing between them.
+        // If both columns are the same signal, there is nothing between them.
         if difference.iter().all(|d| d.abs() < 1e-9) {
             return None;
         }

@@ -1,4 +1,4 @@
-//! From what was judged to findings: names, rivals, gains, places.
+//! From the judged effects to findings: names, alternatives, gains, places.
 
 use std::collections::BTreeMap;
 
@@ -14,9 +14,9 @@ use crate::search::problem::Problem;
 use crate::search::study::Study;
 use crate::selection::judge::{Member, Selection};
 use crate::selection::naming::name;
-use crate::thresholds::{AS_WELL, GAIN_PIECE};
+use crate::thresholds::{AS_WELL, GAIN_PIECE, LISTED_SHARE};
 
-/// The findings, each with the candidate it was named from.
+/// The findings, each with its candidate.
 pub fn findings(
     study: &Study,
     products: &Products,
@@ -38,7 +38,7 @@ pub fn findings(
         .collect()
 }
 
-/// The member of `judged` that helps least on recordings it was not fitted to, if it does not help at all.
+/// The member of `judged` that helps least on recordings that it was not fitted to, if it does not help at all.
 pub fn useless(study: &Study, products: &Products, held: &Products, judged: &Selection) -> Option<usize> {
     let problem = study.problem(products);
     let gains: Vec<(f64, usize)> = judged
@@ -46,7 +46,7 @@ pub fn useless(study: &Study, products: &Products, held: &Products, judged: &Sel
         .par_iter()
         .filter_map(|member| {
             let gain = held_out_gain(study, &problem, Some(held), judged, member)?;
-            // What the background would say in its place predicts as much, for more nats.
+            // The background in its place predicts as well, for more nats.
             let allowed = if problem.is_background_too(&study.candidates[member.candidate]) {
                 AS_WELL
             } else {
@@ -76,7 +76,7 @@ fn finding(
         .shares
         .iter()
         .enumerate()
-        .filter(|(_, share)| **share > 1e-4)
+        .filter(|(_, share)| **share > LISTED_SHARE)
         .map(|(joint, share)| (joint_name(joint), *share))
         .collect();
     let place = place(study, candidate.hypothesis, member.candidate);
@@ -128,7 +128,7 @@ fn finding(
     list
 }
 
-/// The share of the drive's inertia that comes with a spring or a gap.
+/// The share of the drive's inertia that is named with a spring or a gap.
 fn rotor_share(study: &Study, judged: &Selection, candidate: usize) -> f64 {
     let columns = &study.candidates[candidate].columns;
     let Some(joint) = study.candidates[candidate].joint else {
@@ -143,8 +143,9 @@ fn rotor_share(study: &Study, judged: &Selection, candidate: usize) -> f64 {
     crate::selection::predict::deviation(&torque, &study.training_rows(joint)) / study.scales.torque[joint].max(1e-300)
 }
 
-/// The relative drop of the NRMSE on recordings it was not fitted to, on the joint where it is largest; `None` if that joint
-/// does not move in them. A contact is in one recording alone: its force is fitted to every other piece of its window and tried on the rest.
+/// The relative reduction of the NRMSE by the finding on recordings that it was not fitted to, on the joint where it is
+/// largest; `None` if that joint does not move in them. A contact is in one recording only: its force is fitted to every other
+/// piece of its window and tested on the rest.
 fn held_out_gain(
     study: &Study,
     problem: &Problem<'_>,
@@ -172,8 +173,8 @@ fn held_out_gain(
     (held.count[joint] > 0.0).then(|| 1.0 - (with[joint].max(0.0) / without[joint].max(1e-300)).sqrt())
 }
 
-/// The relative drop of the error on `joint` where `candidate` was not fitted: its torque is scaled to what `without` leaves in
-/// every other piece of the training recordings, and tried on the rest.
+/// The relative reduction of the error on `joint` by `candidate` where it was not fitted: its torque is scaled to the residual
+/// `without` it in every other piece of the training recordings, and tested on the rest.
 fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joint: usize) -> f64 {
     let columns = &study.candidates[candidate].columns;
     let torque = study.table.torque(joint, columns, &fit.values(columns));
@@ -201,7 +202,7 @@ fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joi
 fn place(study: &Study, hypothesis: Hypothesis, candidate: usize) -> Place {
     if let Some([from, to]) = study.window(candidate) {
         let at = study.motions.recording_at(0.5 * (from + to));
-        // Refinement may have put an end just beyond the recording's.
+        // Refinement may have moved an end just beyond the recording's.
         let own = |time: f64| {
             at.map_or(time, |at| {
                 let [first, last] = study.motions.span(at);

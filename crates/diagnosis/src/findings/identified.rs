@@ -1,4 +1,4 @@
-//! The control that users know: full linear identification, without names.
+//! The control for comparison: full linear identification, without names.
 
 use effects::drive::RotorInertia;
 use effects::friction::{CoulombFriction, ViscousFriction};
@@ -8,11 +8,12 @@ use crate::regression::background::Strengths;
 use crate::search::study::Study;
 use crate::selection::predict::{augmented, errors};
 
-/// A prior so wide that it only makes the normal equations regular: inertial parameters are free to this many times their size.
+/// The standard deviation of the prior on inertial parameters, in multiples of their size. It is so wide that it only
+/// regularises the normal equations.
 const FREE: f64 = 3.0;
 
-/// Of each joint, the held-out error (NRMSE) of least squares on all inertial parameters, viscous and Coulomb friction, the
-/// drives' inertias and a constant of every joint.
+/// The held-out error (NRMSE) of each joint with least squares on all inertial parameters, and on viscous and Coulomb friction,
+/// drive inertia and a constant of every joint.
 pub fn identified(study: &Study) -> Vec<Option<f64>> {
     let strengths = Strengths {
         links: vec![FREE; study.arm.dof()],

@@ -1,4 +1,5 @@
-//! What the background changes in the links' inertial parameters: named where that is large, written out as bodies that can be.
+//! The background's changes of the links' inertial parameters: named where they are large, exported as physically possible
+//! bodies.
 
 use std::collections::BTreeMap;
 
@@ -16,19 +17,19 @@ use crate::regression::fit::Products;
 use crate::search::study::{About, Study};
 use crate::selection::judge::Selection;
 use crate::selection::predict::{augmented, deviation, errors};
-use crate::thresholds::{LINK_STANDS_OUT, PARTLY, SYSTEMATIC};
+use crate::thresholds::{LINK_STANDS_OUT, LISTED_SHARE, PARTLY, SYSTEMATIC};
 
-/// What the recordings say of a link's inertial parameters.
+/// The estimate of a link's inertial parameters.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct LinkInertials {
     /// The URDF's mass (kg).
     pub nominal_mass: f64,
     /// Mass, centre of mass (m, in the link's frame), moments of inertia about it (kg m²), with 95 % intervals.
     pub parameters: BTreeMap<&'static str, Parameter>,
-    /// For each of m, m c (x, y, z) and Ixx … Izz about the link frame's origin, the part of the prior's variance that the
-    /// recordings took away: 1 where they determine it, 0 where only the prior does.
+    /// For each of m, m c (x, y, z) and Ixx … Izz about the link frame's origin, the relative reduction of the prior's variance
+    /// by the recordings: 1 where they determine the parameter, 0 where only the prior does.
     pub determined: [f64; PER_LINK],
-    /// Standard deviation of the torque of the change over that of the measured torque, the largest of the joints.
+    /// The standard deviation of the torque of the change over that of the measured torque, the largest of the joints.
     pub share: f64,
 }
 
@@ -37,9 +38,9 @@ pub struct LinkInertials {
 pub struct Inertials {
     /// One finding for most links (joint `None`), or one for each link that stands out.
     pub findings: Vec<Finding>,
-    /// All links' bodies, as the corrected model takes them; none if no link differs.
+    /// All links' bodies for the corrected model; none if no link differs.
     pub effects: Vec<Effect>,
-    /// By the joint before the link.
+    /// The links, by the joint before the link.
     pub links: BTreeMap<String, LinkInertials>,
 }
 
@@ -67,7 +68,7 @@ fn numbers(body: &Inertia) -> [f64; PER_LINK] {
     ]
 }
 
-/// What the background of the last fit says of the links' inertial parameters.
+/// The inertial parameters of the links by the background of the final fit.
 pub fn inertials(
     study: &Study,
     products: &Products,
@@ -80,7 +81,7 @@ pub fn inertials(
     if strengths.links.iter().all(|&rho| rho == 0.0) {
         return Inertials::default();
     }
-    // The links with their errors of scale in them, payload, tilt and all else apart.
+    // The links with their scale errors, without payload, tilt and other effects.
     let nominal: Vec<f64> = About::scaled(study, &judged.named.fit).inertial_parameters();
     let place = |link: usize, parameter: usize| {
         let is_it = |&column: &usize| {
@@ -161,17 +162,17 @@ pub fn inertials(
         })
         .collect();
     let by_joint = |shares: &[f64]| -> BTreeMap<String, f64> {
-        let named = (0..dof).filter(|&joint| shares[joint] > 1e-4);
+        let named = (0..dof).filter(|&joint| shares[joint] > LISTED_SHARE);
         named
             .map(|joint| (study.arm.joints()[joint].name.clone(), shares[joint]))
             .collect()
     };
     let largest = |shares: &[f64]| shares.iter().copied().fold(0.0, f64::max);
-    // Where hardly anything is explained, the background only takes away from a model that does not fit.
+    // If hardly anything is explained, the background compensates a model that does not fit.
     let explained: Vec<bool> = (0..dof)
         .map(|joint| errors(study, joint, &augmented(study, &judged.named, joint)).train_nrmse_augmented < PARTLY)
         .collect();
-    // The links that explain nearly as much in the place of one, the best first, and how much better that one is.
+    // The links that explain nearly as much in the place of one, the best first, and the margin of that one.
     let instead = |link: usize| -> (f64, Vec<Confusable>) {
         let [score, loss] = study.evidence_of_link(products, &judged.named, link);
         let mut others = study.in_other_links(products, &judged.named, link);
@@ -185,7 +186,7 @@ pub fn inertials(
         (margin, rivals.collect())
     };
     let mut add = |joint: Option<usize>, shares: &[f64], parameters: BTreeMap<&'static str, Parameter>| {
-        // Beside structure without a name they may be a part of that.
+        // Beside unmodelled structure, they may be a part of it.
         let stands_out = |joint: usize| {
             let unnamed = judged.unmodelled.iter().map(|member| member.shares[joint]);
             explained[joint]
@@ -209,7 +210,7 @@ pub fn inertials(
             ..Finding::of(list.effects[joint.unwrap_or(0)].clone())
         });
     };
-    // A payload and the last link are one body: what the payload's form leaves of it is not a second finding.
+    // A payload and the last link are one body: the rest of it is no second finding.
     let has_payload = judged
         .members
         .iter()

@@ -1,4 +1,4 @@
-//! Where the nominal model misses: per joint, in time and by region of state.
+//! The location of the nominal residual: for each joint, in time and by region of state.
 
 use rayon::prelude::*;
 
@@ -7,10 +7,10 @@ use crate::findings::report::{Located, Region, TimeWindow};
 use crate::search::study::Study;
 use crate::thresholds::{OVER_NOISE, REGION_STANDS_OUT, SAME_MOTION, WINDOW, WINDOW_STANDS_OUT};
 
-/// Bins of an axis of state.
+/// The number of bins of an axis of state.
 const BINS: usize = 6;
 
-/// Locates the mismatch of `nominal` (`[joint][row]`), beside what `augmented` leaves.
+/// Locates the residual of `nominal` (`[joint][row]`), and compares it with that of `augmented`.
 pub fn locate(study: &Study, augmented: &[Vec<f64>]) -> Vec<Located> {
     let states = states(study);
     (0..study.motions.dof)
@@ -56,7 +56,7 @@ fn states(study: &Study) -> Vec<State> {
         .collect()
 }
 
-/// The root of the mean square; zero of nothing.
+/// The root of the mean square; zero for no values.
 fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
     rms(values).unwrap_or(0.0)
 }
@@ -87,7 +87,7 @@ fn on_joint(study: &Study, state: &State, joint: usize, nominal: &[f64], augment
     for (axis, values) in axes {
         let mut sorted: Vec<usize> = rows.clone();
         sorted.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
-        // Near a reversal is the slowest bin; the others are tried in turn.
+        // The region near a reversal is the slowest bin; the others are tried in turn.
         let bins = if axis == "near_reversal" { 0..1 } else { 0..BINS };
         let best = bins
             .map(|bin| &sorted[sorted.len() * bin / BINS..sorted.len() * (bin + 1) / BINS])
@@ -115,17 +115,17 @@ fn on_joint(study: &Study, state: &State, joint: usize, nominal: &[f64], augment
     })
 }
 
-/// The stretches of time with the largest residual, the worst three.
+/// The three stretches of time with the largest residual.
 fn windows(study: &Study, state: &State, rows: &[usize], nominal: &[f64], all: f64) -> Vec<TimeWindow> {
     let mut stretches: Vec<(f64, usize, [f64; 2])> = Vec::new();
     let mut from = 0;
     while from < rows.len() {
         let (recording, start) = (state.recording[rows[from]], state.time[rows[from]]);
-        // A row at the window's very end is the next one's, however its time was rounded.
+        // A row at the very end of a window belongs to the next one, however its time was rounded.
         let inside = |&&row: &&usize| state.recording[row] == recording && state.time[row] - start < WINDOW - 1e-6;
         let length = rows[from..].iter().take_while(inside).count().max(1);
         let residual = root_mean_square(rows[from..from + length].iter().map(|&row| nominal[row]));
-        // A stretch ends with its last row: the recording may end before the window does.
+        // A stretch ends with its last row, because the recording may end before the window.
         let end = state.time[rows[from + length - 1]];
         if length >= 5 {
             stretches.push((residual, recording, [start, end]));
@@ -147,7 +147,7 @@ fn windows(study: &Study, state: &State, rows: &[usize], nominal: &[f64], all: f
     list
 }
 
-/// The part of the residual that comes again where the joint's own state does, in another recording.
+/// The part of the residual that repeats where the joint's own state does, in another recording.
 fn repeatable(study: &Study, state: &State, joint: usize, rows: &[usize], nominal: &[f64]) -> Option<f64> {
     let torque = study.scales.torque[joint];
     let acceleration = root_mean_square(rows.iter().map(|&row| state.qdd[row]));

@@ -14,24 +14,24 @@ use crate::search::study::Study;
 use crate::selection::predict::deviation;
 use crate::thresholds::{BEYOND, HIDDEN};
 
-/// How well a column shows on a joint.
+/// The detectability of a column on a joint.
 pub struct Visibility {
-    /// What it adds, at a coefficient of one, to the weighted sum of squares beside what was found.
+    /// The amount that it adds, at a coefficient of one, to the weighted sum of squares in addition to the findings.
     pub own: f64,
     /// Its standard deviation.
     pub spread: f64,
-    /// Moving rows.
+    /// The number of moving rows.
     pub count: f64,
-    /// Pieces of evidence.
+    /// The number of independent pieces of evidence.
     pub evidence: f64,
     /// The standard deviation of the joint's torque (N m or N).
     pub torque: f64,
-    /// The share that a name needs.
+    /// The least share of a named effect.
     pub least_share: f64,
 }
 
 impl Visibility {
-    /// The least coefficient that brings the evidence `needed` (nats) and the share that a name needs.
+    /// The least coefficient with the evidence `needed` (nats) and the least share of a named effect.
     pub fn least(&self, needed: f64) -> f64 {
         let count = self.count.max(1.0);
         let drop = count * ((2.0 * needed / self.evidence.max(1e-9)).exp() - 1.0);
@@ -41,7 +41,7 @@ impl Visibility {
     }
 }
 
-/// The effects that are not testable beside the selection `chosen`.
+/// The effects that are not testable in addition to the selection `chosen`.
 pub fn unseen(study: &Study, products: &Products, chosen: &Chosen) -> Vec<NotObservable> {
     let dof = study.motions.dof;
     let mut list: Vec<NotObservable> = (0..dof)
@@ -97,7 +97,7 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
                 if_none,
                 is_seen_below,
             } => {
-                // Sizes from the least to the largest.
+                // Sizes in ascending order.
                 let mut sizes: Vec<(f64, bool)> = of(study, kind, joint)
                     .map(|candidate| {
                         let size = study.table.terms[candidate.columns[0]].sizes[0];
@@ -106,7 +106,7 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
                     .collect();
                 sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
                 if is_seen_below {
-                    // The largest that is seen, with all smaller ones.
+                    // The largest detectable size for which all smaller ones are detectable.
                     let last = sizes.iter().take_while(|(_, seen)| *seen).last();
                     add(because, None, last.map(|&(size, _)| size));
                 } else {
@@ -164,7 +164,7 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
     list
 }
 
-/// The kinds of effects in the order in which they are said not to be seen.
+/// The kinds of effects in the order of `not_observable`.
 fn in_turn() -> impl Iterator<Item = Kind> {
     let mut kinds: Vec<Kind> = Kind::all().filter(|kind| kind.name().is_some()).collect();
     kinds.sort_by_key(|kind| kind.spec().unseen_turn);
@@ -194,7 +194,7 @@ pub fn needed(study: &Study, candidate: &Candidate) -> f64 {
     candidate.cost.max(study.thresholds.least_evidence)
 }
 
-/// Whether an effect of unit coefficient would have been seen at its size.
+/// Whether an effect with a coefficient of one would have been detected at its size.
 fn is_seen(study: &Study, products: &Products, chosen: &Chosen, candidate: &Candidate, joint: usize) -> bool {
     let column = candidate.columns[0];
     let drop = products.drop_of(&study.table, &chosen.fit, column);

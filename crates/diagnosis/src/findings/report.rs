@@ -1,4 +1,4 @@
-//! The diagnosis as programs read it: `testbed diagnose --json`, schema `testbed.diagnosis/1`.
+//! The report of a diagnosis: `testbed diagnose --json`, schema `testbed.diagnosis/1`.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use serde::Serialize;
 pub use crate::findings::inertials::LinkInertials;
 use crate::next::NextExperiment;
 
-/// What was found. Maps are keyed by the URDF joint's name.
+/// The result of a diagnosis. Maps are keyed by the URDF joint's name.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 #[schemars(title = "testbed.diagnosis/1")]
 pub struct Report {
@@ -18,29 +18,30 @@ pub struct Report {
     pub schema: &'static str,
     /// The robot's name in its URDF.
     pub robot: String,
-    /// The recordings, as they were named.
+    /// The recordings, with the names that the user gave.
     pub recordings: RecordingNames,
-    /// In one word.
+    /// The verdict in one word.
     pub verdict: Verdict,
-    /// The effects named, the largest share first.
+    /// The effects found, the largest share first.
     pub findings: Vec<Finding>,
     /// Structured residuals that no effect in the catalogue explains.
     pub unexplained: Vec<Unexplained>,
     /// Effects that are not testable with these recordings.
     pub not_observable: Vec<NotObservable>,
-    /// Why there are not enough data for a diagnosis; empty if there are.
+    /// The reasons why the data are not sufficient for a diagnosis; empty if they are.
     pub not_enough_data: Vec<String>,
-    /// Where the nominal model misses, joint by joint.
+    /// Where the nominal model differs from the recordings, joint by joint.
     pub located: Vec<Located>,
     /// How well each joint's torque is predicted.
     pub fit: BTreeMap<String, JointFit>,
-    /// What changed since the recordings from before, in sentences; where there are such recordings.
+    /// What changed since the recordings from before, in sentences, if there are such recordings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub changed: Option<Vec<String>>,
-    /// What the recordings say of the links' inertial parameters, by the joint before the link; empty if the URDF's will do.
+    /// The estimates of the links' inertial parameters, by the joint before the link; empty if the links do not differ from the
+    /// URDF's.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub inertials: BTreeMap<String, LinkInertials>,
-    /// How the simulated arm follows the recorded one; empty where it was not simulated.
+    /// How closely the simulated arm follows the recorded one; empty where it was not simulated.
     pub rollout: BTreeMap<String, JointRollout>,
     /// The motion that best distinguishes the remaining alternatives, if one was requested.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -50,9 +51,9 @@ pub struct Report {
 /// Paths as given on the command line.
 #[derive(Clone, Debug, Default, Serialize, JsonSchema)]
 pub struct RecordingNames {
-    /// Fitted.
+    /// Training recordings, to which the effects are fitted.
     pub train: Vec<String>,
-    /// Not used to fit.
+    /// Held-out recordings, to which nothing is fitted.
     pub held_out: Vec<String>,
 }
 
@@ -90,13 +91,13 @@ pub struct Finding {
     pub other: Option<String>,
     /// Its parameters.
     pub parameters: BTreeMap<&'static str, Parameter>,
-    /// How likely it is that this effect is there, on this joint; `None` where that was not calibrated.
+    /// The probability that this effect is present on this joint; `None` where it was not calibrated.
     pub probability: Option<f64>,
     /// Standard deviation of its torque over that of the measured torque, training recordings; the largest of the joints.
     pub share: f64,
     /// The share of each joint that it acts on.
     pub share_by_joint: BTreeMap<String, f64>,
-    /// Relative drop of the NRMSE, over recordings it was not fitted to; `None` if none of them tries it.
+    /// Relative reduction of the NRMSE on recordings that the finding was not fitted to; `None` if none of them tests it.
     pub held_out_gain: Option<f64>,
     /// Effects that explain nearly as much in its place.
     pub confusable_with: Vec<Confusable>,
@@ -105,19 +106,19 @@ pub struct Finding {
     pub place: Place,
     /// One sentence for a person.
     pub sentence: String,
-    /// Whether it is there since the recordings from before.
+    /// Whether it is present since the recordings from before.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub since_before: bool,
-    /// Whether it corrects the model of the measured torque; not if it was seen elsewhere (a second encoder, motor currents).
+    /// Whether it corrects the model of the measured torque; not if another sensor shows it (a second encoder, motor currents).
     #[serde(skip)]
     pub corrects: bool,
-    /// The effect as `--known` and the corrected model take it.
+    /// The effect in the form of `--known` and of the corrected model.
     #[serde(skip)]
     pub as_effect: Effect,
 }
 
 impl Finding {
-    /// A finding of `effect`, of which nothing more is known.
+    /// A finding of `effect` with nothing but its name and joint.
     pub fn of(effect: Effect) -> Self {
         Self {
             effect: effect.name(),
@@ -143,7 +144,7 @@ impl Finding {
 pub struct Parameter {
     /// The estimate.
     pub value: f64,
-    /// Its 95 % interval; `null` where it is open.
+    /// Its 95 % interval; `null` at an open end.
     #[schemars(with = "[Option<f64>; 2]")]
     pub ci95: [f64; 2],
     /// SI unit at the joint.
@@ -162,9 +163,9 @@ pub struct Confusable {
 /// Where a finding acts.
 #[derive(Clone, Debug, Default, Serialize, JsonSchema)]
 pub struct Place {
-    /// Stretches of time (s); all of it where empty.
+    /// Stretches of time (s); the whole time if empty.
     pub time: Vec<[f64; 2]>,
-    /// The recording that `time` is of, where it is one.
+    /// The recording of `time`, if it is within one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recording: Option<String>,
     /// Region of state, in words.
@@ -179,11 +180,11 @@ pub struct Unexplained {
     pub joint: String,
     /// Standard deviation of the structured residual over that of the measured torque.
     pub share: f64,
-    /// `own_position`, `own_speed`, `time`, `history`, `other_joint:NAME`, …; empty if nothing tried predicts it.
+    /// `own_position`, `own_speed`, `time`, `history`, `other_joint:NAME`, …; empty if no tried regressor predicts it.
     pub depends_on: Vec<String>,
-    /// Stretches of time where it is largest; all of it where empty.
+    /// Stretches of time where it is largest; the whole time if empty.
     pub time: Vec<TimeWindow>,
-    /// Which experiment would tell more.
+    /// The experiment that narrows it down.
     pub next: String,
 }
 
@@ -195,25 +196,25 @@ pub struct NotObservable {
     pub effect: &'static str,
     /// The joint, or `None` for the whole arm.
     pub joint: Option<String>,
-    /// Why.
+    /// The reason.
     pub because: String,
     /// The size from which it is detectable.
     pub would_be_seen_above: BTreeMap<&'static str, f64>,
-    /// The size below which it is detectable: a limit, a stiffness.
+    /// The size below which it is detectable, for a limit or a stiffness.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub would_be_seen_below: BTreeMap<&'static str, f64>,
 }
 
-/// Where a joint's nominal residual is larger than noise and filtering explain.
+/// Where a joint's nominal residual is larger than the errors of noise and filtering.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Located {
     /// The joint.
     pub joint: String,
-    /// RMS of the nominal residual over what noise and filtering leave.
+    /// RMS of the nominal residual over that of the errors of noise and filtering.
     pub over_noise: f64,
-    /// The part of the residual's power that repeats where the motion does; `None` without repeats.
+    /// The part of the residual's power that repeats with the motion; `None` without repetitions.
     pub repeatable: Option<f64>,
-    /// Regions of state where it is largest, in words, with the RMS there over the joint's torque spread.
+    /// Regions of state where it is largest, in words, with the RMS there over the torque's standard deviation.
     pub regions: Vec<Region>,
     /// Stretches of time where it is largest.
     pub time: Vec<TimeWindow>,
@@ -222,11 +223,11 @@ pub struct Located {
 /// A stretch of one recording.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct TimeWindow {
-    /// The recording, as it was named.
+    /// The recording, with the name that the user gave.
     pub recording: String,
-    /// s, on the recording's clock.
+    /// Start (s), on the recording's clock.
     pub start: f64,
-    /// s.
+    /// End (s), on the recording's clock.
     pub end: f64,
 }
 
@@ -237,18 +238,18 @@ pub struct Region {
     pub axis: &'static str,
     /// Its bounds, in the axis' unit.
     pub range: [f64; 2],
-    /// RMS of the nominal residual there, over the joint's torque spread.
+    /// RMS of the nominal residual there, over the torque's standard deviation.
     pub residual: f64,
-    /// RMS of the augmented residual there, likewise.
+    /// RMS of the augmented residual there, over the torque's standard deviation.
     pub residual_augmented: f64,
 }
 
 /// How well one joint's torque is predicted. NRMSE: RMS error over the standard deviation of the measured torque.
 #[derive(Clone, Copy, Debug, Default, Serialize, JsonSchema)]
 pub struct JointFit {
-    /// Of the measured torque, training recordings (N m or N).
+    /// Standard deviation of the measured torque, training recordings (N m or N).
     pub torque_std: f64,
-    /// Measured noise after filtering (N m or N).
+    /// Standard deviation of the noise after filtering (N m or N).
     pub noise: f64,
     /// Held-out NRMSE of the nominal model over the samples in motion (over all where the joint hardly moves); `None` where
     /// there is no held-out recording.
@@ -257,19 +258,19 @@ pub struct JointFit {
     pub held_out_nrmse_augmented: Option<f64>,
     /// Held-out NRMSE with a correction learned (IJL) from the same recordings.
     pub held_out_nrmse_learned: Option<f64>,
-    /// Held-out NRMSE of what the corrected model holds: the links' inertial parameters and the named effects. With the named
-    /// effects the background's friction and torque constants act too, which are in no file.
+    /// Held-out NRMSE of the exported model: the links' inertial parameters and the named effects. The augmented model also
+    /// contains the background's corrections of friction and torque constants, which no file holds.
     pub held_out_nrmse_exported: Option<f64>,
     /// Held-out NRMSE of full linear identification on the same recordings: least squares on all inertial parameters, viscous
     /// and Coulomb friction, drive inertia and a constant of every joint.
     pub held_out_nrmse_identified: Option<f64>,
-    /// With the named effects, resting samples only: the distance to what dry friction may hold.
+    /// NRMSE with the named effects over the samples at rest: the excess over the torque that dry friction may hold.
     pub held_out_nrmse_resting: Option<f64>,
-    /// Nominal, resting samples only.
+    /// NRMSE of the nominal model over the samples at rest.
     pub held_out_nrmse_resting_nominal: Option<f64>,
-    /// Nominal, training recordings, moving samples.
+    /// NRMSE of the nominal model, training recordings, samples in motion.
     pub train_nrmse_nominal: f64,
-    /// With the named effects, training recordings, moving samples.
+    /// NRMSE with the named effects, training recordings, samples in motion.
     pub train_nrmse_augmented: f64,
     /// Autocorrelation of the augmented residual at a lag of 0.1 s (0: white).
     pub residual_autocorrelation: f64,
@@ -277,7 +278,7 @@ pub struct JointFit {
     pub residual_autocorrelation_nominal: f64,
 }
 
-/// How the simulated joint follows the recorded one.
+/// How closely the simulated joint follows the recorded one.
 #[derive(Clone, Copy, Debug, Default, Serialize, JsonSchema)]
 pub struct JointRollout {
     /// RMS distance, nominal model (rad or m).
@@ -286,39 +287,39 @@ pub struct JointRollout {
     pub augmented_rms_rad: f64,
 }
 
-/// What figures are drawn from: all recordings on the diagnosis' own grid.
+/// The data of the figures: all recordings on the diagnosis' own grid.
 #[derive(Clone, Debug, Default)]
 pub struct Traces {
-    /// One a recording.
+    /// The recordings.
     pub recordings: Vec<Trace>,
 }
 
 /// One recording; signals are `[joint][row]`, effects `[finding][joint][row]` (empty where it does not act).
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
-    /// The file, as named.
+    /// The file, with the name that the user gave.
     pub name: String,
     /// Whether it is held out.
     pub held_out: bool,
-    /// s.
+    /// Time (s).
     pub time: Vec<f64>,
-    /// rad or m.
+    /// Position (rad or m).
     pub q: Vec<Vec<f64>>,
-    /// rad/s or m/s.
+    /// Velocity (rad/s or m/s).
     pub qd: Vec<Vec<f64>>,
-    /// rad/s² or m/s².
+    /// Acceleration (rad/s² or m/s²).
     pub qdd: Vec<Vec<f64>>,
-    /// Measured, filtered (N m or N).
+    /// Measured torque, filtered (N m or N).
     pub tau: Vec<Vec<f64>>,
-    /// Measured less nominal (N m or N).
+    /// Measured minus nominal torque (N m or N).
     pub residual: Vec<Vec<f64>>,
-    /// Measured less nominal less named effects (N m or N).
+    /// Measured torque minus nominal torque and named effects (N m or N).
     pub residual_augmented: Vec<Vec<f64>>,
-    /// Measured less the corrected model that is exported: the links' inertial parameters and the named effects, without the
-    /// background's friction and torque constants (N m or N).
+    /// Measured torque minus that of the exported model: the links' inertial parameters and the named effects, without the
+    /// background's corrections of friction and torque constants (N m or N).
     pub residual_exported: Vec<Vec<f64>>,
-    /// The torque of each finding (N m or N), as its column says.
+    /// The torque of each finding (N m or N).
     pub effects: Vec<Vec<Vec<f64>>>,
-    /// Whether the joint moves: rows at rest were not fitted.
+    /// Whether the joint moves. Rows at rest were not fitted.
     pub moving: Vec<Vec<bool>>,
 }

@@ -1,4 +1,4 @@
-//! What a finding could be instead: other hypotheses, fitted in its place with all else refitted.
+//! The alternatives of a finding: other hypotheses, fitted in its place with all other effects refitted.
 
 use effects::arm::InertialParameters;
 use effects::friction::{CoulombFriction, FrictionAsymmetry};
@@ -13,40 +13,40 @@ use crate::thresholds::{MARGIN_SCALE, NEARLY, NEARLY_NATS, SUREST};
 /// The number of the most promising alternatives that are fitted in full.
 const TRIED: usize = 8;
 
-/// How a finding stands against its rivals.
+/// The comparison of a finding with its alternatives.
 #[derive(Clone, Debug)]
 pub struct Standing {
-    /// Causes that explain nearly as much, the best first.
+    /// Effects that explain nearly as much, the best first.
     pub rivals: Vec<(Hypothesis, Option<usize>)>,
-    /// How much better the finding is than its best rival (nats).
+    /// The evidence for the finding against its best alternative (nats).
     pub margin: f64,
 }
 
 impl Standing {
     /// The probability that the name is right, for a finding of some evidence (nats).
     ///
-    /// One half where a rival does as well, rising with the margin; the scale was set on simulated cases of which the
-    /// truth was known.
+    /// It is one half if an alternative does equally well, and increases with the margin; the scale was calibrated on simulated
+    /// cases with known ground truth.
     pub fn probability(&self, evidence: f64) -> f64 {
         probability(self.margin.min(evidence))
     }
 }
 
-/// The probability of a name that does better than its best rival by a margin (nats).
+/// The probability of a name with a margin over its best alternative (nats).
 pub fn probability(margin: f64) -> f64 {
     (1.0 - 0.5 * (-margin.max(0.0) / MARGIN_SCALE).exp()).min(SUREST)
 }
 
-/// How much worse (nats) a rival of a finding that explains so much (nats) may be, to explain nearly as much.
+/// The largest loss (nats) of an alternative that explains nearly as much as a finding with this evidence (nats).
 pub fn allowance(explained: f64) -> f64 {
     NEARLY_NATS.max(NEARLY * explained)
 }
 
-/// What rivals of `member` stand beside: all else that is chosen, and what `member` is a form of.
+/// The set beside which alternatives of `member` are tried: all other members, and the effect that `member` generalises.
 pub fn beside(study: &Study, chosen: &Chosen, member: usize) -> Vec<usize> {
     let finding = &study.candidates[member];
     let mut set: Vec<usize> = chosen.others(member);
-    // A form of something simpler stands against that with something else.
+    // A form of a simpler effect competes with that effect plus another.
     let plain = (0..study.candidates.len()).find(|&c| {
         let plain = &study.candidates[c];
         Some(plain.hypothesis) == finding.hypothesis.plain()
@@ -62,8 +62,9 @@ pub fn beside(study: &Study, chosen: &Chosen, member: usize) -> Vec<usize> {
     set
 }
 
-/// The other name of the machine that `member` says, if it has one: dry friction that from some time on differs by direction is
-/// the same level, and a constant from then on. No motion tells the two apart. `set` is what stands [`beside`] it.
+/// The other name of the same machine, if `member` has one: dry friction that depends on the direction from some time on equals
+/// friction of the same level, and a constant from then on. No motion distinguishes the two. `set` is the set [`beside`] the
+/// finding.
 pub fn alias(study: &Study, chosen: &Chosen, member: usize, set: &[usize]) -> Option<(Hypothesis, Option<usize>)> {
     let finding = &study.candidates[member];
     let constant = *finding.columns.first()?;
@@ -77,7 +78,7 @@ pub fn alias(study: &Study, chosen: &Chosen, member: usize, set: &[usize]) -> Op
     (sets_in && set.iter().any(is_larger_friction)).then_some((Hypothesis::of(&FrictionAsymmetry), finding.joint))
 }
 
-/// Tries everything else in the place of `member`.
+/// Tries every other hypothesis in the place of `member`.
 pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: usize) -> Standing {
     let finding = &study.candidates[member];
     let set = beside(study, chosen, member);
@@ -88,9 +89,9 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
     let is_other = |c: usize| {
         let other = &study.candidates[c];
         let same_name = other.hypothesis.name() == finding.hypothesis.name() && other.joint == finding.joint;
-        // What holds all of the finding's columns and more is a finer form of it, not another hypothesis.
+        // A candidate with all of the finding's columns and more is a finer form of it, not another hypothesis.
         let finer = finding.columns.iter().all(|column| other.columns.contains(column));
-        // A body's inertia is felt by all joints before it: what one link has too much, its neighbour may have.
+        // The inertia of a body acts on all joints before it: a wrong mass of one link resembles one of its neighbour.
         let are_links = finding.hypothesis.kind == other.hypothesis.kind && finding.hypothesis.is_wrong_mass();
         !same_name
             && !finer
@@ -126,7 +127,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         .map(|&c| (study.candidates[c].hypothesis, study.candidates[c].joint, vec![c]))
         .collect();
     if let Some(same) = finding.hypothesis.spec().same_on_all_joints {
-        // Masses all too large, or torques all measured too large: one and the same without a known load.
+        // Without a known load, a common factor of all masses and one of all torques cannot be distinguished.
         let factors: Vec<usize> = (0..study.candidates.len())
             .filter(|&c| study.candidates[c].hypothesis.name() == Some(same))
             .collect();
@@ -172,7 +173,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         results.extend(best);
     }
     results.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)).then(a.3.cmp(&b.3)));
-    // What is simpler is likelier: the margin counts the costs.
+    // A simpler hypothesis is more probable: the margin includes the costs.
     let margin = results.iter().map(|result| result.1).fold(explained, f64::min);
     Standing {
         rivals: results

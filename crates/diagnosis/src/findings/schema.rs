@@ -14,7 +14,7 @@ pub fn json_schema() -> Schema {
     settings.into_generator().into_root_schema_for::<Report>()
 }
 
-/// The descriptions are the types' documentation, which says `None` where JSON has `null`.
+/// Replaces `None` by `null` in the descriptions, which are the types' documentation.
 fn in_words_of_json(schema: &mut Schema) {
     if let Some(serde_json::Value::String(description)) = schema.get_mut("description") {
         *description = description.replace("`None`", "`null`");

@@ -1,4 +1,4 @@
-//! A finding in one sentence, and the experiment that narrows an unexplained residual down.
+//! A finding in one sentence, and the experiment that narrows down an unexplained residual.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ fn number(value: f64) -> String {
     }
 }
 
-/// The finding's effect as a noun phrase with its parameters; `quantity` formats a value with its unit (`1`: none).
+/// The finding's effect as a noun phrase with its parameters; `quantity` formats a value with its unit (`1` for none).
 pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> String {
     if finding.as_effect.is(&InertialParameters) && finding.joint.is_none() {
         let relative = finding.parameters.get("relative");
@@ -56,7 +56,7 @@ fn of_torque(ratio: f64) -> String {
     }
 }
 
-/// What changed since the recordings from before: the place and the effect, as a noun phrase.
+/// The change since the recordings from before, as a noun phrase: the place and the effect.
 pub fn changed(finding: &Finding) -> String {
     let place = finding.joint.as_deref().unwrap_or("the whole arm");
     format!("{place}: {}", described(finding, &plain))

@@ -1,4 +1,4 @@
-//! What the figures are drawn from.
+//! The data of the figures.
 
 use effects::laws::ACCELERATION;
 use rayon::prelude::*;
@@ -7,7 +7,7 @@ use crate::findings::report::{Finding, Trace, Traces};
 use crate::search::study::Study;
 use crate::selection::judge::Selection;
 
-/// All signals on the rows; `left` is the residual of the augmented model, and of the one that is exported.
+/// All signals on the rows; `left` is the residual of the augmented model, and that of the exported model.
 pub fn traces(
     study: &Study,
     judged: &Selection,
@@ -22,7 +22,7 @@ pub fn traces(
             let Some(member) = *member else {
                 return vec![Vec::new(); dof];
             };
-            // A drive's inertia named with a spring or a gap has a column of its own.
+            // A drive's inertia that is named with a spring or a gap has its own column.
             let is_brought = finding.as_effect.kind() != study.candidates[member].hypothesis.kind;
             let columns: Vec<usize> = study.candidates[member]
                 .columns

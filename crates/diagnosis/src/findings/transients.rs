@@ -1,4 +1,4 @@
-//! Bursts in the held-out recordings: what pushed the tool there was in no recording that was fitted.
+//! Bursts in the held-out recordings: contacts that no training recording has.
 
 use std::collections::BTreeMap;
 
@@ -12,34 +12,36 @@ use crate::regression::small::ForceFit;
 use crate::search::scan;
 use crate::search::study::Study;
 use crate::selection::judge::Selection;
-use crate::thresholds::{BURST_PIECE, BURST_STRETCH, LEAST_BURST_ROWS, MOST_BURSTS, ONE_FORCE, OVER_THE_REST};
+use crate::thresholds::{
+    BURST_PIECE, BURST_STRETCH, LEAST_BURST_ROWS, LEAST_PUSHED, MOST_BURSTS, ONE_FORCE, OVER_THE_REST,
+};
 
-/// Bursts looked for, at most.
+/// The largest number of bursts that are searched.
 const MOST: usize = 12;
 
-/// What bursts were found.
+/// The bursts that were found.
 #[derive(Clone, Debug, Default)]
 pub struct Bursts {
     /// Contacts: one force explains the joints' residuals.
     pub contact: Option<Finding>,
-    /// Bursts that no force on the tool explains: the joint, its share, where.
+    /// Bursts that no force on the tool explains: the joint, its share, the place in time.
     pub unexplained: BTreeMap<usize, (f64, Vec<TimeWindow>)>,
 }
 
 /// A burst that one force on the tool explains.
 #[derive(Clone, Debug)]
 struct Push {
-    /// From when to when (s).
+    /// Start and end (s).
     window: [f64; 2],
-    /// In which recording, by its number.
+    /// The index of its recording.
     source: usize,
-    /// In the base (N).
+    /// The force in the base's frame (N).
     force: Vector3<f64>,
-    /// The part of the burst's power that it explains.
+    /// The part of the burst's power that the force explains.
     explained: f64,
 }
 
-/// Looks for bursts in what the named effects leave (`[joint][row]`) of the held-out recordings.
+/// Searches bursts in the residuals of the named effects (`[joint][row]`) in the held-out recordings.
 pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
     let mut bursts = Bursts::default();
     let held: Vec<bool> = study.fitted.iter().map(|fitted| !fitted).collect();
@@ -49,7 +51,7 @@ pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
     let times = study.motions.row_times();
     let weights: Vec<f64> = (0..study.motions.dof)
         .map(|joint| {
-            // What is usual of a joint that was never fitted is not known.
+            // The usual residual of a joint that was never fitted is unknown.
             if study.training_rows(joint).len() < LEAST_BURST_ROWS {
                 return 0.0;
             }
@@ -63,9 +65,8 @@ pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
         let Some((recording, powers)) = power(study, &times, left, &weights, (from, to)) else {
             continue;
         };
-        // A push on the tool is felt by more than one joint, if there are more.
         let felt = powers.iter().filter(|power| power.sqrt() > OVER_THE_REST).count();
-        if felt < study.motions.dof.min(2) {
+        if felt < study.motions.dof.min(LEAST_PUSHED) {
             continue;
         }
         let name = study.motions.sources[recording].name.clone();
@@ -78,7 +79,7 @@ pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
                 explained,
             });
         } else {
-            // On the joint where it stands out most.
+            // The joint on which it stands out most.
             let window = (from, to);
             let at = (0..study.motions.dof)
                 .map(|joint| {
@@ -100,7 +101,7 @@ pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
             }
         }
     }
-    // What comes again and again is the model's error, not somebody's push.
+    // A burst that recurs is an error of the model, not a contact.
     if pushes.len() + bursts.unexplained.values().map(|entry| entry.1.len()).sum::<usize>() > MOST_BURSTS {
         return Bursts::default();
     }
@@ -111,7 +112,7 @@ pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
     bursts
 }
 
-/// What the model usually leaves on a joint: the median over stretches of all moving rows.
+/// The usual residual of a joint: the median over stretches of all moving rows.
 fn usual(study: &Study, joint: usize, left: &[Vec<f64>]) -> f64 {
     let moving = &study.table.joints[joint].moving;
     let mut stretches = Vec::new();
@@ -134,7 +135,7 @@ fn usual(study: &Study, joint: usize, left: &[Vec<f64>]) -> f64 {
     stretches.get(stretches.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// Moving rows of a window, joint by joint.
+/// The moving rows of a window, joint by joint.
 fn rows<'a>(
     study: &'a Study,
     times: &'a [f64],
@@ -176,7 +177,7 @@ fn joint_rms(study: &Study, times: &[f64], left: &[Vec<f64>], joint: usize, wind
     rms(own.map(|(_, row, _)| left[joint][row])).unwrap_or(0.0)
 }
 
-/// The force that explains a window best, fitted to every other piece, and the part of the power it explains on the rest.
+/// The force that explains a window best, fitted to every other piece, and the part of the power that it explains on the rest.
 fn force(study: &Study, times: &[f64], left: &[Vec<f64>], weights: &[f64], window: (f64, f64)) -> (Vector3<f64>, f64) {
     let columns = study.force();
     let mut fit = ForceFit::default();

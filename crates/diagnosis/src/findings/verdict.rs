@@ -11,7 +11,7 @@ use crate::search::study::Study;
 use crate::selection::judge::Selection;
 use crate::thresholds::{LEAST_MOTION, POOR, POOR_ABOVE_NOISE, REMEMBERS, STRUCTURED, STRUCTURED_ABOVE_NOISE};
 
-/// The structured residuals that no effect in the catalogue explains, on each joint.
+/// The structured residuals on each joint that no effect in the catalogue explains.
 pub fn unexplained(study: &Study, judged: &Selection, bursts: &Bursts, left: &[Vec<f64>]) -> Vec<Unexplained> {
     let mut by_joint: BTreeMap<usize, (f64, Vec<(f64, String)>)> = BTreeMap::new();
     for member in &judged.unmodelled {
@@ -61,7 +61,7 @@ pub fn unexplained(study: &Study, judged: &Selection, bursts: &Bursts, left: &[V
         .collect()
 }
 
-/// The error (NRMSE) that the findings leave on a joint, if it is too large and too regular to be noise.
+/// The error (NRMSE) of a joint with the findings, if it is too large and too regular to be noise.
 pub fn structured(fit: &JointFit) -> Option<f64> {
     let error = fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented);
     let least = error.min(fit.train_nrmse_augmented);
@@ -96,7 +96,7 @@ pub fn poorly_predicted(study: &Study, fit: &BTreeMap<String, JointFit>, unexpla
     }
 }
 
-/// Why the recordings are not enough for a diagnosis; empty if they are.
+/// The reasons why the recordings are not sufficient for a diagnosis; empty if they are.
 pub fn not_enough(study: &Study, products: &Products) -> Vec<String> {
     let seconds = |joint: usize| -> f64 {
         let counts = study.table.joints[joint]

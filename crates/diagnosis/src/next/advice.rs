@@ -5,11 +5,11 @@ use effects::Spec;
 use super::report::{NotSeparated, Obstacle};
 use crate::findings::report::Confusable;
 
-/// Evidence below this (nats), or below this part of the evidence needed, counts as none: the two are one torque.
+/// Evidence below this (nats), or below this part of the needed evidence, counts as none: the two effects have the same torque.
 const ALIAS: (f64, f64) = (1.0, 0.1);
 
-/// The confusion of `finding` with `rival`, which the best motion for it sets `best` apart (nats), where `needed` would tell.
-/// `sure` is the distance from which it is promised, unless it is `barred` for a reason.
+/// The confusion of `finding` with `rival`: the best motion for it brings the evidence `best` (nats), and `needed`
+/// distinguishes them. `sure` is the evidence from which it is promised, unless it is `barred` for a reason.
 pub fn untold(
     finding: Confusable,
     rival: Confusable,
@@ -62,7 +62,7 @@ pub fn untold(
     }
 }
 
-/// The experiment that distinguishes two effects which no motion distinguishes.
+/// The experiment that distinguishes two effects that no motion distinguishes.
 fn instead(finding: &str, rival: &str) -> &'static str {
     let specs = [finding, rival].map(effects::spec);
     let against = |spec: Option<&'static Spec>, other: &str| {

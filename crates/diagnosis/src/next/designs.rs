@@ -1,4 +1,4 @@
-//! The motions that are tried: sums of a few sines, within limits.
+//! The tried motions: sums of a few sines, within limits.
 
 use std::f64::consts::TAU;
 
@@ -6,52 +6,52 @@ use torque::{Fade, Reference, Sine};
 
 use super::limits::{Limits, rounded, taken};
 
-/// How long a motion takes (s).
+/// The duration of a motion (s).
 pub const DURATION: f64 = 25.0;
 /// The rate at which the proposed motion is checked against the limits (Hz).
 pub const FINE: f64 = 500.0;
-/// It begins and ends at rest, and fades within (s).
+/// The duration of the fade-in from rest and of the fade-out to rest (s).
 const FADE: f64 = 3.0;
-/// The slowest and the fastest sine (Hz).
+/// The lowest and the highest frequency of a sine (Hz).
 const FREQUENCIES: (f64, f64) = (0.08, 1.6);
-/// Frequencies and phases differ by multiples of it, less their whole parts: joints never move alike.
+/// The golden ratio. Frequencies and phases differ by the fractional parts of its multiples, so that no joints move alike.
 const GOLDEN: f64 = 0.618_033_988_749_895;
-/// By so much of themselves frequencies differ at most.
+/// The largest relative difference of frequencies.
 const DETUNED: f64 = 0.17;
-/// What is slow moves at this part of the speed.
+/// The part of the speed at which a slow sine moves.
 const SLOW: f64 = 0.25;
-/// The largest number of times that a motion beyond the limits is slowed down and made smaller.
+/// The largest number of times that a motion beyond the limits is slowed down and scaled down.
 const STEPS: usize = 12;
-/// While designs are compared: the rate at which limits are checked (Hz), and the factor by which a motion is slowed down.
+/// The rate at which limits are checked while designs are compared (Hz), and the factor by which a motion is slowed down then.
 const COMPARED: (f64, f64) = (25.0, 0.85);
-/// Before a motion is proposed: the rate at which limits are checked (Hz), and the factor by which it is slowed down.
+/// The rate at which limits are checked before a motion is proposed (Hz), and the factor by which it is slowed down then.
 const PROPOSED: (f64, f64) = (FINE, 0.99);
 
-/// How a joint's motion is made up.
+/// The composition of a joint's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mix {
     /// One sine: every cycle takes the whole range and all speeds up to the highest.
     Steady,
     /// Two sines of almost the same frequency: the motion swells and dies away.
     Beats,
-    /// Three, so that it is slow for longer.
+    /// Three sines of almost the same frequency, so that the motion is slow for longer.
     Swells,
     /// A large slow sine and a small fast one.
     SlowAndFast,
 }
 
-/// A motion to try.
+/// A design of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
-    /// How each joint moves.
+    /// The composition of each joint's motion.
     pub mix: Mix,
     /// The part of a joint's allowed speed.
     pub speed: f64,
-    /// The part of its room.
+    /// The part of its allowed distance from the middle.
     pub amplitude: f64,
-    /// The joints that move so; the others hold still or move slowly. All where empty.
+    /// The joints that move so; the others hold still or move slowly. All joints if empty.
     pub only: Vec<usize>,
-    /// What part of the speed and the room the others take.
+    /// The parts of speed and room that the other joints use.
     pub others: f64,
 }
 
@@ -75,8 +75,8 @@ pub fn all() -> Vec<Design> {
 }
 
 impl Design {
-    /// The motion, slowed down and made smaller until it is within `limits` as far as a look now and then tells, to be compared
-    /// with others; and the parts of speed and room that it has then. `None` if it cannot be.
+    /// The motion, slowed down and scaled down until it is within `limits` at a coarse rate, for comparison with others; and
+    /// the parts of speed and room that it then uses. `None` if there is no such motion.
     pub fn within(&self, limits: &Limits) -> Option<(Reference, [f64; 2])> {
         self.shrunk(limits, [self.speed, self.amplitude], COMPARED)
     }
@@ -100,7 +100,7 @@ impl Design {
             }
             speed *= step;
             if far > 1.0 || (strong > 1.0 && speed < 0.5 * self.speed) {
-                // What it costs to hold the arm there does not fall with the speed.
+                // The torque for holding the arm does not decrease with the speed.
                 amplitude *= step;
             }
         }
@@ -159,7 +159,7 @@ impl Design {
     }
 }
 
-/// To four decimals as [`rounded`], and never more.
+/// Rounds down to four decimals.
 fn rounded_down(value: f64) -> f64 {
     (1e4 * value).floor() / 1e4
 }

@@ -1,4 +1,4 @@
-//! What a motion may ask of the joints, and whether it stays within.
+//! Limits of a proposed motion, and the check that it stays within them.
 
 use arm::Arm;
 use effects::Effect;
@@ -13,37 +13,38 @@ const MARGIN: f64 = 0.05;
 /// The part of a velocity and an effort limit that a motion may take.
 const WITHIN: f64 = 0.8;
 /// The largest distance from the middle of the recorded range, as a multiple of the recorded distance, and the largest speed as
-/// a multiple of the recorded one: the environment beyond is unknown.
+/// a multiple of the recorded one. The environment beyond is unknown.
 const BEYOND: (f64, f64) = (1.5, 3.0);
-/// These multiples if the findings do not explain the recordings, because the torque beyond the recorded range is unknown.
+/// These two multiples if the findings do not explain the recordings, because the torque beyond the recorded range is unknown
+/// then.
 const BEYOND_UNEXPLAINED: (f64, f64) = (1.0, 1.5);
 /// Without a velocity limit in the URDF: the largest speed as a multiple of the recorded one.
 const FASTER_UNLIMITED: f64 = 2.0;
 /// Without an effort limit in the URDF: the largest torque as a multiple of the recorded one.
 const STRONGER_UNLIMITED: f64 = 1.5;
 
-/// What each joint may do.
+/// The allowed motion of each joint.
 pub struct Limits {
     /// The joints.
     pub names: Vec<String>,
     /// The middle of the motion (rad or m).
     pub middle: Vec<f64>,
-    /// How far from there (rad or m).
+    /// The allowed distance from the middle (rad or m).
     pub room: Vec<f64>,
-    /// rad/s or m/s.
+    /// The allowed speed (rad/s or m/s).
     pub speed: Vec<f64>,
-    /// N m or N.
+    /// The allowed torque (N m or N).
     pub torque: Vec<f64>,
-    /// Whose torques count.
+    /// Whether the torque of each joint is limited.
     pub model: Corrected,
 }
 
 impl Limits {
-    /// Of the arm `arm` of `study`; torques are those of `arm` with `effects`, which are what is known and what was found, and which
-    /// `explain` the recordings or not. Torque limits among them bound what a motion may need, and not what it needs.
+    /// The limits for the arm `arm` of `study`. Torques are those of `arm` with `effects`, which are known or found, and which
+    /// `explain` the recordings or not. A torque limit among them bounds what a motion may need.
     ///
     /// # Errors
-    /// If the effects cannot be put into the model.
+    /// If the effects cannot be added to the model.
     pub fn new(study: &Study, (arm, effects): (&Arm, &[Effect]), explain: bool) -> Result<Self, TorqueError> {
         let is_limit = |effect: &&Effect| effect.is(&TorqueSaturation);
         let (found, others): (Vec<&Effect>, Vec<&Effect>) = effects.iter().partition(is_limit);
@@ -74,7 +75,7 @@ impl Limits {
             } else {
                 0.0
             };
-            // What was recorded may lie beyond what the URDF allows.
+            // The recorded motion may be beyond the URDF's limits.
             if upper - free >= lower + free {
                 limits.middle[j] = rounded_into(limits.middle[j], lower + free, upper - free);
             }
@@ -95,7 +96,7 @@ impl Limits {
             });
             let torque = study.measured[j].iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
             let allowed = if joint.limits.effort.is_finite() {
-                // What it gave already it can give again.
+                // The drive can give again the torque that it gave before.
                 (WITHIN * joint.limits.effort).max(torque.min(joint.limits.effort))
             } else {
                 STRONGER_UNLIMITED * torque
@@ -105,7 +106,7 @@ impl Limits {
         Ok(limits)
     }
 
-    /// What `reference` needs of each joint over `duration` (s), looked at `hertz` times a second.
+    /// The demands of `reference` on each joint over `duration` (s), evaluated at `hertz`.
     pub fn needed(&self, reference: &Reference, duration: f64, hertz: f64) -> Vec<JointLimits> {
         let dof = self.names.len();
         let mut needed: Vec<JointLimits> = (0..dof)
@@ -126,7 +127,7 @@ impl Limits {
             let time = k as f64 / hertz;
             reference.at(time, &mut motion);
             let (q, qd, qdd) = (&motion.q, &motion.qd, &motion.qdd);
-            // The time is the motion's own: a push that was found is not repeated, a drive is warm.
+            // The time is the motion's own: a contact is not repeated, and a drive is warm.
             self.model
                 .predict_at(f64::INFINITY, &mut workspace, q, qd, qdd, &mut prediction);
             for (j, needed) in needed.iter_mut().enumerate() {
@@ -140,19 +141,19 @@ impl Limits {
     }
 }
 
-/// To four decimals, as the scenario's file has it.
+/// Rounds to four decimals, as in the scenario's file.
 pub fn rounded(value: f64) -> f64 {
     (1e4 * value).round() / 1e4
 }
 
-/// The nearest place between two others, to four decimals, which do not lead beyond these.
+/// The nearest position between two bounds, rounded to four decimals without exceeding them.
 fn rounded_into(value: f64, low: f64, high: f64) -> f64 {
     rounded(value)
         .max((1e4 * low).ceil() / 1e4)
         .min((1e4 * high).floor() / 1e4)
 }
 
-/// The largest share of what a joint may that `needed` takes: of room, of speed, and of torque.
+/// The largest ratio of `needed` to the allowed values: of room, of speed, and of torque.
 pub fn taken(needed: &[JointLimits]) -> [f64; 3] {
     let share = |of: f64, allowed: f64| if of > 0.0 { of / allowed.max(1e-300) } else { 0.0 };
     let most = |pick: &dyn Fn(&JointLimits) -> f64| needed.iter().map(pick).fold(0.0, f64::max);
@@ -175,7 +176,7 @@ pub fn taken(needed: &[JointLimits]) -> [f64; 3] {
 mod tests {
     use super::rounded_into;
 
-    /// What was recorded beyond a limit is brought within it, and rounding does not lead out again.
+    /// A recorded range beyond a limit is brought within it, and rounding does not exceed the limit again.
     #[test]
     fn a_middle_is_within_its_limits() {
         assert_eq!(rounded_into(0.025_83, -3.0718, -0.219_94), -0.22);

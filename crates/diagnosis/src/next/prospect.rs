@@ -16,37 +16,37 @@ use crate::search::physics::is_possible;
 use crate::search::problem::Chosen;
 use crate::search::study::{About, Study};
 
-/// Between the last recording and the motion (s).
+/// The pause between the last recording and the motion (s).
 const BETWEEN: f64 = 10.0;
 /// The ratio of a proposed motion's ticks to those of the recordings.
 const COARSER: usize = 2;
-/// The number of passes for a torque that depends on itself (a delay).
+/// The number of iterations for a torque that depends on itself (a delay).
 const PASSES: usize = 3;
 
-/// A finding and one thing that it could be instead, as sets of columns.
+/// A finding and one of its alternatives, as sets of columns.
 pub struct Pair {
-    /// All but the finding.
+    /// All effects without the finding.
     pub without: Vec<usize>,
-    /// All with the rival in the finding's place, in each of its sizes; and the candidates that the rival is.
+    /// All effects with the alternative in the finding's place, at each of its sizes; and the candidates of the alternative.
     pub instead: Vec<(Vec<usize>, Vec<usize>)>,
 }
 
-/// The recordings as far as some columns go, ready for a motion to be added.
+/// The recordings reduced to some columns, to which a motion can be added.
 pub struct Prospect<'a> {
     study: &'a Study,
     chosen: &'a Chosen,
     about: About,
     nominal: Vec<f64>,
-    /// Places of the study's columns, which are kept in ascending order.
+    /// Indices of the study's columns, in ascending order.
     columns: Vec<usize>,
     bare: Table,
     old: Products,
     template: usize,
     /// Whether a column needs derivatives of the rigid torque.
     derivatives: bool,
-    /// From tick to tick of a motion (s), the filter on that grid, and ticks from row to row.
+    /// The time between ticks of a motion (s), the filter on that grid, and the number of ticks between rows.
     grid: (f64, Kernel, usize),
-    /// When the motion would begin (s).
+    /// The time at which the motion begins (s).
     start: f64,
     /// The integrals of [`moments`] over the recordings, one entry per joint.
     torque: Vec<[f64; 3]>,
@@ -54,17 +54,17 @@ pub struct Prospect<'a> {
     speed: Vec<[f64; 2]>,
 }
 
-/// The recordings and a motion.
+/// The recordings with a motion.
 pub struct Outlook {
     products: Products,
     torque: Vec<f64>,
     weights: Vec<f64>,
-    /// The largest torque that the motion needs, one a joint (N m or N).
+    /// The largest torque that the motion needs, one per joint (N m or N).
     pub largest: Vec<f64>,
 }
 
 impl<'a> Prospect<'a> {
-    /// Of the recordings fitted in `study`, as far as `columns` go; `None` if there are none.
+    /// The recordings fitted in `study`, reduced to `columns`; `None` if there are none.
     pub fn new(study: &'a Study, products: &Products, chosen: &'a Chosen, mut columns: Vec<usize>) -> Option<Self> {
         columns.extend(&chosen.fit.columns);
         columns.sort_unstable();
@@ -105,7 +105,7 @@ impl<'a> Prospect<'a> {
         })
     }
 
-    /// As it stands, without a motion.
+    /// The recordings alone, without a motion.
     pub fn now(&self) -> Outlook {
         Outlook {
             products: self.old.clone(),
@@ -115,7 +115,7 @@ impl<'a> Prospect<'a> {
         }
     }
 
-    /// With the motion of `reference`.
+    /// The recordings with the motion of `reference`.
     pub fn with(&self, reference: &Reference) -> Outlook {
         let study = self.study;
         let dof = study.motions.dof;
@@ -164,7 +164,7 @@ impl<'a> Prospect<'a> {
         );
         let new = Products::new(&table, |_| true, &[seconds], &tempo, &study.floor);
         let new = new.picked(&table, &(0..self.columns.len()).collect::<Vec<_>>());
-        // What is left of the recordings will be left of the motion, too.
+        // The residual of the motion is predicted to be as large as that of the recordings.
         let left: Vec<f64> = (0..dof)
             .map(|j| self.chosen.fit.rss[j].max(0.0) / self.old.count[j].max(1.0))
             .collect();
@@ -214,7 +214,7 @@ impl<'a> Prospect<'a> {
         chunk
     }
 
-    /// The torques that the findings say the motion needs.
+    /// The torques that the motion needs by the findings.
     fn add_torques(&self, chunk: &mut Chunk, rigid: &Rigid) {
         let fit = &self.chosen.fit;
         let is_carried = |term: Term| self.about.carried.iter().any(|(carried, _)| *carried == term);
@@ -223,7 +223,7 @@ impl<'a> Prospect<'a> {
         let mut own = Vec::new();
         for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
             let term = self.study.table.terms[column];
-            // A motion within a limit that was found has nothing beyond it.
+            // A motion within a torque limit exceeds it nowhere.
             if is_carried(term) || term.law.cuts {
                 continue;
             }
@@ -254,7 +254,8 @@ impl<'a> Prospect<'a> {
             .collect()
     }
 
-    /// How much worse (nats) the rival of `pair` explains `outlook` than the finding does, and what tells them apart.
+    /// The evidence (nats) in `outlook` for the finding of `pair` against its alternative, and the evidence that distinguishes
+    /// them.
     pub fn separation(&self, outlook: &Outlook, pair: &Pair) -> [f64; 2] {
         let fit = |columns: &[usize]| {
             let places = self.places(columns);
@@ -274,7 +275,7 @@ impl<'a> Prospect<'a> {
         [possible.unwrap_or(without) - with, rivals::allowance(without - with)]
     }
 
-    /// How well columns show beside the findings, each on a joint.
+    /// The detectability of columns in addition to the findings, each on a joint.
     pub fn visibility(&self, outlook: &Outlook, wanted: &[(usize, usize)]) -> Vec<Visibility> {
         let products = &outlook.products;
         let columns = self.places(&self.chosen.fit.columns);
@@ -317,7 +318,7 @@ fn powers(sums: &mut [f64; 2], speed: &[f64], acceleration: &[f64], period: f64)
 mod tests {
     use super::*;
 
-    /// A motion counts by how long it lasts, on whatever grid.
+    /// A motion counts by its duration, on any grid.
     #[test]
     fn a_coarser_grid_counts_as_much() {
         let (mut fine, mut coarse) = ([0.0; 3], [0.0; 3]);

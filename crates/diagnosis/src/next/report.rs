@@ -1,4 +1,4 @@
-//! The next experiment as others read it: the field `next_experiment` of a diagnosis.
+//! The next experiment in the report: the field `next_experiment` of a diagnosis.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -8,15 +8,15 @@ use crate::findings::report::Confusable;
 /// The proposed motion, and what it distinguishes.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct NextExperiment {
-    /// How long the motion takes (s); `None` if none would tell more.
+    /// The duration of the motion (s); `None` if no motion gives more information.
     pub duration: Option<f64>,
-    /// The confusions that it should resolve.
+    /// The confusions that it is predicted to resolve.
     pub separates: Vec<Separation>,
-    /// The confusions that it leaves: most of them no motion within the limits resolves. With what would.
+    /// The confusions that it does not resolve, with the experiments that do.
     pub not_separated: Vec<NotSeparated>,
-    /// Effects that are not testable, and their detectable size with the motion.
+    /// Effects that are not testable, with their detectable size after the motion.
     pub shows: Vec<Shows>,
-    /// How far the motion goes, joint by joint.
+    /// The demands of the motion, joint by joint.
     pub limits: Vec<JointLimits>,
 }
 
@@ -61,24 +61,25 @@ pub struct NotSeparated {
 pub enum Obstacle {
     /// The two are the same torque in every motion.
     SameTorque,
-    /// No motion within the limits sets them far enough apart.
+    /// No motion within the limits distinguishes them.
     OutOfReach,
-    /// Another motion would.
+    /// Another motion distinguishes them.
     AnotherMotion,
     /// The joint has an unexplained residual, so that the outcome of a motion cannot be predicted.
     Unexplained,
-    /// On paper the recordings tell the two apart already, and they did not: the paper cannot be trusted on these two.
+    /// The prediction fails on the present recordings: it states that they already distinguish the two, so that no outcome is
+    /// predicted.
     NotForetold,
 }
 
-/// An effect that the motion shows at a smaller size than the recordings do.
+/// An effect that the motion makes detectable at a smaller size than the recordings do.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Shows {
     /// The catalogue's name.
     pub effect: &'static str,
     /// The joint.
     pub joint: Option<String>,
-    /// What its size is called.
+    /// The name of its size.
     pub parameter: &'static str,
     /// The detectable size in the present recordings (of a torque limit: the largest); `None` if there is none.
     pub before: Option<f64>,
@@ -86,22 +87,22 @@ pub struct Shows {
     pub after: f64,
 }
 
-/// What the motion needs of a joint, and what it may: the URDF's limits with a margin, or where it has none a multiple of
-/// what the joint went through in the recordings.
+/// The demands of the motion on a joint, and the allowed values: the URDF's limits with a margin, or a multiple of the values
+/// in the recordings where the URDF has none.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct JointLimits {
     /// The joint.
     pub joint: String,
     /// Lowest and highest position (rad or m).
     pub position: [f64; 2],
-    /// Where it may be (rad or m).
+    /// The allowed positions (rad or m).
     pub position_allowed: [f64; 2],
     /// Largest speed (rad/s or m/s).
     pub velocity: f64,
-    /// The speed that it may have (rad/s or m/s).
+    /// The allowed speed (rad/s or m/s).
     pub velocity_allowed: f64,
     /// Largest torque by the model with the findings (N m or N).
     pub torque: f64,
-    /// The torque that it may need (N m or N).
+    /// The allowed torque (N m or N).
     pub torque_allowed: f64,
 }

@@ -1,4 +1,4 @@
-//! The background of every fit: what a URDF, a friction curve and a torque constant may be off by everywhere, under a prior.
+//! The background of every fit: corrections of the URDF, of friction curves and of torque constants, under a prior.
 //!
 //! Inertial parameters: δπ_k ~ N(0, ρ² H_k⁻¹) about the URDF's values, H_k\[a, b\] = tr(P_k⁻¹ B_a P_k⁻¹ B_b) with P_k the link's
 //! pseudo-inertia and B_a = ∂P/∂π_a. It is the second-order form of the entropic divergence of Lee, Wensing and Park (2020):
@@ -19,14 +19,14 @@ use crate::thresholds::{
     PER_BACKGROUND_PART, PER_LINK_APART, USUAL_STRENGTH,
 };
 
-/// How far the parts of the background may be from what the model says; zero switches a part off.
+/// The strengths of the parts of the background, as standard deviations; zero switches a part off.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strengths {
     /// ρ of each link's inertial parameters.
     pub links: Vec<f64>,
-    /// Of the form of each joint's friction, in units of its prior.
+    /// The form of each joint's friction, relative to its prior.
     pub friction: f64,
-    /// Of the torque constants, in units of their prior.
+    /// The torque constants, relative to their prior.
     pub gain: f64,
 }
 
@@ -44,7 +44,7 @@ impl fmt::Display for Strengths {
 }
 
 impl Strengths {
-    /// The model as it is.
+    /// No background: the nominal model.
     pub fn none(links: usize) -> Self {
         Self {
             links: vec![0.0; links],
@@ -62,7 +62,7 @@ impl Strengths {
         part(self.friction) + part(self.gain) + part(common) + unlikely + PER_LINK_APART * apart as f64
     }
 
-    /// The strengths tried next to that of most links, below and above it.
+    /// The strengths that are tried for one link, below and above that of most links.
     pub fn around_common(&self) -> (f64, f64) {
         let common = self.common();
         let below = LINK_STRENGTHS
@@ -81,7 +81,7 @@ impl Strengths {
         self.links.iter().copied().fold(f64::INFINITY, f64::min).min(1e3)
     }
 
-    /// Those that differ from these in what holds for all links or joints.
+    /// The strengths that differ from these in a part common to all links or joints.
     pub fn neighbours(&self) -> Vec<Self> {
         let mut list = Vec::new();
         let mut add = |next: Self| {
@@ -107,7 +107,7 @@ impl Strengths {
         list
     }
 
-    /// Those that differ from these in one link.
+    /// The strengths that differ from these in one link.
     pub fn with_other_links(&self) -> Vec<Self> {
         let mut list = Vec::new();
         let mut add = |next: Self| {
@@ -127,7 +127,7 @@ impl Strengths {
         list
     }
 
-    /// Those in which one link alone differs from the URDF.
+    /// The strengths with which one link alone differs from the URDF.
     pub fn in_one_link(&self) -> Vec<Self> {
         let mut list = Vec::new();
         if self.common() > 0.0 {
@@ -145,7 +145,7 @@ impl Strengths {
         list
     }
 
-    /// These with all links a finer step weaker or stronger than the grid's.
+    /// These strengths with all links a finer step weaker or stronger than on the grid.
     pub fn finer(&self) -> Vec<Self> {
         let scaled = |factor: f64| Self {
             links: self.links.iter().map(|rho| rho * factor).collect(),
@@ -157,7 +157,7 @@ impl Strengths {
         vec![scaled(1.0 / FINER_STRENGTH), scaled(FINER_STRENGTH)]
     }
 
-    /// These with less of one part.
+    /// These strengths with less of one part.
     pub fn weaker(&self) -> Vec<Self> {
         let mut list = Vec::new();
         let largest = self.links.iter().copied().fold(0.0, f64::max);
@@ -182,13 +182,13 @@ impl Strengths {
         list
     }
 
-    /// Whether the model is taken as it is.
+    /// Whether there is no background.
     pub fn is_none(&self) -> bool {
         self.friction == 0.0 && self.gain == 0.0 && self.links.iter().all(|&rho| rho == 0.0)
     }
 }
 
-/// Strengths that the user states, so that the evidence does not choose them.
+/// Strengths that the user states, so that they are not chosen by evidence.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stated {
     /// ρ of all links.
@@ -198,7 +198,7 @@ pub struct Stated {
 }
 
 impl Stated {
-    /// What the user states.
+    /// The strengths as far as the user states them.
     pub fn of(options: &Options) -> Self {
         Self {
             links: options.urdf_accuracy,
@@ -206,7 +206,7 @@ impl Stated {
         }
     }
 
-    /// The strengths to begin with.
+    /// The strengths at the beginning of the search.
     pub fn first(self, links: usize) -> Strengths {
         Strengths {
             links: vec![self.links.unwrap_or(0.0); links],
@@ -220,7 +220,7 @@ impl Stated {
         self.gain.unwrap_or(GAIN_PRIOR)
     }
 
-    /// Whether strengths are as stated.
+    /// Whether strengths agree with those stated.
     pub fn allows(self, strengths: &Strengths) -> bool {
         let first = self.first(strengths.links.len());
         (self.links.is_none() || strengths.links == first.links)
@@ -231,7 +231,7 @@ impl Stated {
 /// The prior of the background at strength one: the first columns of a table.
 #[derive(Clone, Debug, Default)]
 pub struct Prior {
-    /// What each column is.
+    /// The meaning of each column.
     terms: Vec<Term>,
     /// H of each link.
     links: Vec<DMatrix<f64>>,
@@ -239,10 +239,10 @@ pub struct Prior {
     deviations: Vec<f64>,
 }
 
-/// The background at some strengths: its columns and their precision.
+/// The background at given strengths: its columns and their precision.
 #[derive(Clone, Debug)]
 pub struct Background {
-    /// Columns of the table, ascending.
+    /// Columns of the table, in ascending order.
     pub columns: Vec<usize>,
     /// K, the precision of their coefficients about zero.
     pub precision: DMatrix<f64>,
@@ -253,8 +253,9 @@ pub struct Background {
 }
 
 impl Prior {
-    /// The prior of an arm with the inertial `parameters` (ten a link), whose joints measure torques of the standard deviations
-    /// `torque` (N m or N) at speeds up to `speed` (rad/s or m/s); `moved` are the recordings to be fitted that move each joint.
+    /// The prior for an arm with the inertial `parameters` (ten per link). The torques of its joints have the standard
+    /// deviations `torque` (N m or N), their speeds are up to `speed` (rad/s or m/s); `moved` are the training recordings that
+    /// move each joint.
     pub fn new(parameters: &[f64], torque: &[f64], speed: &[f64], moved: &[Vec<usize>]) -> Self {
         let mut prior = Self::default();
         for (link, values) in parameters.chunks_exact(PER_LINK).enumerate() {

@@ -1,4 +1,4 @@
-//! Bodies by their ten inertial parameters: pseudo-inertias, the metric between them, and which bodies can be.
+//! Bodies by their ten inertial parameters: pseudo-inertias, the metric between them, and physical consistency.
 
 use nalgebra::{Cholesky, DMatrix, Matrix3, Matrix4, SymmetricEigen};
 
@@ -52,8 +52,8 @@ fn parameters_of(pseudo: &Matrix4<f64>) -> [f64; PER_LINK] {
     ]
 }
 
-/// The body nearest to `nominal` + `change` (ten inertial parameters each) that can be: its pseudo-inertia, seen from the
-/// nominal one, has no eigenvalue below a fiftieth.
+/// The physically consistent body nearest to `nominal` + `change` (ten inertial parameters each): relative to the nominal one,
+/// its pseudo-inertia has no eigenvalue below [`LEAST_BODY_LEFT`].
 pub fn physical(nominal: &[f64], change: &[f64]) -> [f64; PER_LINK] {
     let Some(factor) = Cholesky::new(floored(nominal)) else {
         return std::array::from_fn(|k| nominal[k] + change[k]);
@@ -84,7 +84,7 @@ pub fn precision(parameters: &[f64]) -> DMatrix<f64> {
     DMatrix::from_fn(PER_LINK, PER_LINK, |a, b| (directions[a] * directions[b]).trace())
 }
 
-/// The pseudo-inertia of a body, made larger where it is too small to have an inverse.
+/// The pseudo-inertia of a body, enlarged where it is too small to be inverted.
 fn floored(parameters: &[f64]) -> Matrix4<f64> {
     let pseudo = pseudo_inertia(parameters);
     let mass = pseudo[(3, 3)].max(LEAST_BODY_MASS);
@@ -109,7 +109,7 @@ fn floored(parameters: &[f64]) -> Matrix4<f64> {
 mod tests {
     use super::*;
 
-    /// Ten per cent of a body, in whatever frame: the metric's length of δπ = 0.1 π is 0.1 √4, as tr(1) = 4.
+    /// Ten per cent of a body, in any frame: the length of δπ = 0.1 π in the metric is 0.1 √4, as tr(1) = 4.
     #[test]
     fn the_metric_knows_no_units() {
         for (mass, com, size) in [(2.0, [0.1, 0.0, 0.3], 0.2), (40.0, [1.0, -0.5, 0.0], 0.4)] {

@@ -1,41 +1,42 @@
-//! Intervals by resampling: blocks of time weighted at random again and again, each time fitted anew (Rubin 1981, The
-//! Bayesian bootstrap). No block is ever left out, so that what acts once, like a push, keeps its rows.
+//! Intervals by resampling: each draw fits the data with random weights on blocks of time (Rubin 1981, The Bayesian bootstrap).
+//! No block is left out, so that rows of a short event, such as a contact, always count.
 
 use effects::laws::RIGID;
 use effects::{Size, Term};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::data::statistics::NORMAL_95;
 use crate::search::problem::Chosen;
 use crate::search::refine::{sizes, varied};
 use crate::search::study::Study;
 use crate::thresholds::{BLOCK, INFLATION, UNEVEN};
 
-/// Resamplings.
+/// The number of resamplings.
 const DRAWS: usize = 120;
-/// Blocks in all, at most.
+/// The largest number of blocks.
 const MOST_BLOCKS: usize = 80;
-/// The step of a derivative by a size, as a part of it.
+/// The relative step of a derivative by a size.
 const STEP: f64 = 0.02;
 
-/// Coefficients, and relative corrections of the sizes that columns are not linear in, resampled.
+/// The resampled coefficients, and the relative corrections of the sizes on which columns depend nonlinearly.
 #[derive(Clone, Debug)]
 pub struct Resampled {
     /// The columns of the fit.
     pub columns: Vec<usize>,
-    /// The estimate of each column's coefficient, then of each size's correction.
+    /// The estimate of each coefficient, then of each correction of a size.
     pub estimate: Vec<f64>,
     /// The coefficients and corrections of each draw.
     pub draws: Vec<Vec<f64>>,
-    /// The draws as they would be if the background's strength held in every direction alike.
+    /// The draws for a background whose strength is the same in all directions.
     even: Vec<Vec<f64>>,
-    /// Which candidate and which of its sizes the corrections are of, in order.
+    /// The candidate and the size of each correction, in order.
     pub sizes: Vec<(usize, Size)>,
 }
 
 impl Resampled {
-    /// The estimate and the 95 % interval of a function of the parameters, where `systematic`, a part of the value, is what no
-    /// repetition shows.
+    /// The estimate and the 95 % interval of a function of the parameters. `systematic` is the part of the value that no
+    /// resampling shows.
     pub fn interval_within(&self, systematic: f64, f: impl Fn(&[f64]) -> f64) -> (f64, [f64; 2]) {
         let value = f(&self.estimate);
         let mut draws: Vec<f64> = self
@@ -48,15 +49,15 @@ impl Resampled {
             return (value, [f64::NEG_INFINITY, f64::INFINITY]);
         }
         draws.sort_by(f64::total_cmp);
-        // Half the distance between the quartiles of a normal distribution is .6745 of its spread.
+        // Half the interquartile range of a normal distribution is 0.6745 of its standard deviation.
         let at = |share: f64| draws[(share * (draws.len() - 1) as f64).round() as usize];
         let spread = (at(0.75) - at(0.25)) / (2.0 * 0.6745);
-        let half = INFLATION * 1.96 * spread + systematic * value.abs();
+        let half = INFLATION * NORMAL_95 * spread + systematic * value.abs();
         (value, [value - half, value + half])
     }
 
-    /// These resamplings with intervals for a background whose strength holds in every direction alike: for what must be told from
-    /// nothing, not for what is reported.
+    /// These resamplings with intervals for a background whose strength is the same in all directions. They decide whether an
+    /// effect differs from zero, and are not reported.
     pub fn evenly(&self) -> Self {
         Self {
             draws: self.even.clone(),
@@ -64,12 +65,12 @@ impl Resampled {
         }
     }
 
-    /// Where a column's coefficient stands.
+    /// The index of a column's coefficient in a draw.
     pub fn column(&self, column: usize) -> Option<usize> {
         self.columns.iter().position(|&c| c == column)
     }
 
-    /// Where the correction of a candidate's size stands.
+    /// The index of the correction of a candidate's size in a draw.
     pub fn size(&self, candidate: usize, size: Size) -> Option<usize> {
         let at = self.sizes.iter().position(|&known| known == (candidate, size))?;
         Some(self.columns.len() + at)
@@ -106,7 +107,7 @@ pub fn resample(study: &mut Study, chosen: &Chosen) -> Resampled {
     let (draws, even): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (0..DRAWS)
         .into_par_iter()
         .map(|draw| {
-            // A generator of its own for each draw, so that threads do not matter (splitmix64).
+            // Each draw has its own generator, so that the result does not depend on threads (splitmix64).
             let mut state = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(draw as u64 + 1);
             let (mut a, mut b) = (prior.precision.clone(), DVector::zeros(p));
             for (matrix, right) in &systems {
@@ -130,11 +131,12 @@ pub fn resample(study: &mut Study, chosen: &Chosen) -> Resampled {
     }
 }
 
-/// Where a column stands whose torque is measured through a torque scale, and where that scale's column stands.
+/// The indices of a column whose torque is measured through a torque scale, and of that scale's column.
 type ScaledBy = (usize, usize);
 
 /// The columns of `chosen` that a torque scale of their joint multiplies. The scale's own column is the rigid torque alone, so
-/// that what else acts on the joint is fitted in measured newton metres. What is carried in the arm is rigid torque already.
+/// that the other effects on the joint are fitted in measured newton metres. Effects carried in the arm are rigid torque
+/// already.
 fn scaled(study: &Study, chosen: &Chosen) -> Vec<ScaledBy> {
     let columns = &chosen.fit.columns;
     let term = |k: usize| study.table.terms[columns[k]];
@@ -171,10 +173,10 @@ fn uniform(state: &mut u64) -> f64 {
     (((z ^ (z >> 31)) >> 11) + 1) as f64 / (1_u64 << 53) as f64
 }
 
-/// The background's prior in the normal equations. In each draw its mean is drawn about zero, as the data are resampled, so
-/// that the spread of the draws has the prior's part. The mean is drawn [`UNEVEN`] times as far as the prior says.
+/// The background's prior in the normal equations. In each draw, its mean is drawn about zero, as the data are resampled, so
+/// that the draws include the prior's uncertainty. The mean is drawn with [`UNEVEN`] times the prior's standard deviation.
 struct PriorDraws {
-    /// K, the background's columns first, zeros beside it.
+    /// K, with the background's columns first, and zeros for the other columns.
     precision: DMatrix<f64>,
     /// Its Cholesky factor.
     lower: DMatrix<f64>,
@@ -189,7 +191,7 @@ impl PriorDraws {
         Self { precision, lower }
     }
 
-    /// K ξ for the right side of `p` columns, ξ ~ N(0, K⁻¹).
+    /// K ξ for the right-hand side of `p` columns, ξ ~ N(0, K⁻¹).
     fn draw(&self, state: &mut u64, p: usize) -> DVector<f64> {
         let n = self.lower.nrows();
         // Box and Muller 1958.
@@ -212,7 +214,7 @@ fn systems(
     let table = &study.table;
     let p = columns.len() + sizes.len();
     let weights = study.training_products().evidence_weights(&chosen.fit.weights);
-    // The columns of each joint, the derivatives by the sizes last.
+    // The columns of each joint, with the derivatives by the sizes last.
     let by_joint: Vec<Vec<Option<Vec<f64>>>> = (0..table.dof())
         .into_par_iter()
         .map(|joint| {
@@ -289,13 +291,13 @@ fn systems(
         .collect()
 }
 
-/// Least squares of scaled columns with a ridge far below them.
+/// Least squares of scaled columns with a very small ridge.
 fn solve(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
     let [solution, _] = solve_both(a, b, b);
     solution
 }
 
-/// Least squares with two right sides, as [`solve`].
+/// Least squares with two right-hand sides, as in [`solve`].
 fn solve_both(a: &DMatrix<f64>, b: &DVector<f64>, c: &DVector<f64>) -> [DVector<f64>; 2] {
     let p = b.len();
     let scale: Vec<f64> = (0..p)

@@ -35,13 +35,13 @@ pub fn values(term: Term, joint: usize, chunk: &Chunk, rigid: &Rigid, scales: &S
     term.column(joint, &along(chunk, rigid, scales))
 }
 
-/// The link's motion behind a joint that gives, along a chunk; `None` if the term says nothing of that.
+/// The link's motion behind a compliant joint along a chunk; `None` for other terms.
 pub fn behind(term: Term, chunk: &Chunk, rigid: &Rigid, scales: &Scales) -> Option<Behind> {
     let simulate = term.law.behind?;
     Some(simulate(&term, &along(chunk, rigid, scales)))
 }
 
-/// What a link behind a joint that gives adds to the torque of `joint` (N m or N).
+/// The torque (N m or N) that a link behind a compliant joint adds on `joint`.
 pub fn behind_torque(behind: &Behind, joint: usize, chunk: &Chunk, rigid: &Rigid, scales: &Scales) -> Vec<f64> {
     behind.torque(joint, along(chunk, rigid, scales).rigid)
 }

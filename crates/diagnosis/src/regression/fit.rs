@@ -14,51 +14,51 @@ mod left_out;
 
 use eliminated::Eliminated;
 
-/// Of the diagonal, so that aliases share a torque instead of fighting over it.
+/// The ridge, relative to the diagonal, so that collinear columns share a torque.
 const RIDGE: f64 = 1e-9;
-/// Weights are found anew as often.
+/// The number of times that weights are recomputed.
 const REWEIGHTINGS: usize = 3;
-/// Weights that differ by less than this factor are not found anew where a background is to be eliminated for them.
+/// Weights that change by less than this factor are not recomputed where a background would have to be eliminated for them.
 const SAME_WEIGHT: f64 = 1.25;
 
-/// Pieces of evidence a second of a motion of frequency `tempo` (Hz).
+/// Independent pieces of evidence per second of a motion of frequency `tempo` (Hz).
 pub fn evidence_rate(tempo: f64) -> f64 {
     (EVIDENCE_PER_PERIOD * tempo).clamp(EVIDENCE_RATE, MOST_EVIDENCE_RATE)
 }
 
-/// The inner products over some of the recordings.
+/// The inner products over a set of recordings.
 #[derive(Clone, Debug)]
 pub struct Products {
-    /// One a joint.
+    /// One per joint.
     gram: Arc<Vec<Gram>>,
-    /// Moving rows, one a joint.
+    /// Moving rows, one per joint.
     pub count: Vec<f64>,
-    /// Pieces of evidence, one a joint.
+    /// Pieces of evidence, one per joint.
     pub evidence: Vec<f64>,
-    /// The variance that noise, filtering and small errors of the model leave, one a joint.
+    /// The variance due to noise, filtering and small errors of the model, one per joint.
     pub floor: Vec<f64>,
-    /// The recordings that it is over.
+    /// The recordings.
     recordings: Vec<usize>,
-    /// What every fit has besides the columns that are chosen.
+    /// The background of every fit, in addition to the chosen columns.
     background: Option<Arc<Background>>,
-    /// The background eliminated at the weights that were used last.
+    /// The background eliminated at the last weights.
     eliminated: Arc<Mutex<Vec<Arc<Eliminated>>>>,
 }
 
 /// A solution.
 #[derive(Clone, Debug)]
 pub struct Fit {
-    /// The columns, in the table's numbers, ascending: those of the background, then those chosen.
+    /// The columns, as indices into the table, ascending: those of the background, then the chosen ones.
     pub columns: Vec<usize>,
     /// How many of them are the background's.
     pub background: usize,
-    /// One coefficient a column.
+    /// One coefficient per column.
     pub coefficients: Vec<f64>,
-    /// The sum of squares that is left, one a joint.
+    /// The residual sum of squares, one per joint.
     pub rss: Vec<f64>,
-    /// The weight of each joint's rows: one over its variance.
+    /// The weight of each joint's rows: the reciprocal of their variance.
     pub weights: Vec<f64>,
-    /// Minus the logarithm of the likelihood, and what the background costs (nats).
+    /// Minus the logarithm of the likelihood, plus the cost of the background (nats).
     pub loss: f64,
     /// The Cholesky factor of the scaled normal matrix of the chosen columns, the background eliminated.
     factor: DMatrix<f64>,
@@ -70,7 +70,7 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// The coefficient of a column; zero if it is not in.
+    /// The coefficient of a column; zero if it is not in the fit.
     pub fn coefficient(&self, column: usize) -> f64 {
         self.columns
             .iter()
@@ -78,20 +78,20 @@ impl Fit {
             .map_or(0.0, |k| self.coefficients[k])
     }
 
-    /// The coefficients of some columns; zero of those that are not in.
+    /// The coefficients of some columns; zero for those that are not in the fit.
     pub fn values(&self, columns: &[usize]) -> Vec<f64> {
         columns.iter().map(|&column| self.coefficient(column)).collect()
     }
 
-    /// The columns that were chosen.
+    /// The chosen columns.
     pub fn chosen(&self) -> &[usize] {
         &self.columns[self.background..]
     }
 }
 
 impl Products {
-    /// Over the recordings that `chosen` picks; `seconds` is the time between rows, `tempo` the frequency of each joint's
-    /// motion (Hz).
+    /// The products over the recordings that `chosen` selects; `seconds` is the time between rows, `tempo` the frequency of
+    /// each joint's motion (Hz).
     pub fn new(table: &Table, chosen: impl Fn(usize) -> bool, seconds: &[f64], tempo: &[f64], floor: &[f64]) -> Self {
         let recordings: Vec<usize> = (0..table.rows.len()).filter(|&r| chosen(r)).collect();
         let sum = |joint: usize| -> Gram {
@@ -135,7 +135,7 @@ impl Products {
         self.background.is_some()
     }
 
-    /// Pieces of evidence a row of a joint.
+    /// Independent pieces of evidence per row of a joint.
     fn evidence_per_row(&self, joint: usize) -> f64 {
         self.evidence[joint] / self.count[joint].max(1.0)
     }
@@ -149,7 +149,7 @@ impl Products {
         rss.max(0.0) / self.count[joint].max(1.0) + self.floor[joint]
     }
 
-    /// Minus the logarithm of the likelihood, for what is left on each joint (nats).
+    /// Minus the logarithm of the likelihood for residual sums of squares of the joints (nats).
     pub fn loss(&self, rss: &[f64]) -> f64 {
         (0..rss.len())
             .map(|joint| 0.5 * self.evidence[joint] * self.variance(joint, rss[joint]).ln())
@@ -161,7 +161,7 @@ impl Products {
         0.5 * self.evidence[joint] * self.variance(joint, rss).ln()
     }
 
-    /// The inner product of two columns, weighted; `None` stands for y.
+    /// The weighted inner product of two columns; `None` stands for y.
     fn product(&self, table: &Table, weights: &[f64], a: usize, b: Option<usize>) -> f64 {
         let joints = match table.terms[a].joint() {
             Some(joint) => joint..joint + 1,
@@ -183,7 +183,7 @@ impl Products {
         sum
     }
 
-    /// What `coefficients` leave on each joint (sum of squares).
+    /// The residual sum of squares of `coefficients` on each joint.
     pub fn rss(&self, table: &Table, columns: &[usize], coefficients: &[f64]) -> Vec<f64> {
         (0..table.dof())
             .map(|joint| {
@@ -206,10 +206,10 @@ impl Products {
             .collect()
     }
 
-    /// Fits `columns`, the joints weighted by what is left on each, beginning with `weights`.
+    /// Fits `columns` with the joints weighted by their residuals, starting with the weights `weights`.
     ///
-    /// With a background the weights stay as they are: to eliminate it for others costs more than many fits. [`Self::reweighted`]
-    /// does that once something was decided.
+    /// With a background, the weights are kept: eliminating it for other weights costs more than many fits.
+    /// [`Self::reweighted`] recomputes them after a decision.
     pub fn fit(&self, table: &Table, columns: &[usize], weights: &[f64]) -> Fit {
         let mut weights = weights.to_vec();
         let mut fit = self.solve(table, columns, &weights);
@@ -225,7 +225,7 @@ impl Products {
         fit
     }
 
-    /// `fit` with the joints weighted by what it leaves on each.
+    /// `fit` with the joints weighted by their residuals in it.
     pub fn reweighted(&self, table: &Table, mut fit: Fit) -> Fit {
         if self.background.is_none() {
             return fit;
@@ -243,7 +243,7 @@ impl Products {
         fit
     }
 
-    /// The weights of joints of which nothing is explained.
+    /// The weights of the joints without any explanation.
     pub fn first_weights(&self) -> Vec<f64> {
         (0..self.gram.len())
             .map(|joint| 1.0 / (self.power(joint) + self.floor[joint]).max(1e-300))
@@ -308,7 +308,7 @@ impl Products {
         }
     }
 
-    /// By how much `added` columns would lower the weighted sum of squares of `fit`, at its weights.
+    /// The reduction of the weighted sum of squares of `fit` by `added` columns, at its weights.
     pub fn drop(&self, table: &Table, fit: &Fit, added: &[usize]) -> f64 {
         let chosen = fit.chosen();
         let (p, c) = (chosen.len(), added.len());
@@ -342,7 +342,7 @@ impl Products {
             own -= cross.tr_mul(&cross);
             right -= cross.tr_mul(&fit.reduced);
         }
-        // What the columns in already span must not be gained again.
+        // The span of the present columns must not be gained again.
         for k in 0..c {
             own[(k, k)] += 1e-6;
         }
@@ -354,7 +354,8 @@ impl Products {
         }
     }
 
-    /// What a column, at a coefficient of one, adds to the weighted sum of squares beside the columns of `fit`.
+    /// The amount that a column with a coefficient of one adds to the weighted sum of squares in addition to the columns of
+    /// `fit`.
     pub fn drop_of(&self, table: &Table, fit: &Fit, column: usize) -> f64 {
         let inner = |b: usize| self.inner(table, &fit.weights, fit.eliminated.as_deref(), column, Some(b));
         let own = inner(column);
@@ -368,7 +369,7 @@ impl Products {
     }
 }
 
-/// L⁻¹ b and (L Lᵀ)⁻¹ b of a lower Cholesky factor and a right side.
+/// L⁻¹ b and (L Lᵀ)⁻¹ b for a lower Cholesky factor L and a right-hand side b.
 fn solved(factor: &DMatrix<f64>, right: &DVector<f64>) -> [DVector<f64>; 2] {
     let none = || DVector::zeros(right.len());
     let reduced = factor.solve_lower_triangular(right).unwrap_or_else(none);
@@ -376,7 +377,7 @@ fn solved(factor: &DMatrix<f64>, right: &DVector<f64>) -> [DVector<f64>; 2] {
     [reduced, solution]
 }
 
-/// The lower Cholesky factor of a matrix of unit diagonal that is positive semidefinite but for rounding.
+/// The lower Cholesky factor of a matrix with unit diagonal that is positive semidefinite up to rounding.
 fn cholesky(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let p = matrix.nrows();
     let ridged = matrix + DMatrix::identity(p, p) * RIDGE;

@@ -5,8 +5,8 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 /// The ridge of a force's normal equations, as a part of their trace.
 pub const FORCE_RIDGE: f64 = 1e-6;
 
-/// What columns explain of a residual's weighted square, by their inner products with each other and with the residual; the ridge
-/// is a `part` of the trace.
+/// The part of a residual's weighted square that columns explain, from their inner products with each other and with the
+/// residual; the ridge is a `part` of the trace.
 pub fn explained<const N: usize>(mut matrix: SMatrix<f64, N, N>, right: &SVector<f64, N>, part: f64) -> f64 {
     let ridge = (part * matrix.trace()).max(1e-300);
     for k in 0..N {
@@ -15,7 +15,7 @@ pub fn explained<const N: usize>(mut matrix: SMatrix<f64, N, N>, right: &SVector
     matrix.cholesky().map_or(0.0, |factor| right.dot(&factor.solve(right)))
 }
 
-/// A force on the tool that is fitted to some rows and tried on others.
+/// A force on the tool that is fitted to some rows and tested on others.
 #[derive(Default)]
 pub struct ForceFit {
     matrix: Matrix3<f64>,
@@ -34,8 +34,8 @@ impl ForceFit {
         }
     }
 
-    /// The force (N), and the weighted square of the residual on the rows it is tried on, without and with it; `None` if
-    /// nothing determines it.
+    /// The force (N), and the weighted square of the residual on the rows where it is tested, without and with it; `None` if
+    /// nothing determines the force.
     pub fn solved(self) -> Option<(Vector3<f64>, [f64; 2])> {
         let ridge = (FORCE_RIDGE * self.matrix.trace()).max(1e-300);
         let force = (self.matrix + Matrix3::identity() * ridge)

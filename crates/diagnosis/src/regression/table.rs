@@ -16,28 +16,28 @@ mod gram;
 
 pub use gram::{Gram, Stretch};
 
-/// Terms that are evaluated at a time: what is simulated for them is kept for so long.
+/// The number of terms that are evaluated at a time; simulations for them are stored until then.
 const BATCH: usize = 12;
 
-/// Which rows of a joint are fitted.
+/// The rows of a joint that are fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Moving {
-    /// Those around which the joint does not rest: on them a sign of the velocity is beyond doubt.
+    /// Rows away from rest, where the sign of the velocity is certain.
     Steadily,
-    /// Those near a quick reversal too: they tell most about dry friction.
+    /// Also rows near quick reversals, which contain most information about dry friction.
     ThroughReversals,
 }
 
 /// One joint's target and columns on the rows, through the second filter.
 #[derive(Clone, Debug)]
 pub struct JointTable {
-    /// Measured less rigid (N m or N).
+    /// Measured minus rigid torque (N m or N).
     pub y: Vec<f64>,
     /// The columns that act on this joint.
     pub x: Vec<Vec<f64>>,
     /// Whether the joint moves: rows at rest are not fitted.
     pub moving: Vec<bool>,
-    /// The recordings that move it, the only one cut into pieces.
+    /// The recordings that move the joint; if there is only one, its stretches.
     pub stretches: Vec<Stretch>,
     /// The moving rows of each recording.
     pub count: Vec<usize>,
@@ -48,7 +48,7 @@ pub struct JointTable {
 pub struct Table {
     /// All terms.
     pub terms: Vec<Term>,
-    /// Where a term stands in a joint's columns: `[joint][term]`.
+    /// The index of a term among a joint's columns: `[joint][term]`.
     pub place: Vec<Vec<Option<usize>>>,
     /// One a joint.
     pub joints: Vec<JointTable>,
@@ -57,9 +57,9 @@ pub struct Table {
 }
 
 impl Table {
-    /// Evaluates `terms` along `motions` for the arm of `rigid` (one a chunk). What that arm has already of the
-    /// terms in `carried`, by their coefficients, is put back into y: a Gauss-Newton step about it. `moving`
-    /// tells which rows are fitted.
+    /// Evaluates `terms` along `motions` for the arm of `rigid` (one per chunk). The part that this arm already contains of the
+    /// terms in `carried`, with their coefficients, is added to y again: a Gauss-Newton step about it. `moving` selects the
+    /// rows that are fitted.
     pub fn new(
         motions: &Motions,
         rigid: &[Rigid],
@@ -104,7 +104,7 @@ impl Table {
                     y.extend(chunk.filter(&difference));
                     let core = (CORE * chunk.kernel.width() / chunk.period).ceil() as usize;
                     let rest = scales.rest[joint];
-                    // A joint that only yields a little does not move.
+                    // A joint that only yields a little does not count as moving.
                     let (low, high) = chunk.q[joint]
                         .iter()
                         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &q| {
@@ -151,7 +151,7 @@ impl Table {
         table
     }
 
-    /// `terms` alone, without rows: for products that were formed elsewhere, term k of every joint that it acts on in place k.
+    /// `terms` alone, without rows, for products from elsewhere: term k has the index k on every joint that it acts on.
     pub fn bare(terms: Vec<Term>, dof: usize) -> Self {
         let place = |joint: usize| -> Vec<Option<usize>> {
             let acts = |term: &Term| term.joint().is_none_or(|only| only == joint);
@@ -173,7 +173,7 @@ impl Table {
         }
     }
 
-    /// `terms` for another arm along these motions; what depends on the motion alone is taken from `self`.
+    /// `terms` for another arm along these motions; terms that depend on the motion alone are copied from `self`.
     pub fn formed_anew(
         &self,
         motions: &Motions,
@@ -188,7 +188,7 @@ impl Table {
         table
     }
 
-    /// Evaluates more terms; those that depend on the motion alone are copied from `known` where it has them.
+    /// Evaluates more terms; those that depend on the motion alone are copied from `known` if it contains them.
     pub fn add(
         &mut self,
         motions: &Motions,
@@ -211,7 +211,7 @@ impl Table {
             Vec::new()
         };
         for (terms, copies) in terms.chunks(BATCH).zip(copies.chunks(BATCH)) {
-            // What lies behind a joint that gives is simulated once, for all joints that feel it.
+            // The motion behind a compliant joint is simulated once for all joints on which it acts.
             let links: Vec<Vec<Behind>> = terms
                 .par_iter()
                 .map(|&term| {
@@ -291,7 +291,7 @@ impl Table {
         self.joints[0].y.len()
     }
 
-    /// What `coefficients` on the columns `columns` leave of y on `joint`, on all rows (N m or N).
+    /// The residual of y on `joint` with `coefficients` on the columns `columns`, on all rows (N m or N).
     pub fn residual(&self, joint: usize, columns: &[usize], coefficients: &[f64]) -> Vec<f64> {
         let mut residual = self.torque(joint, columns, coefficients);
         let y = &self.joints[joint].y;

@@ -1,15 +1,15 @@
-//! What may explain a residual: the catalogue's effects, and forms that have no name, each with its columns.
+//! Candidates that may explain a residual: effects of the catalogue and unmodelled forms, each with its columns.
 
 use effects::{EffectKind, Grounds, Kind, Spec, Term};
 
 use crate::thresholds::Thresholds;
 
-/// A kind of hypothesis, with the other joint whose motion it depends on; the catalogue's come first.
+/// A kind of hypothesis, with the other joint on whose motion it depends; those of the catalogue come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Hypothesis {
-    /// The effect, or the form without a name.
+    /// The effect, or the unmodelled form.
     pub kind: Kind,
-    /// The other joint, of what depends on one.
+    /// The other joint, if it depends on one.
     pub other: Option<usize>,
 }
 
@@ -32,7 +32,7 @@ impl Hypothesis {
         self.kind.spec()
     }
 
-    /// The catalogue's name; `None` for what has none.
+    /// The name in the catalogue; `None` for an unmodelled form.
     pub fn name(self) -> Option<&'static str> {
         self.kind.name()
     }
@@ -42,65 +42,65 @@ impl Hypothesis {
         self.spec().is_simulated
     }
 
-    /// Whether it is the friction that every drive has.
+    /// Whether it is a friction that every drive has.
     pub fn is_friction(self) -> bool {
         self.spec().is_friction
     }
 
-    /// Whether it is the inertia that every drive has.
+    /// Whether it is the inertia of the drive's rotor.
     pub fn is_drive_inertia(self) -> bool {
         self.is_baseline() && !self.is_friction()
     }
 
-    /// Whether a URDF usually omits it: friction and the drives' inertia need less evidence.
+    /// Whether it is a baseline effect: most URDFs omit friction and rotor inertia, so that they need less evidence.
     pub fn is_baseline(self) -> bool {
         self.spec().is_baseline
     }
 
-    /// Whether it is baseline, or a constant beside that.
+    /// Whether it is a baseline effect or a constant.
     pub fn is_simple(self) -> bool {
         self.spec().is_simple
     }
 
-    /// Whether it says that masses are not the model's.
+    /// Whether it means that masses differ from the model's.
     pub fn is_wrong_mass(self) -> bool {
         self.spec().is_wrong_mass
     }
 
-    /// The simpler hypothesis that it is a form of.
+    /// The simpler hypothesis that it generalises.
     pub fn plain(self) -> Option<Self> {
         let kind = Kind::named(self.spec().plain?)?;
         Some(Self { kind, other: None })
     }
 
-    /// Whether there is but one form that it can have: it follows from rigid-body dynamics.
+    /// Whether its form is certain, because it follows from rigid-body dynamics.
     pub fn is_certain_in_form(self) -> bool {
         self.spec().is_certain_in_form
     }
 
-    /// Whether it may be there in one recording alone.
+    /// Whether it may be present in one recording only.
     pub fn is_passing(self) -> bool {
         self.spec().is_passing
     }
 }
 
-/// Some columns that come and go together.
+/// Columns that are added and removed together.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// What it would be.
+    /// Its hypothesis.
     pub hypothesis: Hypothesis,
-    /// Where; `None` is the whole arm.
+    /// The joint; `None` for the whole arm.
     pub joint: Option<usize>,
     /// Its columns, as indices into the table.
     pub columns: Vec<usize>,
     /// The evidence it must bring (nats).
     pub cost: f64,
-    /// Whether it is a size tried in refining another.
+    /// Whether it is a trial size during refinement.
     pub is_trial: bool,
 }
 
 impl Candidate {
-    /// A candidate with the usual cost.
+    /// A candidate with the usual evidence required.
     pub fn new(hypothesis: Hypothesis, joint: Option<usize>, columns: Vec<usize>, thresholds: &Thresholds) -> Self {
         let cost = hypothesis.spec().prior + thresholds.per_coefficient * columns.len() as f64;
         Self {
@@ -113,7 +113,7 @@ impl Candidate {
     }
 }
 
-/// The candidates known from the outset, with the terms of their columns, in the order of their turns.
+/// The candidates known from the beginning, with the terms of their columns, in the order of their turns.
 pub fn catalogue(grounds: &Grounds<'_>) -> Vec<(Hypothesis, Option<usize>, Vec<Term>)> {
     let of = |kind: Kind| kind.get().forms(grounds).into_iter().map(move |form| (kind, form));
     let mut forms: Vec<_> = Kind::all().flat_map(of).collect();

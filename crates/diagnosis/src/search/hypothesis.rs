@@ -1,4 +1,4 @@
-//! A hypothesis: the effects that were asked for, fitted together, with no search and no judgement.
+//! A hypothesis of the user (`--only`): the requested effects are fitted together, without search and selection.
 
 use arm::Arm;
 use effects::Scope;
@@ -12,9 +12,9 @@ use crate::search::refine::resize;
 use crate::search::study::Study;
 use crate::selection::judge::{self, Selection};
 
-/// Sweeps over the forms of all effects, at most.
+/// The largest number of sweeps over the forms of all effects.
 const SWEEPS: usize = 4;
-/// Rounds about the arm that the effects make.
+/// The number of linearisations about the arm with the effects.
 const ROUNDS: usize = 2;
 
 /// An effect to be fitted, by its name.
@@ -24,13 +24,13 @@ pub struct Wanted {
     pub effect: String,
     /// The joint, or `None` for the whole arm.
     pub joint: Option<String>,
-    /// The joint that turns the drive too, if it is to be a certain one.
+    /// The other joint of a coupling, if a particular one is requested.
     pub other: Option<String>,
-    /// Whether it sets in halfway, at a time that is looked for; `None` if that is open.
+    /// Whether it has an onset, which is searched; `None` if that is open.
     pub sets_in: Option<bool>,
 }
 
-/// What is wanted, in the study's numbers.
+/// A request, with indices of the study.
 #[derive(Clone, Copy)]
 struct Place<'a> {
     wanted: &'a Wanted,
@@ -48,7 +48,8 @@ impl Wanted {
     }
 }
 
-/// Whether a hypothesis is a candidate on a joint, or (`None`) on the whole arm: all are, unless certain effects were asked for.
+/// Whether a hypothesis is a candidate on a joint or (`None`) on the whole arm: all are, unless particular effects are
+/// requested.
 pub fn may_be(options: &Options, arm: &Arm, hypothesis: Hypothesis, joint: Option<usize>) -> bool {
     options.only.as_ref().is_none_or(|wanted| {
         let joint = joint.map(|joint| &arm.joints()[joint].name);
@@ -60,16 +61,16 @@ pub fn may_be(options: &Options, arm: &Arm, hypothesis: Hypothesis, joint: Optio
     })
 }
 
-/// Fits `wanted`, each in the form and at the size that explain the training recordings best.
+/// Fits the `wanted` effects, each in the form and at the size that explain the training recordings best.
 ///
 /// # Errors
-/// [`DiagnosisError::Wanted`], if one is given twice, is not in the catalogue, or not on such a joint.
+/// [`DiagnosisError::Wanted`], if an effect is given twice, is not in the catalogue, or not possible on such a joint.
 pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Selection, DiagnosisError> {
     let mut waiting = check(study, wanted)?;
     let mut placed: Vec<Place<'_>> = Vec::new();
     let products = study.training_products();
     let mut chosen = study.problem(&products).choose(Vec::new(), &products.first_weights());
-    // When something set in, where a contact was and which period a ripple has is told by what the others leave.
+    // The time of an onset or a contact and the period of a ripple follow from the residual of the other effects.
     for suggest in [false, true] {
         if suggest {
             study.suggest(&chosen);
@@ -119,7 +120,7 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Selection, DiagnosisE
     })
 }
 
-/// The joints' numbers.
+/// The indices of the joints.
 fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, DiagnosisError> {
     let mut places = Vec::new();
     for (k, one) in wanted.iter().enumerate() {
@@ -131,14 +132,14 @@ fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, Diag
             None => Ok(None),
         };
         let (mut joint, mut other) = (joint_of(&one.joint)?, joint_of(&one.other)?);
-        // Of two joints that turn one drive, the catalogue has the effect on the later.
+        // The catalogue has the effect of a shared drive on the later of its two joints.
         if other > joint && joint.is_some() {
             (joint, other) = (other, joint);
         }
         if let (Some(joint), Some(other)) = (joint, other)
             && !(1..=FARTHEST_COUPLED).contains(&(joint - other))
         {
-            return Err(one.refused("is looked for between joints that are next to each other, or one apart"));
+            return Err(one.refused("acts on joints that are neighbours or have one joint between them"));
         }
         let Some(spec) = effects::spec(&one.effect) else {
             return Err(one.refused("no such effect is in the catalogue"));
@@ -157,7 +158,7 @@ fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, Diag
     Ok(places)
 }
 
-/// `chosen` with the best form of an effect in the place of the member at `instead`, or added to it.
+/// `chosen` with the best form of an effect in the place of the member at `instead`, or added.
 fn best(
     problem: &Problem<'_>,
     chosen: &Chosen,
@@ -170,7 +171,7 @@ fn best(
     }
     let is_form = |&c: &usize| {
         let candidate = &problem.candidates[c];
-        // What was asked for twice is there twice, not once in two sizes.
+        // An effect that is requested twice is present twice, not once in two sizes.
         let is_twin =
             |&other: &usize| problem.candidates[other].hypothesis == candidate.hypothesis && problem.exclude(c, other);
         let with = candidate.hypothesis.other;
@@ -180,7 +181,7 @@ fn best(
             && is_pair
             && !others.iter().any(is_twin)
     };
-    // What has no form that sets in halfway is taken as always acting.
+    // An effect without a form with onset is taken as always acting.
     let is_as_wanted = |&c: &usize| {
         let sets_in = problem.onset(&problem.candidates[c]).is_some();
         wanted.sets_in.is_none_or(|wanted| wanted == sets_in)
@@ -195,7 +196,7 @@ fn best(
         let next = problem.choose(set, &chosen.fit.weights);
         (!problem.is_possible(c, &next.fit), next)
     };
-    // What physics allows goes first, if any of the forms is.
+    // Physically possible forms are preferred, if there are any.
     let best = forms
         .into_iter()
         .map(with)
@@ -203,7 +204,7 @@ fn best(
     best.map(|(_, next)| next)
 }
 
-/// `chosen` with each effect in the form that is best beside the others' forms.
+/// `chosen` with each effect in the form that is best with the others' forms.
 fn swept(problem: &Problem<'_>, mut chosen: Chosen, placed: &[Place<'_>]) -> Chosen {
     for _ in 0..SWEEPS {
         let before = chosen.set.clone();

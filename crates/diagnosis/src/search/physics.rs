@@ -1,4 +1,4 @@
-//! What a coefficient must be for its hypothesis to be possible.
+//! Physical limits of coefficients.
 
 use arm::Arm;
 use effects::{Fitted, Term, UNIT};
@@ -58,7 +58,7 @@ impl Fitted for InFit<'_> {
 
 /// Whether `candidate` is possible at the coefficients of `fit`.
 pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bool {
-    // What every drive has may well be hidden by masses that are wrong the other way.
+    // Masses with the opposite error may hide an effect that every drive has.
     let cancels = |joint| torque_share(candidate, table, fit, joint) >= LARGEST_TORQUE_SHARE;
     if !candidate.hypothesis.is_baseline() && candidate.joint.is_some_and(cancels) {
         return false;
@@ -66,7 +66,7 @@ pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -
     is_physical(candidate, table, fit, arm)
 }
 
-/// Whether the effect of `candidate` exists at the coefficients of `fit`, whatever it is to explain.
+/// Whether the effect of `candidate` can exist at the coefficients of `fit`.
 fn is_physical(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bool {
     candidate.hypothesis.kind.get().is_possible(&InFit {
         candidate,
@@ -76,7 +76,7 @@ fn is_physical(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bo
     })
 }
 
-/// Whether no effect of `candidate` has the coefficient `size` or minus `size` on `column`, although one has a thousandth of it.
+/// Whether no effect of `candidate` has a coefficient of ±`size` on `column`, although one a thousandth as large is possible.
 pub fn is_beyond_physics(size: f64, column: usize, candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bool {
     let is_possible = |size: f64| {
         [size, -size].into_iter().any(|size| {
@@ -94,12 +94,12 @@ pub fn is_beyond_physics(size: f64, column: usize, candidate: &Candidate, table:
     is_possible(1e-3 * size) && !is_possible(size)
 }
 
-/// Whether what is simulated at its size comes out with a coefficient near one.
+/// Whether the coefficient of a simulated effect is near one.
 pub fn is_at_its_size(candidate: &Candidate, fit: &Fit) -> bool {
     !candidate.hypothesis.is_unit() || UNIT.contains(&fit.coefficient(candidate.columns[0]))
 }
 
-/// The root mean square of a candidate's torque over that of what it is to explain, on moving rows.
+/// The root mean square of a candidate's torque over that of the torque to be explained, on moving rows.
 fn torque_share(candidate: &Candidate, table: &Table, fit: &Fit, joint: usize) -> f64 {
     let torque = table.torque(joint, &candidate.columns, &fit.values(&candidate.columns));
     let this = &table.joints[joint];

@@ -5,17 +5,17 @@ use crate::search::problem::Chosen;
 use crate::search::refine::refine;
 use crate::search::study::Study;
 
-/// Rounds of suggestion, at most.
+/// The largest number of rounds of suggestion.
 const SUGGESTIONS: usize = 3;
-/// Rounds of refinement, at most.
+/// The largest number of rounds of refinement.
 const REFINEMENTS: usize = 2;
-/// Swaps in a row, at most.
+/// The largest number of consecutive swaps.
 const SWAPS: usize = 4;
 
-/// Last additions, at most.
+/// The largest number of last additions.
 const LAST: usize = 3;
 
-/// Finds the candidates that together explain the training recordings. `progress` is told what is going on.
+/// Searches the candidates that together explain the training recordings. `progress` receives each step.
 pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
     let baseline: Vec<usize> = (0..study.candidates.len())
         .filter(|&c| study.candidates[c].hypothesis.is_friction())
@@ -25,11 +25,11 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
     for round in 1..=SUGGESTIONS {
         progress(Step::new(
             0.12 + 0.08 * round as f64,
-            &format!("looking for effects, round {round}"),
+            &format!("searching effects, round {round}"),
         ));
         let before = chosen.set.clone();
-        // What has no name must not hide what the residual suggests, nor what was suggested when little else was known: a
-        // ripple's period, a push, an onset, of which the one may have stood for the beginning of the other.
+        // Unmodelled forms must not hide what the residual suggests. Neither must earlier suggestions, made with less
+        // knowledge: the period of a ripple, a contact, an onset, one of which may have replaced the beginning of another.
         let products = study.training_products();
         let named = before
             .iter()
@@ -41,7 +41,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
             })
             .collect();
         let next = study.problem(&products).choose(named, &chosen.fit.weights);
-        study.note("looked for anew in this round", &chosen, &next);
+        study.note("searched again in this round", &chosen, &next);
         chosen = next;
         study.suggest(&chosen);
         let products = study.training_products();
@@ -70,7 +70,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
         let before = set.clone();
         chosen = problem.choose(set, &chosen.fit.weights);
         let pruned = problem.prune(chosen.clone());
-        study.note("does not pay its price", &chosen, &pruned);
+        study.note("costs more evidence than it brings", &chosen, &pruned);
         chosen = study.grown(pruned, &allowed);
         let products = study.training_products();
         let swapped = study.problem(&products).swap(chosen.clone(), &allowed, SWAPS);
@@ -82,7 +82,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
             break;
         }
     }
-    // With all sizes found, what did not pay before may do so, and with that what was not possible.
+    // With all sizes found, candidates that did not pay or were impossible before may do so.
     for _ in 0..LAST {
         let products = study.training_products();
         let allowed = study.allowed();

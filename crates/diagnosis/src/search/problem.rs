@@ -14,14 +14,14 @@ use crate::thresholds::{KNOWN_DRIVE, TELLING_DRIVES, Thresholds};
 mod exchange;
 mod exclusion;
 
-/// So many of the most promising candidates are fitted in full each round.
+/// The number of the most promising candidates that are fitted in full each round.
 const TRIED: usize = 8;
-/// Forms of one effect on one joint that are fitted in full before other effects have been.
+/// The number of forms of one effect on one joint that are fitted in full before other effects.
 const AT_ONCE: usize = 3;
-/// More candidates than this are not taken.
+/// The largest number of selected candidates.
 pub const MOST: usize = 60;
 
-/// So many times the next most promising are tried, if the first do not pay.
+/// The number of times that the next most promising candidates are tried if the first do not pay.
 const BATCHES: usize = 6;
 
 /// A choice of candidates with its fit.
@@ -29,7 +29,7 @@ const BATCHES: usize = 6;
 pub struct Chosen {
     /// Indices into the candidates.
     pub set: Vec<usize>,
-    /// All together.
+    /// The fit of all of them.
     pub fit: Fit,
     /// Loss and costs (nats).
     pub score: f64,
@@ -42,19 +42,19 @@ impl Chosen {
     }
 }
 
-/// What growing a choice step by step has to remember.
+/// The memory of a stepwise growth.
 #[derive(Clone, Debug, Default)]
 pub struct Growth {
-    /// What does not predict.
+    /// Candidates that do not predict.
     pub refused: Vec<usize>,
-    /// What was fitted and not taken: candidate, score with it, reason.
+    /// Candidates that were fitted and not taken, with their score and the reason.
     pub tried: Vec<(usize, f64, &'static str)>,
 }
 
-/// The rule that drops what physics does not allow.
+/// The rule that removes what is physically impossible.
 pub const IMPOSSIBLE: &str = "its parameters are not physical";
 
-/// What the search needs to know.
+/// The data of the search.
 #[derive(Clone, Copy)]
 pub struct Problem<'a> {
     /// All columns.
@@ -63,14 +63,14 @@ pub struct Problem<'a> {
     pub products: &'a Products,
     /// All candidates.
     pub candidates: &'a [Candidate],
-    /// The robot.
+    /// The arm.
     pub arm: &'a Arm,
-    /// What decides.
+    /// The thresholds.
     pub thresholds: &'a Thresholds,
 }
 
 impl Problem<'_> {
-    /// The columns of a set, each once.
+    /// The columns of a set, without repetition.
     pub fn columns(&self, set: &[usize]) -> Vec<usize> {
         let mut columns: Vec<usize> = set
             .iter()
@@ -81,7 +81,7 @@ impl Problem<'_> {
         columns
     }
 
-    /// The cost of a set: what candidates share is paid once.
+    /// The cost of a set; shared columns are paid once.
     fn cost(&self, set: &[usize]) -> f64 {
         let own: f64 = set.iter().map(|&c| self.candidates[c].cost).sum();
         let counted: usize = set.iter().map(|&c| self.candidates[c].columns.len()).sum();
@@ -93,21 +93,21 @@ impl Problem<'_> {
             - KNOWN_DRIVE * drives.saturating_sub(TELLING_DRIVES) as f64
     }
 
-    /// Fits a set, beginning with the weights of `near`.
+    /// Fits a set, starting with the weights of `near`.
     pub fn choose(&self, set: Vec<usize>, near: &[f64]) -> Chosen {
         let fit = self.products.fit(self.table, &self.columns(&set), near);
         let score = fit.loss + self.cost(&set) + self.misfit(&set, &fit);
         Chosen { set, fit, score }
     }
 
-    /// `chosen`, with the joints weighted by its residual on each.
+    /// `chosen` with the joints weighted by their residuals.
     pub fn reweighted(&self, chosen: Chosen) -> Chosen {
         let fit = self.products.reweighted(self.table, chosen.fit);
         let score = fit.loss + self.cost(&chosen.set) + self.misfit(&chosen.set, &fit);
         Chosen { fit, score, ..chosen }
     }
 
-    /// What is simulated at its size should come out with a coefficient of one (nats).
+    /// The cost of a simulated effect whose coefficient differs from one (nats).
     fn misfit(&self, set: &[usize], fit: &Fit) -> f64 {
         set.iter()
             .map(|&c| &self.candidates[c])
@@ -124,7 +124,7 @@ impl Problem<'_> {
         is_possible(&self.candidates[candidate], self.table, fit, self.arm)
     }
 
-    /// The gain of `candidate` on top of `chosen`, to first order (nats, costs taken off).
+    /// The first-order gain of `candidate` in addition to `chosen` (nats, minus the costs).
     pub fn promise(&self, chosen: &Chosen, candidate: usize) -> f64 {
         let new: Vec<usize> = {
             let have = &chosen.fit.columns;
@@ -147,7 +147,7 @@ impl Problem<'_> {
         };
         let gain = match self.candidates[candidate].joint {
             Some(joint) => log(drop, joint),
-            // At least what the same drop spread evenly would bring.
+            // At least the gain of an evenly distributed reduction.
             None => {
                 let joints = self.products.count.len();
                 (0..joints).map(|joint| log(drop / joints as f64, joint)).sum::<f64>()
@@ -156,7 +156,7 @@ impl Problem<'_> {
         gain - cost
     }
 
-    /// The best addition to `chosen` among `allowed`, if one pays. What `growth` refused before is not tried again.
+    /// The best addition to `chosen` among `allowed`, if one pays. Candidates that `growth` refused before are not tried again.
     pub fn grow(&self, chosen: &Chosen, allowed: &[usize], growth: &mut Growth) -> Option<Chosen> {
         let free: Vec<usize> = allowed
             .iter()
@@ -173,7 +173,8 @@ impl Problem<'_> {
             .collect();
         promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         promises.retain(|(promise, _)| *promise > 0.0);
-        // Of each kind the most promising first: what contains something simpler promises as much as that, in all its sizes.
+        // The most promising of each kind comes first: a candidate that contains a simpler one promises as much, in all its
+        // sizes.
         let kind = |c: usize| (self.candidates[c].joint, self.candidates[c].hypothesis);
         let mut of_kind: HashMap<(Option<usize>, Hypothesis), usize> = HashMap::new();
         let mut turns: Vec<(usize, usize)> = promises
@@ -193,9 +194,11 @@ impl Problem<'_> {
                     batch.push(candidate);
                 } else {
                     growth.refused.push(candidate);
-                    growth
-                        .tried
-                        .push((candidate, chosen.score, "does not predict what it was not fitted to"));
+                    growth.tried.push((
+                        candidate,
+                        chosen.score,
+                        "does not improve the prediction of recordings it was not fitted to",
+                    ));
                 }
                 if batch.len() == TRIED {
                     break;
@@ -215,7 +218,7 @@ impl Problem<'_> {
                     let (possible, pays) = (self.is_possible(added, &next.fit), next.score < chosen.score);
                     let rule = match (possible, pays) {
                         (false, _) => IMPOSSIBLE,
-                        (true, false) => "does not pay its price",
+                        (true, false) => "costs more evidence than it brings",
                         (true, true) => "another gains more",
                     };
                     growth.tried.push((added, next.score, rule));
@@ -231,8 +234,8 @@ impl Problem<'_> {
         None
     }
 
-    /// `set` and, last, `candidate`. Structure without a name comes with baseline friction: every drive has it, and a curve
-    /// over position or time must not stand for it.
+    /// `set` and, last, `candidate`. Unmodelled structure comes with baseline friction: every drive has it, and a curve over
+    /// position or time must not replace it.
     fn with(&self, set: &[usize], candidate: usize) -> Vec<usize> {
         let mut set = set.to_vec();
         if self.is_unmodelled(candidate) {
@@ -257,7 +260,7 @@ impl Problem<'_> {
         self.candidates[candidate].hypothesis.name().is_none()
     }
 
-    /// Whether a member of `set` may be taken out for its price: baseline friction may not, beside what has no name.
+    /// Whether a member of `set` may be removed for its cost. Baseline friction may not be removed beside unmodelled forms.
     fn may_go(&self, set: &[usize], member: usize) -> bool {
         let this = &self.candidates[member];
         !this.hypothesis.is_friction()
@@ -266,13 +269,13 @@ impl Problem<'_> {
                 .any(|&c| self.is_unmodelled(c) && self.candidates[c].joint == this.joint)
     }
 
-    /// Whether an effect says what the background could say in its place, at a higher price: then it does not predict more, but
-    /// for fewer nats.
+    /// Whether an effect replaces a part of the background at a lower cost. It then does not predict better, but costs fewer
+    /// nats.
     pub fn is_background_too(&self, candidate: &Candidate) -> bool {
         self.products.has_background() && candidate.hypothesis.is_certain_in_form()
     }
 
-    /// Whether `candidate` helps to predict what it was not fitted to.
+    /// Whether `candidate` improves the prediction of recordings that it was not fitted to.
     fn predicts(&self, chosen: &Chosen, candidate: usize) -> bool {
         let candidate = &self.candidates[candidate];
         if candidate.hypothesis.is_passing() || candidate.hypothesis.is_baseline() || self.is_background_too(candidate)
@@ -298,7 +301,7 @@ impl Problem<'_> {
             }
     }
 
-    /// Takes out what does not pay, or is impossible, one by one.
+    /// Removes members that do not pay, or that are impossible, one by one.
     pub fn prune(&self, mut chosen: Chosen) -> Chosen {
         loop {
             let best = (0..chosen.set.len())
@@ -320,7 +323,7 @@ impl Problem<'_> {
         }
     }
 
-    /// Adds what pays, from `allowed`, then takes out what no longer does.
+    /// Adds candidates of `allowed` that pay, then removes those that no longer do.
     pub fn forward(&self, mut chosen: Chosen, allowed: &[usize]) -> Chosen {
         let mut growth = Growth::default();
         while chosen.set.len() < MOST {
@@ -332,7 +335,7 @@ impl Problem<'_> {
         self.prune(chosen)
     }
 
-    /// `chosen` without one of its members; what is a form of something simpler gives way to that, if it pays.
+    /// `chosen` without one of its members. A form of a simpler effect is replaced by that, if it pays.
     pub fn without(&self, chosen: &Chosen, member: usize) -> Chosen {
         let set = chosen.others(member);
         let bare = self.choose(set.clone(), &chosen.fit.weights);
@@ -344,7 +347,7 @@ impl Problem<'_> {
                 && plain.joint == candidate.joint
                 && onset(plain).is_some() == onset(candidate).is_some()
         };
-        // Of what sets in halfway, that which sets in at nearly the same time.
+        // Of candidates with an onset, those with nearly the same onset.
         let apart = |&c: &usize| match (onset(&self.candidates[c]), onset(candidate)) {
             (Some(a), Some(b)) => (a - b).abs(),
             _ => 0.0,

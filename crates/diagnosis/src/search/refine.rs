@@ -1,4 +1,4 @@
-//! Sizes that a column is not linear in, found by trying sizes between the catalogue's.
+//! Sizes on which a column depends nonlinearly, refined between those of the forms.
 
 use effects::{Size, Term};
 use rayon::prelude::*;
@@ -7,7 +7,7 @@ use crate::data::statistics::mean;
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
 
-/// Factors on a size, each round finer.
+/// The factors on a size in each round of refinement.
 const ROUNDS: [[f64; 4]; 4] = [
     [0.75, 0.87, 1.15, 1.33],
     [0.9, 0.95, 1.05, 1.1],
@@ -15,10 +15,10 @@ const ROUNDS: [[f64; 4]; 4] = [
     [0.988, 0.994, 1.006, 1.012],
 ];
 
-/// The first step about an onset (s).
+/// The first step of an onset (s).
 const ONSET_STEP: f64 = 0.4;
 
-/// The sizes that some terms have, of which there are intervals.
+/// The sizes of terms that have intervals.
 pub fn sizes(terms: &[Term]) -> Vec<Size> {
     [Size::Main, Size::Damping, Size::Stop, Size::Periods, Size::Duration]
         .into_iter()
@@ -31,7 +31,7 @@ pub fn varied(terms: &[Term], size: Size, factor: f64) -> Vec<Term> {
     terms.iter().map(|term| term.varied(size, factor)).collect()
 }
 
-/// `terms` with their main size, or exponent, times `factor`; empty if they have none.
+/// `terms` with their main size, or exponent, times `factor`; empty if they have neither.
 fn resized(terms: &[Term], factor: f64) -> Vec<Term> {
     let new = varied(&varied(terms, Size::Main, factor), Size::Exponent, factor);
     if new == terms { Vec::new() } else { new }
@@ -40,7 +40,7 @@ fn resized(terms: &[Term], factor: f64) -> Vec<Term> {
 /// The rounds in which other forms are tried.
 const FORMS: usize = 2;
 
-/// The other form that terms may have, at the sizes at which it is most like theirs.
+/// The other form of terms, at the sizes at which it is most similar.
 fn forms(terms: &[Term]) -> Vec<Vec<Term>> {
     let mut list = Vec::new();
     for factor in [0.7, 1.0, 1.4] {
@@ -60,7 +60,7 @@ fn forms(terms: &[Term]) -> Vec<Vec<Term>> {
     list
 }
 
-/// `terms` with ends that give, where they were rigid; `mass` is of the link (kg m²).
+/// `terms` of a rigid gap, with compliant ends; `mass` is that of the link (kg m²).
 fn softened(terms: &[Term], mass: f64) -> Vec<Vec<Term>> {
     let soft = |term: &Term| (term.law.softened)(term, mass);
     let Some((at, soft)) = terms.iter().map(soft).enumerate().find(|(_, soft)| !soft.is_empty()) else {
@@ -79,8 +79,8 @@ fn softened(terms: &[Term], mass: f64) -> Vec<Vec<Term>> {
 fn variants(terms: &[Term], round: usize, mass: f64) -> Vec<Vec<Term>> {
     let mut list: Vec<Vec<Term>> = ROUNDS[round].iter().map(|&factor| resized(terms, factor)).collect();
     list.retain(|terms| !terms.is_empty());
-    // A spring's stiffness and its damping hang together, as a gap and what its ends give: each size of the one with each of
-    // the other.
+    // The stiffness and the damping of a spring are coupled, as are a gap and its compliant ends: all combinations of sizes
+    // are tried.
     let second = [Size::Damping, Size::Stop]
         .into_iter()
         .find(|second| sizes(terms).contains(second));
@@ -94,7 +94,7 @@ fn variants(terms: &[Term], round: usize, mass: f64) -> Vec<Vec<Term>> {
     let sized: Vec<Vec<Term>> = list.iter().cloned().chain([terms.to_vec()]).collect();
     list.extend(sized.iter().flat_map(|terms| softened(terms, mass)));
     list.extend(if round < FORMS { forms(terms) } else { Vec::new() });
-    // A finer step about a ripple's period, relative to one period over the range.
+    // A finer step of a ripple's period, relative to one period over the range.
     let nudges = [-1.0, -0.4, 0.4, 1.0].map(|step| step * 0.25_f64.powi(round as i32));
     for kind in 0..NUDGES {
         for step in nudges {
@@ -110,10 +110,10 @@ fn variants(terms: &[Term], round: usize, mass: f64) -> Vec<Vec<Term>> {
     list
 }
 
-/// The most kinds of finer steps that a law has.
+/// The largest number of kinds of finer steps of a law.
 const NUDGES: usize = 3;
 
-/// A term a finer step on, of the step's `kind`; `None` if it has none.
+/// A term after a finer step of the `kind`; `None` if there is no such step.
 fn nudged(term: &Term, kind: usize, step: f64) -> Option<Term> {
     match term.onset() {
         Some(from) => (kind == 0).then(|| term.since(from + ONSET_STEP * step)),
@@ -121,18 +121,18 @@ fn nudged(term: &Term, kind: usize, step: f64) -> Option<Term> {
     }
 }
 
-/// Finds the sizes of what is in `chosen`, coarsely first if they were not refined before, and takes out what then does not pay.
+/// Refines the sizes in `chosen`, coarsely first if they were not refined before, and removes members that do not pay then.
 pub fn refine(study: &mut Study, chosen: Chosen, again: bool) -> Chosen {
     let before = chosen.clone();
     let chosen = resize(study, chosen, again);
     study.note("a better size or form", &before, &chosen);
     let products = study.training_products();
     let pruned = study.problem(&products).prune(chosen.clone());
-    study.note("does not pay its price", &chosen, &pruned);
+    study.note("costs more evidence than it brings", &chosen, &pruned);
     pruned
 }
 
-/// Finds the sizes of what is in `chosen`, all of which stays, in its order.
+/// Refines the sizes in `chosen`; all members stay, in their order.
 pub fn resize(study: &mut Study, mut chosen: Chosen, again: bool) -> Chosen {
     for round in (if again { 2 } else { 0 })..ROUNDS.len() {
         let mut options: Vec<(usize, Vec<Vec<Term>>)> = Vec::new();

@@ -1,4 +1,4 @@
-//! Candidates that the residual itself suggests: when a contact was, which period a ripple has.
+//! Candidates that the residual suggests: the time of a contact, the period of a ripple.
 
 use effects::Scales;
 use nalgebra::{Matrix3, Vector3};
@@ -18,18 +18,18 @@ mod waves;
 pub use onsets::onsets;
 pub use waves::waves;
 
-/// The coarse scan for ripples takes so many samples at most.
+/// The largest number of samples of the coarse scan for ripples.
 const MOST_SAMPLES: usize = 6000;
 
-/// What is left of every joint's y on all rows.
+/// The residual of every joint's y on all rows.
 pub fn residuals(table: &Table, fit: &Fit) -> Vec<Vec<f64>> {
     (0..table.dof())
         .map(|joint| table.residual(joint, &fit.columns, &fit.coefficients))
         .collect()
 }
 
-/// The windows (s) in which a force on the tool explains most of the residual, best first; `force` are the
-/// columns of a force that always acts.
+/// The windows (s) in which a force on the tool explains most of the residual, best first; `force` are the columns of a force
+/// that always acts.
 pub fn contacts(
     table: &Table,
     times: &[f64],
@@ -118,7 +118,7 @@ pub fn ripples(
 ) -> Vec<f64> {
     let range = scales.range[joint].max(1e-6);
     let samples = samples(table, motions, joint, residual, fitted);
-    // What the filter passes at the usual speed.
+    // The gain of the filter at the usual speed.
     let usual = RIPPLE_SPEED * scales.speed[joint];
     let most_periods = (2.0 * std::f64::consts::PI * motions.cutoff / usual).min(MOST_RIPPLE_PERIODS);
     let step = 1.5 / range;
@@ -179,7 +179,7 @@ fn power(samples: &[Sample], pair: impl Fn(&Sample) -> (f64, f64)) -> f64 {
     explained_by_two(ss, sc, cc, sr, cr)
 }
 
-/// What two columns of these inner products explain.
+/// The part that two columns with these inner products explain.
 fn explained_by_two(ss: f64, sc: f64, cc: f64, sr: f64, cr: f64) -> f64 {
     let determinant = ss * cc - sc * sc;
     if determinant <= 1e-9 * (ss + cc).powi(2) {
@@ -188,7 +188,7 @@ fn explained_by_two(ss: f64, sc: f64, cc: f64, sr: f64, cr: f64) -> f64 {
     (cc * sr * sr - 2.0 * sc * sr * cr + ss * cr * cr) / determinant
 }
 
-/// The highest local maxima of `values`, on a grid that begins `from`; refined on `f` by golden-section search.
+/// The highest local maxima of `values`, on a grid that begins at `from`; refined on `f` by golden-section search.
 fn peaks(from: f64, step: f64, values: &[f64], most: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
     let count = values.len();
     let at = |k: usize| from + step * k as f64;
@@ -220,8 +220,8 @@ pub fn golden(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// How well a contact's force predicts its own window: fitted to every other piece, tried on the rest; the
-/// relative drop of what `without` leaves there.
+/// How well a contact's force predicts its own window: it is fitted to every other piece and tested on the rest. The relative
+/// reduction of the residual `without` it there.
 pub fn contact_gain(study: &Study, without: &Fit, columns: &[usize]) -> f64 {
     let table = &study.table;
     let residual = residuals(table, without);

@@ -1,4 +1,4 @@
-//! Everything the search works on: recordings filtered, the model along them, columns, candidates.
+//! The data of the search: filtered recordings, the model along them, columns, candidates.
 
 use arm::Arm;
 use effects::arm::contact_columns;
@@ -27,25 +27,25 @@ pub use about::About;
 
 /// The recordings, the model along them, and the candidates.
 pub struct Study {
-    /// The model as it was given.
+    /// The nominal model.
     pub arm: Arm,
-    /// Known effects that no torque at one time tells.
+    /// Known effects that are not functions of the motion at one time.
     pub past: Vec<Effect>,
-    /// The recordings, filtered.
+    /// The filtered recordings.
     pub motions: Motions,
-    /// The model along them, one a chunk.
+    /// The model along them, one per chunk.
     pub rigid: Vec<Rigid>,
-    /// What is slow and what is large.
+    /// Typical and largest values of each joint.
     pub scales: Scales,
     /// All columns.
     pub table: Table,
     /// All candidates.
     pub candidates: Vec<Candidate>,
-    /// The variance that noise, filtering and small errors leave, one a joint.
+    /// The variance due to noise, filtering and small errors, one per joint.
     pub floor: Vec<f64>,
-    /// The variance of the measured noise alone, one a joint.
+    /// The variance of the measured noise alone, one per joint.
     pub noise: Vec<f64>,
-    /// From row to row, one a recording (s).
+    /// The time between rows, one per recording (s).
     pub seconds: Vec<f64>,
     /// Whether a recording is fitted.
     pub fitted: Vec<bool>,
@@ -53,23 +53,23 @@ pub struct Study {
     force: [usize; 3],
     /// Measured torque on all rows (N m or N).
     pub measured: Vec<Vec<f64>>,
-    /// Measured less the model as it was given, on all rows (N m or N).
+    /// Measured torque minus that of the nominal model, on all rows (N m or N).
     pub nominal: Vec<Vec<f64>>,
-    /// Whether the columns are about another arm than the one given.
+    /// Whether the columns are evaluated about an arm other than the nominal one.
     carries: bool,
-    /// Which rows are fitted.
+    /// The rows that are fitted.
     moving: Moving,
-    /// What the model may be off by everywhere.
+    /// The prior of the background.
     prior: Prior,
-    /// How far, as the evidence has it.
+    /// The strengths of the background, chosen by evidence.
     pub strengths: Strengths,
-    /// What of them the user states.
+    /// The strengths that the user states.
     pub stated: Stated,
-    /// What decides.
+    /// The thresholds.
     pub thresholds: Thresholds,
-    /// What was decided so far.
+    /// The record of decisions.
     pub trace: Trace,
-    /// What the final fit showed not to be: it is not looked for again.
+    /// Hypotheses that the final fit refused; they are not searched again.
     refused: Vec<(Hypothesis, Option<usize>)>,
 }
 
@@ -125,7 +125,7 @@ impl Study {
         }
         list.retain(|(hypothesis, joint, _)| hypothesis::may_be(options, &arm, *hypothesis, *joint));
         if let Some(at) = motions.changed_at {
-            // Whatever has a name may have come since the recordings from before.
+            // Every named effect may have begun after the recordings from before.
             let new: Vec<_> = list
                 .iter()
                 .filter(|(hypothesis, ..)| hypothesis.name().is_some() && !hypothesis.is_unit())
@@ -184,7 +184,7 @@ impl Study {
         self.force
     }
 
-    /// Inner products over the recordings that `chosen` picks.
+    /// Inner products over the recordings that `chosen` selects.
     pub fn products(&self, chosen: impl Fn(usize) -> bool) -> Products {
         self.bare_products(chosen).with_background(self.background())
     }
@@ -200,12 +200,12 @@ impl Study {
         has_held_out.then(|| self.products(|recording| !self.fitted[recording]))
     }
 
-    /// What every fit has besides the effects, if anything.
+    /// The background of every fit, if there is one.
     pub fn background(&self) -> Option<Background> {
         self.prior.at(&self.strengths)
     }
 
-    /// Inner products over the recordings that `chosen` picks, without background.
+    /// Inner products over the recordings that `chosen` selects, without background.
     fn bare_products(&self, chosen: impl Fn(usize) -> bool) -> Products {
         Products::new(&self.table, chosen, &self.seconds, &self.motions.tempo, &self.floor)
     }
@@ -242,7 +242,7 @@ impl Study {
             .collect()
     }
 
-    /// The rows of all recordings on which `joint` rests for as long as the filter reaches.
+    /// The rows of all recordings on which `joint` rests within the reach of the filter.
     pub fn resting_rows(&self, joint: usize) -> Vec<usize> {
         let mut rows = Vec::new();
         let mut first = 0;
@@ -261,7 +261,7 @@ impl Study {
         rows
     }
 
-    /// The rigid torque (N m or N) and the time (s) of some rows of `joint`, in ascending order.
+    /// The rigid torque (N m or N) and the time (s) of given rows of `joint`, in ascending order.
     pub fn loads_and_times(&self, joint: usize, rows: &[usize]) -> (Vec<f64>, Vec<f64>) {
         let (mut loads, mut times) = (Vec::with_capacity(rows.len()), Vec::with_capacity(rows.len()));
         let mut rows = rows.iter().peekable();

@@ -75,12 +75,12 @@ impl Study {
         }
     }
 
-    /// From when to when a candidate pushes the arm (s), if it does.
+    /// The start and the end of a candidate's contact (s), if it is one.
     pub fn window(&self, candidate: usize) -> Option<[f64; 2]> {
         self.terms(candidate).first().and_then(contact_window)
     }
 
-    /// Whether terms are no contact, or one that is short beside its recording.
+    /// Whether terms are no contact, or a contact that is short in comparison with its recording.
     pub fn is_brief(&self, terms: &[Term]) -> bool {
         let Some(window) = terms.first().and_then(contact_window) else {
             return true;

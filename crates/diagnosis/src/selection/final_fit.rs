@@ -1,4 +1,4 @@
-//! The last fit: about the arm that the named effects make, and without what does not prove itself.
+//! The final fit: about the arm with the named effects, and without effects that fail the last tests.
 
 use std::collections::BTreeMap;
 
@@ -17,8 +17,8 @@ use crate::selection::naming::{Named, name};
 use crate::selection::predict::{augmented, errors};
 use crate::thresholds::{HOPELESS, PARTLY};
 
-/// Fits the named effects for the last time: about the arm that they make, with the rows near reversals; drops what makes a
-/// joint's held-out error grow, what does not help there, and what might be zero.
+/// Fits the named effects about the arm with them, with the rows near reversals. Removes effects that increase a joint's
+/// held-out error, that do not reduce it, or whose size may be zero.
 pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
     loop {
         settle(study, judged, false);
@@ -29,7 +29,7 @@ pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
         prove(study, judged);
 
         give_up(study, judged);
-        // What is left stands about another arm, and may harm without what went.
+        // The remaining effects are linearised about another arm, and may harm without the removed ones.
         if judged.named.set.len() < before {
             continue;
         }
@@ -37,26 +37,23 @@ pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
         match unclear(study, judged, &resampled) {
             Some((unclear, true)) => {
                 study.refuse(unclear);
-                drop_name(
-                    study,
-                    judged,
-                    unclear,
-                    "its parameters contradict each other, or its rows",
-                );
+                drop_name(study, judged, unclear, "it contradicts other effects, or its own rows");
             }
-            Some((unclear, false)) => drop_name(study, judged, unclear, "its interval holds no effect"),
+            Some((unclear, false)) => {
+                drop_name(study, judged, unclear, "its interval contains the value without effect");
+            }
             None => return resampled,
         }
     }
 }
 
-/// Fits the named effects for the last time, about the arm that they make, whatever comes of them.
+/// Fits the named effects about the arm with them, without removing any.
 pub fn as_given(study: &mut Study, judged: &mut Selection) -> Resampled {
     settle(study, judged, true);
     resample(study, &judged.named)
 }
 
-/// Takes one name out, or puts what it is a form of in its place, and fits the others anew.
+/// Removes one name, or replaces it by the simpler effect that it generalises, and fits the others again.
 fn drop_name(study: &Study, judged: &mut Selection, candidate: usize, rule: &'static str) {
     let products = study.training_products();
     let problem = study.problem(&products);
@@ -77,7 +74,7 @@ fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Selection, set: Vec<
     judged.members = judge::describe(study, problem, &judged.named);
 }
 
-/// Forms everything about the arm that the named effects make, and no other, with the rows near reversals, and fits anew.
+/// Evaluates everything about the arm with exactly the named effects, with the rows near reversals, and fits again.
 fn settle(study: &mut Study, judged: &mut Selection, as_given: bool) {
     let kept = study.settle(&judged.named.fit, &judged.candidates());
     let named = judged.named.set.len();
@@ -97,7 +94,7 @@ fn settle(study: &mut Study, judged: &mut Selection, as_given: bool) {
     }
 }
 
-/// Drops names that became impossible, until there are none.
+/// Removes names that became impossible, until there are none.
 fn make_possible(study: &Study, judged: &mut Selection) {
     let products = study.training_products();
     let problem = study.problem(&products);
@@ -107,17 +104,21 @@ fn make_possible(study: &Study, judged: &mut Selection) {
     }
 }
 
-/// Drops names that do not help to predict recordings they were not fitted to, until there are none.
+/// Removes names that do not improve the prediction of recordings they were not fitted to, until there are none.
 fn prove(study: &Study, judged: &mut Selection) {
     let Some(held) = study.held_products() else { return };
     let products = study.training_products();
     while let Some(useless) = useless(study, &products, &held, judged) {
-        drop_name(study, judged, useless, "predicts held-out recordings no better with it");
+        drop_name(
+            study,
+            judged,
+            useless,
+            "does not improve the prediction of held-out recordings",
+        );
     }
 }
 
-/// Drops the names on joints that, for all of them, are still predicted worse than by a constant: what is measured there is
-/// something else.
+/// Removes the names on joints that are still predicted worse than by a constant: the channel measures something else.
 fn give_up(study: &Study, judged: &mut Selection) {
     let left: Vec<JointFit> = (0..study.motions.dof)
         .map(|joint| errors(study, joint, &augmented(study, &judged.named, joint)))
@@ -126,7 +127,7 @@ fn give_up(study: &Study, judged: &mut Selection) {
         let fit = &left[joint];
         fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented) > HOPELESS
     };
-    // Friction that explains a part of the training recordings is there, whatever else is.
+    // Friction that explains a part of the training recordings is present in any case.
     let stays = |&candidate: &usize| {
         let candidate = &study.candidates[candidate];
         let explains = |joint: usize| candidate.hypothesis.is_friction() && left[joint].train_nrmse_augmented < PARTLY;
@@ -141,7 +142,7 @@ fn give_up(study: &Study, judged: &mut Selection) {
     }
 }
 
-/// The weakest of the names whose size might be zero, or is none that physics has, and whether it is that.
+/// The weakest name whose size may be zero or is physically impossible, and whether it is impossible.
 fn unclear(study: &Study, judged: &Selection, resampled: &Resampled) -> Option<(usize, bool)> {
     let resampled = &resampled.evenly();
     let names = |member: &judge::Member| name(study, resampled, member.candidate);
@@ -149,7 +150,7 @@ fn unclear(study: &Study, judged: &Selection, resampled: &Resampled) -> Option<(
     let all: Vec<Effect> = all.collect();
     let contradicted = |member: &judge::Member| {
         let named = name(study, resampled, member.candidate);
-        // With its sizes corrected it may be no physics any more: a level below zero.
+        // With its sizes corrected it may be impossible, such as a negative level.
         let is_impossible = |named: &Named| Corrected::new(&study.arm, std::slice::from_ref(&named.effect)).is_err();
         // Its own rows contradict it.
         let is_contradicted = |named: &Named| {
@@ -174,8 +175,7 @@ fn unclear(study: &Study, judged: &Selection, resampled: &Resampled) -> Option<(
     Some((weakest.candidate, contradicted(weakest)))
 }
 
-/// Whether the intervals of all parameters that say how large an effect is hold the value at which there is none: one that is
-/// clear is enough.
+/// Whether the intervals of all main parameters contain the value without effect. One clear parameter is sufficient.
 fn may_be_nothing(spec: &Spec, parameters: &BTreeMap<&'static str, Parameter>) -> bool {
     let sizes = spec.main.iter().filter_map(|main| parameters.get_key_value(main));
     let holds_nothing = |(key, size): (&&'static str, &Parameter)| {
@@ -185,7 +185,7 @@ fn may_be_nothing(spec: &Spec, parameters: &BTreeMap<&'static str, Parameter>) -
     sizes.clone().next().is_some() && sizes.into_iter().all(holds_nothing)
 }
 
-/// Whether it is a constant or a drive's inertia no larger than what is left beside it with structure.
+/// Whether it is a constant or a rotor inertia no larger than the residual structure beside it.
 fn is_part_of_the_rest(study: &Study, judged: &Selection, member: &judge::Member) -> bool {
     let candidate = &study.candidates[member.candidate];
     let Some(factor) = candidate.hypothesis.spec().least_beside_residual else {
@@ -197,7 +197,7 @@ fn is_part_of_the_rest(study: &Study, judged: &Selection, member: &judge::Member
     factor * unmodelled.chain(left).fold(0.0, f64::max) > member.shares[joint]
 }
 
-/// Takes back the background, and drops findings, until no joint's held-out error is larger than the nominal model's.
+/// Reduces the background, and removes findings, until no joint's held-out error is larger than the nominal model's.
 fn guard(study: &mut Study, judged: &mut Selection) {
     while let Some(joint) = harmed(study, &judged.named) {
         if let Some((strengths, next)) = likelier_outside(study, &judged.named) {
@@ -225,13 +225,13 @@ fn guard(study: &mut Study, judged: &mut Selection) {
     }
 }
 
-/// The held-out error of `joint`, of the model as it was given and with what is `chosen`.
+/// The held-out errors of `joint` with the nominal model and with `chosen`.
 fn held_out(study: &Study, chosen: &Chosen, joint: usize) -> (Option<f64>, Option<f64>) {
     let fit = errors(study, joint, &augmented(study, chosen, joint));
     (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented)
 }
 
-/// The first joint whose held-out error is larger with what is `chosen` than without.
+/// The first joint whose held-out error is larger with `chosen` than with the nominal model.
 fn harmed(study: &Study, chosen: &Chosen) -> Option<usize> {
     (0..study.motions.dof).find(|&joint| match held_out(study, chosen, joint) {
         (Some(nominal), Some(augmented)) => judge::harms(nominal, augmented),
@@ -239,7 +239,7 @@ fn harmed(study: &Study, chosen: &Chosen) -> Option<usize> {
     })
 }
 
-/// The weaker background under which the held-out recordings of all joints are likeliest, if they are likelier than now.
+/// The smaller background with the largest likelihood of the held-out recordings of all joints, if it is larger than now.
 fn likelier_outside(study: &Study, chosen: &Chosen) -> Option<(Strengths, Chosen)> {
     let held = study.held_products()?;
     let loss = |chosen: &Chosen| held.loss(&held.rss(&study.table, &chosen.fit.columns, &chosen.fit.coefficients));
@@ -259,8 +259,7 @@ fn likelier_outside(study: &Study, chosen: &Chosen) -> Option<(Strengths, Chosen
 mod tests {
     use super::*;
 
-    /// Every effect that is looked for has a parameter that says how large it is, so that its name is dropped where the interval
-    /// holds no effect.
+    /// Every searched effect has a main parameter, so that its name is removed where the interval contains no effect.
     #[test]
     fn an_interval_that_holds_no_effect_is_seen_in_every_effect() {
         for kind in effects::CATALOGUE {

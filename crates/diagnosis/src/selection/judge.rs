@@ -1,4 +1,4 @@
-//! Which of the chosen candidates deserve their name.
+//! The decision which of the chosen candidates keep their name.
 
 use rayon::prelude::*;
 
@@ -15,17 +15,17 @@ mod held_out;
 
 use held_out::{out_of_sample, predicting};
 
-/// A chosen candidate and what it does.
+/// A chosen candidate with its contribution.
 #[derive(Clone, Debug)]
 pub struct Member {
-    /// Its index.
+    /// The index of the candidate.
     pub candidate: usize,
-    /// The standard deviation of its torque over that of the joint's, training recordings, one a joint.
+    /// The standard deviation of its torque over that of the joint's, training recordings, one per joint.
     pub shares: Vec<f64>,
-    /// What the score loses without it (nats).
+    /// The loss of the score without it (nats).
     pub evidence: f64,
-    /// What is unexplained without it and explained with it, over the joint's torque: of a form of something simpler, what
-    /// that leaves.
+    /// The part of the joint's torque that is explained with it and unexplained without it (RMS over standard deviation). For a
+    /// form of a simpler effect: without it, but with the simpler effect.
     pub beyond: f64,
 }
 
@@ -36,14 +36,14 @@ impl Member {
     }
 }
 
-/// What is named, and the unmodelled forms.
+/// The named effects, and the unmodelled forms.
 #[derive(Clone, Debug)]
 pub struct Selection {
-    /// The named candidates, refitted together.
+    /// The named candidates, fitted together.
     pub named: Chosen,
-    /// What they do.
+    /// Their contributions.
     pub members: Vec<Member>,
-    /// The unmodelled forms that are left.
+    /// The unmodelled forms that remain.
     pub unmodelled: Vec<Member>,
 }
 
@@ -65,7 +65,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
     while let Some(off) = off(&chosen) {
         let next = problem.without(&chosen, off);
         study.note(
-            "its torque is not that of the size at which it was simulated",
+            "its coefficient differs from one, for which it was simulated",
             &chosen,
             &next,
         );
@@ -92,7 +92,8 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
         .partition(|member| study.candidates[member.candidate].hypothesis.name().is_none());
     let mut kept = problem.choose(named.iter().map(|m| m.candidate).collect(), &chosen.fit.weights);
     if !unmodelled.is_empty() {
-        // What has no name may have stood for something simple: for a constant only if nothing else is left.
+        // Unmodelled forms may have replaced simple effects: a constant is allowed only if no other form remains on its
+        // joint.
         let candidates = &study.candidates;
         let simple: Vec<usize> = (0..candidates.len())
             .filter(|&c| candidates[c].hypothesis.is_simple())
@@ -104,13 +105,13 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
         let mut allowed = simple;
         allowed.retain(|&c| candidates[c].hypothesis.is_baseline() || !left.contains(&candidates[c].joint));
         let next = problem.forward(kept.clone(), &allowed);
-        study.note("stands in for what has no name", &kept, &next);
+        study.note("replaces unmodelled forms", &kept, &next);
         kept = next;
     }
     if let Some(held) = held {
         kept = out_of_sample(study, &problem, held, kept);
     }
-    // Without the unmodelled forms and the refused names the rest may have become impossible.
+    // Without the unmodelled forms and the refused names, other effects may have become impossible.
     while let Some(&bad) = kept.set.iter().find(|&&c| !problem.is_possible(c, &kept.fit)) {
         let next = problem.choose(kept.others(bad), &kept.fit.weights);
         study.note(IMPOSSIBLE, &kept, &next);
@@ -125,7 +126,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
     }
 }
 
-/// The longest contact in a recording that contacts cover too much of: together they stand for something else.
+/// The longest contact in a recording of which contacts cover too much: together they replace another effect.
 fn lasting(study: &Study, chosen: &Chosen) -> Option<usize> {
     let window = |&c: &usize| Some((c, study.window(c)?));
     let windows: Vec<(usize, [f64; 2])> = chosen.set.iter().filter_map(window).collect();
@@ -141,7 +142,7 @@ fn lasting(study: &Study, chosen: &Chosen) -> Option<usize> {
         .map(|(c, _)| *c)
 }
 
-/// The unmodelled forms that are still there beside what was `kept`, as large as they are beside it.
+/// The unmodelled forms that remain in addition to `kept`, with their contributions.
 fn beside(study: &Study, problem: &Problem<'_>, kept: &Chosen, unmodelled: &[Member]) -> Vec<Member> {
     let mut set = kept.set.clone();
     set.extend(unmodelled.iter().map(|member| member.candidate));
@@ -170,7 +171,7 @@ fn beside(study: &Study, problem: &Problem<'_>, kept: &Chosen, unmodelled: &[Mem
     }
 }
 
-/// Shares and evidence of all that is chosen.
+/// Shares and evidence of all chosen candidates.
 pub fn describe(study: &Study, problem: &Problem<'_>, chosen: &Chosen) -> Vec<Member> {
     (0..chosen.set.len())
         .into_par_iter()
@@ -191,8 +192,8 @@ pub fn describe(study: &Study, problem: &Problem<'_>, chosen: &Chosen) -> Vec<Me
         .collect()
 }
 
-/// The standard deviation of a candidate's torque over the measured one's, on moving training rows, one a joint. What is
-/// nearly constant has none, so its size is taken.
+/// The standard deviation of a candidate's torque over the measured one's, on moving training rows, one per joint. For a nearly
+/// constant torque, the root mean square is used instead.
 fn shares(study: &Study, chosen: &Chosen, candidate: usize) -> Vec<f64> {
     let columns = &study.candidates[candidate].columns;
     let values = chosen.fit.values(columns);
@@ -211,7 +212,7 @@ fn shares(study: &Study, chosen: &Chosen, candidate: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Whether a candidate does nothing in the held-out recordings, so that they do not say whether it predicts.
+/// Whether a candidate is inactive in the held-out recordings, so that they do not test its prediction.
 pub fn is_idle(study: &Study, chosen: &Chosen, candidate: usize) -> bool {
     let columns = &study.candidates[candidate].columns;
     let values = chosen.fit.values(columns);
@@ -224,11 +225,11 @@ pub fn is_idle(study: &Study, chosen: &Chosen, candidate: usize) -> bool {
     })
 }
 
-/// The member that deserves its place least, if one does not.
+/// The weakest member that does not satisfy the thresholds, if there is one.
 fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
     let hypothesis = |member: &Member| study.candidates[member.candidate].hypothesis;
     let is_named = |member: &Member| hypothesis(member).name().is_some();
-    // On each joint, the largest unmodelled form and the largest of the effects that are not baseline.
+    // On each joint, the largest unmodelled form and the largest effect that is not a baseline effect.
     let dof = study.motions.dof;
     let largest = |wanted: &dyn Fn(&Member) -> bool, joint: usize| -> f64 {
         members
@@ -250,7 +251,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
         }
         let unmodelled = largest(&|m| !is_named(m), at);
         if hypothesis(member).is_baseline() {
-            // Beside larger structure without a name a drive's inertia may be a part of that.
+            // Beside larger unmodelled structure, a rotor inertia may be a part of that structure.
             return hypothesis(member).is_drive_inertia() && share < unmodelled.max(LEAST_DRIVE);
         }
         let needed = if hypothesis(member).plain().is_some() {
@@ -258,7 +259,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
         } else {
             study.thresholds.least_evidence
         };
-        // What acts on several joints need not stand out on all of them.
+        // An effect on several joints need not stand out on all of them.
         let stands_out = |joint: usize| {
             let others = |certain: bool| {
                 let is_other = |m: &Member| {
@@ -292,10 +293,10 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
         .min_by(|&a, &b| members[a].evidence.total_cmp(&members[b].evidence))
 }
 
-/// The rule that drops what makes a joint's held-out error larger than the nominal model's.
+/// The rule that removes an effect that makes a joint's held-out error larger than the nominal model's.
 pub const HARMS: &str = "a joint's held-out error becomes larger than the nominal model's";
 
-/// Whether an error (NRMSE) grows from `nominal` by more than what another joint's effect may do.
+/// Whether an error (NRMSE) exceeds `nominal` by more than an effect of another joint may cause.
 pub fn harms(nominal: f64, with: f64) -> bool {
     with > nominal + HARMLESS.max(WORSE * nominal)
 }

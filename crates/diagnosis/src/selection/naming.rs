@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use arm::Arm;
 use effects::{Effect, Estimate, Kind, Size, Systematic, Term};
 
+use crate::data::statistics::NORMAL_95;
 use crate::findings::report::Parameter;
 use crate::regression::bootstrap::Resampled;
 use crate::search::study::Study;
@@ -15,15 +16,15 @@ use crate::thresholds::{OF_ARM, OF_FORM, SYSTEMATIC};
 /// A named effect with its parameters.
 #[derive(Clone, Debug)]
 pub struct Named {
-    /// As the corrected model takes it.
+    /// The effect, for the corrected model.
     pub effect: Effect,
-    /// The joint whose motion it depends on.
+    /// The other joint on whose motion it depends.
     pub other: Option<String>,
-    /// With intervals.
+    /// Its parameters with intervals.
     pub parameters: BTreeMap<&'static str, Parameter>,
 }
 
-/// What a candidate's numbers are read from.
+/// The source of a candidate's parameters.
 struct Reader<'a> {
     study: &'a Study,
     resampled: &'a Resampled,
@@ -88,10 +89,10 @@ impl Estimate for Reader<'_> {
             Systematic::OfForm => OF_FORM,
             Systematic::OfArm => OF_FORM + OF_ARM * self.links_wrong_by(),
         };
-        // A mass is never known better than the newton metres that it was weighed with.
+        // A mass is never known more accurately than the torque constants.
         let quantity = self.kind.spec().parameter(key).map(|parameter| parameter.quantity);
         let accuracy = match (quantity, self.study.stated.gain) {
-            (Some(quantity), Some(accuracy)) if quantity.is_of_torque() => 1.96 * accuracy,
+            (Some(quantity), Some(accuracy)) if quantity.is_of_torque() => NORMAL_95 * accuracy,
             _ => 0.0,
         };
         let (value, ci95) = self.resampled.interval_within(systematic + accuracy, f);
@@ -109,7 +110,7 @@ impl Estimate for Reader<'_> {
     }
 }
 
-/// Names the effect of `candidate`, if its hypothesis has a name, and what that brings along.
+/// The effect of `candidate`, if its hypothesis has a name, and the effect that it brings along.
 pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named> {
     let kind = study.candidates[candidate].hypothesis.kind;
     let mut reader = Reader {
@@ -124,7 +125,7 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
     };
     let brought = kind.spec().brings.and_then(Kind::named);
     let brought = brought.and_then(|kind| reader.read(kind));
-    // What is brought along must be there beyond doubt.
+    // An effect that is brought along must be clearly present.
     let is_clear = |named: &Named| {
         let main = named
             .effect

@@ -1,4 +1,4 @@
-//! Errors of prediction on all rows, at rest as in motion.
+//! Prediction errors on all rows, at rest and in motion.
 
 use std::ops::Range;
 
@@ -11,14 +11,14 @@ use crate::search::problem::Chosen;
 use crate::search::study::Study;
 use crate::thresholds::{LEAST_ROWS, RESIDUAL_LAG};
 
-/// What the model with named effects and the background leaves on all rows of one joint. At rest dry friction may hold any torque
-/// within its cone: the error is the distance to it.
+/// The residual of the model with named effects and background on all rows of one joint. At rest, dry friction may hold any
+/// torque within its cone, and the error is the distance to the cone.
 pub fn augmented(study: &Study, named: &Chosen, joint: usize) -> Vec<f64> {
     residual(study, named, joint, |_| true)
 }
 
-/// What the model that is exported leaves: the links' inertial parameters and the named effects, without the background's
-/// friction and torque constants, which no file holds.
+/// The residual of the exported model: the links' inertial parameters and the named effects, without the background's
+/// corrections of friction and torque constants, which no file holds.
 pub fn exported(study: &Study, named: &Chosen, joint: usize) -> Vec<f64> {
     let is_exported = |term: &Term| [&OWN_FRICTION, &FRICTION_CURVE, &GAIN].iter().all(|law| !term.is(law));
     residual(study, named, joint, is_exported)
@@ -74,7 +74,7 @@ pub fn deviation(signal: &[f64], rows: &[usize]) -> f64 {
     statistics::deviation(rows.iter().map(|&row| signal[row]))
 }
 
-/// The rows of the recordings that `chosen` picks.
+/// The rows of the recordings that `chosen` selects.
 pub fn rows_of(study: &Study, chosen: impl Fn(usize) -> bool) -> Vec<usize> {
     let ranges: Vec<Range<usize>> = study
         .table
@@ -98,7 +98,7 @@ pub fn errors(study: &Study, joint: usize, augmented: &[f64]) -> JointFit {
     }
     let held = rows_of(study, |r| !study.fitted[r]);
     let train = rows_of(study, |r| study.fitted[r]);
-    // Of a dead channel there is no relative error.
+    // A dead channel has no relative error.
     let over_spread =
         |error: f64, spread: f64| (study.scales.torque[joint] > 0.0 && spread > 0.0).then(|| error / spread);
     let over = |rows: &[usize], keep: &[bool], signal: &[f64]| -> Option<f64> {
@@ -106,12 +106,13 @@ pub fn errors(study: &Study, joint: usize, augmented: &[f64]) -> JointFit {
         let error = rms(kept.iter().map(|&row| signal[row]))?;
         over_spread(error, deviation(tau, &kept))
     };
-    // A joint at rest may need one and the same torque all the time: the spread is that of all rows.
+    // A joint at rest may need the same torque all the time, so that the standard deviation is that of all rows.
     let at_rest = |signal: &[f64]| -> Option<f64> {
         let error = rms(held.iter().filter(|&&row| resting[row]).map(|&row| signal[row]))?;
         over_spread(error, deviation(tau, &held))
     };
-    // The error is told where the joint moves; at rest friction, a brake or the last move decide what is measured.
+    // The error is that of the samples in motion; at rest, friction, a brake or the last motion determine the measured
+    // torque.
     let moves = held.iter().filter(|&&row| moving[row]).count() >= LEAST_ROWS;
     let counted = if moves {
         moving.clone()

@@ -1,8 +1,8 @@
-//! A tool that the URDF draws and that is not mounted: what the background says of the last link, by its name.
+//! A tool that the URDF draws and that is not mounted: the effect behind the background's change of the last link.
 //!
-//! Whatever differs of the last link may be a body on the tool: the ten columns are the same. A general change of all links'
-//! inertial parameters costs fewer nats than ten coefficients, so that the search leaves a missing tool to the background. Where
-//! that one body alone does nearly all that the background does for all links, it is what is wrong.
+//! Any change of the last link may be a body on the tool, because the ten columns are the same. A general change of all links'
+//! inertial parameters costs fewer nats than ten coefficients, so that the search leaves a missing tool to the background. If
+//! that one body explains nearly as much as the background of all links, it is named.
 
 use effects::arm::Payload;
 
@@ -16,8 +16,8 @@ use crate::selection::judge::{self, Selection};
 use crate::selection::naming::name;
 use crate::thresholds::{LEAST_OF_THE_LINK, NEARLY_ALL};
 
-/// Names a body that is missing at the tool, if the background stands for one; the new resamplings. Other payloads stay what
-/// they are: a part of the background, or named by the search.
+/// Names a body that is missing at the tool, if the background represents one; returns the new resamplings. Other payloads are
+/// unchanged: a part of the background, or named by the search.
 pub fn unmounted(study: &mut Study, judged: &mut Selection) -> Option<Resampled> {
     let is_payload = |c: usize| study.candidates[c].hypothesis.is(&Payload);
     if study.strengths.links.last().is_none_or(|&rho| rho == 0.0) || judged.named.set.iter().any(|&c| is_payload(c)) {
@@ -41,7 +41,7 @@ pub fn unmounted(study: &mut Study, judged: &mut Selection) -> Option<Resampled>
     let products = study.training_products();
     judged.members = judge::describe(study, &study.problem(&products), &next);
     study.note_strengths(
-        "one missing body does nearly all that the background does",
+        "one missing body explains nearly as much as the background",
         &judged.named,
         &next,
     );
@@ -49,7 +49,7 @@ pub fn unmounted(study: &mut Study, judged: &mut Selection) -> Option<Resampled>
     Some(resampled)
 }
 
-/// What is `chosen` with a missing `body` and less of the background, if the body does nearly all of what that does and both
+/// `chosen` with a missing `body` and a smaller background, if the body explains nearly as much as that background and both
 /// predict held-out recordings nearly as well.
 fn instead(study: &Study, chosen: &Chosen, body: usize) -> Option<(Strengths, Chosen)> {
     let with = [chosen.set.as_slice(), &[body]].concat();

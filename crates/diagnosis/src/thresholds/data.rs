@@ -6,6 +6,10 @@ pub const CUTOFF: f64 = 12.0;
 pub const CUTOFF_PERIODS: f64 = 22.0;
 /// The cut-off that a quick motion may lead to (Hz).
 pub const HIGHEST_CUTOFF: f64 = 40.0;
+/// The largest cut-off as a share of the sampling rate. Source: there, the kernel's width is one sample.
+pub const LARGEST_CUTOFF: f64 = 0.235;
+/// A recording must be this multiple of the kernel's width long, in one piece. Source: the reach of both filters, and ten rows.
+pub const LEAST_WIDTHS: f64 = 16.0;
 /// A quick motion raises the cut-off if it asks for at least this multiple of the present one.
 pub const WORTH_RAISING: f64 = 1.15;
 /// The part of a joint's torque that the noise of the positions may make before the cut-off is lowered.

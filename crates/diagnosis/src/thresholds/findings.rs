@@ -26,6 +26,15 @@ pub const LEAST_BURST_ROWS: usize = 50;
 pub const BURST_STRETCH: f64 = 0.4;
 /// The length of the pieces of a burst of which every other is fitted (s).
 pub const BURST_PIECE: f64 = 0.1;
+/// A push on the tool acts on at least this many joints, if the arm has more.
+pub const LEAST_PUSHED: usize = 2;
+/// A regression between two sensors needs this many rows per coefficient, and as many held-out rows.
+pub const SENSOR_ROWS: usize = 10;
+/// The factor on the standard errors of a regression between two sensors. Neighbouring rows are correlated: only one in four
+/// counts as independent.
+pub const SENSOR_ERRORS: f64 = 2.0;
+/// The least share of a joint that is listed with a finding that acts on several joints.
+pub const LISTED_SHARE: f64 = 1e-4;
 /// Two sensors are compared where the joint exceeds this multiple of the velocity deadband.
 pub const SENSORS_MOVE: f64 = 2.0;
 /// A deflection must follow the torque to this part of its power, on recordings it was fitted to and on others.

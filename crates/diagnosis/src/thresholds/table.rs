@@ -1,6 +1,9 @@
-//! The table of all thresholds in `docs/thresholds.md`: made from their files, so that no value changes unseen.
+//! The tables of all thresholds in `docs/thresholds.md`: made from their files, so that no value changes unseen.
 
 use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use effects::{CATALOGUE, Spec};
 
 /// The phases in order, with the files of their thresholds.
 const FILES: [(&str, &str); 6] = [
@@ -15,28 +18,72 @@ const FILES: [(&str, &str); 6] = [
     ("Findings", include_str!("findings.rs")),
 ];
 
-/// The rows of a file: each constant or field that has a value, below its doc comment.
-fn rows(source: &str) -> String {
+/// The rows of a file: each constant or field that has a value, below its doc comment; `file` is put before its name.
+fn rows(file: &str, source: &str) -> String {
     let mut rows = String::new();
     let mut words: Vec<&str> = Vec::new();
+    let source = source.split("#[cfg(test)]\nmod tests {").next().unwrap_or(source);
     for line in source.lines().map(str::trim) {
         if let Some(doc) = line.strip_prefix("/// ") {
             words.push(doc);
             continue;
         }
-        let constant = line.strip_prefix("pub const ").and_then(|line| line.split_once(" = "));
+        let constant = line.strip_prefix("pub ").unwrap_or(line).strip_prefix("const ");
+        let constant = constant.and_then(|line| line.split_once(" = "));
         let field = line.strip_suffix(',').and_then(|line| line.split_once(": "));
         let entry = constant.map(|(head, value)| (head.split(':').next().unwrap_or(head), value.trim_end_matches(';')));
-        let field = field.filter(|(_, value)| value.parse::<f64>().is_ok());
-        let is_number = |(_, value): &(&str, &str)| !value.starts_with('&');
+        let field = field.filter(|(_, value)| file.is_empty() && value.parse::<f64>().is_ok());
+        let is_number =
+            |(_, value): &(&str, &str)| value.starts_with(|c: char| c.is_ascii_digit() || "-[(".contains(c));
         if let Some((name, value)) = entry.or(field).filter(is_number) {
             assert!(!words.is_empty(), "{name} says what it decides");
             let decides = words.join(" ").replace("[`", "`").replace("`]", "`");
-            writeln!(rows, "| `{name}` | {value} | {decides} |").expect("a string takes everything");
+            writeln!(rows, "| {file}`{name}` | {value} | {decides} |").expect("a string takes everything");
         }
         words.clear();
     }
     rows
+}
+
+/// The evidence that each effect must bring, and its relations to others, from the specs.
+fn relations() -> String {
+    let row = |spec: &Spec| {
+        let mut relations: Vec<String> = Vec::new();
+        if let (Some(plain), true) = (spec.plain, spec.least_beyond_plain > 0.0) {
+            relations.push(format!(
+                "explains {} of the torque beyond `{plain}`",
+                spec.least_beyond_plain
+            ));
+        }
+        relations.extend(
+            spec.least_beside
+                .iter()
+                .map(|(name, part)| format!("exceeds {part} of `{name}`")),
+        );
+        if let Some(multiple) = spec.least_beside_residual {
+            relations.push(format!("exceeds {multiple} times the structured residual"));
+        }
+        format!("| `{}` | {} | {} |\n", spec.name, spec.prior, relations.join("; "))
+    };
+    CATALOGUE.iter().map(|kind| row(kind.spec())).collect()
+}
+
+/// The limits of the effects, from their files.
+fn limits() -> String {
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("../effects/src");
+    let files = |folder: &str| -> Vec<PathBuf> {
+        let entries = std::fs::read_dir(sources.join(folder)).expect("the folder is there");
+        let mut files: Vec<PathBuf> = entries.map(|entry| entry.expect("it can be read").path()).collect();
+        files.sort();
+        files
+    };
+    let folders = ["friction", "drive", "sensor", "arm", "joint", "unmodelled"];
+    let files = folders.into_iter().flat_map(files).chain([sources.join("fitted.rs")]);
+    let rows = files.map(|path| {
+        let file = path.strip_prefix(&sources).expect("it is below").display().to_string();
+        rows(&format!("{file}: "), &std::fs::read_to_string(&path).expect("text"))
+    });
+    rows.collect()
 }
 
 /// `UPDATE_DOCS=1` writes the page anew.
@@ -50,7 +97,7 @@ fn the_page_lists_every_threshold_with_its_value() {
     let (_, tail) = rest.split_once("<!-- end -->").expect("the page says where they end");
     let mut tables = String::new();
     for (phase, source) in FILES {
-        let table = rows(source);
+        let table = rows("", source);
         assert!(!table.is_empty(), "{phase}");
         write!(
             tables,
@@ -58,6 +105,14 @@ fn the_page_lists_every_threshold_with_its_value() {
         )
         .expect("a string takes it");
     }
+    write!(
+        tables,
+        "\n## Effects: evidence and relations\n\n| effect | evidence beyond that of its coefficients (nats) | named only if it |\n|---|---|---|\n{}\
+         \n## Effects: limits\n\n| threshold | value | decides |\n|---|---|---|\n{}",
+        relations(),
+        limits()
+    )
+    .expect("a string takes it");
     let new = format!("{head}<!-- begin -->\n{tables}\n<!-- end -->{tail}");
     if std::env::var_os("UPDATE_DOCS").is_some() {
         std::fs::write(path, new).expect("the page can be written");

@@ -10,22 +10,7 @@ use effects::Effect;
 use recording::{Recording, RegularRecording};
 
 /// Three joints: a turning column, a shoulder and an elbow.
-pub const TRIO: &str = r#"<robot name="trio">
-<link name="floor"/>
-<link name="column"><inertial><origin xyz="0 0 0.2"/><mass value="6"/>
-<inertia ixx="0.08" ixy="0" ixz="0" iyy="0.08" iyz="0" izz="0.05"/></inertial></link>
-<link name="upper"><inertial><origin xyz="0.22 0.01 0.02"/><mass value="5"/>
-<inertia ixx="0.02" ixy="0" ixz="0" iyy="0.11" iyz="0" izz="0.11"/></inertial></link>
-<link name="fore"><inertial><origin xyz="0.15 0 0.03"/><mass value="3"/>
-<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.05" iyz="0" izz="0.05"/></inertial></link>
-<joint name="turn" type="revolute"><parent link="floor"/><child link="column"/><axis xyz="0 0 1"/>
-<limit lower="-3" upper="3" effort="200" velocity="5"/></joint>
-<joint name="shoulder" type="revolute"><origin xyz="0 0 0.4"/><parent link="column"/><child link="upper"/>
-<axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="200" velocity="5"/></joint>
-<joint name="elbow" type="revolute"><origin xyz="0.45 0 0"/><parent link="upper"/><child link="fore"/>
-<axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="200" velocity="5"/></joint>
-</robot>
-"#;
+pub const TRIO: &str = include_str!("trio.urdf");
 
 /// The joints of [`TRIO`].
 pub const TURN: usize = 0;

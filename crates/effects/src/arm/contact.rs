@@ -1,4 +1,4 @@
-//! A force on the tool for a while.
+//! A force on the tool for a limited time.
 
 use ::arm::STANDARD_GRAVITY;
 
@@ -77,46 +77,51 @@ pub static FORCE: Law = Law {
             term.sized([middle - half, middle + half])
         },
     ],
-    is_sound: |term| term.sizes[1] - term.sizes[0] > 0.05,
+    is_sound: |term| term.sizes[1] - term.sizes[0] > SHORTEST_CONTACT,
     ..Law::PLAIN
 };
 
-/// The window times a factor about its middle.
+/// The term with its window scaled by a factor about the window's middle.
 fn about_middle(term: &Term, factor: f64) -> Term {
     let [from, to, ..] = term.sizes;
     let (middle, half) = (0.5 * (from + to), 0.5 * factor * (to - from));
     term.sized([middle - half, middle + half])
 }
 
-/// The columns of a force on the tool between two times (s), constant or `round`.
+/// The columns of a force on the tool between two times (s), constant or (`round`) half a sine.
 pub fn columns(from: f64, to: f64, round: bool) -> Vec<Term> {
     (0..3)
         .map(|axis| Term::about(&FORCE, axis).form(usize::from(round)).sized([from, to]))
         .collect()
 }
 
-/// From when to when a contact's column lasts (s); `None` of another column.
+/// The start and the end of a contact's column (s); `None` for a column of another law.
 pub fn window(term: &Term) -> Option<[f64; 2]> {
     term.is(&FORCE).then_some([term.sizes[0], term.sizes[1]])
 }
 
-/// The largest force of a contact as a multiple of the arm's weight: the drives could not hold against a larger one.
+/// The largest force of a contact as a multiple of the arm's weight. The drives could not hold a larger one.
 const MOST_CONTACT: f64 = 4.0;
+
+/// The shortest contact (s).
+const SHORTEST_CONTACT: f64 = 0.05;
+/// Contacts that are less than this apart are one contact (s).
+const SAME_CONTACT: f64 = 1.0;
 
 impl EffectKind for ExternalContact {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    /// The residuals suggest when.
+    /// None: the residuals suggest the windows of contacts.
     fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
         Vec::new()
     }
 
-    /// Two that are within a second of each other: one contact, then.
+    /// Two windows that are close to each other are one contact.
     fn is_same(&self, a: &Term, b: &Term) -> bool {
         let ([a, b, ..], [c, d, ..]) = (a.sizes, b.sizes);
-        a < d + 1.0 && c < b + 1.0
+        a < d + SAME_CONTACT && c < b + SAME_CONTACT
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
@@ -138,7 +143,7 @@ impl EffectKind for ExternalContact {
         Some(effect.with("duration", duration).with("force", force))
     }
 
-    /// Of contacts, each is another.
+    /// Two contacts are never the same one, unless they are equal in all values.
     fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
         a == b
     }

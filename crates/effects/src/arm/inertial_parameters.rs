@@ -1,10 +1,10 @@
-//! Links whose mass, centre of mass and moments of inertia are not the URDF's.
+//! Links whose mass, centre of mass and moments of inertia differ from the URDF's.
 
 use ::arm::{Inertia, Matrix3};
 
 use crate::{Effect, EffectKind, Form, Grounds, InUrdf, Law, Machine, Parameter, Place, Quantity, Range, Shape, Spec};
 
-/// The inertial parameters of the link that the joint carries are these.
+/// The link that the joint carries has these inertial parameters.
 #[derive(Debug)]
 pub struct InertialParameters;
 
@@ -40,7 +40,7 @@ pub static PARAMETER: Law = Law {
     ..Law::PLAIN
 };
 
-/// A moment of inertia may be negative by this share of the largest, for rounding.
+/// The share of the largest moment of inertia by which another may be negative, for rounding.
 const ROUNDING: f64 = 1e-6;
 
 impl InertialParameters {
@@ -68,7 +68,7 @@ impl EffectKind for InertialParameters {
         &SPEC
     }
 
-    /// None: they are in the background of every fit, and named where that is large.
+    /// None: inertial parameters are in the background of every fit, and named where the background is large.
     fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
         Vec::new()
     }
@@ -95,7 +95,7 @@ impl EffectKind for InertialParameters {
 mod tests {
     use super::*;
 
-    /// A body written as an effect is the same body again; one that cannot be is refused.
+    /// A body that is written as an effect and read again is the same; an impossible body is refused.
     #[test]
     fn a_body_is_an_effect_and_back() {
         let body = Inertia {

@@ -5,7 +5,7 @@ use crate::{
     Scope, Spec, Term,
 };
 
-/// All masses and inertias are factor × the model's.
+/// All masses and inertias are `factor` times the model's.
 #[derive(Debug)]
 pub struct InertialScale;
 
@@ -31,7 +31,7 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// The rigid torque of all links, drives apart.
+/// The rigid torque of all links, without that of the drives.
 pub static SCALE: Law = Law {
     name: "scale",
     column: |_, joint, motion| {
@@ -43,6 +43,9 @@ pub static SCALE: Law = Law {
     ..Law::PLAIN
 };
 
+/// The relative deviation from one that a common factor of all masses may have.
+const RELATIVE: std::ops::Range<f64> = -0.6..1.5;
+
 impl EffectKind for InertialScale {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -53,7 +56,7 @@ impl EffectKind for InertialScale {
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        (-0.6..1.5).contains(&fitted.value(0))
+        RELATIVE.contains(&fitted.value(0))
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {

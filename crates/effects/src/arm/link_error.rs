@@ -1,11 +1,11 @@
-//! A link whose mass and inertia are not the model's.
+//! A link whose mass and inertia differ from the model's.
 
 use crate::{
     Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter, Place, Quantity, Range, Spec,
     Term, Turn,
 };
 
-/// The mass and inertia of the link that the joint carries are (1 + relative) × the model's.
+/// The mass and inertia of the link that the joint carries are (1 + `relative`) times the model's.
 #[derive(Debug)]
 pub struct LinkInertialError;
 
@@ -28,7 +28,7 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// A link's share of the rigid torque, on the joints before it.
+/// The part of the rigid torque that one link causes on the joints before it.
 pub static LINK: Law = Law {
     name: "link",
     column: |term, joint, motion| {
@@ -40,19 +40,22 @@ pub static LINK: Law = Law {
     ..Law::PLAIN
 };
 
+/// The relative error that the mass of a link may have.
+const RELATIVE: std::ops::Range<f64> = -0.8..2.0;
+
 impl EffectKind for LinkInertialError {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    /// Of all links, whether their joints move or not.
+    /// Forms for all links, whether their joints move or not.
     fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
         let form = |link| Form::on(Turn::Link, link, vec![Term::about(&LINK, link)]);
         (0..grounds.dof()).map(form).collect()
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        (-0.8..2.0).contains(&fitted.value(0))
+        RELATIVE.contains(&fitted.value(0))
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {

@@ -22,7 +22,7 @@ static SPEC: Spec = Spec {
     scope: Scope::Arm,
     parameters: &[
         Parameter::new("mass", Quantity::Mass),
-        // Its centre of mass.
+        // Keys of the centre of mass.
         Parameter::new("com", Quantity::Length)
             .of(Shape::List(3, &["com_x", "com_y", "com_z"]))
             .remarked("m, in the tool's frame"),
@@ -57,12 +57,12 @@ pub static PARAMETER: Law = Law {
 
 /// The largest mass of a payload as a multiple of the mass of the moving links.
 const MOST_PAYLOAD: f64 = 1.5;
-/// Loads on a tool, and their centres of mass (m) as a share of the arm's reach.
+/// The largest distance of a payload's centre of mass from the tool (m), as a share of the arm's reach.
 const PAYLOAD_REACH: f64 = 0.5;
-/// A moment of inertia may be negative by this share of the largest, for rounding.
+/// The share of the largest moment of inertia by which another may be negative, for rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// The body of ten inertial parameters about a frame's origin; possible or not.
+/// The body with ten inertial parameters about a frame's origin. It need not be physically possible.
 pub fn body(parameters: &[f64; 10]) -> Inertia {
     let [mass, hx, hy, hz, xx, xy, yy, xz, yz, zz] = *parameters;
     let com = Vector3::new(hx, hy, hz) / mass;
@@ -74,13 +74,13 @@ pub fn body(parameters: &[f64; 10]) -> Inertia {
     }
 }
 
-/// The tensor about the centre of mass that a payload's six numbers (Ixx Ixy Iyy Ixz Iyz Izz) say.
+/// The tensor about the centre of mass that the six numbers of a payload (Ixx Ixy Iyy Ixz Iyz Izz) define.
 fn tensor([xx, xy, yy, xz, yz, zz]: [f64; 6]) -> Matrix3<f64> {
     Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 }
 
 impl Payload {
-    /// The body that a payload is.
+    /// The body of a payload.
     pub fn inertia(effect: &Effect) -> Inertia {
         Inertia {
             mass: effect.number("mass"),
@@ -99,7 +99,7 @@ impl EffectKind for Payload {
         &SPEC
     }
 
-    /// With its moments of inertia and, where they do not show, without.
+    /// A form with moments of inertia, and one without them for recordings that do not show them.
     fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
         [10, 4].map(|count| Form::of_arm(columns(count))).to_vec()
     }
@@ -118,7 +118,7 @@ impl EffectKind for Payload {
         let reach = PAYLOAD_REACH * reach(fitted.arm());
         let first: f64 = (1..4).map(|k| fitted.value(k).powi(2)).sum::<f64>().sqrt();
         let last = fitted.arm().joints().last().map_or(0.0, |joint| joint.inertia.mass);
-        // A body that the URDF draws and that is not mounted has a negative mass, of which the last link must leave something.
+        // A tool that the URDF draws and that is not mounted has a negative mass; the last link must keep a positive one.
         let is_there = mass > 0.0 && mass < MOST_PAYLOAD * moving_mass(fitted.arm());
         let is_missing = mass < 0.0 && -mass < last;
         (is_there || is_missing) && first < mass.abs() * reach
@@ -139,7 +139,7 @@ impl EffectKind for Payload {
                 parameters[1 + k] / parameters[0]
             });
         }
-        // A tensor that no body has says that the recordings do not show it.
+        // An impossible tensor means that the recordings do not determine it.
         let tensor = body(&read(estimate.best())).tensor;
         let moments = tensor.symmetric_eigenvalues();
         let possible = places[4].is_some() && moments.iter().all(|&value| value * mass >= 0.0);
@@ -153,7 +153,7 @@ impl EffectKind for Payload {
     }
 
     fn refuse(&self, effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
-        // Of a body that is missing all moments are negative.
+        // All moments of a missing body are negative.
         let sense = effect.number("mass").signum();
         let moments = sense * tensor(effect.list("inertia")).symmetric_eigenvalues();
         let wrong = moments.min() < -ROUNDING * moments.amax();
@@ -164,7 +164,7 @@ impl EffectKind for Payload {
         ))
     }
 
-    /// Bodies on the tool add up: one that is known and one that was found on top of it. The same one twice is a slip.
+    /// Payloads add up: a known one and one that was found in addition. Two equal payloads are an error of the user.
     fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
         a == b
     }

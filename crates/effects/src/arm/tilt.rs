@@ -1,4 +1,4 @@
-//! A base that does not stand level.
+//! A base that is not level.
 
 use ::arm::{Arm, Vector3};
 
@@ -7,7 +7,7 @@ use crate::{
     Scope, Shape, Spec, Term,
 };
 
-/// The base is turned by `angle` about `axis` (unit, in the base's frame): gravity points elsewhere.
+/// The base is turned by `angle` about `axis` (unit vector in the base's frame), which changes the direction of gravity.
 #[derive(Debug)]
 pub struct GravityMisalignment;
 
@@ -45,8 +45,8 @@ pub static TILT: Law = Law {
     ..Law::PLAIN
 };
 
-/// The torque of gravity along an axis of the base: the torque is linear in gravity, so that these three columns reach a base
-/// on a wall or a ceiling, from which no step about the upright base leads there.
+/// The torque of gravity along an axis of the base. The torque is linear in gravity, so that these three columns can represent
+/// a base on a wall or a ceiling, which no linearisation about the upright base reaches.
 pub static GRAVITY: Law = Law {
     name: "gravity",
     column: |term, joint, motion| Some(motion.rigid.gravity[joint][term.of[0]].clone()),
@@ -55,18 +55,19 @@ pub static GRAVITY: Law = Law {
     ..Law::PLAIN
 };
 
-/// Small turns are steps about the base as it is, up to this angle (rad).
+/// Up to this angle (rad), a turn is found by linearisation about the upright base.
 const MOST_TURNED: f64 = 0.4;
-/// Gravity that points elsewhere is found by its three columns from this angle on (rad).
+/// From this angle on (rad), the direction of gravity is found by its three columns.
 const LEAST_TURNED: f64 = 0.3;
-/// Gravity is as large on a wall as on the floor; its columns say so up to this factor, beside masses that are not the URDF's.
+/// The factor by which the magnitude of gravity that the columns give may differ from the true one, because masses may differ
+/// from the URDF's.
 const AS_LARGE: f64 = 1.3;
 
-/// The angle (rad) and the axis by which a base is turned in which gravity is `seen`, not `usual`.
+/// The angle (rad) and the axis of the turn of a base in which gravity is `seen` instead of `usual`.
 fn turn(usual: &Vector3<f64>, seen: &Vector3<f64>) -> (f64, Vector3<f64>) {
     let axis = seen.cross(usual);
     let angle = axis.norm().atan2(seen.dot(usual));
-    // On the ceiling any horizontal axis will do.
+    // On a ceiling, any horizontal axis gives the turn.
     let least = 1e-9 * usual.norm_squared();
     let axis = if axis.norm() > least {
         axis
@@ -81,13 +82,13 @@ fn turn(usual: &Vector3<f64>, seen: &Vector3<f64>) -> (f64, Vector3<f64>) {
     (angle, axis / axis.norm().max(f64::MIN_POSITIVE))
 }
 
-/// The angle (rad) of the turn about a unit `axis`, from 0 to 2 π.
+/// The angle (rad, from 0 to 2 π) of the turn about a unit `axis`.
 fn angle_about(axis: &Vector3<f64>, usual: &Vector3<f64>, seen: &Vector3<f64>) -> f64 {
     let angle = axis.dot(&seen.cross(usual)).atan2(seen.dot(usual));
     angle.rem_euclid(std::f64::consts::TAU)
 }
 
-/// Gravity as an arm sees it that has `beyond` (m/s²) besides its own.
+/// Gravity as the arm has it, plus `beyond` (m/s²).
 fn seen(arm: &Arm, beyond: [f64; 3]) -> Vector3<f64> {
     arm.gravity() + Vector3::from(beyond)
 }
@@ -102,7 +103,7 @@ fn read_gravity(estimate: &mut dyn Estimate) -> Option<Effect> {
     let angle = estimate.note("angle", |draw| angle_about(&about, &usual, &gravity(draw)));
     let axis = |draw: &[f64]| {
         let (_, axis) = turn(&usual, &gravity(draw));
-        // Near the ceiling the axis of a draw may point the other way.
+        // Near the ceiling, the axis of a draw may have the opposite sign.
         axis * axis.dot(&about).signum()
     };
     let x = estimate.note("axis_x", |draw| axis(draw).x);
@@ -119,7 +120,7 @@ impl EffectKind for GravityMisalignment {
         &SPEC
     }
 
-    /// Small turns, and gravity along any other direction.
+    /// Small turns by linearisation, and gravity in any other direction.
     fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
         let of = |law: &'static Law, count: usize| Form::of_arm((0..count).map(|k| Term::about(law, k)).collect());
         vec![of(&TILT, 2), of(&GRAVITY, 3)]
@@ -163,7 +164,7 @@ mod tests {
     use super::*;
     use crate::test_support::agree;
 
-    /// To first order.
+    /// A small turn agrees with the machine to first order.
     #[test]
     fn its_columns_are_its_torque() {
         let effect = Effect::of(&GravityMisalignment).with("angle", 1e-6);
@@ -174,7 +175,7 @@ mod tests {
         );
     }
 
-    /// At any angle: on a slope, on a wall, on the ceiling.
+    /// Large turns agree with the machine: on a slope, on a wall, on the ceiling.
     #[test]
     fn its_columns_of_gravity_are_its_torque() {
         for angle in [0.5, std::f64::consts::FRAC_PI_2, std::f64::consts::PI] {

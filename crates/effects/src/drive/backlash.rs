@@ -9,7 +9,7 @@ use crate::{
     Size, Spec, Systematic, Term, Turn, Unseen,
 };
 
-/// The rotor drives the link through a gap of ± halfgap; q is the rotor's.
+/// The rotor drives the link through a gap of ± `halfgap`; q is the rotor's position.
 #[derive(Debug)]
 pub struct Backlash;
 
@@ -36,8 +36,9 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// The link's motion behind a gap, for a coefficient of one. Sizes are half the gap (rad), the stiffness of its ends (N m/rad;
-/// infinite: they stop the link at once) and their damping ratio against the link: from 1 on it does not bounce.
+/// The torque of the link's motion behind a gap, for a coefficient of one. Sizes are half the gap (rad), the stiffness of its
+/// ends (N m/rad; infinite for rigid ends) and their damping ratio with the link's inertia (from 1 on, the link does not
+/// bounce).
 pub static GAP: Law = Law {
     name: "gap",
     column: |term, joint, motion| Some(behind(term, motion).torque(joint, motion.rigid)),
@@ -68,24 +69,24 @@ fn behind(term: &Term, motion: &Signals<'_>) -> Behind {
     Behind::new(joint, ticks)
 }
 
-/// Damping ratios of a gap's ends to begin with: the link stays, or bounces.
+/// The damping ratios of a gap's ends that are tried first: one without bouncing, one with it.
 const STOP_RATIOS: [f64; 2] = [1.0, 0.2];
 
-/// Gaps to begin with, as shares of the range of the motion.
+/// The gaps that are tried first, as shares of the range of the motion.
 const GAPS: [f64; 7] = [0.0025, 0.004, 0.008, 0.014, 0.022, 0.035, 0.06];
 
-/// Where the ends of a gap may swing against the link, before they are refined (Hz).
+/// The frequency at which the link swings against compliant ends of a gap, before it is refined (Hz).
 const STOP_FREQUENCY: f64 = 20.0;
 
-/// Where the ends of a gap that were rigid may swing against the link, first (Hz).
+/// The frequencies that are tried first where a gap was found with rigid ends (Hz).
 const FIRST_STOPS: [f64; 3] = [12.0, 20.0, 32.0];
 
-/// The stiffness of ends (N m/rad) against which a link of an inertia swings at a frequency (Hz).
+/// The stiffness of ends (N m/rad) on which a link with an inertia swings at a frequency (Hz).
 fn stop(mass: f64, hertz: f64) -> f64 {
     mass * (2.0 * std::f64::consts::PI * hertz).powi(2)
 }
 
-/// A gap with rigid ends with each of the first stiffnesses that they may have.
+/// A gap with rigid ends, as gaps with each of the stiffnesses that are tried first.
 fn softened(term: &Term, mass: f64) -> Vec<Term> {
     let [halfgap, rigid, ..] = term.sizes;
     if rigid.is_finite() {
@@ -104,7 +105,7 @@ impl EffectKind for Backlash {
         &SPEC
     }
 
-    /// With rigid ends, and with ends that give.
+    /// Forms with rigid and with compliant ends.
     fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
         let mut forms = Vec::new();
         for joint in grounds.moving() {

@@ -1,16 +1,17 @@
-//! A drive that two joints turn.
+//! A drive that turns with two joints.
 
 use crate::{
     Against, Effect, EffectKind, Estimate, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Spec, State, Term,
     Turn, sign,
 };
 
-/// A drive that two joints turn, and its reaction: on each of the two, with o the other of them,
+/// A drive that turns with two joints, and its reaction. On each of the two, with o the other of them,
 /// τ = viscous q̇ₒ + coulomb sgn(q̇ + sense q̇ₒ) + inertia q̈ₒ.
 #[derive(Debug)]
 pub struct TransmissionCoupling;
 
-/// Two joints that turn one drive are no further apart in the chain: the drives of a wrist's axes pass through each other.
+/// The largest distance in the chain between two joints that share a drive: in a wrist, the shaft of a drive passes through one
+/// other joint.
 pub const FARTHEST_COUPLED: usize = 2;
 
 static SPEC: Spec = Spec {
@@ -34,7 +35,7 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// Each of two joints feels the other's q̇: a drive that both turn, and its reaction.
+/// Each of two joints feels the other's q̇, because a drive turns with both.
 pub static PAIR_VELOCITY: Law = Law {
     name: "pair_velocity",
     column: |term, joint, motion| partner(term, joint).map(|other| motion.qd[other].clone()),
@@ -48,7 +49,7 @@ pub static PAIR_ACCELERATION: Law = Law {
     ..Law::PLAIN
 };
 
-/// Two joints share a drive's dry friction: sgn of the sum of their q̇ (size 1), or of the difference (size −1).
+/// The dry friction of a drive that two joints share: sgn of the sum of their q̇ (size 1) or of the difference (size −1).
 pub static PAIR_SIGN: Law = Law {
     name: "pair_sign",
     column: |term, joint, motion| {
@@ -60,7 +61,7 @@ pub static PAIR_SIGN: Law = Law {
     ..Law::PLAIN
 };
 
-/// The other of two joints; `None` to a third.
+/// The other of two joints; `None` for a third joint.
 fn partner(term: &Term, joint: usize) -> Option<usize> {
     let [a, b] = term.of;
     match joint {
@@ -79,7 +80,7 @@ impl EffectKind for TransmissionCoupling {
         true
     }
 
-    /// A drive that two joints turn sits near both.
+    /// Pairs of joints that are near each other in the chain.
     fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
         let mut forms = Vec::new();
         for joint in grounds.moving() {
@@ -97,13 +98,13 @@ impl EffectKind for TransmissionCoupling {
         forms
     }
 
-    /// Its friction must be there beyond doubt, and its inertia may not be against that: a drive that both joints turn has both,
-    /// in the sense in which it turns with them. (On the way to what explains more, a search may pass through others.)
+    /// The viscous friction must be clearly positive and the inertia not clearly negative, because a drive that turns with both
+    /// joints has both, in the sense in which it turns with them. (During the search, other values are allowed.)
     fn is_certain(&self, effect: &Effect, interval: &dyn Fn(&str) -> Option<[f64; 2]>, _accuracy: f64) -> bool {
         let sense = effect.number("viscous").signum();
         let is_clear = |[low, high]: [f64; 2]| (sense * low).min(sense * high) > 0.0;
         let is_against = |[low, high]: [f64; 2]| (sense * low).max(sense * high) < 0.0;
-        // A dry part, where there is one, says in which sense the drive turns with both.
+        // Dry friction, if there is any, determines the sense in which the drive turns with both joints.
         let dry_agrees = interval("coulomb").is_none() || sense == effect.number("sense").signum();
         interval("viscous").is_some_and(is_clear) && dry_agrees && !interval("inertia").is_some_and(is_against)
     }
@@ -136,7 +137,7 @@ impl EffectKind for TransmissionCoupling {
                 viscous * qd[other] + coulomb * sign(qd[joint] + sense * qd[other]) + inertia * qdd[other]
             }
         };
-        // The reaction on the other joint is the same with the two exchanged.
+        // The reaction on the other joint has the same form, with the joints exchanged.
         machine.add_torque(at.other, None, torque(at.joint));
         machine.add_torque(at.joint, effect.onset(), torque(at.other));
     }
@@ -174,7 +175,7 @@ mod tests {
         };
         assert!(is_certain([1.0, 2.0], [0.1, 0.2]));
         assert!(is_certain([1.0, 2.0], [-0.1, 0.2]));
-        // A drive that turns with the difference of the two.
+        // A drive that turns with the difference of the two joints.
         assert!(is_certain([-2.0, -1.0], [-0.2, -0.1]));
         assert!(!is_certain([-0.73, 1.17], [-1.3, -1.1]));
         assert!(!is_certain([-0.73, 1.17], [0.1, 0.2]));

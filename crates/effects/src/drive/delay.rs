@@ -1,11 +1,11 @@
-//! Torque that comes later than it was commanded.
+//! Torque that is applied later than it is commanded.
 
 use crate::{
     Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range,
     Size, Spec, Systematic, Term, Turn, UNIT, Unseen,
 };
 
-/// The torque applied at t is the one commanded at t − delay.
+/// The torque applied at t is the one commanded at t − `delay`.
 #[derive(Debug)]
 pub struct ActuationDelay;
 
@@ -24,7 +24,7 @@ static SPEC: Spec = Spec {
     sentence: "a delay of {delay} between commanded and applied torque",
     parameters: &[Parameter::new("delay", Quantity::Time).within(Range::NotNegative)],
     main: &["delay"],
-    // A link behind a gap or a spring is late too.
+    // A link behind a gap or a spring also lags.
     least_beside: &[("backlash", 0.5), ("joint_elasticity", 0.5)],
     is_simulated: true,
     experiment: Some(SECOND_ENCODER),
@@ -37,7 +37,7 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// τ(t) − τ(t − delay), measured; the size is the delay (s).
+/// τ(t) − τ(t − delay) of the measured torque; the size is the delay (s).
 pub static LATE: Law = Law {
     name: "late",
     column: |term, joint, motion| Some(late(&motion.tau[joint], term.sizes[0] / motion.period)),
@@ -46,11 +46,11 @@ pub static LATE: Law = Law {
     ..Law::PLAIN
 };
 
-/// The longest delay of a drive (s): no position loop bears more.
+/// The longest delay of a drive (s). A position loop with a longer one is unstable.
 const LONGEST_DELAY: f64 = 0.03;
 
-/// A delay shows where torques change quickly: accelerations must need this part of the joint's torque. Of weight and friction,
-/// which change slowly or at reversals, a late torque and one that depends on the velocity are alike.
+/// The part of the joint's torque that accelerations must need. A delay shows where the torque changes quickly; gravity and
+/// friction change slowly or at reversals, where a delay and a dependence on the velocity look alike.
 const LEAST_INERTIAL: f64 = 0.05;
 
 impl EffectKind for ActuationDelay {
@@ -85,12 +85,12 @@ impl EffectKind for ActuationDelay {
     }
 }
 
-/// The signal less itself `ticks` earlier, by cubic interpolation; nothing before it began.
+/// The signal minus itself `ticks` earlier, by cubic interpolation; zero before the signal began.
 fn late(signal: &[f64], ticks: f64) -> Vec<f64> {
     let whole = ticks.floor();
     let part = ticks - whole;
     let back = whole as usize;
-    // Catmull-Rom weights at `part` beyond the tick, towards the past.
+    // Catmull-Rom weights at the fraction `part` of a tick towards the past.
     let weights = [
         -0.5 * part + part * part - 0.5 * part.powi(3),
         1.0 - 2.5 * part * part + 1.5 * part.powi(3),
@@ -118,7 +118,7 @@ mod tests {
         assert_eq!(machine(&effect).delays, [0.0, 0.004]);
     }
 
-    /// A parabola is delayed exactly by fractions of a tick.
+    /// Cubic interpolation delays a parabola exactly, also by fractions of a tick.
     #[test]
     fn delays_are_exact_on_parabolas() {
         let signal: Vec<f64> = (0..40).map(|k| 0.3 * f64::from(k) - 0.02 * f64::from(k * k)).collect();

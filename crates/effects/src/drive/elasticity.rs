@@ -9,7 +9,7 @@ use crate::{
     Sprung, Systematic, Term, Turn, Unseen,
 };
 
-/// The rotor drives the link through a spring and a damper; q is the rotor's.
+/// The rotor drives the link through a spring and a damper; q is the rotor's position.
 #[derive(Debug)]
 pub struct JointElasticity;
 
@@ -39,7 +39,8 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// The link's motion behind an elastic joint, for a coefficient of one; sizes are stiffness (N m/rad) and damping (N m s/rad).
+/// The torque of the link's motion behind an elastic joint, for a coefficient of one; sizes are stiffness (N m/rad) and damping
+/// (N m s/rad).
 pub static ELASTIC: Law = Law {
     name: "elastic",
     column: |term, joint, motion| Some(behind(term, motion).torque(joint, motion.rigid)),
@@ -63,7 +64,7 @@ impl EffectKind for JointElasticity {
         &SPEC
     }
 
-    /// By the resonance of the link on the spring.
+    /// Stiffnesses at which the link resonates at a list of frequencies.
     fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
         let mut forms = Vec::new();
         for joint in grounds.moving() {
@@ -119,7 +120,7 @@ mod tests {
         assert_eq!((spring.stiffness, spring.damping), (1e4, 3.0));
     }
 
-    /// A spring that hardly gives leaves the rigid arm.
+    /// With a very stiff spring, the torque is that of the rigid arm.
     #[test]
     fn a_stiff_joint_is_rigid() {
         let (soft, _) = column(&Term::about(&ELASTIC, 0).sized([1e3, 3.0]), 0);

@@ -29,7 +29,7 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// sin (form 0) or cos (form 1) of periods × q; the size is the periods (rad a rad).
+/// sin (form 0) or cos (form 1) of periods × q; the size is the number of periods (rad/rad).
 pub static RIPPLE: Law = Law {
     name: "ripple",
     column: |term, joint, motion| motion.map(|k| wave(term.sizes[0] * motion.q[joint][k], term.form == 1)),
@@ -43,23 +43,27 @@ pub fn columns(joint: usize, periods: f64) -> Vec<Term> {
     sine_and_cosine(&RIPPLE, joint, periods)
 }
 
-/// A motor before a gear turns at least so many times in a turn of the joint, and its poles and teeth repeat more often still.
+/// The least ratio of a gear, as periods per revolution of the joint: a motor before a gear turns at least this often, and its
+/// poles and teeth repeat more often.
 const LEAST_GEARED: f64 = 8.0;
+
+/// The relative difference of periods below which two ripples are the same.
+const SAME_PERIODS: f64 = 0.2;
 
 impl EffectKind for TorqueRipple {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    /// The residuals suggest the periods.
+    /// None: the residuals suggest the periods.
     fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
         Vec::new()
     }
 
-    /// Two that are too close to be told apart.
+    /// Two ripples of nearly the same period are not distinguished.
     fn is_same(&self, a: &Term, b: &Term) -> bool {
         let (a, b) = (a.sizes[0], b.sizes[0]);
-        (a - b).abs() < 0.2 * a.min(b)
+        (a - b).abs() < SAME_PERIODS * a.min(b)
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
@@ -74,14 +78,15 @@ impl EffectKind for TorqueRipple {
         Some(effect.with("phase", phase))
     }
 
-    /// What turns with the joint itself repeats a whole number of times in a turn; only a motor before a gear need not.
+    /// A part that turns with the joint repeats a whole number of times per revolution; only a motor before a gear may have any
+    /// ratio.
     fn is_certain(&self, effect: &Effect, interval: &dyn Fn(&str) -> Option<[f64; 2]>, _accuracy: f64) -> bool {
         let whole = effect.number("periods").round();
         let holds = |[low, high]: [f64; 2]| whole >= 1.0 && (low..=high).contains(&whole);
         interval("periods").is_none_or(|own| own[1] >= LEAST_GEARED || holds(own))
     }
 
-    /// A joint has as many ripples as it has parts that turn at other ratios.
+    /// A joint has one ripple for each ratio at which its parts turn.
     fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
         a.number("periods") == b.number("periods")
     }

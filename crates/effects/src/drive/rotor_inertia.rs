@@ -1,4 +1,4 @@
-//! The drive's rotor, which the gear makes heavy at the joint.
+//! The inertia of the drive's rotor, reflected to the joint by the gear.
 
 use crate::laws::ACCELERATION;
 use crate::{
@@ -6,7 +6,7 @@ use crate::{
     Range, Spec, Term, Turn, Unseen,
 };
 
-/// τ = inertia q̈: the drive's rotor, seen at the joint.
+/// τ = inertia q̈.
 #[derive(Debug)]
 pub struct RotorInertia;
 
@@ -48,7 +48,7 @@ impl EffectKind for RotorInertia {
         fitted.value(0) > 0.0
     }
 
-    // A drive behind a spring or a gap has its rotor's column beside another.
+    // Behind a spring or a gap, the column of the rotor is not the only one.
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let at = estimate.at(&ACCELERATION)?;
         let inertia = estimate.coefficient("inertia", Some(at), 1.0);

@@ -1,4 +1,4 @@
-//! A drive that gives no more than a limit.
+//! A drive whose torque is limited.
 
 use ::arm::JointKind;
 
@@ -28,7 +28,7 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// What a torque limit cuts off the commanded torque, τ − clip τ; the size is the limit (N m or N).
+/// The part of the commanded torque that a limit removes, τ − clip τ; the size is the limit (N m or N).
 pub static EXCESS: Law = Law {
     name: "excess",
     column: |term, joint, motion| {
@@ -43,17 +43,18 @@ pub static EXCESS: Law = Law {
     ..Law::PLAIN
 };
 
-/// A limit cuts off all that is beyond it. Its column is made of the measured torque, which may stand for a scale.
+/// The coefficient that a limit may have. It removes all torque beyond it, so that the coefficient is one; a torque scale
+/// changes it.
 const CUT_OFF: std::ops::RangeInclusive<f64> = 0.8..=1.25;
-/// Of what a limit would cut off, on the rows beyond it, the model with the limit leaves no more than this part: otherwise the
-/// motion there shows that the drive gave more.
+/// The largest part of the power beyond the limit that may remain with the limit in the model. If more remains, the motion
+/// shows that the drive gave more torque.
 const MOST_LEFT: f64 = 0.5;
 /// The largest part of the moving rows that a torque limit may clip.
 const MOST_CLIPPED: f64 = 0.45;
-/// A torque limit is at least this part of what the motion needs, by a model that may be wrong.
+/// The least torque limit, as a part of the torque that the motion needs by the model, which may be wrong.
 const BELOW_NEED: f64 = 0.7;
-/// A drive gives at least this multiple of its joint's dry friction: with less it could hardly move the joint, and a torque that is
-/// little more than dry friction looks clipped at the level of that.
+/// The least torque limit, as a multiple of the joint's dry friction. With a lower limit, the drive could hardly move the
+/// joint, and a torque that is mostly dry friction looks clipped at the friction level.
 const LEAST_OVER_FRICTION: f64 = 1.3;
 
 impl EffectKind for TorqueSaturation {
@@ -62,14 +63,14 @@ impl EffectKind for TorqueSaturation {
     }
 
     fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        // A position loop may ask for many times what the drive can give.
+        // A position loop may command many times the torque that the drive can give.
         let wound_up = [0.027, 0.036, 0.048, 0.064, 0.085, 0.11, 0.15];
         let usual = [0.2, 0.27, 0.36, 0.45, 0.55, 0.65, 0.73, 0.8, 0.86, 0.91, 0.95];
         let mut forms = Vec::new();
         for joint in grounds.moving() {
             for share in wound_up.into_iter().chain(usual) {
                 let limit = share * grounds.largest[joint];
-                // A drive that moved or held the arm against this torque is not limited far below it.
+                // A drive that gave this torque is not limited far below it.
                 if limit < BELOW_NEED * grounds.needed[joint] {
                     continue;
                 }
@@ -81,7 +82,7 @@ impl EffectKind for TorqueSaturation {
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        // A drive spends no more than part of its time at its limit.
+        // A drive is at its limit for a part of the time only.
         CUT_OFF.contains(&fitted.value(0)) && acting(fitted) < MOST_CLIPPED && cuts(fitted)
     }
 
@@ -111,7 +112,7 @@ impl EffectKind for TorqueSaturation {
     }
 }
 
-/// Whether what the limit cuts off is what the model without it leaves, on the rows where it does.
+/// Whether the torque that the limit removes is the residual of the model without it, on the rows where it acts.
 fn cuts(fitted: &dyn Fitted) -> bool {
     let Some(x) = fitted.column(0) else { return true };
     let (mut with, mut without) = (0.0, 0.0);
@@ -124,7 +125,7 @@ fn cuts(fitted: &dyn Fitted) -> bool {
     with <= MOST_LEFT * without
 }
 
-/// The part of the moving rows on which the first column is not zero.
+/// The part of the moving rows on which the first column differs from zero.
 fn acting(fitted: &dyn Fitted) -> f64 {
     let Some(x) = fitted.column(0) else { return 0.0 };
     let largest = x.iter().fold(0.0_f64, |largest, v| largest.max(v.abs()));
@@ -139,7 +140,7 @@ mod tests {
     use crate::friction::CoulombFriction;
     use crate::test_support::{column, machine};
 
-    /// The torque of a slow joint with dry friction alone is flat at the level of that friction.
+    /// The torque of a slow joint with nothing but dry friction is flat at the friction level.
     #[test]
     fn a_limit_hardly_above_the_dry_friction_is_none() {
         let limit = |limit: f64| Effect::of(&TorqueSaturation).on("a").with("limit", limit);

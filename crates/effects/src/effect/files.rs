@@ -40,7 +40,7 @@ impl Serialize for Effect {
     }
 }
 
-/// What a file may hold.
+/// A value in a file.
 #[derive(Clone, Debug)]
 enum Raw {
     Number(f64),
@@ -51,7 +51,7 @@ enum Raw {
 }
 
 impl Raw {
-    /// That it is of another type than `expected`.
+    /// The error that it is of another type than `expected`.
     fn wrong<E: Error>(&self, expected: &'static str) -> E {
         let found = match self {
             Self::Number(number) => Unexpected::Float(*number),
@@ -163,7 +163,7 @@ impl<'de> Deserialize<'de> for Effect {
     }
 }
 
-/// The keys that an effect may have, in files' order.
+/// The keys that an effect may have, in the order of files.
 fn keys(spec: &Spec, has_other: bool) -> Vec<&'static str> {
     let joint = (spec.scope == Scope::Joint).then_some("joint");
     let keys = joint.into_iter().chain(has_other.then_some("other"));

@@ -1,4 +1,4 @@
-//! Drag: a loss that grows faster than the speed.
+//! Drag: friction that grows faster than the speed.
 
 use crate::{
     Against, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range,
@@ -40,7 +40,7 @@ fn drag(qd: f64, exponent: f64) -> f64 {
     qd.abs().powf(exponent).copysign(qd)
 }
 
-/// Exponents of what grows faster than the speed.
+/// The exponents that a drag may have.
 const EXPONENTS: std::ops::RangeInclusive<f64> = 1.4..=3.2;
 
 impl EffectKind for QuadraticDrag {

@@ -25,8 +25,8 @@ static SPEC: Spec = Spec {
     ],
     main: &["gain"],
     plain: Some("coulomb_friction"),
-    // Every gear has a little of it. In cases with small amounts on every joint (under 1.5 % of its torque) these explain up to
-    // 1 % beyond Coulomb friction, concealed ones 6.6 % and more.
+    // Every gear has some load dependence. In simulated cases with small effects on every joint (below 1.5 % of its torque), it
+    // explains up to 1 % beyond Coulomb friction; injected load dependence explains 6.6 % and more.
     least_beyond_plain: 0.012,
     against: Against::LoadAlong,
     unseen: Unseen::LINEAR,
@@ -43,6 +43,11 @@ pub static LOAD_SIGN: Law = Law {
     ..Law::PLAIN
 };
 
+/// The largest gain: with a larger one, friction would exceed the load.
+const LARGEST_GAIN: f64 = 1.0;
+/// Without load, friction may be zero, but not negative by more than this part of the load's friction.
+const BELOW_ZERO: f64 = 0.1;
+
 impl EffectKind for LoadDependentFriction {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -57,8 +62,9 @@ impl EffectKind for LoadDependentFriction {
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        // Without load there may be no friction at all, but not less.
-        fitted.value(1) > 0.0 && fitted.value(1) < 1.0 && fitted.value(0) > -0.1 * fitted.value(1) * load(fitted)
+        fitted.value(1) > 0.0
+            && fitted.value(1) < LARGEST_GAIN
+            && fitted.value(0) > -BELOW_ZERO * fitted.value(1) * load(fitted)
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
@@ -76,7 +82,7 @@ impl EffectKind for LoadDependentFriction {
     }
 }
 
-/// The mean of the load's column.
+/// The mean of the absolute load.
 fn load(fitted: &dyn Fitted) -> f64 {
     fitted
         .column(1)

@@ -57,13 +57,13 @@ fn fading(qd: f64, velocity: f64, exponent: f64) -> f64 {
     (-(qd / velocity).abs().powf(exponent)).exp()
 }
 
-/// The velocity of the first Stribeck column among some (rad/s or m/s).
+/// The velocity of the first Stribeck column in a list (rad/s or m/s).
 pub fn velocity(terms: &[Term]) -> Option<f64> {
     let term = terms.iter().find(|term| term.is(&FADING))?;
     Some(term.sizes[0])
 }
 
-/// Beside what breaking away takes more, dry friction of a joint in motion is at least this part of it.
+/// The least Coulomb friction of a joint in motion, as a part of the additional breakaway friction.
 const LEAST_COULOMB: f64 = 0.1;
 
 impl EffectKind for StribeckFriction {
@@ -117,7 +117,7 @@ impl EffectKind for StribeckFriction {
     }
 }
 
-/// Whether Stribeck's part has faded to less than half on most of the moving rows: it is friction of low speeds.
+/// Whether the additional friction has fallen below half on most of the moving rows, so that it is a friction at low speed.
 fn fades(fitted: &dyn Fitted) -> bool {
     let Some(x) = fitted.column(1) else { return false };
     let (mut moving, mut slow) = (0, 0);

@@ -59,18 +59,23 @@ pub static WARMING: Law = Law {
     ..Law::PLAIN
 };
 
-/// How cold it still is: one at the start.
+/// The remaining part of the cold friction: one at the start.
 fn cold(time: f64, [time_constant, start, ..]: [f64; 4]) -> f64 {
     (-(time - start) / time_constant).exp()
 }
 
-/// A clock that runs for longer (s) when the recordings begin did not begin with them: it is a controller's, or a computer's.
+/// The time (s) at which recordings begin on a clock that did not begin with them, but with a controller or a computer.
 const OWN_CLOCK: f64 = 60.0;
 
-/// The time at which the amplitude is told (s), for recordings that begin at `begins`.
+/// The time for which the amplitude is given (s), for recordings that begin at `begins`.
 fn start(begins: f64) -> f64 {
     if begins.abs() > OWN_CLOCK { begins.floor() } else { 0.0 }
 }
+
+/// The factor by which refinement may fall below the shortest time constant.
+const REFINED: f64 = 0.7;
+/// The largest additional friction of a cold drive, as a multiple of the warm friction.
+const MOST_COLD: f64 = 4.0;
 
 impl EffectKind for ThermalDrift {
     fn spec(&self) -> &'static Spec {
@@ -79,7 +84,7 @@ impl EffectKind for ThermalDrift {
 
     fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
         let constants = [0.15, 0.25, 0.4, 0.6, 1.0].map(|share| share * grounds.span.unwrap_or(0.0));
-        // What fades faster is no warming of a drive.
+        // A faster decay is no warming of a drive.
         let constants: Vec<f64> = constants.into_iter().filter(|time| *time >= FASTEST_WARMING).collect();
         let start = start(grounds.times.first().map_or(0.0, |&(begins, _)| begins));
         let mut forms = Vec::new();
@@ -94,9 +99,8 @@ impl EffectKind for ThermalDrift {
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
         let (warm, cold) = (fitted.value(0), fitted.value(1));
-        // Refinement may do something to the time constant.
-        let is_slow = |term: Term| !term.is(&WARMING) || term.sizes[0] > 0.7 * FASTEST_WARMING;
-        cold > 0.0 && warm > 0.0 && cold < 4.0 * warm && (0..fitted.len()).all(|k| is_slow(fitted.term(k)))
+        let is_slow = |term: Term| !term.is(&WARMING) || term.sizes[0] > REFINED * FASTEST_WARMING;
+        cold > 0.0 && warm > 0.0 && cold < MOST_COLD * warm && (0..fitted.len()).all(|k| is_slow(fitted.term(k)))
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {

@@ -1,4 +1,4 @@
-//! A spring on a lever, as the counterbalance of a heavy joint is.
+//! A spring on a lever: the counterbalance of a heavy joint.
 
 use std::f64::consts::PI;
 
@@ -12,10 +12,11 @@ use crate::{
 
 /// τ = amplitude sin(q − angle).
 ///
-/// A spring of stiffness K and no free length between a point at the distance a from the joint's axis and the end of a lever r
-/// pulls with K a r sin(q − angle), where `angle` is where lever and anchor are in line and the spring pulls back on either side.
-/// Recordings determine `amplitude`, the product K a r, and `angle`; K, a and r by themselves leave no trace in a torque. A free
-/// length would bend the law by L₀/L(q): that part stays in the residuals, or becomes a `spring`'s curve.
+/// A spring of stiffness K without free length, between a point at the distance a from the joint's axis and the end of a lever
+/// r, gives the torque K a r sin(q − angle). At `angle`, lever and anchor are in line, and the spring pulls back on either
+/// side. Recordings determine `amplitude`, the product K a r, and `angle`; K, a and r do not appear separately in the torque. A
+/// free length L₀ would multiply the law by 1 − L₀/L(q); this part remains in the residuals, or becomes the curve of a
+/// `spring`.
 #[derive(Debug)]
 pub struct GravityCompensator;
 
@@ -42,12 +43,13 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// Over a smaller range (rad) a sine differs from a straight line by less than 0.3 % of its rise: no recording shows that.
+/// The smallest range (rad) on which it is tried. On a smaller one, a sine differs from a straight line by less than 0.3 % of
+/// its rise, which no recording shows.
 const SMALLEST_RANGE: f64 = 0.75;
-/// A counterbalance carries no more than so many times the weight that the model has on the joint; more than one, because the
-/// model may lack the load at the tool.
+/// The largest weight that a counterbalance carries, as a multiple of the weight on the joint by the model. It is above one,
+/// because the model may lack a load at the tool.
 const MOST_CARRIED: f64 = 3.0;
-/// At how many angles of the joint its weight is asked for.
+/// The number of joint angles at which the weight is evaluated.
 const ANGLES: usize = 8;
 
 /// sin (form 0) or cos (form 1) of the joint's angle.
@@ -61,7 +63,7 @@ fn columns(joint: usize) -> Vec<Term> {
     [0, 1].map(|form| Term::on(&LEVER, joint).form(form)).to_vec()
 }
 
-/// What sin and cos of the joint's angle have as coefficients in its weight (N m), all other joints at zero.
+/// The coefficients of sin and cos of the joint's angle in the weight on the joint (N m), with all other joints at zero.
 fn weight(arm: &Arm, joint: usize) -> [f64; 2] {
     let (mut workspace, zero) = (Workspace::new(arm), vec![0.0; arm.dof()]);
     let (mut q, mut tau) = (zero.clone(), zero.clone());
@@ -88,7 +90,7 @@ impl EffectKind for GravityCompensator {
         grounds.moving().filter(far).map(form).collect()
     }
 
-    /// It is on a joint that turns and bears weight, acts against that weight, and carries not much more than it.
+    /// The joint must be revolute and carry weight; the torque must act against that weight, and must not be much larger.
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
         let Some(joint) = fitted.term(0).joint else {
             return false;
@@ -103,7 +105,7 @@ impl EffectKind for GravityCompensator {
         let (a, b) = (estimate.place(0)?, estimate.place(1)?);
         let about = (-estimate.best()[b]).atan2(estimate.best()[a]);
         let amplitude = estimate.note("amplitude", |draw| draw[a].hypot(draw[b]));
-        // Draws lie about the estimate, also where that is half a turn.
+        // Draws of the angle stay within half a turn of the estimate.
         let angle = estimate.note("angle", |draw| {
             let by = (-draw[b]).atan2(draw[a]) - about;
             about + by.sin().atan2(by.cos())

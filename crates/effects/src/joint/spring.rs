@@ -6,7 +6,7 @@ use crate::{
     Spec, State, Term, Times, Turn, Unseen,
 };
 
-/// τ = stiffness (q − rest); or a curve through (q, τ) points where it bends: linear between, constant beyond.
+/// τ = stiffness (q − rest); for a nonlinear spring, a curve through (q, τ) points: linear between them, constant beyond.
 #[derive(Debug)]
 pub struct Spring;
 
@@ -36,7 +36,7 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// A point of a curve counts where the joint, in motion, comes so near that its tent is this high.
+/// A point of a curve is used if the moving joint comes close enough for its tent function to reach this value.
 const VISITED: f64 = 0.5;
 /// The largest part of its total rise by which a spring's curve may fall between two points, due to noise.
 const LARGEST_FALL: f64 = 0.05;
@@ -45,8 +45,8 @@ const ALL_FALLS: f64 = 0.1;
 /// The points of a curve.
 const POINTS: usize = 12;
 
-/// A spring rests within the joint's range, or no further beyond the recorded one than this multiple of its length: what rests
-/// elsewhere is a constant torque that varies a little.
+/// The farthest rest position of a spring, beyond the recorded range, as a multiple of that range, unless it is within the
+/// joint's range. A spring with a farther rest position is almost a constant torque.
 const BEYOND: f64 = 1.0;
 
 fn columns(joint: usize, powers: &[usize]) -> Vec<Term> {
@@ -64,7 +64,7 @@ impl EffectKind for Spring {
             [
                 Form::on(Turn::Position, joint, columns(joint, &[1])),
                 Form::on(Turn::Position, joint, columns(joint, &[1, 2, 3])),
-                // A curve that rises throughout is a spring's; any other has no name.
+                // A curve that rises throughout is a spring; any other curve is an unmodelled form.
                 Form::on(Turn::Curve, joint, grounds.tents(joint, joint, POINTS, Times::One)),
             ]
         };
@@ -119,7 +119,7 @@ impl EffectKind for Spring {
         Some(("curve's next angle", pair[1][0], "larger than the one before"))
     }
 
-    /// A straight spring may stand beside a curve.
+    /// A straight spring and a curve on one joint are not the same effect.
     fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
         a.points("curve").is_empty() == b.points("curve").is_empty()
     }
@@ -193,14 +193,14 @@ fn stiffens(fitted: &dyn Fitted) -> bool {
     rising >= 17
 }
 
-/// Whether the angle without torque, by the straight line between the ends of the recorded range, can be reached.
+/// Whether the joint can reach the angle without torque, by the straight line between the ends of the recorded range.
 fn rests_in_reach(fitted: &dyn Fitted) -> bool {
     let terms: Vec<(Term, f64)> = (0..fitted.len())
         .map(|k| (fitted.term(k).always(), fitted.value(k)))
         .collect();
     let is_straight = |(term, _): &(Term, f64)| term.is(&POSITION) && power(term) == 1;
     let (low, high) = match terms.iter().position(is_straight).and_then(|k| fitted.column(k)) {
-        // Before its onset a column is zero.
+        // A column is zero before its onset.
         Some(x) => range(x.iter().copied().filter(|&q| q != 0.0)),
         None => range(
             terms

@@ -1,11 +1,11 @@
-//! An encoder whose zero is not where the model has it.
+//! An encoder whose zero differs from the model's.
 
 use crate::{
     Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Spec,
     Term, Turn, Unseen,
 };
 
-/// The encoder says offset more than where the joint stands.
+/// The encoder reports the true position plus `offset`.
 #[derive(Debug)]
 pub struct EncoderOffset;
 
@@ -29,7 +29,7 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// ∂τ/∂q of one joint: what one that stands further (rad or m) adds.
+/// ∂τ/∂q of one joint: the torque that a position error of one (rad or m) adds.
 pub static SLOPE: Law = Law {
     name: "slope",
     column: |term, joint, motion| Some(motion.rigid.by_position[joint][term.of[0]].clone()),
@@ -38,6 +38,9 @@ pub static SLOPE: Law = Law {
     carry: Some(|term, value, carried| carried.offset[term.of[0]] = value),
     ..Law::PLAIN
 };
+
+/// The largest offset (rad or m): the column is linearised about zero.
+const LARGEST_OFFSET: f64 = 0.2;
 
 impl EffectKind for EncoderOffset {
     fn spec(&self) -> &'static Spec {
@@ -50,11 +53,11 @@ impl EffectKind for EncoderOffset {
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        fitted.value(0).abs() < 0.2
+        fitted.value(0).abs() < LARGEST_OFFSET
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        // The column is the derivative by where the joint stands; the encoder is off the other way.
+        // The column is the derivative with respect to the true position; the encoder's offset has the opposite sign.
         let offset = estimate.coefficient("offset", estimate.place(0), -1.0);
         Some(Effect::of(&Self).on(estimate.joint_name()).with("offset", offset))
     }
@@ -69,7 +72,7 @@ mod tests {
     use super::*;
     use crate::test_support::agree;
 
-    /// To first order, and the other way round.
+    /// The column agrees with the machine to first order, with the opposite sign.
     #[test]
     fn its_column_is_its_torque() {
         let effect = Effect::of(&EncoderOffset).on("a").with("offset", -1e-6);

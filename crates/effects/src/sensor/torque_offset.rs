@@ -10,7 +10,7 @@ use crate::{
 #[derive(Debug)]
 pub struct TorqueOffset;
 
-/// What tells offset and scale of a torque where no motion does.
+/// The experiment that distinguishes offset and scale of a torque where no motion does.
 pub(super) const KNOWN_LOAD: Experiment = Experiment {
     rank: 5,
     text: "read the torque under a known load at rest, once on either side of upright: offset and scale show there",

@@ -1,4 +1,4 @@
-//! A torque that is measured a constant factor too large.
+//! A measured torque that is a constant multiple of the true one.
 
 use super::torque_offset::KNOWN_LOAD;
 use crate::laws::RIGID;
@@ -7,7 +7,7 @@ use crate::{
     SetsIn, Spec, Term, Turn, Unseen,
 };
 
-/// The torque measured is factor × the true one.
+/// The measured torque is `factor` times the true one.
 #[derive(Debug)]
 pub struct TorqueScale;
 
@@ -26,12 +26,12 @@ static SPEC: Spec = Spec {
     may_set_in: true,
     is_certain_in_form: true,
     may_be_inertial: true,
-    // Both are a gain on the load; what the load is, the drive's or the link's, is a matter of form.
+    // Both are a gain on the load. They differ only in form: one has the load of the drive, the other that of the link.
     least_beside: &[("load_dependent_friction", 0.3)],
     against: Against::Load,
     experiment: Some(KNOWN_LOAD),
     experiments_against: &[("inertial_scale", KNOWN_BODY), ("link_inertial_error", KNOWN_BODY)],
-    // It is told by the rigid torque alone, but it is a part of all of the joint's torque.
+    // The rigid torque alone determines it, but it is a part of the joint's whole torque.
     unseen: Unseen::Linear {
         if_no_form: None,
         is_of_first: false,
@@ -44,8 +44,12 @@ static SPEC: Spec = Spec {
 const KNOWN_BODY: &str = "attach a body of known mass to the tool and record the same motion: a torque scale changes its apparent weight, \
      wrong link masses do not";
 
-/// A torque constant may be off by this multiple of its standard deviation: a scale within it is no fault of this joint.
+/// The least deviation of a scale from one, in standard deviations of the torque constants. A smaller deviation is within the
+/// tolerance.
 const USUAL_DEVIATIONS: f64 = 1.5;
+
+/// The relative deviation from one that a torque scale may have.
+const RELATIVE: std::ops::Range<f64> = -0.7..2.0;
 
 impl EffectKind for TorqueScale {
     fn spec(&self) -> &'static Spec {
@@ -67,7 +71,7 @@ impl EffectKind for TorqueScale {
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        (-0.7..2.0).contains(&fitted.value(0))
+        RELATIVE.contains(&fitted.value(0))
     }
 
     fn is_certain(&self, effect: &Effect, _interval: &dyn Fn(&str) -> Option<[f64; 2]>, accuracy: f64) -> bool {
@@ -103,11 +107,11 @@ mod tests {
         };
         assert!(!is_certain(0.937, 0.05) && !is_certain(1.052, 0.05));
         assert!(is_certain(0.92, 0.05) && is_certain(1.08, 0.05));
-        // Constants that are known better leave less room.
+        // With better known torque constants, a smaller deviation counts.
         assert!(is_certain(0.966, 0.02));
     }
 
-    /// Its column is the rigid torque: what it adds for a factor of 1.5 is half of that.
+    /// The column is the rigid torque: a factor of 1.5 adds half of it.
     #[test]
     fn it_scales_what_its_column_is() {
         let effect = Effect::of(&TorqueScale).on("a").with("factor", 1.5);

@@ -1,8 +1,8 @@
-//! The motion's past.
+//! Functions of past motion.
 
 use crate::{EffectKind, Form, Grounds, Law, Size, Spec, Term, Turn};
 
-/// The motion's past: friction that creeps, hysteresis.
+/// A function of past motion: creeping friction, hysteresis.
 #[derive(Debug)]
 pub struct History;
 
@@ -12,7 +12,7 @@ static SPEC: Spec = Spec {
     ..Spec::UNNAMED
 };
 
-/// The shortest memory that is none of friction (s).
+/// The shortest time constant that is not attributed to friction (s).
 const SHORTEST_MEMORY: f64 = 0.1;
 
 /// A memory of q̇ (form 0) or sgn q̇ (form 1) that fades with a time constant (the size, s).
@@ -26,7 +26,7 @@ static MEMORY: Law = Law {
         };
         Some(faded(&source, motion.period / term.sizes[0]))
     },
-    // What is forgotten sooner is the velocity itself.
+    // With a shorter time constant it is the velocity itself.
     varied: Some(|term, size, factor| match size {
         Size::Main => term.sized([(term.sizes[0] * factor).max(SHORTEST_MEMORY)]),
         _ => *term,
@@ -34,7 +34,7 @@ static MEMORY: Law = Law {
     ..Law::PLAIN
 };
 
-/// How far a drag link of some play (the size, rad or m) is from the middle of it, −1 to 1.
+/// The position of a drag link within its play (the size, rad or m), −1 to 1.
 static PLAY: Law = Law {
     name: "play",
     column: |term, joint, motion| Some(play(&motion.q[joint], term.sizes[0])),
@@ -62,7 +62,7 @@ impl EffectKind for History {
     }
 }
 
-/// A first-order low-pass with the given share of its time constant a tick, from rest at the first value.
+/// A first-order low-pass from rest at the first value; `share` is a tick over the time constant.
 fn faded(signal: &[f64], share: f64) -> Vec<f64> {
     let keep = (-share).exp();
     let mut state = signal.first().copied().unwrap_or(0.0);
@@ -90,7 +90,7 @@ fn play(q: &[f64], width: f64) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// The drag link moves only once its play is used up.
+    /// The drag link moves only after its play is used up.
     #[test]
     fn the_play_remembers_the_direction() {
         let q = [0.0, 0.05, 0.1, 0.2, 0.15, 0.1, 0.0, -0.1];

@@ -1,8 +1,8 @@
-//! Even or nonlinear in another joint's velocity.
+//! Even or nonlinear functions of another joint's velocity.
 
 use crate::{EffectKind, Form, Grounds, Law, Spec, Term, Turn};
 
-/// Even or nonlinear in another joint's velocity.
+/// An even or nonlinear function of another joint's velocity.
 #[derive(Debug)]
 pub struct OtherSpeed;
 
@@ -12,7 +12,7 @@ static SPEC: Spec = Spec {
     ..Spec::UNNAMED
 };
 
-/// |v|, v², v |v| and v³ of another joint's velocity over its largest.
+/// |v|, v², v |v| and v³, v being another joint's velocity over its largest.
 static OTHER_SPEED: Law = Law {
     name: "other_speed",
     column: |term, _, motion| {

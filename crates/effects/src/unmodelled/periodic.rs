@@ -28,19 +28,22 @@ pub fn columns(joint: usize, omega: f64) -> Vec<Term> {
     sine_and_cosine(&WAVE, joint, omega)
 }
 
+/// The relative difference of frequencies below which two sinusoids are the same.
+const SAME_FREQUENCY: f64 = 0.1;
+
 impl EffectKind for Periodic {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    /// The residuals suggest the frequency.
+    /// None: the residuals suggest the frequency.
     fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
         Vec::new()
     }
 
-    /// Two that are too close to be told apart.
+    /// Two sinusoids of nearly the same frequency are not distinguished.
     fn is_same(&self, a: &Term, b: &Term) -> bool {
         let (a, b) = (a.sizes[0], b.sizes[0]);
-        (a - b).abs() < 0.1 * a.min(b)
+        (a - b).abs() < SAME_FREQUENCY * a.min(b)
     }
 }

@@ -1,9 +1,9 @@
-//! Position times velocity.
+//! Products of position and velocity.
 
 use crate::laws::centred;
 use crate::{EffectKind, Form, Grounds, Law, Spec, Term, Times, Turn};
 
-/// Position times velocity.
+/// A product of position and velocity.
 #[derive(Debug)]
 pub struct Product;
 
@@ -13,7 +13,7 @@ static SPEC: Spec = Spec {
     ..Spec::UNNAMED
 };
 
-/// q q̇, q sgn q̇, q² sgn q̇ and q² q̇, of the position over its range.
+/// q q̇, q sgn q̇, q² sgn q̇ and q² q̇, q being the position over its range.
 static PRODUCT: Law = Law {
     name: "product",
     column: |term, joint, motion| {

@@ -14,7 +14,7 @@ static SPEC: Spec = Spec {
     ..Spec::UNNAMED
 };
 
-/// A tent on time; sizes are its top and half its foot (s).
+/// A tent function of time; sizes are its centre and half its width (s).
 static MOMENT: Law = Law {
     name: "moment",
     column: |term, _, motion| {

@@ -1,4 +1,5 @@
-//! What real recordings have beside the injected faults: a little of everything on every joint, and friction that is another every day.
+//! Properties of real recordings in addition to the injected faults: small effects on every joint, and friction that differs
+//! between recordings.
 
 use std::f64::consts::TAU;
 
@@ -13,21 +14,22 @@ use crate::motion::Reference;
 use crate::robot::Robot;
 use crate::truth::{Injected, Lifelike};
 
-/// Friction of one recording over its mean, at most that much from one.
+/// The largest deviation of a recording's friction from the mean, relative.
 const DAYS: f64 = 0.1;
 /// Standard deviations of the torque constants of one robot.
 const CONSTANTS: (f64, f64) = (0.03, 0.10);
-/// Sizes of what every joint has a little of, of its torque: together with the level that it brings, below what is asked for.
+/// The sizes of the small effects of every joint, relative to its torque: with the level that they add, below the required
+/// share.
 const LITTLE: (f64, f64) = (0.002, 0.010);
-/// Where a gearbox on a held drive swings with its link (Hz): from what shows in a bandwidth to what does not.
+/// The frequency at which a gearbox swings with its link while the drive is held (Hz): from within the bandwidth to beyond it.
 const GEARBOX: (f64, f64) = (10.0, 80.0);
 
-/// What a case has of real life.
+/// The properties of a case that resembles a real robot.
 #[derive(Default)]
 pub(crate) struct RealLife {
     /// Small effects of every joint.
     pub small: Vec<Injected>,
-    /// Gearboxes that give.
+    /// Elastic gearboxes.
     pub gearboxes: Vec<Injected>,
     /// Factor of all friction, `[recording][joint]`.
     pub friction: Vec<Vec<f64>>,
@@ -35,7 +37,7 @@ pub(crate) struct RealLife {
     pub noise_time: f64,
     /// The steps in which torques are reported (N m or N).
     pub torque_quantum: Vec<f64>,
-    /// Whether files have clocks of their own, where what is concealed does not tell the time.
+    /// Whether the files have clocks of their own, if no fault depends on the time.
     pub own_clocks: bool,
 }
 
@@ -87,14 +89,14 @@ impl RealLife {
         }
     }
 
-    /// The small things, of joints where `effects` do not have them large.
+    /// The small effects on joints where `effects` are not large.
     pub(super) fn beside<'a>(&'a self, effects: &'a [Injected]) -> impl Iterator<Item = Injected> + 'a {
         let all = self.small.iter().chain(&self.gearboxes);
         all.filter(|small| !effects.iter().any(|effect| overrules(effect, small)))
             .cloned()
     }
 
-    /// What the truth says of it.
+    /// The entry in the ground truth.
     pub(super) fn told(&self, own_clocks: bool) -> Lifelike {
         Lifelike {
             friction: self.friction.clone(),
@@ -105,7 +107,7 @@ impl RealLife {
     }
 }
 
-/// Whether a joint that has `effect` has no `small` beside it: it is the same, or the two would be one drive train.
+/// Whether a joint with `effect` has no `small` effect: it is the same effect, or both are parts of one drive train.
 fn overrules(effect: &Injected, small: &Injected) -> bool {
     let is_drive_train =
         |of: &Injected| matches!(of.effect.as_str(), "joint_elasticity" | "backlash" | "rotor_inertia");
@@ -119,7 +121,7 @@ fn load(training: &[Reference], dof: usize, j: usize) -> f64 {
     (torques().map(|tau| tau * tau).sum::<f64>() / count).sqrt()
 }
 
-/// A little of everything on a joint.
+/// The small effects of a joint.
 fn little(joint: &str, spread: f64, load: f64, random: &mut ChaCha8Rng) -> [Injected; 4] {
     let mut size = || log_uniform(LITTLE.0, LITTLE.1, random);
     let [fading, half, gain, ripple] = [

@@ -1,4 +1,4 @@
-//! Draws until the effects of a case show, none beyond bounds, and the position loop is sound.
+//! Draws until the effects of a case are detectable and within bounds, and the position loop is stable.
 
 use rand::seq::IndexedRandom;
 use rand_chacha::ChaCha8Rng;
@@ -13,18 +13,18 @@ use crate::machine::Run;
 use crate::motion::{DURATION, LEAD, Reference, start};
 use crate::truth::Injected;
 
-/// Whole cases, and draws of one effect, that are tried.
+/// The number of cases, and of draws of one effect, that are tried.
 const CASES: usize = 10;
 const DRAWS: usize = 8;
-/// Above this, over what quantisation alone makes, the torque is an oscillation; with a gap it rattles anyway.
+/// The ratio to the quantisation noise above which the torque oscillates; with a gap, it always does.
 const OSCILLATION: (f64, f64) = (0.2, 0.5);
 /// The expressed shares that a case may have.
 const SHARES: (f64, f64) = (0.01, 1.2);
 
-/// How much of a recording tells sizes (s); shares are those of whole recordings.
+/// The duration of a recording that determines sizes (s); shares are those of whole recordings.
 const TRIAL: f64 = 12.0;
 
-/// What effects are measured against: the machine with its baseline friction.
+/// The reference for effects: the machine with its baseline friction.
 struct Base {
     /// The beginning of the first recording.
     trial: Reference,
@@ -35,7 +35,7 @@ struct Base {
     sorted: Vec<Vec<f64>>,
 }
 
-/// Effects as `plan` asks for, and the runs with them.
+/// The effects of `plan`, and the runs with them.
 pub(super) fn search(
     stage: &Stage<'_>,
     plan: &CasePlan,
@@ -45,7 +45,7 @@ pub(super) fn search(
     let mut names = plan.effects.clone();
     for attempt in 0..CASES {
         if attempt >= CASES / 2 {
-            // What this robot cannot show gives way to what it can.
+            // Effects that this robot cannot show are replaced by others.
             for name in &mut names {
                 let is_outside = Fault::named(name).is_some_and(|fault| fault.is_outside);
                 let known = if is_outside { outside() } else { families() };
@@ -115,7 +115,7 @@ fn base(stage: &Stage<'_>) -> Result<Base, FaultError> {
     })
 }
 
-/// One of each effect, on joints of their own; `None` if one does not show by itself.
+/// One of each effect, on different joints; `None` if one of them is not detectable alone.
 fn draw_all(
     stage: &Stage<'_>,
     plan: &CasePlan,
@@ -170,7 +170,7 @@ fn target(hard: bool, random: &mut ChaCha8Rng) -> f64 {
     log_uniform(SHARES.0, if hard { 0.35 } else { 0.5 }, random)
 }
 
-/// Brings `effect` near its target share, on one recording and alone; whether it shows there.
+/// Scales `effect` to its target share, on one recording and alone; returns whether it is detectable there.
 fn fit(stage: &Stage<'_>, fault: &Fault, effect: &mut Injected, target: f64, base: &Base) -> Result<bool, FaultError> {
     // Its own time is not what its size is about.
     let onset = effect.onset.take();
@@ -221,7 +221,7 @@ fn leaves_more_than_the_base(effect: &Injected) -> bool {
     effect.leaves() != Leaves::Nothing
 }
 
-/// Whether another draw may be sound.
+/// Whether another draw may be stable.
 fn is_unsound(error: &FaultError) -> bool {
     matches!(
         error,
@@ -229,7 +229,7 @@ fn is_unsound(error: &FaultError) -> bool {
     )
 }
 
-/// Whether the loop does not swing.
+/// Whether the loop does not oscillate.
 fn is_quiet(stage: &Stage<'_>, effects: &[Injected], run: &Run, base: f64) -> bool {
     let rattles = effects.iter().filter_map(Injected::fault).any(|fault| fault.rattles);
     let most = if rattles { OSCILLATION.1 } else { OSCILLATION.0 };

@@ -1,4 +1,4 @@
-//! A case under way: motions, baseline friction and sensors, drawn before any effect.
+//! A case in preparation: motions, baseline friction and sensors, drawn before any effect.
 
 use arm::{Inertia, Matrix3, Vector3};
 use rand::seq::IndexedRandom;
@@ -44,7 +44,7 @@ pub(crate) struct Stage<'a> {
     /// The part of it that the URDF's bodies cost, without drives (N m or N).
     pub loads: Vec<f64>,
     pub sensors: Sensors,
-    /// What the case has of real life; nothing in a plain one.
+    /// The properties of a real robot; none in a plain case.
     pub real: Option<RealLife>,
     seed: u64,
     urdf_error: f64,
@@ -55,13 +55,13 @@ pub(crate) struct Stage<'a> {
 pub(crate) struct Kind {
     pub seed: u64,
     pub hard: bool,
-    /// How many training recordings there are.
+    /// The number of training recordings.
     pub training: usize,
     /// Whether every joint has baseline friction.
     pub friction: bool,
-    /// Whether it is to look like reality.
+    /// Whether it resembles a real robot.
     pub lifelike: bool,
-    /// How wrong the URDF is everywhere, about relative.
+    /// The relative error of the URDF.
     pub urdf_error: f64,
 }
 
@@ -304,7 +304,7 @@ impl<'a> Stage<'a> {
     }
 }
 
-/// Whether an effect has a time of its own, which files with clocks of their own would not tell.
+/// Whether an effect depends on the time, which files with clocks of their own do not give.
 fn tells_time(effect: &Injected) -> bool {
     effect.onset.is_some() || effect.effect == "thermal_drift" || effect.number("start").is_some()
 }

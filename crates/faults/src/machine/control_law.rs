@@ -20,7 +20,7 @@ pub(crate) struct Begin<'a> {
     pub holding: &'a [f64],
 }
 
-/// What a controller sees at a tick of 1 ms; one entry a joint.
+/// What a controller sees at a tick of 1 ms; one entry per joint.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen<'a> {
     /// Which tick, from 0.

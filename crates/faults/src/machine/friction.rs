@@ -11,7 +11,7 @@ const SWEEPS: usize = 50;
 const SETTLED: f64 = 1e-10;
 
 impl Machine<'_> {
-    /// With each joint's dry friction times a factor: one day's.
+    /// The friction with each joint's dry friction multiplied by a factor, which differs between recordings.
     pub(crate) fn with_friction(mut self, factors: &[f64]) -> Self {
         self.parts.friction = factors.to_vec();
         self

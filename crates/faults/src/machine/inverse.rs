@@ -25,7 +25,7 @@ pub struct Inverse {
     pub tau: Vec<f64>,
     /// What the encoders say beyond the links' positions: an offset, a spring's deflection (rad or m).
     pub beyond: Vec<f64>,
-    /// How late each drive acts (s), one a joint.
+    /// How late each drive acts (s), one per joint.
     pub delays: Vec<f64>,
 }
 

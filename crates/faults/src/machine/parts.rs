@@ -5,7 +5,7 @@ use arm::Arm;
 use crate::fault::external_contact::Contact;
 use crate::part::{Body, Connection, DriveLaw, DryLaw, LinkLaw, Part, What};
 
-/// Of each joint, what is on its drive; and what is on the whole.
+/// The parts on each joint's drive, and the parts on the whole machine.
 pub(super) struct Parts {
     joints: Vec<Joint>,
     pub(super) links: Vec<OnLink>,

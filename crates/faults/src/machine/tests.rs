@@ -21,8 +21,8 @@ fn run(robot: &Robot, effects: &[Injected], reference: &Reference) -> Run {
     run.unwrap_or_else(|error| panic!("{effects:?}: {error}"))
 }
 
-/// What the drives report is what the motion costs by inverse dynamics, to .2 % of its spread below 20 Hz: step, hold and loop
-/// hide nothing.
+/// The drives report the torque of the motion by inverse dynamics, to 0.2 % of its standard deviation below 20 Hz: step, hold
+/// and loop cause no larger error.
 #[test]
 fn an_empty_machine_costs_the_rigid_torque() {
     for robot in [puma(), seven_axis()] {
@@ -43,7 +43,7 @@ fn robust(name: &str) -> Injected {
     (fault.example)(Injected::new(name, joint))
 }
 
-/// Of every effect, in every form, a part of the torque is what it adds; that of any other form is another one.
+/// Every effect, in every form, adds a part of the torque, which differs from that of any other form.
 #[test]
 fn every_effect_in_every_form_changes_the_torque() {
     let robot = seven_axis();
@@ -70,7 +70,7 @@ fn every_effect_in_every_form_changes_the_torque() {
     }
 }
 
-/// Until an effect sets in, the machine is the one without it, to the bit.
+/// Before the onset of an effect, the machine equals the one without it, bit for bit.
 #[test]
 fn an_onset_parts_two_machines() {
     let robot = seven_axis();
@@ -176,7 +176,7 @@ fn asymmetry_and_offset_give_one_recording() {
     }
 }
 
-/// A machine that cannot follow says so.
+/// A machine that cannot follow its reference is an error.
 #[test]
 fn what_cannot_follow_is_refused() {
     let robot = seven_axis();

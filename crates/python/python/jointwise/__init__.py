@@ -1,7 +1,7 @@
 """What a robot arm's URDF omits, found from recordings; inverse dynamics and learned torque models.
 
 Joint space is q, qd, qdd, tau: positions (rad or m), velocities, accelerations, and joint torques (N m) or forces (N),
-one column a joint, base to tip, on the joint side.
+one column per joint, base to tip, on the joint side.
 """
 
 from typing import TYPE_CHECKING, Any

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 __all__ = ["Dynamics", "JointwiseError", "Learned", "Outcome", "diagnose"]
 
-# Arrays that go in are C-contiguous: float64, one row a sample and one column a joint. Those that come out are flat.
+# Arrays that go in are C-contiguous: float64, one row per sample and one column per joint. Those that come out are flat.
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 _Column = Union[_Floats, _Integers, tuple[_Integers, bool]]

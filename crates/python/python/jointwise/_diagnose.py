@@ -26,7 +26,7 @@ _PER_JOINT = ("q", "qd", "qdd", "tau", "q_secondary", "tau_current", "current", 
 
 
 class RecordingWarning(UserWarning):
-    """Something in a recording that is doubtful, and did not prevent its use."""
+    """A doubtful property of a recording that did not prevent its use."""
 
 
 def diagnose(
@@ -248,7 +248,7 @@ def _of_arrays(arrays: Mapping[str, Any], name: str, namer: _Namer) -> list[tupl
             names = namer.names(values.shape[1])
         if len(names) != values.shape[1]:
             raise JointwiseError(
-                f"{name}: \"{key}\" has {values.shape[1]} columns for {len(names)} joints; give one column a joint"
+                f"{name}: \"{key}\" has {values.shape[1]} columns for {len(names)} joints; give one column per joint"
             )
         columns += [(f"{key}_{joint}", np.ascontiguousarray(values[:, k])) for k, joint in enumerate(names)]
     return columns

@@ -18,7 +18,7 @@ _Floats = NDArray[np.float64]
 class InverseDynamics:
     """The rigid-body dynamics of an arm.
 
-    Arrays are (…, joints), one entry a joint, base to tip; their leading axes are broadcast. Positions are in rad (m),
+    Arrays are (…, joints), one entry per joint, base to tip; their leading axes are broadcast. Positions are in rad (m),
     torques in N m (N), on the joint side. Gravity is 9.81 m/s² down the base's z axis.
 
     Parameters

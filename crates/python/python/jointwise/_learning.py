@@ -26,7 +26,7 @@ _Floats = NDArray[np.float64]
 
 
 class IndependentJointLearning(RegressorMixin, BaseEstimator):  # type: ignore[misc]
-    """The torques of an arm: its rigid-body model, and one Gaussian process a joint for the rest.
+    """The torques of an arm: its rigid-body model, and one Gaussian process per joint for the rest.
 
     X is (n, 3 joints): positions, velocities and accelerations, `np.hstack([q, qd, qdd])`; y is (n, joints): torques.
 

@@ -49,7 +49,7 @@ class Effect:
     """The joint whose motion it depends on, for a coupling."""
     parameters: Mapping[str, Parameter]
     probability: Optional[float]
-    """How likely it is that this effect is there, on this joint; None where that was not calibrated."""
+    """The probability that this effect is present on this joint; None where it was not calibrated."""
     share: float
     """Standard deviation of its torque over that of the measured torque; the largest of the joints."""
     share_by_joint: Mapping[str, float]
@@ -58,9 +58,9 @@ class Effect:
     alternatives: tuple[Alternative, ...]
     sentence: str
     since_before: bool
-    """Whether it is there since the recordings from before."""
+    """Whether it is present since the recordings from before."""
     time: tuple[tuple[float, float], ...]
-    """The stretches of time in which it acts (s); all of it where empty."""
+    """The stretches of time in which it acts (s); the whole time if empty."""
 
 
 @dataclass(frozen=True)
@@ -73,15 +73,15 @@ class JointFit:
     noise: float
     """Measured noise after filtering (N m or N)."""
     nominal: Optional[float]
-    """Of the URDF's model."""
+    """With the URDF's model."""
     augmented: Optional[float]
     """With the effects found."""
     learned: Optional[float]
     """With a correction learned (IJL) from the same recordings."""
     exported: Optional[float]
-    """Of what the corrected model's file holds."""
+    """With the exported corrected model."""
     train_nominal: float
-    """Of the URDF's model, training recordings."""
+    """With the URDF's model, training recordings."""
     train_augmented: float
     """With the effects found, training recordings."""
 
@@ -95,7 +95,7 @@ class Unexplained:
     """Its standard deviation over that of the measured torque."""
     depends_on: tuple[str, ...]
     next: str
-    """Which experiment would tell more."""
+    """The experiment that narrows it down."""
 
 
 @dataclass(frozen=True)
@@ -149,7 +149,7 @@ def _fit(of: dict[str, Any]) -> JointFit:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What the recordings say of the model."""
+    """The result of a diagnosis."""
 
     robot: str
     verdict: Verdict
@@ -160,11 +160,11 @@ class Diagnosis:
     unexplained: tuple[Unexplained, ...]
     not_testable: tuple[NotTestable, ...]
     not_enough_data: tuple[str, ...]
-    """Why there are not enough data for a diagnosis; empty if there are."""
+    """The reasons why the data are not sufficient for a diagnosis; empty if there are."""
     changed: Optional[tuple[str, ...]]
     """What changed since the recordings from before, in sentences; None without such recordings."""
     notes: tuple[str, ...]
-    """What was noted about the robot and the recordings."""
+    """The notes on the robot and the recordings."""
     _outcome: Outcome = field(repr=False, compare=False)
 
     @classmethod
@@ -206,7 +206,7 @@ class Diagnosis:
         return report
 
     def to_frame(self) -> pandas.DataFrame:
-        """The effects as a pandas frame, one row a parameter."""
+        """The effects as a pandas frame, one row per parameter."""
         import pandas
 
         rows = [

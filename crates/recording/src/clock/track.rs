@@ -1,4 +1,4 @@
-//! Ticks of stamps that scatter by so much of the period that no stamp tells its tick by itself.
+//! Ticks of stamps whose scatter is so large, relative to the period, that no single stamp determines its tick.
 //!
 //! Rows keep their order, and few are lost: so the ticks are the sequence whose stamps stay beside a
 //! slowly moving phase. Several sequences are followed at a time, each with a phase (and a period)
@@ -7,22 +7,22 @@
 
 use super::{BLOCK, Clock, Piece, fit, measure_jitter, split};
 
-/// Stamps that scatter by more have no clock (over a whole period, evenly: 0.29).
+/// Above this scatter, stamps have no clock (evenly distributed over a period: 0.29).
 const WIDEST: f64 = 0.36;
-/// How many sequences are followed.
+/// The number of sequences that are followed.
 const SURVIVORS: usize = 4;
-/// What a lost tick costs, in squares of the scatter: about one row in a hundred is lost.
+/// The cost of a lost tick, in squares of the scatter: about one row in a hundred is lost.
 const LOST: f64 = 4.5;
 const LOST_MORE: f64 = 1.0;
 /// How much of a stamp's distance goes into the phase.
 const GAIN: f64 = 0.04;
-/// A sequence that costs so much more than the best is given up.
+/// The cost above that of the best at which a sequence is abandoned.
 const HOPELESS: f64 = 60.0;
-/// Gaps of more ticks part the stretches.
+/// The number of missing ticks that divides stretches.
 const FARTHEST: i64 = 200;
-/// As many periods a row may be late.
+/// The largest delay of a row, in periods.
 const LATEST: i64 = 3;
-/// Rows from which the period is learnt first.
+/// The number of rows from which the period is estimated first.
 const FIRST: usize = 4000;
 /// The correlation of one step with the next, where stamps scatter about a clock each by itself (-1/2, a little more
 /// where ticks are lost). That of rows taken when they were stamped is 0.
@@ -241,7 +241,7 @@ pub fn by_order(time: &[f64], breaks: &[usize], period: f64) -> Option<Clock> {
     Some(clock)
 }
 
-/// As [`phases`], where the ticks are known: the mean distance of the stamps from them.
+/// The mean distance of the stamps from the ticks, for known ticks (see [`phases`]).
 fn levels(stamps: &[f64], ticks: &[i64], period: f64) -> Vec<(f64, f64)> {
     let blocks = (stamps.len() / BLOCK).max(1);
     let level = |block: usize| {

@@ -1,4 +1,4 @@
-//! A joint of a column map that stands for many: `{joint}` in its name and in its columns, `{topic}` before it.
+//! A joint of a column map that represents many: `{joint}` in its name and in its columns, `{topic}` before it.
 
 use toml::Spanned;
 

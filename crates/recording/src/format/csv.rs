@@ -1,4 +1,4 @@
-//! Text with a header and a row a sample, read row by row, so that only the values are kept.
+//! Text with a header and a row per sample, read row by row, so that only the values are kept.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};

@@ -16,7 +16,9 @@ pub fn no_table(start: &[u8]) -> Option<(u64, String)> {
     let text = start.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(start);
     let said = |reason: &str| Some((1, reason.to_owned()));
     if text.trim_ascii().is_empty() {
-        return said("the file is empty; a recording has a header (t, q_<joint>, tau_<joint>, ...) and a row a sample");
+        return said(
+            "the file is empty; a recording has a header (t, q_<joint>, tau_<joint>, ...) and a row per sample",
+        );
     }
     if text.starts_with(b"\xFF\xFE") || text.starts_with(b"\xFE\xFF") {
         return said(

@@ -1,4 +1,4 @@
-//! MATLAB's files of version 5 (`save -v7` and before), with a variable a quantity.
+//! MATLAB's files of version 5 (`save -v7` and before), with one variable per quantity.
 
 use std::io::Read;
 

@@ -1,4 +1,4 @@
-//! Archives of NumPy arrays (`numpy.savez`), with an array a quantity.
+//! Archives of NumPy arrays (`numpy.savez`), with one array per quantity.
 
 use std::io::Read;
 

@@ -1,4 +1,4 @@
-//! Parquet files, with a column a quantity or with lists of values (LeRobot).
+//! Parquet files, with one column per quantity or with lists of values (LeRobot).
 
 use std::panic::AssertUnwindSafe;
 

@@ -1,4 +1,4 @@
-//! The state against which an effect is drawn: its horizontal axis, and the sign that is applied to residuals.
+//! The state against which an effect is drawn: the horizontal axis, and the sign that is applied to residuals.
 
 use arm::{Arm, JointKind};
 use diagnosis::{Finding, Trace};
@@ -65,7 +65,7 @@ impl Against {
         matches!(self, Self::LoadAlong | Self::TimeAlong)
     }
 
-    /// Words and unit of the axis.
+    /// The words and the unit of the axis.
     pub fn title(self, arm: &Arm, joint: usize) -> (String, &'static str) {
         let slides = |joint: usize| arm.joints()[joint].kind == JointKind::Prismatic;
         let unit = |turning, sliding| if slides(joint) { sliding } else { turning };

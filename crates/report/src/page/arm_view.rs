@@ -11,7 +11,7 @@ use crate::{numbers, words};
 
 const WIDTH: f64 = 800.0;
 const HEIGHT: f64 = 396.0;
-/// The arm's own part of the picture: left, top, right, bottom.
+/// The box of the arm in the picture: left, top, right, bottom.
 const BOX: [f64; 4] = [270.0, 34.0, 530.0, 372.0];
 /// Height of the camera above the horizon (rad).
 const ELEVATION: f64 = 0.42;
@@ -23,7 +23,7 @@ const LONGEST_LABEL: usize = 34;
 /// Upper bounds of the colour classes: nominal error over the torque's standard deviation.
 pub const CLASSES: [f64; 4] = [0.05, 0.15, 0.4, 0.8];
 
-/// The colour's class of an error.
+/// The colour class of an error.
 pub fn class_of(error: f64) -> usize {
     CLASSES.iter().filter(|&&end| error >= end).count()
 }
@@ -36,7 +36,7 @@ struct Label {
     link: Option<usize>,
 }
 
-/// A camera on its way around the arm.
+/// A camera on a circle around the arm.
 struct Camera {
     right: Vector3<f64>,
     up: Vector3<f64>,
@@ -111,7 +111,7 @@ pub fn draw(report: &Report, traces: &Traces, arm: &Arm) -> String {
     svg.finish()
 }
 
-/// Base, joints and tool in the posture and from the side that show them best.
+/// Base, joints and tool in the posture and from the side where they are best visible.
 fn best_view(traces: &Traces, arm: &Arm) -> (Vec<Vector3<f64>>, Camera) {
     let mut best: Option<(f64, Vec<Vector3<f64>>, Camera)> = None;
     let mut workspace = Workspace::new(arm);
@@ -124,7 +124,7 @@ fn best_view(traces: &Traces, arm: &Arm) -> (Vec<Vector3<f64>>, Camera) {
         for step in 0..8 {
             let camera = Camera::new(-0.9 + 0.785 * f64::from(step));
             let seen: Vec<[f64; 2]> = points.iter().map(|point| camera.see(point)).collect();
-            // Joints far from each other, each counted by its nearest.
+            // The distances between joints, each to its nearest neighbour.
             let apart = |i: usize| {
                 let others = seen.iter().enumerate().filter(|(j, _)| *j != i);
                 let distances = others.map(|(_, b)| (seen[i][0] - b[0]).hypot(seen[i][1] - b[1]));
@@ -165,7 +165,7 @@ fn skeleton(arm: &Arm, workspace: &mut Workspace, q: &[f64]) -> Vec<Vector3<f64>
     std::iter::once(Vector3::zeros()).chain(joints).chain([tool]).collect()
 }
 
-/// The map that puts the points into the middle of the box.
+/// The map of the points into the middle of the box.
 fn fit_into_box<'a>(points: impl Iterator<Item = &'a [f64; 2]>) -> impl Fn([f64; 2]) -> [f64; 2] + Copy {
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];
@@ -186,7 +186,7 @@ fn fit_into_box<'a>(points: impl Iterator<Item = &'a [f64; 2]>) -> impl Fn([f64;
     }
 }
 
-/// Circles that would cover each other, moved apart.
+/// Moves circles apart that would cover each other.
 fn spread_out(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut points = points.to_vec();
     let nearest = 2.0 * RADIUS + 3.0;
@@ -298,7 +298,7 @@ fn labels(svg: &mut Svg, report: &Report, arm: &Arm, joints: &[[f64; 2]], tool: 
     }
 }
 
-/// Heights near the wanted ones (in order), no two labels in each other's way.
+/// Heights near the wanted ones (in order), at which no two labels overlap.
 fn stacked(wanted: &[f64]) -> Vec<f64> {
     let (top, bottom) = (BOX[1], BOX[3] - 10.0);
     let mut placed: Vec<f64> = Vec::new();
@@ -321,7 +321,7 @@ fn clipped(text: &str, longest: usize) -> String {
     text.chars().take(longest - 1).collect::<String>() + "…"
 }
 
-/// What the joints' colours mean.
+/// The legend of the joints' colours.
 pub fn legend() -> Markup {
     let words = |class: usize| match (class.checked_sub(1).map(|k| CLASSES[k]), CLASSES.get(class)) {
         (None, Some(end)) => format!("below {:.0} %", 100.0 * end),

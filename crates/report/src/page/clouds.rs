@@ -18,7 +18,7 @@ pub struct Cloud {
     pub data: Data,
 }
 
-/// One point of a state figure: state, before, after, the effect; all torques turned along the motion if need be.
+/// One point of a state figure: state, before, after, the effect; with all torques along the motion where required.
 type Point = [f64; 4];
 
 impl Figures<'_> {
@@ -29,7 +29,7 @@ impl Figures<'_> {
         if let (Against::Time, Some(first), Some(last)) =
             (against, finding.place.time.first(), finding.place.time.last())
         {
-            // Data far from the event would only make it narrow in the figure.
+            // Data far from the event would only make the event narrow in the figure.
             let around = 2.0 * (last[1] - first[0]).max(0.1);
             points.retain(|point| (first[0] - around..=last[1] + around).contains(&point[0]));
         }
@@ -56,7 +56,7 @@ impl Figures<'_> {
             }
         }
         let mut cloud = self.cloud(joint, against, &points, 1.0)?;
-        // There is one figure, of what is left.
+        // There is one figure, of the residual after.
         cloud.data.series.retain(|series| series.colour == "after");
         for series in &mut cloud.data.series {
             series.on = vec![0];
@@ -142,7 +142,7 @@ impl Figures<'_> {
         })
     }
 
-    /// Whether other findings act on the joint too.
+    /// Whether other findings also act on the joint.
     pub fn has_company(&self, index: usize, joint: usize) -> bool {
         let acts = |trace: &Trace| {
             let effects = trace.effects.iter().enumerate().filter(|(other, _)| *other != index);
@@ -182,8 +182,8 @@ impl Figures<'_> {
     }
 }
 
-/// The points before (figure 0) and after (figure 1), and the effect (figure 0), on axes with their units; what is outside of
-/// the ends is left out, as in the drawing.
+/// The points before (figure 0) and after (figure 1), and the effect (figure 0), on axes with their units. Points outside the
+/// axes are omitted, as in the drawing.
 fn data(
     points: &[Point],
     effect: &[Bin],
@@ -279,7 +279,7 @@ fn through(points: &[Point], [from, to]: [f64; 2], bins: f64) -> Vec<Bin> {
     bins
 }
 
-/// A line where the effect has one value at a state, a band where it has many.
+/// A line where the effect is a function of the state, a band where it has many values.
 fn draw_effect(svg: &mut Svg, bins: &[Bin], x: &Scale, y: &Scale) {
     let starts = bins
         .iter()
@@ -292,7 +292,7 @@ fn draw_effect(svg: &mut Svg, bins: &[Bin], x: &Scale, y: &Scale) {
     for end in ends {
         let run = &bins[first..end];
         let at = |pick: fn(&Bin) -> f64| run.iter().map(move |bin| [x.place(bin.state), y.place(pick(bin))]);
-        // More torques at one state than the line's own slope accounts for.
+        // More torques at one state than the slope of a line explains.
         let height = |low: f64, high: f64| (y.place(low) - y.place(high)).abs();
         let is_wide = |index: usize| {
             let [before, after] = [index.saturating_sub(1), (index + 1).min(run.len() - 1)];
@@ -300,7 +300,7 @@ fn draw_effect(svg: &mut Svg, bins: &[Bin], x: &Scale, y: &Scale) {
         };
         let is_wide = (0..run.len()).filter(|&index| is_wide(index)).count() > run.len() / 5;
         if is_wide {
-            // No line: at one state the effect has many torques.
+            // No line, because the effect has many torques at one state.
             let outline: Vec<[f64; 2]> = at(|bin| bin.low).chain(at(|bin| bin.high).rev()).collect();
             svg.area(&outline, "effect-band");
         } else {

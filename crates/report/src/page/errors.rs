@@ -169,7 +169,7 @@ fn dumbbells(fits: &[(usize, &str, &JointFit)]) -> String {
         let y = ROW * (row as f64 + 1.0) - 10.0;
         svg.text([0.0, y - 14.0], "tick", "start", &format!("{} · {name}", joint + 1));
         let [nominal, augmented, learned] = values(fit);
-        // Where the two meet, one is a ring about the other.
+        // If the two coincide, one is a ring around the other.
         let meet = matches!((nominal, augmented), (Some(a), Some(b)) if (place(a) - place(b)).abs() < 1.0);
         if let (Some(nominal), Some(augmented)) = (nominal, augmented) {
             svg.raw(format_args!(

@@ -24,7 +24,7 @@ const PAUSE: f64 = 0.01;
 const TIME_STEP: f64 = 1e-3;
 
 const STRIP: [f64; 2] = [1080.0, 250.0];
-/// Room for the vertical axis.
+/// The width of the vertical axis.
 pub const LEFT: f64 = 66.0;
 
 impl Figures<'_> {
@@ -198,7 +198,7 @@ impl Figures<'_> {
 }
 
 impl Data {
-    /// Ends all lines at a place (s) between two rows.
+    /// Ends all lines at a time (s) between two rows.
     fn end_lines(&mut self, at: f64) {
         self.places.push((at / TIME_STEP).round() as i64);
         for series in &mut self.series {
@@ -211,7 +211,7 @@ fn span(trace: &Trace) -> f64 {
     trace.time[trace.time.len() - 1] - trace.time[0]
 }
 
-/// To a millisecond.
+/// Rounds to a millisecond.
 fn rounded(time: f64) -> f64 {
     (time * 1e3).round() / 1e3
 }
@@ -228,7 +228,7 @@ fn reached(shown: &[&Trace], joint: usize) -> [f64; 2] {
     })
 }
 
-/// About `most` of `count` rows in order: of each bin those where a series is smallest or largest.
+/// About `most` of `count` rows in order: in each bin, those where a series is smallest or largest.
 fn thinned_rows(series: [Option<&[f64]>; 2], count: usize, most: usize) -> Vec<usize> {
     if count <= most {
         return (0..count).collect();

@@ -24,7 +24,7 @@ impl Page<'_> {
         self.report.located.iter().find(|located| located.joint == joint)
     }
 
-    /// Whether there is anything to show of the joint.
+    /// Whether the joint has something to show.
     pub(super) fn has_section(&self, joint: usize) -> bool {
         let name = self.figures.arm.joints()[joint].name.as_str();
         let touches = |finding: &Finding| {
@@ -46,7 +46,7 @@ impl Page<'_> {
         (!findings.is_empty()).then(|| Section::new("whole-arm", html! { "Whole arm" }, body))
     }
 
-    /// Everything about one joint.
+    /// The section of one joint.
     pub(super) fn joint(&self, joint: usize) -> Option<Section> {
         if !self.has_section(joint) {
             return None;

@@ -22,7 +22,7 @@ pub const fn number(title: &str) -> Column<'_> {
     Column { title, is_number: true }
 }
 
-/// As [`table`], with cards of few lines on a narrow screen: every cell after the third follows the one before it.
+/// A table as [`table`] makes it, with compact cards on a narrow screen: each cell after the third continues the line.
 pub fn brief_table(columns: &[Column<'_>], rows: Vec<Vec<Markup>>) -> Markup {
     html! { div.brief { (table(columns, rows)) } }
 }
@@ -48,7 +48,7 @@ fn class(column: &Column<'_>) -> Option<&'static str> {
 /// The number of letters from which a name is broken where it must be.
 const LONG: usize = 18;
 
-/// A name that may be broken, if it is long, behind its underscores, slashes and dots, and nowhere else.
+/// A long name, which may be broken after its underscores, slashes and dots.
 pub fn name(text: &str) -> Markup {
     html! {
         @if text.chars().count() < LONG { (text) } @else {

@@ -14,13 +14,13 @@ pub struct Data {
     pub panels: Vec<Panel>,
     /// Stretches of the horizontal axis with a background: from, to, class.
     pub shades: Vec<(f64, f64, &'static str)>,
-    /// The horizontal places, each less the one before it, in steps of [`Axis::step`].
+    /// The horizontal positions as differences, in steps of [`Axis::step`].
     pub places: Vec<i64>,
-    /// What is drawn.
+    /// The lines and clouds.
     pub series: Vec<Series>,
 }
 
-/// An axis: its words with the unit, and the value of one step in the data.
+/// An axis: its text with the unit, and the value of one step in the data.
 #[derive(Serialize)]
 pub struct Axis {
     pub title: String,
@@ -31,7 +31,7 @@ pub struct Axis {
 #[derive(Serialize)]
 pub struct Panel {
     pub name: String,
-    /// The place of its first row on the common axis, and its length (s).
+    /// The position of its first row on the common axis, and its length (s).
     pub at: f64,
     pub length: f64,
     /// The time of its first row on its own clock (s).
@@ -42,15 +42,15 @@ pub struct Panel {
 #[derive(Serialize)]
 pub struct Series {
     pub name: &'static str,
-    /// The colour of the style: before, after, effect.
+    /// The style class: before, after, effect.
     pub colour: &'static str,
     pub dots: bool,
-    /// The numbers of the figures that show it.
+    /// The indices of the figures that show it.
     pub on: Vec<usize>,
     pub values: Vec<Cell>,
 }
 
-/// A value in steps, nothing, or the end of a line.
+/// A value in steps, a missing value, or the end of a line.
 #[derive(Clone, Copy, Serialize)]
 #[serde(untagged)]
 pub enum Cell {
@@ -60,9 +60,9 @@ pub enum Cell {
 }
 
 impl Cell {
-    /// Nothing at this place: a line goes on.
+    /// A missing value: the line continues.
     pub const MISSING: Self = Self::Missing(());
-    /// Nothing at this place: a line ends.
+    /// The end of a line.
     pub const GAP: Self = Self::Gap("-");
 
     /// `value` in steps; a gap where it is not finite.
@@ -91,7 +91,7 @@ impl Axis {
     }
 }
 
-/// Places one after the other, each less the one before it.
+/// Positions as differences from the one before.
 pub fn differences(places: &[i64]) -> Vec<i64> {
     let before = std::iter::once(0).chain(places.iter().copied());
     places
@@ -101,12 +101,12 @@ pub fn differences(places: &[i64]) -> Vec<i64> {
         .collect()
 }
 
-/// The drawings of `data`, with the data beside them for the viewer; without scripts, the drawings stand.
+/// The drawings of `data`, with the data for the viewer; without scripts, the drawings are shown.
 pub fn zoomable(data: Option<&Data>, drawings: Markup) -> Markup {
     let text = data.and_then(|data| serde_json::to_string(data).ok());
     html! {
         @match text {
-            // Nothing in a script element may look like its end.
+            // The text in a script element must not contain its end tag.
             Some(text) => div.zoomable {
                 (drawings)
                 script type="application/json" { (PreEscaped(text.replace('<', "\\u003c"))) }

@@ -7,7 +7,7 @@ use scoring::{Figure, Score, StrictFamily, Target, UrdfGroup};
 use super::experiments;
 use crate::numbers::percent_to_a_tenth as percent;
 
-/// In a sentence or two.
+/// The reason in a sentence or two.
 pub fn reason(target: &Target, score: &Score) -> String {
     match target.id {
         Figure::Strict => strict(target, score),
@@ -37,7 +37,7 @@ pub fn reason(target: &Target, score: &Score) -> String {
             let missed = score.concealed.iter().filter(|o| o.is_asked());
             let missed = missed.filter(|o| !o.fate.is_covered());
             format!(
-                "neither in the finding nor in its confusable set: {}.",
+                "neither a finding nor an alternative: {}.",
                 tally(missed.map(|o| o.effect.as_str()))
             )
         }
@@ -63,7 +63,7 @@ fn tally<'a>(names: impl Iterator<Item = &'a str>) -> String {
     }
 }
 
-/// What was not found with its size, and what was named falsely: of the group of cases that the figure is of.
+/// Effects that were not found with their size, and false names, in the group of cases of the figure.
 fn strict(target: &Target, score: &Score) -> String {
     let is_meant = |group: &&UrdfGroup| target.what.ends_with(group.urdf.words());
     let strict = score

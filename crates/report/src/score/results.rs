@@ -31,7 +31,7 @@ pub fn found(score: &Score) -> Vec<Block> {
         "injected",
         "found",
         "of these by an equivalent name",
-        "in a confusable set",
+        "alternative only",
         "joint refused",
         "declared not testable",
         "missed",
@@ -57,7 +57,7 @@ pub fn found(score: &Score) -> Vec<Block> {
     for curve in &score.detection {
         let is_share = curve.measure == "expressed_share";
         let caption = if is_share {
-            "Detection rate against the effect's expressed share, with Wilson's 95 % interval. Hollow circles: found or in a finding's confusable set."
+            "Detection rate against the effect's expressed share, with Wilson's 95 % interval. Hollow circles: found or an alternative of a finding."
         } else {
             "Detection rate against the effect's signal-to-noise ratio: the standard deviation of its torque over that of the noise on one sample of its joint's torque."
         };
@@ -81,7 +81,7 @@ pub fn found(score: &Score) -> Vec<Block> {
         } else {
             "signal-to-noise ratio"
         };
-        let head = [size, "found", "found or confusable", "declared not testable"];
+        let head = [size, "found", "found or alternative", "declared not testable"];
         list.push(table(&head, 1, rows.collect()));
     }
     list.push(text(format!(

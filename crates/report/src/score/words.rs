@@ -1,4 +1,4 @@
-//! Counts, shares and names of a score in words.
+//! Counts, shares and names of a score as text.
 
 use scoring::{Counted, Figure, Name, Target};
 
@@ -46,7 +46,7 @@ pub fn figure(target: &Target) -> String {
     }
 }
 
-/// What a target wants in words.
+/// The required values of a target.
 pub fn wanted(target: &Target) -> String {
     let is_share = target.counted.is_some() || target.id == Figure::ParameterErrors;
     let show = |value: f64| if is_share { percent(value) } else { format!("{value}") };

@@ -1,11 +1,11 @@
-//! What to do after a diagnosis, the most important first.
+//! The next steps after a diagnosis, the most important first.
 
 use diagnosis::{Report, Verdict};
 
 use super::{alternatives, unexplained};
 use crate::{next_words, words};
 
-/// What to do next, in sentences: data that are missing, residuals without a name, the proposed motion, findings with alternatives.
+/// The next steps, in sentences: missing data, unexplained residuals, the proposed motion, findings with alternatives.
 pub fn of(report: &Report) -> Vec<String> {
     let mut steps: Vec<String> = report
         .not_enough_data
@@ -51,7 +51,7 @@ fn residuals(report: &Report) -> Vec<String> {
     said.collect()
 }
 
-/// The findings that another effect would explain as well, with the experiment that distinguishes them.
+/// The findings with alternatives, with the experiment that distinguishes them.
 fn ambiguous(report: &Report) -> Vec<String> {
     let findings = report
         .findings

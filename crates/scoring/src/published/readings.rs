@@ -1,4 +1,4 @@
-//! A diagnosis' findings, and the same torques in other words.
+//! The findings of a diagnosis, and equivalent parameterisations of them.
 
 use std::collections::BTreeMap;
 
@@ -6,15 +6,15 @@ use super::name_of;
 use crate::answer::{Answer, Named, Number};
 use crate::rules::Name;
 
-/// A name that findings amount to, with its numbers.
+/// A name equivalent to findings, with its parameters.
 pub struct Reading {
     /// The effect and its joint.
     pub name: Name,
-    /// Its numbers; no number is made up.
+    /// Its parameters, as far as they follow from the findings.
     pub parameters: BTreeMap<String, Number>,
-    /// The findings it is made of, by their place in the answer.
+    /// The indices of the findings that it follows from.
     pub of: Vec<usize>,
-    /// Whether it is another name than theirs.
+    /// Whether the name differs from theirs.
     rewritten: bool,
 }
 
@@ -30,7 +30,7 @@ impl Reading {
     }
 }
 
-/// The findings as they are, and after them what else they say.
+/// The findings, then the equivalent parameterisations.
 pub fn readings(answer: &Answer) -> Vec<Reading> {
     let findings = || answer.findings.iter().enumerate();
     let mut list: Vec<Reading> = findings()
@@ -53,7 +53,7 @@ pub fn readings(answer: &Answer) -> Vec<Reading> {
         let joint = &finding.joint;
         let number = |key: &str| finding.parameters.get(key).copied();
         match finding.effect.as_str() {
-            // F₊ forwards and F₋ backwards are their mean against the motion, and half their difference always.
+            // // F₊ forwards and F₋ backwards equal their mean against the motion and half their difference in both directions.
             "friction_asymmetry" => {
                 if let (Some(positive), Some(negative)) = (number("positive"), number("negative")) {
                     let level = scaled(combined(positive, negative, 1.0), 0.5);
@@ -87,7 +87,7 @@ fn one(key: &str, number: Number) -> BTreeMap<String, Number> {
     [(key.to_owned(), number)].into()
 }
 
-/// a + sign b, its interval as if the two were independent.
+/// a + sign b; the interval is computed as if the two were independent.
 fn combined(a: Number, b: Number, sign: f64) -> Number {
     let half = |number: Number| match number.ci95 {
         [Some(low), Some(high)] => Some(0.5 * (high - low)),

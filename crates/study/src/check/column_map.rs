@@ -1,8 +1,8 @@
-//! The column map that mends what does not fit: TOML, ready to paste.
+//! The column map that corrects a recording: TOML, ready to paste.
 
 use std::fmt::Write;
 
-/// What a key of a joint's table is to be.
+/// The value of a key in a joint's table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A number.
@@ -13,7 +13,7 @@ pub enum Value {
     ColumnOf(String),
 }
 
-/// A key of a column map that mends something.
+/// A key of a column map that corrects something.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Change {
     joint: String,
@@ -31,15 +31,15 @@ impl Change {
         }
     }
 
-    /// A factor of the torque, where the model says about which: three digits of it.
+    /// A factor of the torque, estimated from the model, with three digits.
     pub fn scale(joint: &str, factor: f64) -> Self {
         let short = format!("{factor:.2e}").parse().unwrap_or(factor);
         Self::new(joint, "tau_scale", Value::Number(short))
     }
 }
 
-/// The map with `changes`: a whole one for a recording whose columns have testbed's own names (`own`, with
-/// velocities or not), and otherwise the keys to change in the map that gives the columns.
+/// The map with `changes`: complete for a recording with testbed's own column names (`own`, with velocities or not); otherwise,
+/// the keys to change in the map that gives the columns.
 pub fn text(joints: &[String], changes: &[Change], own: bool, velocities: bool) -> Option<String> {
     if changes.is_empty() {
         return None;

@@ -4,10 +4,10 @@ use recording::RegularRecording;
 
 /// Half the span of a parabola (s).
 const HALF_SPAN: f64 = 0.04;
-/// How many instants.
+/// The number of instants.
 const INSTANTS: usize = 800;
 
-/// Motion and torque at instants, `signal[joint][instant]`; joints in the order asked for.
+/// Motion and torque at instants, `signal[joint][instant]`; the joints are in the requested order.
 pub struct Smooth {
     pub q: Vec<Vec<f64>>,
     pub qd: Vec<Vec<f64>>,

@@ -1,4 +1,4 @@
-//! How a recording may have been meant, and how well the model explains it then.
+//! Suppositions about a recording, and how well the model explains it under each.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -10,29 +10,29 @@ use super::torque_unit::deviation;
 /// A joint's torque is explained if its residual has at most this share of its variance.
 pub const EXPLAINED: f64 = 0.2;
 
-/// How the recording may have been meant.
+/// A supposition about a recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Supposition {
     AsItIs,
-    /// A joint's position has the other sign.
+    /// A joint's position has the opposite sign.
     Flipped(usize),
-    /// A joint's torque has.
+    /// A joint's torque has the opposite sign.
     TorqueFlipped(usize),
     /// The positions and torques of two joints are swapped.
     Swapped(usize, usize),
-    /// The torques alone are.
+    /// The torques of two joints are swapped.
     TorquesSwapped(usize, usize),
-    /// The positions alone are.
+    /// The positions of two joints are swapped.
     PositionsSwapped(usize, usize),
-    /// A joint's zero is off: this is to be added to its position (rad).
+    /// A joint's zero is wrong: this is to be added to its position (rad).
     Zero(usize, f64),
-    /// Gravity has another direction (base frame), as on a wall or a ceiling. That is an effect and no
-    /// mistake, and must not be taken for a wrong zero.
+    /// Gravity has another direction (in the base's frame), as on a wall or a ceiling. That is an effect and not a mistake, and
+    /// must not be reported as a wrong zero.
     Gravity(Vector3<f64>),
 }
 
 impl Supposition {
-    /// All that is tried with the joints that move; a resting joint gives too little information.
+    /// All suppositions about the joints that move; a resting joint gives too little information.
     pub fn all(arm: &Arm, moves: &[bool]) -> Vec<Self> {
         let dof = arm.dof();
         let mut all = Vec::new();
@@ -57,7 +57,7 @@ impl Supposition {
         all
     }
 
-    /// Whether both are about the signs or the zero of one joint.
+    /// Whether both concern the signs or the zero of one joint.
     pub fn same_joint(self, other: Self) -> bool {
         let joint = |supposition| match supposition {
             Self::Flipped(joint) | Self::TorqueFlipped(joint) | Self::Zero(joint, _) => Some(joint),
@@ -85,13 +85,13 @@ impl Fit {
         self.left[joint] < EXPLAINED && self.without[joint] > 3.0 * self.left[joint]
     }
 
-    /// The sum of the joints' log residuals.
+    /// The sum of the logarithms of the joints' residuals.
     pub fn score(&self) -> f64 {
         self.left.iter().map(|left| left.max(0.01).ln()).sum()
     }
 }
 
-/// The fit of the torques by the model of `arm`, the recording meant as `supposition` says.
+/// The fit of the torques by the model of `arm` under a `supposition`.
 pub fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
     let turned;
     let arm = if let Supposition::Gravity(gravity) = supposition {
@@ -117,7 +117,7 @@ pub fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
         Supposition::TorquesSwapped(a, b) => torque_source.swap(a, b),
         Supposition::PositionsSwapped(a, b) => source.swap(a, b),
     }
-    // The model by the motion as supposed.
+    // The model along the supposed motion.
     let mut workspace = Workspace::new(arm);
     let mut model = vec![vec![0.0; count]; dof];
     let mut tau = vec![0.0; dof];
@@ -143,8 +143,8 @@ pub fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
         let measured = &smooth.tau[torque_source[joint]];
         let (without, _) = regress(&[&dry, speed], measured);
         let (left, factor) = regress(&[&model[joint], &dry, speed], measured);
-        // A joint whose position is flipped may have its torque flipped along, one whose torque is must;
-        // otherwise a negative factor explains nothing.
+        // A joint with an inverted position may have an inverted torque, one with an inverted torque must; otherwise a
+        // negative factor explains nothing.
         let explains = match supposition {
             Supposition::Flipped(flipped) if flipped == joint => true,
             Supposition::TorqueFlipped(flipped) if flipped == joint => factor < 0.0,

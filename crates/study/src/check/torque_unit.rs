@@ -4,17 +4,17 @@ use super::column_map::{Change, Value};
 use super::supposition::Fit;
 use report::numbers::rounded;
 
-/// A torque less than this times the model's is on the motor's side; a payload only makes it larger.
+/// The least ratio of a torque to the model's on the joint's side; a payload only makes it larger.
 pub const MOTOR_SIDE: f64 = 0.05;
-/// As much on all joints is another unit; no payload does that.
+/// With this ratio on all joints, the torques are in another unit; no payload is so heavy.
 const LARGE_EVERYWHERE: f64 = 30.0;
-/// As little on all joints, each told by the model, are motor currents or another unit.
+/// With less than this ratio on all joints, the torques are motor currents or in another unit.
 const SMALL_EVERYWHERE: f64 = 0.2;
 /// A decimal unit of torque.
 struct Unit {
-    /// Of the recorded torque over the model's.
+    /// The ratio of the recorded torque to the model's.
     factor: f64,
-    /// The unit that it suggests, for forces, too.
+    /// The unit that the ratio suggests, also for forces.
     name: &'static str,
     /// The remedy in words.
     remedy: &'static str,
@@ -56,7 +56,7 @@ pub fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
-/// What is wrong with the torques' unit, where all joints that move have the same, and the keys that mend it.
+/// The error of the torques' unit, if all joints that move have the same error, and the keys that correct it.
 pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Change>)> {
     let moving: Vec<usize> = (0..moves.len()).filter(|&joint| moves[joint]).collect();
     let is_evident = |joint: &usize| fit.factor[*joint] > 0.0 && fit.told_by_model(*joint);
@@ -65,8 +65,8 @@ pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Chan
         evident.iter().all(|&joint| outside(fit.factor[joint])) && moving.iter().all(|&joint| outside(fit.size[joint]))
     };
     if evident.is_empty() {
-        // Friction makes a measured torque larger than the model's, and nothing makes it so much smaller. A channel
-        // without a torque is another matter.
+        // Friction makes a measured torque larger than the model's, and nothing makes it that much smaller. Channels without a
+        // torque are checked elsewhere.
         let sizes: Vec<f64> = moving
             .iter()
             .map(|&joint| fit.size[joint])
@@ -93,7 +93,7 @@ pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Chan
     factors.sort_by(f64::total_cmp);
     let (least, most) = (factors[0], factors[factors.len() - 1]);
     let middle = factors[factors.len() / 2];
-    // Masses are known to a third or so, and all joints have one unit.
+    // Masses are known to about a third, and all joints have one unit.
     let decimal = UNITS.into_iter().find(|unit| {
         let near = |found: f64| (0.5..2.0).contains(&(found / unit.factor));
         near(middle) && near((least * most).sqrt())

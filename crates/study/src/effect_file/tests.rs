@@ -1,4 +1,4 @@
-//! Effect files go round, and what is wrong with one is said with its line.
+//! Effect files that are written and read again are the same, and errors name their line.
 
 use super::*;
 use effects::arm::{ExternalContact, GravityMisalignment, InertialScale, LinkInertialError, Payload};
@@ -210,7 +210,7 @@ fn an_effect_said_twice_is_refused_with_both_places() {
     assert!(parse(&[ripple("10.0"), ripple("20.0")]).is_ok());
     assert!(parse(&[ripple("10.0"), ripple("10.0")]).is_err());
     let payload = |mass: &str| format!("[[effects]]\neffect = \"payload\"\nmass = {mass}\ncom = [0.0, 0.0, 0.1]\n");
-    // A body that is known and one that was found on top of it.
+    // A known body, and another that was found in addition.
     assert_eq!(
         parse(&[payload("1.0"), payload("-0.3")]).map(|file| file.effects.len()),
         Ok(2)

@@ -1,4 +1,4 @@
-//! Which column of a recording belongs to which joint of the arm.
+//! The assignment of a recording's columns to the arm's joints.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use anyhow::bail;
 use arm::{Arm, FixedBecause, FixedJoint};
 use recording::{Recording, RegularRecording, Signal, nearest};
 
-/// Where each joint of the arm is in the recording. Columns of joints that are fixed in the arm are left out.
+/// The column of each joint of the arm. Columns of joints that are fixed in the arm are left out.
 ///
 /// # Errors
 /// If the recording lacks a joint of the arm, or has one that the robot does not have, or that was fixed because the
@@ -94,7 +94,7 @@ pub(super) fn order(
         .collect())
 }
 
-/// The recording with its joints in another order, and only those.
+/// The recording with its joints in another order; other joints are left out.
 pub(super) fn reordered(mut recording: RegularRecording, order: &[usize]) -> RegularRecording {
     let signal = |signal: &Signal| -> Signal { order.iter().map(|&from| signal[from].clone()).collect() };
     let partial = |signal: &recording::PartialSignal| -> recording::PartialSignal {

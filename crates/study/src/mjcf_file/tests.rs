@@ -1,4 +1,4 @@
-//! The MJCF that is written is the corrected model, in MuJoCo, too.
+//! The MJCF equals the corrected model, also in MuJoCo.
 
 use std::fmt::Write as _;
 use std::process::Command;
@@ -19,7 +19,7 @@ fn read(urdf: &str) -> Arm {
     Arm::from_urdf_text(urdf, "test.urdf").expect("it is an arm")
 }
 
-/// All that MJCF holds, each on a joint.
+/// All effects that MJCF can hold, each on a joint.
 fn held(arm: &Arm) -> Vec<Effect> {
     let name = |j: usize| arm.joints()[j % arm.dof()].name.clone();
     let body = Inertia {
@@ -115,8 +115,8 @@ fn a_tensor_that_no_body_has_is_written_as_the_nearest_and_said() {
     assert!(!is_wrong && massless.mass > 1e-15 && massless.tensor.diagonal().min() > 1e-15);
 }
 
-/// Motions with the torques that the corrected model has for them, as rows q, qd, qdd, tau. Each joint moves faster than
-/// 0.3 rad/s or m/s: MuJoCo's dry friction rises over a small range of speeds.
+/// Motions with the torques of the corrected model, as rows q, qd, qdd, tau. Each joint moves faster than 0.3 rad/s or m/s,
+/// because MuJoCo's dry friction rises over a small range of speeds.
 fn rows(arm: &Arm, effects: &[Effect]) -> String {
     let model = Corrected::new(arm, effects).expect("they are physical");
     let dof = arm.dof();
@@ -155,7 +155,7 @@ fn mujoco_needs_the_same_torques() {
         println!("skipped: {python} has no package mujoco (pip install mujoco numpy; PYTHON names the interpreter)");
         return;
     }
-    // The Puma's link3 has a tensor that no body has; of the scaled one, too.
+    // The tensor of the Puma's link3 is physically impossible, also when scaled.
     let mut bodies: Vec<Inertia> = read(PUMA).joints().iter().map(|joint| joint.inertia).collect();
     bodies[2] = nearest_body(&bodies[2]).0;
     let robots = [

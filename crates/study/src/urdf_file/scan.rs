@@ -1,4 +1,4 @@
-//! Where in a URDF's text the inertials and the joints' dynamics stand.
+//! The places in a URDF's text of the inertials and the joints' dynamics.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -10,7 +10,7 @@ use quick_xml::events::{BytesStart, Event};
 
 use super::SOURCE;
 
-/// Where an element stands, or where it could be put.
+/// The place of an element, existing or to be inserted.
 pub(super) enum Place {
     /// These bytes.
     At(Range<usize>),
@@ -21,7 +21,7 @@ pub(super) enum Place {
 }
 
 impl Place {
-    /// The edit that puts `element` there; `parent` is its parent's tag.
+    /// The edit that inserts `element` there; `parent` is its parent's tag.
     pub(super) fn place(&self, element: String, parent: &str) -> (Range<usize>, String) {
         match self {
             Self::At(range) => (range.clone(), element),
@@ -34,7 +34,7 @@ impl Place {
 /// A link.
 pub(super) struct LinkPlaces {
     pub(super) inertial: Place,
-    /// What it says, in the link's frame.
+    /// Its inertial, in the link's frame.
     pub(super) inertia: Inertia,
 }
 
@@ -57,7 +57,7 @@ pub(super) struct Places {
     pub(super) drives: BTreeMap<String, Drive>,
 }
 
-/// What a transmission says of its drive to Drake.
+/// What a transmission states about its drive for Drake.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Drive {
     /// Where `<drake:rotor_inertia>` is, and its value (kg m² at the motor).
@@ -104,10 +104,10 @@ struct Open {
     is_link: bool,
     name: String,
     found: Option<Range<usize>>,
-    /// Where its inertial or dynamics begins, while inside it.
+    /// The beginning of its inertial or dynamics, while inside it.
     begun: Option<usize>,
     inertial: RawInertial,
-    /// Whether its dynamics say that a diagnosis wrote them.
+    /// Whether its dynamics were written by a diagnosis.
     is_diagnosed: bool,
 }
 

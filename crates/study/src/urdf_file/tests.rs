@@ -1,4 +1,4 @@
-//! The URDF that is written says, read again, what the corrected model says.
+//! A written URDF, read again, equals the corrected model.
 
 use super::*;
 use effects::friction::{CoulombFriction, FrictionAsymmetry, StribeckFriction, ViscousFriction};
@@ -75,7 +75,7 @@ fn what_urdf_holds_is_put_in() {
     let written = read(&text);
     assert_same_dynamics(&written, &Corrected::new(&arm, &effects()).expect("they are physical"));
     let [a, b] = written.joints() else { panic!("two joints") };
-    // The joint's friction is what was found, and nothing of what was in the file.
+    // The joint's friction is the found one, and not that of the file.
     assert_eq!((a.damping, a.friction), (1.25, 0.0));
     assert_eq!((b.damping, b.friction), (0.0, 0.75));
     let [offset] = &left[..] else { panic!("{left:?}") };
@@ -131,7 +131,7 @@ fn what_does_not_fit_is_refused() {
     assert!(error.to_string().contains("no link \"upper\""), "{error}");
 }
 
-/// A friction with more than one level is held by the level that is most like it; the rest is said.
+/// A friction with more than one level is written as its most similar level; the rest is listed.
 #[test]
 fn what_a_urdf_holds_in_part_is_put_in_and_said() {
     let arm = read(TWO);
@@ -160,7 +160,7 @@ fn what_a_urdf_holds_in_part_is_put_in_and_said() {
     assert_eq!(diagnosed_joints(&text).expect("it reads"), ["a", "b"]);
 }
 
-/// Bodies that the recordings tell take the place of all that is welded together.
+/// Estimated bodies replace the inertials of all links that are welded together.
 #[test]
 fn inertial_parameters_are_put_in() {
     let arm = read(TWO);
@@ -178,7 +178,7 @@ fn inertial_parameters_are_put_in() {
     assert!((written.joints()[1].inertia.mass - 2.25).abs() < 1e-12);
 }
 
-/// A drive's inertia is put where Drake reads it, unless the file describes the drive.
+/// A drive's inertia is written for Drake, unless the file describes the drive.
 #[test]
 fn drive_inertias_are_put_in_for_drake() {
     let arm = read(TWO);

@@ -10,7 +10,7 @@ use super::chain::ChainArgs;
 use super::numbers::{parse_accuracy, parse_frequency};
 use super::rerun::{Rerun, parse_rerun};
 
-/// The catalogue's effects, one a line.
+/// The catalogue's effects, one per line.
 fn effects_help() -> String {
     let line = |kind: &&dyn effects::EffectKind| format!("\n  {:<24} {}", kind.spec().name, kind.spec().meaning);
     let lines: String = effects::CATALOGUE.iter().map(line).collect();
@@ -28,12 +28,11 @@ pub struct DiagnoseArgs {
     #[arg(long, required = true, num_args = 1.., value_name = "FILE")]
     pub train: Vec<PathBuf>,
 
-    /// Recordings of the same robot from before something happened: what the other recordings show and these do not is
-    /// what changed
+    /// Recordings of the same robot from before something happened; the report then begins with what changed
     #[arg(long, num_args = 1.., value_name = "FILE")]
     pub before: Vec<PathBuf>,
 
-    /// How far the URDF's masses, centres of mass and inertias may be off, as a fraction of each link's own (0.1: ten per cent)
+    /// The relative error of each link's mass, centre of mass and inertia in the URDF (0.1: ten per cent)
     /// [default: estimated from the recordings]
     #[arg(long, value_name = "FRACTION", value_parser = parse_accuracy)]
     pub urdf_accuracy: Option<f64>,

@@ -46,7 +46,7 @@ fn is_earlier(path: &Path) -> anyhow::Result<bool> {
     Ok(bytes.starts_with(FIRST_LINE.as_bytes()))
 }
 
-/// Writes `motion` of `arm` to `path`, whole or not at all, with what it is for in comments; `robot` is as it was given.
+/// Writes `motion` of `arm` to `path`, completely or not at all, with what it is for in comments; `robot` is as it was given.
 ///
 /// # Errors
 /// If it cannot be written.

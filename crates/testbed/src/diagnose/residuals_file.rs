@@ -82,7 +82,7 @@ fn columns<'a>(trace: &'a Trace, joints: &[&str]) -> Vec<(String, Values<'a>)> {
     list
 }
 
-/// Writes all recordings of `traces` to `path`, one after the other, whole or not at all. The format follows from the ending.
+/// Writes all recordings of `traces` to `path`, one after the other, completely or not at all. The format follows from the ending.
 ///
 /// # Errors
 /// If the ending is of another format, or the file cannot be written.

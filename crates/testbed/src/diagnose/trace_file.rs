@@ -7,7 +7,7 @@ use diagnosis::Decision;
 
 use crate::output;
 
-/// Writes `decisions` to `path`, whole or not at all. `nats` is the gain of the whole step, on each of its rows.
+/// Writes `decisions` to `path`, completely or not at all. `nats` is the gain of the whole step, on each of its rows.
 ///
 /// # Errors
 /// If it cannot be written.

@@ -7,7 +7,7 @@ use diagnosis::MotionLimits;
 use crate::cli::{ExciteArgs, Limit};
 use recording::nearest;
 
-/// The limits of the joints of `arm`, one a joint.
+/// The limits of the joints of `arm`, one per joint.
 ///
 /// # Errors
 /// If one is given for a joint that the arm does not have.

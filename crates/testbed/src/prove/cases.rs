@@ -26,7 +26,7 @@ pub struct Place {
     pub truth: PathBuf,
 }
 
-/// Where the cases of a proof come from.
+/// The origin of the cases of a proof.
 pub enum Cases {
     /// A number of cases, drawn from a seed.
     Drawn {
@@ -34,11 +34,11 @@ pub enum Cases {
         seed: u64,
         /// Robots, in turn.
         robots: Vec<Robot>,
-        /// As they were given; empty: those that come with testbed.
+        /// The robots as the user named them; empty for those that come with testbed.
         named: Vec<String>,
         /// Which of their joints are the arm.
         chain: ChainArgs,
-        /// Whether half of them look like reality.
+        /// Whether half of them resemble real robots.
         lifelike: bool,
         /// How wrong their URDFs are; `None`: in turns.
         urdf_error: Option<f64>,
@@ -174,7 +174,7 @@ impl Cases {
         }
     }
 
-    /// The numbers of the cases in which a task is tracked: told by the plan, so that a share of a campaign knows its own; none of cases
+    /// The numbers of the cases in which a task is tracked: told by the plan, so that a part of a campaign knows its own; none of cases
     /// that were given, whose truths need not say enough to make their machines again.
     ///
     /// # Errors
@@ -194,7 +194,7 @@ impl Cases {
         }
     }
 
-    /// Makes a case that is not there yet: its folder is there whole or not at all, its truth after it.
+    /// Makes a case that is not there yet: its folder is there completely or not at all, its truth after it.
     ///
     /// # Errors
     /// If it cannot be made, or a case that should be there is not.

@@ -1,4 +1,4 @@
-//! The protocol: conceal, seal, diagnose, open, try the controls, make the proposed experiments, close the loop, score, report.
+//! The protocol of a proof: inject, seal, diagnose, open, controls, experiments, closed loop, score, report.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -24,27 +24,27 @@ use super::{experiments, published, report, work};
 use crate::cli::ProveArgs;
 use crate::{interrupt, output};
 
-/// What a proof leaves for programs: `score.json`.
+/// The content of `score.json`.
 #[derive(Serialize)]
 pub struct Proof {
     /// `testbed.proof/1`.
     pub schema: &'static str,
-    /// The command that makes it again.
+    /// The command that repeats it.
     pub command: String,
-    /// What was fixed before the first diagnosis.
+    /// The seal, made before the first diagnosis.
     pub seal: Seal,
     /// What was fixed before the truth was opened: SHA-256 of each diagnosis, by case.
     pub answers: BTreeMap<String, Option<String>>,
     /// The score.
     pub score: Score,
-    /// What came of the paper's own disturbance, which the score leaves out; drawn campaigns have it.
+    /// The outcome of the paper's own disturbance, which is not in the score; campaigns of random cases have it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub paper: Option<Disturbance>,
-    /// What came of tracking task D on the machines of a dozen cases.
+    /// The outcome of tracking task D on the machines of a dozen cases.
     pub tracking: Vec<CaseTracking>,
 }
 
-/// Runs the protocol as `args` say; what is finished already is not done again.
+/// Runs the protocol of `args`; finished steps are not repeated.
 ///
 /// # Errors
 /// If cases cannot be made or read, a seal is broken, a process cannot be started, or the user interrupts.
@@ -94,7 +94,7 @@ pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
     write(args, &out, &proof)
 }
 
-/// Conceals, seals, diagnoses, opens, tries the controls, and closes the loop.
+/// Injects, seals, diagnoses, opens, fits the controls, and closes the loop.
 fn protocol(
     source: &Cases,
     vault: &Vault,
@@ -124,7 +124,7 @@ fn protocol(
         })
     })?;
     output::write_json(&vault.out.join("answers.json"), &answers(vault, places)?)?;
-    // Only now.
+    // // From here on, the ground truths are read.
     let truths: Mutex<BTreeMap<String, String>> = Mutex::default();
     times.of("controls", || {
         work::all("fitting the controls", &pairs, jobs, |(place, sealed)| {

@@ -1,4 +1,5 @@
-//! The paper's own disturbance as a case: a PUMA 560 whose URDF is 20 % too heavy, seen on task A, tried on task D.
+//! The paper's own disturbance as a case: a PUMA 560 with masses and inertias 20 % too large in the URDF, trained on task A,
+//! held out on task D.
 
 pub mod words;
 
@@ -32,7 +33,7 @@ const ALIAS: &str = "torque_scale";
 /// A mean squared torque error below this is rounding beside torques of tens of N m ((N m)²).
 const ROUNDING: f64 = 1e-6;
 
-/// What came of the case: `paper` in `score.json`.
+/// The outcome of the case: `paper` in `score.json`.
 #[derive(Serialize)]
 pub struct Disturbance {
     /// The URDF's masses and inertia tensors over the true ones.
@@ -67,15 +68,15 @@ pub struct NamedEffect {
 /// The factor that takes the URDF's inertias to the true ones.
 #[derive(Serialize)]
 pub struct Factor {
-    /// As it was found.
+    /// The estimate.
     pub value: f64,
     /// Its 95 % interval.
     pub ci95: [Option<f64>; 2],
-    /// One over [`Disturbance::inertia_scale`].
+    /// The true factor, one over [`Disturbance::inertia_scale`].
     pub truth: f64,
-    /// The value less the truth.
+    /// The estimate minus the truth.
     pub off: f64,
-    /// Whether the interval holds the truth.
+    /// Whether the interval contains the true value.
     pub is_covered: bool,
 }
 

@@ -151,7 +151,7 @@ pub fn make(source: &Cases, vault: &Vault, place: &Place, sealed: &SealedCase, t
     vault.diagnose(place, sealed, &second(place), task)
 }
 
-/// What came of it: the second diagnosis, or why there is none; neither where none was tried.
+/// The outcome: the second diagnosis, or why there is none; neither where none was tried.
 ///
 /// # Errors
 /// If the diagnosis is not what its record says.

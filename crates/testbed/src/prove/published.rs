@@ -27,7 +27,7 @@ use crate::cli::ProveArgs;
 use crate::{interrupt, output};
 use file::{File, Robot};
 
-/// What a proof on published recordings leaves for programs: `score.json`.
+/// The content of `score.json`.
 #[derive(Serialize)]
 pub struct Real {
     /// `testbed.published_proof/1`.
@@ -38,21 +38,21 @@ pub struct Real {
     pub seal: Seal,
     /// What was fixed before the truth was opened: SHA-256 of each diagnosis, by robot.
     pub answers: BTreeMap<String, Option<String>>,
-    /// What came of each robot.
+    /// The outcome of each robot.
     pub robots: Vec<Tried>,
-    /// Robots of the file whose folders are not there.
+    /// Robots of the file without a folder.
     pub absent: Vec<String>,
 }
 
-/// A robot, its recordings and what came of them.
+/// A robot with its recordings and its results.
 #[derive(Serialize)]
 pub struct Tried {
-    /// As the file has it.
+    /// The robot in the file.
     #[serde(skip)]
     pub robot: Robot,
-    /// What the program said in place of a diagnosis.
+    /// The message of the program if there is no diagnosis.
     pub error: Option<String>,
-    /// How many names, effects on a joint or on the arm, what is published would contradict.
+    /// The number of (effect, joint) pairs that a publication excludes.
     pub deniable: usize,
     /// The score.
     pub score: RobotScore,
@@ -175,7 +175,14 @@ fn names(real: &Real) -> String {
 
 /// The robots as a table.
 fn summary(real: &Real) -> String {
-    let header = ["robot", "said, found", "not observable", "contradicted", "held out"].map(str::to_owned);
+    let header = [
+        "robot",
+        "published, named",
+        "not testable",
+        "contradicted",
+        "held-out error",
+    ]
+    .map(str::to_owned);
     let mut table = report::terminal::table(header);
     for Tried { robot, score, .. } in &real.robots {
         let count = |fates: &[SaidFate]| score.said.iter().filter(|said| fates.contains(&said.fate)).count();

@@ -1,4 +1,4 @@
-//! A case after everything was tried on it, as one row: what is scored, and what goes from a share of a campaign to the whole.
+//! A case with all its results as one row, which is scored, and which parts of a campaign pass on.
 
 use std::collections::BTreeMap;
 
@@ -29,7 +29,7 @@ pub struct Row {
     pub true_terms: Option<String>,
     /// A wrong term in place of a true one.
     pub wrong_term: Option<String>,
-    /// What came of tracking a task ([`CaseTracking`]), in the cases in which one was tracked.
+    /// The outcome of tracking a task ([`CaseTracking`]), in the cases in which one was tracked.
     pub tracking: Option<String>,
     /// The diagnosis with the recording of the motion that the first one proposed.
     pub again: Option<String>,
@@ -38,7 +38,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// As it was sealed.
+    /// The case in the seal.
     pub fn sealed(&self) -> SealedCase {
         SealedCase {
             case: self.case.clone(),
@@ -71,7 +71,7 @@ impl Row {
         })
     }
 
-    /// What came of tracking a task, if one was tracked.
+    /// The outcome of tracking a task, if one was tracked.
     ///
     /// # Errors
     /// If the text is not what it should be.

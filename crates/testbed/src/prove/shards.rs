@@ -1,4 +1,4 @@
-//! Shares of a campaign: what one machine did, as a Parquet file; all of them, as one proof.
+//! Parts of a campaign: what one machine did, as a Parquet file; all of them, as one proof.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,12 +18,12 @@ use serde::{Deserialize, Serialize};
 
 use super::rows::Row;
 
-/// The `schema` of a share.
+/// The `schema` of a part.
 const SCHEMA: &str = "testbed.shard/1";
 /// The key of a file's own description.
 const KEY: &str = "testbed.shard";
 
-/// A share: the `number`-th of `of`, from 1.
+/// A part: the `number`-th of `of`, from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
     /// Which.
@@ -47,7 +47,7 @@ impl Shard {
         }
     }
 
-    /// Whether a case is in this share.
+    /// Whether a case is in this part.
     pub fn has(self, case: usize) -> bool {
         case % self.of == self.number - 1
     }
@@ -58,12 +58,12 @@ impl Shard {
     }
 }
 
-/// What a share says of itself.
+/// What a part says of itself.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Label {
     /// `testbed.shard/1`.
     pub schema: String,
-    /// Which share.
+    /// Which part.
     pub shard: Shard,
     /// The program that was sealed.
     pub program: Program,
@@ -71,12 +71,12 @@ pub struct Label {
     pub source: String,
     /// The command that makes the whole again.
     pub command: String,
-    /// The number that this share was sealed as.
+    /// The number that this part was sealed as.
     pub sealed: String,
 }
 
 impl Label {
-    /// Of a share.
+    /// Of a part.
     pub fn new(shard: Shard, program: Program, [source, command]: [String; 2], sealed: String) -> Self {
         Self {
             schema: SCHEMA.to_owned(),
@@ -105,7 +105,7 @@ const COLUMNS: [Column; 11] = [
     ("again_error", true, |row| Ok(row.again_error.clone())),
 ];
 
-/// Writes a share, whole or not at all.
+/// Writes a part, completely or not at all.
 ///
 /// # Errors
 /// If it cannot be written.
@@ -148,7 +148,7 @@ pub fn write(path: &Path, label: &Label, rows: &[Row]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Reads a share.
+/// Reads a part.
 ///
 /// # Errors
 /// If it is none, or damaged.
@@ -159,7 +159,7 @@ pub fn read(path: &Path) -> anyhow::Result<(Label, Vec<Row>)> {
     let label = pairs.and_then(|pairs| pairs.iter().find(|pair| pair.key == KEY)?.value.clone());
     let Some(label) = label else {
         bail!(
-            "{}: is no share of a proof; give files that --shard wrote",
+            "{}: is no part of a proof; give files that --shard wrote",
             path.display()
         );
     };
@@ -198,7 +198,7 @@ pub fn read(path: &Path) -> anyhow::Result<(Label, Vec<Row>)> {
     Ok((label, rows))
 }
 
-/// All shares in `folder`, in the order of the cases.
+/// All parts in `folder`, in the order of the cases.
 ///
 /// # Errors
 /// If one is missing, damaged or there twice, or they are not of one program and one campaign.
@@ -222,13 +222,13 @@ pub fn merge(folder: &Path) -> anyhow::Result<(Label, Vec<Row>)> {
             );
         }
         if let Some(twin) = there.insert(label.shard.number, path.clone()) {
-            bail!("{} and {} are the same share", twin.display(), path.display());
+            bail!("{} and {} are the same part", twin.display(), path.display());
         }
         first.get_or_insert((path, label));
         all.extend(rows);
     }
     let Some((_, label)) = first else {
-        bail!("{}: has no share of a proof (shard-k-of-n.parquet)", folder.display());
+        bail!("{}: has no part of a proof (shard-k-of-n.parquet)", folder.display());
     };
     let missing: Vec<String> = (1..=label.shard.of)
         .filter(|number| !there.contains_key(number))
@@ -236,7 +236,7 @@ pub fn merge(folder: &Path) -> anyhow::Result<(Label, Vec<Row>)> {
         .collect();
     ensure!(
         missing.is_empty(),
-        "{}: shares {} of {} are missing; run them again (--shard k/n goes on where it stopped)",
+        "{}: parts {} of {} are missing; run them again (--shard k/n goes on where it stopped)",
         folder.display(),
         missing.join(","),
         label.shard.of

@@ -79,11 +79,11 @@ pub struct ConcealedEffect {
 pub struct Tracked {
     /// What the controller knew.
     pub model: Model,
-    /// Root mean square, one a joint (rad or m); empty if the loop left all bounds.
+    /// Root mean square, one per joint (rad or m); empty if the loop left all bounds.
     pub rms: Vec<f64>,
-    /// The largest, one a joint (rad or m).
+    /// The largest, one per joint (rad or m).
     pub largest: Vec<f64>,
-    /// The share of ticks in which an effort limit of the URDF cut the torque, one a joint.
+    /// The share of ticks in which an effort limit of the URDF cut the torque, one per joint.
     pub cut: Vec<f64>,
     /// Root mean square over joints and time (rad or m); `None` if the loop left all bounds.
     pub error: Option<f64>,
@@ -91,7 +91,7 @@ pub struct Tracked {
     pub error_without_lag: Option<f64>,
 }
 
-/// What came of a case: `tracking/CASE.json`.
+/// The outcome of a case: `tracking/CASE.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CaseTracking {
     /// The case.

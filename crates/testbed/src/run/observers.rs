@@ -1,4 +1,4 @@
-//! What watches a run: its progress and the viewer.
+//! The observers of a run: its progress and the viewer.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ pub struct Simulating {
 }
 
 impl Simulating {
-    /// Of a run of `duration` (s).
+    /// The progress of a run of `duration` (s).
     pub fn new(duration: f64) -> Self {
         Self {
             progress: Progress::new("simulating"),
@@ -68,7 +68,7 @@ pub fn check_rerun(args: &RunArgs) -> anyhow::Result<()> {
     }
 }
 
-/// The run in Rerun, or nowhere.
+/// The viewer of a run, or none.
 #[cfg(feature = "viewer")]
 pub struct View(Option<crate::viewer::Viewer>);
 

@@ -9,9 +9,9 @@ use toml::Spanned;
 
 use study::Source;
 
-/// One number for all joints, or a list with one a joint.
+/// One number for all joints, or a list with one per joint.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(untagged, expecting = "a number, or a list of numbers with one a joint")]
+#[serde(untagged, expecting = "a number, or a list of numbers with one per joint")]
 pub enum PerJoint {
     All(f64),
     Each(Vec<f64>),

@@ -1,4 +1,4 @@
-//! From what is written to what can be run.
+//! From a written scenario to a validated one.
 
 use std::path::Path;
 
@@ -201,7 +201,7 @@ impl Check<'_> {
         Ok(value)
     }
 
-    /// One finite value a joint.
+    /// One finite value per joint.
     fn joints(&self, key: &str, written: Option<&Spanned<PerJoint>>, default: f64) -> anyhow::Result<Vec<f64>> {
         let dof = self.arm.dof();
         let Some(written) = written else {
@@ -214,7 +214,7 @@ impl Check<'_> {
         self.ensure(values.len() == dof, written, || {
             let names: Vec<&str> = self.arm.joints().iter().map(|joint| joint.name.as_str()).collect();
             format!(
-                "{key} has {} values, but robot \"{}\" has {dof} joints ({}); give one value a joint, or one for all",
+                "{key} has {} values, but robot \"{}\" has {dof} joints ({}); give one value per joint, or one for all",
                 values.len(),
                 self.arm.name(),
                 names.join(", ")

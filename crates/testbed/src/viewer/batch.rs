@@ -43,7 +43,7 @@ impl<T> Columns<T> {
         self.times.len()
     }
 
-    /// Adds a row; `row` has one entry a column.
+    /// Adds a row; `row` has one entry per column.
     pub fn push(&mut self, time: f64, row: impl IntoIterator<Item = T>) {
         self.times.push(time);
         for (column, value) in self.columns.iter_mut().zip(row) {

@@ -1,4 +1,4 @@
-//! The effects as loads on a simulated arm: dry friction apart from what is smooth, and contacts.
+//! The effects as loads on a simulated arm: dry friction, smooth torques, and contacts.
 
 use arm::JointKind;
 use effects::{Circumstance, Contact, State};
@@ -63,7 +63,7 @@ impl Corrected {
         self.add_contacts(Some(time), workspace, opposing);
     }
 
-    /// Adds −Jᵀ F of the contacts that last at `time`; the workspace knows where the joints stand.
+    /// Adds −Jᵀ F of the contacts at `time`; the workspace contains the true positions.
     pub(super) fn add_contacts(&self, time: Option<f64>, workspace: &mut Workspace, tau: &mut [f64]) {
         let Some(time) = time else { return };
         let lasts = |contact: &&Contact| contact.start <= time && time < contact.end;

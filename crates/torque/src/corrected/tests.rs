@@ -1,4 +1,4 @@
-//! The forms of the effects against numbers worked out by hand, and what is refused.
+//! The effects' torques against values computed by hand, and refused parameters.
 
 use arm::Arm;
 use effects::arm::{ExternalContact, GravityMisalignment, InertialScale, LinkInertialError, Payload};
@@ -219,7 +219,7 @@ fn a_coupling_follows_the_other_joint() {
     near(found.effects[1], -0.5);
 }
 
-/// What sets in at a time is not there before; where no time is given, it is.
+/// An effect with an onset does not act before it; without a time, it acts.
 #[test]
 fn an_onset_is_waited_for() {
     let effects = [offset(2.0, Some(10.0)), scale(1.5, Some(20.0))];
@@ -259,7 +259,7 @@ fn a_contact_pushes_while_it_lasts() {
     near(at(Some(1.4))[1], -1.0);
 }
 
-/// As loads on a simulated arm the effects add up to what the model says.
+/// As loads on a simulated arm, the effects add up to the model's torque.
 #[test]
 fn loads_and_torques_agree() {
     let effects = [

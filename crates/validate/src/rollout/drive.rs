@@ -1,12 +1,12 @@
-//! What lies between a joint's commanded torque and its link: delay, limit, scale, a spring, a gap.
+//! The elements between a joint's commanded torque and its link: delay, limit, scale, a spring, a gap.
 
 use effects::{Machine, Sprung};
 
-/// The spring a gap is taken to end in: its oscillation takes this many radians a plant step.
+/// The stiffness of the end of a gap, as the phase of its oscillation per plant step (rad).
 const STOP_PHASE: f64 = 0.5;
 /// Damping ratio of that spring.
 const STOP_DAMPING: f64 = 0.3;
-/// Steps of the rotor within a plant step.
+/// The number of rotor steps per plant step.
 const ROTOR_STEPS: usize = 8;
 
 /// A flexible or loose connection of a joint's rotor to its link; the encoder is the rotor's.
@@ -14,8 +14,7 @@ pub(super) struct Connection {
     stiffness: f64,
     damping: f64,
     halfgap: f64,
-    /// The rotor's inertia where it moves by itself (kg m² or kg); `None`: it moves with the link, but for the static
-    /// deflection.
+    /// The rotor's inertia if it moves by itself (kg m² or kg); `None` if it moves with the link and the static deflection.
     rotor: Option<f64>,
     /// Angle and velocity of the rotor.
     theta: f64,
@@ -23,7 +22,7 @@ pub(super) struct Connection {
 }
 
 impl Connection {
-    /// The torque on the link at a deflection rotor − link and its rate.
+    /// The torque on the link at a deflection (rotor minus link) and its rate.
     fn torque(&self, deflection: f64, rate: f64) -> f64 {
         let stretched = deflection - deflection.clamp(-self.halfgap, self.halfgap);
         if stretched == 0.0 {
@@ -33,7 +32,7 @@ impl Connection {
         }
     }
 
-    /// The deflection under a torque that does not change.
+    /// The deflection under a constant torque.
     fn deflection(&self, torque: f64) -> f64 {
         let gap = if torque == 0.0 {
             0.0
@@ -43,13 +42,13 @@ impl Connection {
         gap + torque / self.stiffness
     }
 
-    /// Puts the rotor at an encoder's angle and velocity; gives the link's angle under the torque it carries.
+    /// Sets the rotor to an encoder's angle and velocity; returns the link's angle under the torque.
     pub(super) fn start(&mut self, theta: f64, theta_dot: f64, torque: f64) -> f64 {
         (self.theta, self.theta_dot) = (theta, theta_dot);
         theta - self.deflection(torque)
     }
 
-    /// The drive holds `torque` for `time`, the link moves from `q` at `qd` (rad, rad/s): the mean torque on the link.
+    /// The mean torque on the link while the drive holds `torque` for `time` and the link moves from `q` at `qd` (rad, rad/s).
     pub(super) fn advance(&mut self, torque: f64, q: f64, qd: f64, qdd: f64, time: f64) -> f64 {
         let Some(inertia) = self.rotor else {
             let end = q + qd * time + 0.5 * qdd * time * time;
@@ -60,7 +59,7 @@ impl Connection {
         let mut impulse = 0.0;
         for k in 0..ROTOR_STEPS {
             let link = q + qd * (k as f64 + 0.5) * part;
-            // The rotor at the middle of the part, so that no energy is made.
+            // The rotor at the middle of the substep, so that energy is conserved.
             let middle = self.theta + 0.5 * part * self.theta_dot;
             let through = self.torque(middle - link, self.theta_dot - qd);
             self.theta_dot += part * (torque - through) / inertia;
@@ -70,7 +69,7 @@ impl Connection {
         impulse / time
     }
 
-    /// What the encoder says.
+    /// The encoder's reading.
     pub(super) fn encoder(&self) -> f64 {
         self.theta
     }
@@ -78,15 +77,15 @@ impl Connection {
 
 /// The drives of all joints.
 pub(super) struct Drives {
-    /// s, one a joint.
+    /// Delays (s), one per joint.
     pub(super) delays: Vec<f64>,
     pub(super) connections: Vec<Option<Connection>>,
     pub(super) remarks: Vec<String>,
 }
 
 impl Drives {
-    /// The drives that are in a machine. `rotors` and `links` are the inertias on either side of each joint (kg m² or kg),
-    /// `names` the joints, `step` the plant's.
+    /// The drives of a machine. `rotors` and `links` are the inertias on either side of each joint (kg m² or kg), `names` the
+    /// joints, `step` the plant's step (s).
     pub(super) fn new(machine: &Machine, names: &[String], rotors: &[f64], links: &[f64], step: f64) -> Self {
         let mut drives = Self {
             delays: machine.delays.clone(),
@@ -104,7 +103,8 @@ impl Drives {
                 let damping = 2.0 * STOP_DAMPING * (stiffness * lighter).sqrt();
                 Sprung { stiffness, damping }
             });
-            // Link and rotor step in turn: stable, and exact enough, while a step is a fraction of the oscillation.
+            // Link and rotor are stepped in turn, which is stable and sufficiently exact while a step is a fraction of the
+            // oscillation.
             let resolved = rotors[j] > 0.0 && stiffness * step * step <= lighter && damping * step <= lighter;
             if !resolved {
                 drives.remarks.push(format!(
@@ -155,7 +155,7 @@ mod tests {
         Machine::new(&arm, effects).expect("they are physical")
     }
 
-    /// Rotor and link on a spring, in turn: they swing at ω² = K (1/J + 1/M) and keep their energy.
+    /// A rotor and a link on a spring, stepped in turn, oscillate at ω² = K (1/J + 1/M) and conserve energy.
     #[test]
     fn rotor_and_link_swing_as_two_bodies() {
         let (inertia, mass, stiffness, step) = (0.5, 1.0, 2000.0, 1e-3);
@@ -166,7 +166,7 @@ mod tests {
         let mut drives = Drives::new(&machine(&effects), &["a".into()], &[inertia], &[mass], step);
         assert!(drives.is_separate(0) && drives.remarks.is_empty());
         let connection = drives.connections[0].as_mut().expect("there is a spring");
-        // Stretched by .01 at rest: what the rotor moves, the link moves back by as much times J/M.
+        // Stretched by 0.01 and at rest: the link moves back by J/M times the rotor's motion.
         assert_eq!(connection.start(0.01, 0.0, 0.0), 0.01);
         let (mut q, mut qd) = (0.0, 0.0);
         let omega = (stiffness * (1.0 / inertia + 1.0 / mass)).sqrt();

@@ -1,4 +1,4 @@
-//! Rollouts of concealed cases kept beside the repository (`../shared`), made by another engine.
+//! Rollouts of the simulated cases beside the repository (`../shared`), which another engine made.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ fn blind() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/blind")
 }
 
-/// What was concealed, as the catalogue says it; `None` if it is not in the catalogue.
+/// The injected effect in the terms of the catalogue; `None` if it is not in the catalogue.
 fn concealed(truth: &Path) -> Option<Vec<Effect>> {
     let text = std::fs::read_to_string(truth).expect("the truth can be read");
     let truth: serde_json::Value = serde_json::from_str(&text).expect("the truth is JSON");
@@ -38,8 +38,8 @@ fn concealed(truth: &Path) -> Option<Vec<Effect>> {
     Some(effects)
 }
 
-/// The truth, put into the plant, moves it as the other engine moved its arm: elasticity, saturation, backlash, asymmetry and
-/// Stribeck friction, load-dependent friction, torque scale.
+/// With the ground truth, the plant moves as the arm of the other engine: elasticity, saturation, backlash, asymmetric,
+/// Stribeck and load-dependent friction, torque scale.
 #[test]
 #[ignore = "needs ../shared"]
 fn the_truth_moves_the_plant_as_the_other_engine_moved() {
@@ -61,7 +61,7 @@ fn the_truth_moves_the_plant_as_the_other_engine_moved() {
     }
 }
 
-/// A delay alone moves an arm little.
+/// A delay alone changes the motion little.
 #[test]
 #[ignore = "needs ../shared"]
 fn a_delay_is_seen_where_it_is() {

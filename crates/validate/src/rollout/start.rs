@@ -5,12 +5,12 @@ use super::Course;
 /// Half the span of the cubic (s).
 const HALF_SPAN: f64 = 0.04;
 
-/// Ticks on either side of the start that the cubic takes.
+/// The number of ticks on either side of the start that the cubic uses.
 pub(super) fn side(period: f64) -> usize {
     ((HALF_SPAN / period).round() as usize).max(4)
 }
 
-/// A state of the robot, one entry a joint, as the encoders say it.
+/// A state of the robot, one entry per joint, as the encoders report it.
 pub(super) struct Start {
     pub(super) tick: usize,
     pub(super) q: Vec<f64>,
@@ -39,7 +39,7 @@ impl Start {
     }
 }
 
-/// Value, slope and bend at the middle of evenly spaced values (an odd number), of the cubic that fits them best.
+/// Value, slope and second derivative at the middle of equidistant values (an odd number), from a cubic least-squares fit.
 fn cubic(values: &[f64], period: f64) -> [f64; 3] {
     let side = (values.len() / 2) as f64;
     let places = || (0..values.len()).map(|k| k as f64 - side);

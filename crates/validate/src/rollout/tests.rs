@@ -11,8 +11,8 @@ fn puma() -> Arm {
     Arm::from_urdf_text(include_str!("../../../../assets/puma560.urdf"), "puma560.urdf").expect("it is an arm")
 }
 
-/// `seconds` of the plant of `arm` with viscous and dry friction, held near slow sines by a stiff loop, at 250 Hz;
-/// `distort` says what is recorded of the torque, and of the position.
+/// Records `seconds` of the plant of `arm` with viscous and dry friction, held near slow sines by a stiff loop, at 250 Hz;
+/// `distort` gives the recorded torque and position.
 fn record(
     arm: &Arm,
     viscous: f64,
@@ -151,7 +151,7 @@ fn what_cannot_be_run_is_said() {
         .expect_err("it is too short")
         .to_string();
     assert!(error.contains("no gap-free part"), "{error}");
-    // Torques that are nothing like the robot's: both variants leave, and say so.
+    // Torques unlike the robot's: both variants leave the windows and report it.
     for tau in &mut recording.tau {
         tau.fill(5000.0);
     }

@@ -10,17 +10,17 @@ use super::start::Start;
 use super::{Course, Path};
 use crate::error::ValidateError;
 
-/// Farther off than this (rad or m), a simulated joint is lost.
+/// The distance (rad or m) from which a simulated joint counts as lost.
 const LOST: f64 = std::f64::consts::TAU;
 
-/// The plant of an arm with effects, and what drives it.
+/// The plant of an arm with effects, and its drives.
 pub(super) struct Variant {
     model: Corrected,
     plant: Plant,
     drives: Drives,
     workspace: Workspace,
     is_loaded: bool,
-    /// What is only partly simulated.
+    /// Effects that are only partly simulated.
     pub(super) remarks: Vec<String>,
     qdd: Vec<f64>,
     encoder: Vec<f64>,
@@ -32,7 +32,7 @@ pub(super) struct Variant {
 }
 
 impl Variant {
-    /// The plant of `arm` with `effects` along `course`; `which` of the two it is, an error says.
+    /// The plant of `arm` with `effects` along `course`; `which` is its name in errors.
     pub(super) fn new(
         which: &'static str,
         arm: &Arm,
@@ -76,7 +76,7 @@ impl Variant {
         })
     }
 
-    /// Runs a window from the measured state, and gives the positions that the encoders would say.
+    /// Runs a window from the measured state; returns the positions that the encoders would report.
     pub(super) fn run(&mut self, course: &Course<'_>, start: &Start, instants: usize) -> Path {
         let dof = start.q.len();
         let mut q = vec![Vec::with_capacity(instants + 1); dof];
@@ -90,7 +90,7 @@ impl Variant {
             for (j, path) in q.iter_mut().enumerate() {
                 let measured = |tick: usize| course.recording.q[course.columns[j]][tick];
                 path.push(if ran_away {
-                    // As far off as it was.
+                    // The distance stays as it was.
                     measured(tick + course.stride) + path[k - 1] - measured(tick)
                 } else {
                     self.encoder(j)
@@ -104,7 +104,7 @@ impl Variant {
         (0..self.tau.len()).any(|j| (self.encoder(j) - course.recording.q[course.columns[j]][tick]).abs() > LOST)
     }
 
-    /// What the encoder of joint `j` says.
+    /// The encoder's reading of joint `j`.
     fn encoder(&self, j: usize) -> f64 {
         let standing = self.drives.connections[j]
             .as_ref()
@@ -112,7 +112,7 @@ impl Variant {
         standing - self.model.encoder_offsets()[j]
     }
 
-    /// Puts the plant into the measured state.
+    /// Sets the plant to the measured state.
     fn begin(&mut self, course: &Course<'_>, start: &Start) -> Result<(), PlantError> {
         let time = course.recording.time(start.tick);
         let mut q = start.q.clone();
@@ -133,7 +133,7 @@ impl Variant {
     fn advance(&mut self, course: &Course<'_>, tick: usize) -> Result<(), PlantError> {
         let step = course.step;
         for substep in 0..course.substeps {
-            // All that acts is taken at the middle of the step.
+            // All effects are evaluated at the middle of the step.
             let into = (substep as f64 + 0.5) * step;
             let time = course.recording.time(tick) + into;
             for j in 0..self.tau.len() {
@@ -172,13 +172,13 @@ impl Variant {
     }
 }
 
-/// The recorded torque of joint `j` (N m or N) at `into` seconds after `tick`: linear between ticks, and the mean over the
-/// step where it holds several.
+/// The recorded torque of joint `j` (N m or N) at `into` seconds after `tick`: linear between ticks, or the mean over the step
+/// if it contains several.
 fn commanded(course: &Course<'_>, j: usize, tick: usize, into: f64) -> f64 {
     let recording = course.recording;
     let tau = &recording.tau[course.columns[j]];
     let at = |place: f64| {
-        // A window never leaves its segment but by the delay, at the front.
+        // Only a delay can lead out of the segment, at its beginning.
         let place = place.clamp(0.0, (tau.len() - 1) as f64);
         let before = place.floor() as usize;
         let share = place - before as f64;
@@ -194,7 +194,7 @@ fn commanded(course: &Course<'_>, j: usize, tick: usize, into: f64) -> f64 {
     (0..points).map(|k| at(middle - half + k as f64)).sum::<f64>() / points as f64
 }
 
-/// What each joint alone moves at q = 0, its own rotor left out (kg m² or kg).
+/// The inertia that each joint alone moves at q = 0, without its rotor (kg m² or kg).
 fn link_inertias(arm: &Arm, rotors: &[f64]) -> Vec<f64> {
     let dof = arm.dof();
     let mut mass_matrix = DMatrix::zeros(dof, dof);

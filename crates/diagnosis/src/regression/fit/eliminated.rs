@@ -1,4 +1,4 @@
-//! The background eliminated from the normal equations at fixed weights: what is left of them are the chosen columns alone.
+//! The background eliminated from the normal equations at fixed weights, so that only the chosen columns remain.
 //!
 //! With A = BᵀWB + K = LLᵀ for the background's columns B, their precision K and W the weights of the evidence, a product of two
 //! columns becomes xᵀWx' − (L⁻¹BᵀWx)ᵀ(L⁻¹BᵀWx'), and the background costs ½ (ln det A − ln det K) + ½ δᵀKδ.
@@ -11,13 +11,13 @@ use super::Products;
 use crate::regression::background::Background;
 use crate::regression::table::Table;
 
-/// Of so many weights the elimination is kept.
+/// The number of weights for which the elimination is stored.
 const KEPT: usize = 12;
 
-/// The background eliminated at some weights.
+/// The background eliminated at given weights.
 #[derive(Debug)]
 pub struct Eliminated {
-    /// Of the joints' rows: one over their variance.
+    /// The weights of the joints' rows: the reciprocals of their variances.
     weights: Vec<f64>,
     /// The weights of the joints' rows where rows count as evidence.
     scaled: Vec<f64>,
@@ -25,14 +25,14 @@ pub struct Eliminated {
     lower: Vec<Vec<f64>>,
     /// L⁻¹ BᵀW y.
     with_y: Vec<f64>,
-    /// L⁻¹ BᵀW x of each of the table's columns that was asked for.
+    /// L⁻¹ BᵀW x of each requested column of the table.
     with_columns: Vec<OnceLock<Vec<f64>>>,
     /// ½ (ln det A − ln det K) (nats).
     pub occam: f64,
 }
 
 impl Background {
-    /// ½ of this is what coefficients cost (nats): δᵀKδ.
+    /// Twice the cost of coefficients (nats): δᵀKδ.
     pub fn energy(&self, coefficients: &[f64]) -> f64 {
         let p = coefficients.len();
         let row = |i: usize| (0..p).map(|k| self.precision[(i, k)] * coefficients[k]).sum::<f64>();
@@ -53,7 +53,7 @@ impl Eliminated {
                 matrix[(k, i)] = matrix[(i, k)];
             }
         }
-        // K is positive definite, and BᵀWB is not negative but for rounding.
+        // K is positive definite, and BᵀWB is positive semidefinite up to rounding.
         let factor = Cholesky::new(matrix).map_or_else(|| DMatrix::identity(p, p), Cholesky::unpack);
         let log_det = 2.0 * factor.diagonal().iter().map(|d| d.ln()).sum::<f64>();
         let lower = (0..p).map(|i| (0..=i).map(|k| factor[(i, k)]).collect()).collect();
@@ -73,7 +73,7 @@ impl Eliminated {
         eliminated
     }
 
-    /// L⁻¹ of a right side.
+    /// L⁻¹ of a right-hand side.
     fn forward(&self, mut right: Vec<f64>) -> Vec<f64> {
         for (i, row) in self.lower.iter().enumerate() {
             let (before, rest) = right.split_at_mut(i);
@@ -89,7 +89,7 @@ impl Eliminated {
         })
     }
 
-    /// The background's coefficients beside `values` of the chosen `columns`.
+    /// The background's coefficients for `values` of the chosen `columns`.
     pub fn coefficients(&self, products: &Products, table: &Table, columns: &[usize], values: &[f64]) -> Vec<f64> {
         let mut solution = self.with_y.clone();
         if let Some(background) = products.background.as_deref() {
@@ -109,7 +109,7 @@ impl Eliminated {
     }
 }
 
-/// The inner product, of as many values as the second has.
+/// The inner product over the length of the second vector.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     let (x, y) = (a[..b.len()].chunks_exact(4), b.chunks_exact(4));
@@ -143,7 +143,7 @@ impl Products {
         Some(new)
     }
 
-    /// The product of two columns at `weights`, or with y (`None`); what the background explains of it taken off.
+    /// The product of two columns at `weights`, or with y (`None`), minus the part that the background explains.
     pub(super) fn inner(
         &self,
         table: &Table,
@@ -163,18 +163,19 @@ impl Products {
         }
     }
 
-    /// The weighted square of a column, rows counted as evidence, with what the background explains of it.
+    /// The weighted square of a column, with rows counted as evidence, minus the part that the background explains.
     pub(super) fn own_product(&self, table: &Table, weights: &[f64], column: usize) -> f64 {
         self.product(table, &self.evidence_weights(weights), column, Some(column))
     }
 
-    /// The joints' `weights` where rows count as evidence beside a background's prior; without one they are as they were.
+    /// The joints' `weights` with rows counted as evidence, as the background's prior needs; without a background, they are
+    /// unchanged.
     pub fn evidence_weights(&self, weights: &[f64]) -> Vec<f64> {
         let scale = |joint: usize| self.background.as_ref().map_or(1.0, |_| self.evidence_per_row(joint));
         (0..weights.len()).map(|joint| weights[joint] * scale(joint)).collect()
     }
 
-    /// What a weighted sum of squares of `column`, in which rows count as evidence, is where every row counts one.
+    /// The weighted sum of squares of `column` with every row counted as one, from the one with rows counted as evidence.
     pub(super) fn per_row(&self, table: &Table, column: usize) -> f64 {
         match table.terms[column].joint() {
             Some(joint) => self.evidence_per_row(joint),

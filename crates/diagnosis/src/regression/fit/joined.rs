@@ -6,7 +6,7 @@ use super::Products;
 use crate::regression::table::{Gram, Table};
 
 impl Products {
-    /// Those of `columns` alone, as [`Table::bare`] of their terms has them.
+    /// The products of `columns` alone, in the order of [`Table::bare`] for their terms.
     pub fn picked(&self, table: &Table, columns: &[usize]) -> Self {
         let of = |joint: usize| {
             let places: Vec<Option<usize>> = columns.iter().map(|&column| table.place[joint][column]).collect();
@@ -20,8 +20,8 @@ impl Products {
         }
     }
 
-    /// These and `more`, of the same columns, whose rows have an error of variance `left` on each joint; with the evidence and
-    /// the floor that both together have.
+    /// These products and `more` of the same columns, whose rows have an error of variance `left` on each joint, with the
+    /// evidence and the floor of both together.
     pub fn joined(&self, more: &Self, left: &[f64], evidence: Vec<f64>, floor: Vec<f64>) -> Self {
         let of = |joint: usize| {
             let grams = [&self.gram[joint], &more.gram[joint]];
@@ -39,7 +39,7 @@ impl Products {
         }
     }
 
-    /// The standard deviation of a column on a joint, where it stands in place `place`.
+    /// The standard deviation of a column on a joint; `place` is its index.
     pub fn spread(&self, joint: usize, place: usize) -> f64 {
         let (gram, n) = (&self.gram[joint], self.count[joint].max(1.0));
         (gram.of(place, place) / n - (gram.sum_of(place) / n).powi(2))

@@ -1,4 +1,4 @@
-//! What columns bring on recordings that they were not fitted to.
+//! The gain of columns on recordings that they were not fitted to.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -7,9 +7,9 @@ use crate::regression::table::{Stretch, Table};
 use crate::thresholds::RECORDING_GROUPS;
 
 impl Products {
-    /// What `added` columns on top of `columns` bring on `joint` (nats): where they were fitted, and on recordings left out one
-    /// group after the other, or on stretches of the only one. `weights` are those of the joints; the background, if there is
-    /// one, comes first in `columns` and keeps its prior.
+    /// The gain of `added` columns in addition to `columns` on `joint` (nats): where they were fitted, and on groups of
+    /// recordings left out in turn, or on stretches of the only recording. `weights` are those of the joints; if there is a
+    /// background, it comes first in `columns` and keeps its prior.
     pub fn gains(
         &self,
         table: &Table,
@@ -43,7 +43,8 @@ impl Products {
         (gain(&inside), gain(&outside))
     }
 
-    /// What `added` columns that act on several joints bring where they were not fitted (nats); `weights` are those of the joints.
+    /// The gain of `added` columns that act on several joints where they were not fitted (nats); `weights` are those of the
+    /// joints.
     pub fn arm_gain(&self, table: &Table, columns: &[usize], added: &[usize], weights: &[f64]) -> f64 {
         let mut all: Vec<usize> = columns.to_vec();
         all.extend(added.iter().filter(|column| !columns.contains(column)));
@@ -94,7 +95,7 @@ impl Products {
         outside(columns.len()) - outside(all.len())
     }
 
-    /// The precision of those of the background's columns that `acts` picks, where sums of squares are weighted by `scale`.
+    /// The precision of the background's columns that `acts` selects, where sums of squares are weighted by `scale`.
     fn prior(&self, acts: impl Fn(usize) -> bool, scale: f64) -> DMatrix<f64> {
         let Some(background) = &self.background else {
             return DMatrix::zeros(0, 0);
@@ -106,9 +107,8 @@ impl Products {
         DMatrix::from_fn(mine.len(), mine.len(), entry)
     }
 
-    /// Inner products of a joint's columns at `places` and, last, of y, over each of some groups of recordings or, if there
-    /// is but one, of its stretches.
-    /// The groups are the same on all joints if they are to be `common`.
+    /// Inner products of a joint's columns at `places` and, last, of y, over each of several groups of recordings, or over
+    /// stretches if there is only one. With `common`, the groups are the same on all joints.
     fn folds(&self, table: &Table, joint: usize, places: &[usize], common: bool) -> Vec<DMatrix<f64>> {
         let this = &table.joints[joint];
         let p = places.len();
@@ -165,7 +165,7 @@ fn solution(gram: &DMatrix<f64>, p: usize, prior: &DMatrix<f64>) -> DVector<f64>
     DVector::from_fn(p, |i, _| scaled[i] / scale[i])
 }
 
-/// The sum of squares that coefficients of the first columns leave.
+/// The residual sum of squares with coefficients of the first columns.
 fn left(gram: &DMatrix<f64>, coefficients: &DVector<f64>) -> f64 {
     let (p, last) = (coefficients.len(), gram.nrows() - 1);
     let mut rss = gram[(last, last)];

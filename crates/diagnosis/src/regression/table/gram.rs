@@ -6,7 +6,7 @@ use faer::{Accum, Mat, MatRef, Par, linalg::matmul::matmul};
 
 use crate::thresholds::STRETCHES;
 
-/// A recording, or a stretch of one, as one joint moves in it.
+/// A recording, or a stretch of it, in which one joint moves.
 #[derive(Clone, Debug)]
 pub struct Stretch {
     /// The recording that it is of.
@@ -20,8 +20,8 @@ pub struct Stretch {
 }
 
 impl Stretch {
-    /// The stretches of a joint that is `moving` on some rows: the recordings, whose rows are `recordings`. If but one of
-    /// those to be fitted moves the joint, that one is cut.
+    /// The stretches of a joint that is `moving` on some rows: the recordings, whose rows are `recordings`. If only one
+    /// training recording moves the joint, it is divided.
     pub fn of(recordings: &[Range<usize>], held_out: &[bool], moving: &[bool]) -> Vec<Self> {
         let rows_of = |range: &Range<usize>| -> Vec<usize> { range.clone().filter(|&row| moving[row]).collect() };
         let rows: Vec<Vec<usize>> = recordings.iter().map(rows_of).collect();
@@ -45,7 +45,7 @@ impl Stretch {
         stretches
     }
 
-    /// Inner products of those of the columns `x` that are new, with all and with `y`.
+    /// Inner products of the new ones among the columns `x`, with all columns and with `y`.
     pub fn refresh(&mut self, x: &[Vec<f64>], y: &[f64]) {
         let known = self.gram.len();
         let total = x.len();
@@ -83,7 +83,7 @@ pub struct Gram {
     right: Vec<f64>,
     /// y with itself.
     square: f64,
-    /// Of each column.
+    /// The sums of the columns.
     sums: Vec<f64>,
 }
 
@@ -93,17 +93,17 @@ impl Gram {
         self.rows.len()
     }
 
-    /// Of two columns.
+    /// The product of two columns.
     pub fn of(&self, i: usize, k: usize) -> f64 {
         self.rows[i.max(k)][i.min(k)]
     }
 
-    /// Of a column and y.
+    /// The product of a column and y.
     pub fn with_y(&self, i: usize) -> f64 {
         self.right[i]
     }
 
-    /// Of y with itself.
+    /// The product of y with itself.
     pub fn y_square(&self) -> f64 {
         self.square
     }
@@ -113,7 +113,7 @@ impl Gram {
         self.sums[i]
     }
 
-    /// That of columns at these places, in this order; nothing where there is none.
+    /// The products of the columns at these indices, in this order; zero for a missing one.
     pub fn picked(&self, places: &[Option<usize>]) -> Gram {
         let of = |i: Option<usize>, k: Option<usize>| match (i, k) {
             (Some(i), Some(k)) => self.of(i, k),
@@ -132,13 +132,13 @@ impl Gram {
         }
     }
 
-    /// With more in y that no column has.
+    /// These products with an additional part of y that no column has.
     pub fn with_noise(mut self, square: f64) -> Gram {
         self.square += square;
         self
     }
 
-    /// The sum of several of the same `columns` columns.
+    /// The sum of several products of the same `columns` columns.
     pub fn sum<'a>(columns: usize, grams: impl Iterator<Item = &'a Gram>) -> Gram {
         let mut sum = Gram {
             rows: (0..columns).map(|k| vec![0.0; k + 1]).collect(),

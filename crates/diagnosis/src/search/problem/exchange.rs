@@ -1,4 +1,4 @@
-//! Exchanging members of a choice for better ones.
+//! Exchanges of members for better ones.
 
 use rayon::prelude::*;
 
@@ -6,8 +6,8 @@ use super::{Chosen, Growth, Problem};
 use crate::thresholds::SWAP_GAIN;
 
 impl Problem<'_> {
-    /// `chosen` with one hypothesis that acts on the whole arm, without what that then explains: on several joints at once other
-    /// hypotheses may stand for it, of which none alone gives way.
+    /// `chosen` with one hypothesis that acts on the whole arm, and without the members that it then explains. Several
+    /// hypotheses on several joints may imitate it, none of which can be exchanged alone.
     fn arm_wide(&self, chosen: &Chosen, allowed: &[usize]) -> Vec<Chosen> {
         let is_free = |c: &usize| {
             let candidate = &self.candidates[*c];
@@ -28,9 +28,8 @@ impl Problem<'_> {
             .collect()
     }
 
-    /// `chosen` with other wrong masses than its own: one of them alone or two together, whatever they are. Masses hang
-    /// together along the arm, so that two wrong ones may look like a third, and one like two others; no exchange of one for
-    /// one leads from these to the true ones.
+    /// `chosen` with other wrong masses than its own: any one or two of them. Masses are coupled along the arm, so that two
+    /// wrong ones may resemble a third, and one may resemble two others; no exchange of one for one leads to the true ones.
     fn other_masses(&self, chosen: &Chosen, allowed: &[usize]) -> Vec<Chosen> {
         let is_mass = |c: &usize| self.candidates[*c].hypothesis.is_wrong_mass();
         let rest: Vec<usize> = chosen.set.iter().copied().filter(|c| !is_mass(c)).collect();
@@ -64,7 +63,7 @@ impl Problem<'_> {
                         return None;
                     }
                     let without = self.without(&chosen, removed);
-                    // What takes its place acts where it did.
+                    // The replacement acts where the member did.
                     let others: Vec<usize> = allowed
                         .iter()
                         .copied()

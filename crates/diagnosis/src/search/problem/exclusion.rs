@@ -1,16 +1,16 @@
-//! Which candidates cannot both be.
+//! Candidates that exclude each other.
 
 use super::Problem;
 use crate::search::candidate::Candidate;
 
 impl Problem<'_> {
-    /// Whether two candidates cannot both be: sizes of one effect, or forms of one curve.
+    /// Whether two candidates exclude each other: sizes of one effect, or forms of one curve.
     pub fn exclude(&self, a: usize, b: usize) -> bool {
         let (a, b) = (&self.candidates[a], &self.candidates[b]);
         if a.joint != b.joint {
             return false;
         }
-        // What sets in halfway comes on top of what always acts.
+        // A candidate with an onset is in addition to one that always acts.
         if self.onset(a).is_some() != self.onset(b).is_some() {
             return false;
         }
@@ -25,7 +25,7 @@ impl Problem<'_> {
         }
     }
 
-    /// When a candidate sets in (s); `None` if it always acts.
+    /// The onset of a candidate (s); `None` if it always acts.
     pub fn onset(&self, candidate: &Candidate) -> Option<f64> {
         self.table.terms[candidate.columns[0]].onset()
     }

@@ -1,4 +1,4 @@
-//! Effects that set in halfway: when, by what is left.
+//! Effects with an onset, suggested by the residual.
 
 use effects::{Kind, Scope, SetsIn, Term};
 use nalgebra::{Matrix4, Vector4};
@@ -10,12 +10,12 @@ use crate::search::candidate::Hypothesis;
 use crate::search::study::Study;
 use crate::thresholds::ONSET_FROM_END;
 
-/// From one time that is tried to the next, and about the best of them (s).
+/// The step between tried onsets, and the finer step around the best one (s).
 const STEP: f64 = 0.5;
 const FINE: f64 = 0.05;
 
 /// For each form on each joint, and for a payload, the candidate whose onset explains most of `residual` (N m or N, all rows).
-/// None where the recordings are not on one clock: before and after mean nothing then.
+/// None if the recordings do not share one clock, because their order is unknown then.
 pub fn onsets(
     study: &Study,
     weights: &[f64],
@@ -64,7 +64,7 @@ pub fn onsets(
         .collect()
 }
 
-/// What is left of the training recordings, the latest row first.
+/// The residual of the training recordings, the latest row first.
 struct Past<'a> {
     table: &'a Table,
     weights: &'a [f64],
@@ -74,7 +74,7 @@ struct Past<'a> {
 }
 
 impl Past<'_> {
-    /// The onset from which on the columns `what` explain most of what is left of `joints` on their moving rows.
+    /// The onset from which the columns `what` explain most of the residual of `joints` on their moving rows.
     fn best(&self, joints: &[usize], what: &[Term]) -> Option<f64> {
         let (table, times) = (self.table, self.times);
         let columns: Vec<Vec<Option<&Vec<f64>>>> = joints
@@ -122,7 +122,7 @@ impl Past<'_> {
         let (mut matrix, mut right) = (Matrix4::zeros(), Vector4::zeros());
         let mut found: Option<(f64, f64)> = None;
         let mut next = to;
-        // From the end to the beginning, what the columns explain since each time.
+        // From the end to the beginning: what the columns explain since each time.
         for &row in &self.rows {
             let time = times[row];
             while time < next && next >= from {

@@ -1,4 +1,4 @@
-//! Sinusoids in time: a periodogram of unevenly spread samples.
+//! Sinusoids in time, found by a periodogram of unevenly spaced samples.
 
 use std::f64::consts::TAU;
 
@@ -10,10 +10,10 @@ use crate::data::motion::Motions;
 use crate::regression::table::Table;
 use crate::thresholds::{WAVE_CUTOFF, WAVE_FREQUENCIES};
 
-/// Bins in a period of the highest frequency: samples are put into the nearest.
+/// The number of bins per period of the highest frequency; each sample goes to the nearest bin.
 const BINS: f64 = 8.0;
 
-/// The frequencies (rad/s) of a sinusoid in time that explain most of the residual of `joint`: peaks, best first.
+/// The frequencies (rad/s) of sinusoids in time that explain most of the residual of `joint`: peaks, best first.
 ///
 /// The least-squares periodogram of Lomb (1976), its sums by one Fourier transform of binned samples (after Press and
 /// Rybicki 1989); the peaks are then refined on the samples themselves.

@@ -1,4 +1,4 @@
-//! The arm that a fit found: what is not linear in a tilt, an encoder's offset or a payload is small about it.
+//! The arm of a fit: about it, tilts, encoder offsets and payloads are small, so that their columns are linear.
 
 use arm::{Arm, Inertia, Vector3};
 use effects::arm::{INERTIAL_PARAMETER, body};
@@ -8,25 +8,25 @@ use super::Study;
 use crate::regression::bodies;
 use crate::regression::fit::Fit;
 
-/// An arm with what a fit found in it.
+/// An arm with the effects of a fit.
 pub struct About {
-    /// Payload, link errors, scale and base in it.
+    /// The arm with payload, link errors, scale and base.
     pub arm: Arm,
-    /// How far the joints stand beyond their encoders (rad or m).
+    /// The true positions of the joints minus the encoders' (rad or m).
     pub offset: Vec<f64>,
-    /// The arm without what the background changes in the links' inertial parameters; `None` if it changes nothing.
+    /// The arm without the background's changes of inertial parameters; `None` if there are none.
     pub bare: Option<Arm>,
-    /// The terms that are in it, by their coefficients.
+    /// The terms that it contains, with their coefficients.
     pub carried: Vec<(Term, f64)>,
 }
 
 impl About {
-    /// The arm of `study` with the links' errors of scale that `fit` found, and nothing else.
+    /// The arm of `study` with the links' scale errors of `fit`, and nothing else.
     pub fn scaled(study: &Study, fit: &Fit) -> Arm {
         collected(study, fit).0.arm
     }
 
-    /// The arm of `study` with what `fit` found.
+    /// The arm of `study` with the effects of `fit`.
     pub fn new(study: &Study, fit: &Fit) -> Self {
         let (found, carried) = collected(study, fit);
         let mut inertial = vec![0.0; bodies::PER_LINK * study.arm.dof()];
@@ -77,7 +77,7 @@ impl About {
     }
 }
 
-/// What the arm carries of `fit`, and the terms that it carries, by their coefficients.
+/// Adds the effects of `fit` to the arm; returns the terms that it then contains, with their coefficients.
 fn collected(study: &Study, fit: &Fit) -> (Carried, Vec<(Term, f64)>) {
     let mut found = Carried {
         arm: study.arm.clone(),

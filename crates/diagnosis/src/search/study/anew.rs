@@ -1,4 +1,4 @@
-//! Everything formed anew: about the arm that a fit found, for the last fit, or for another search.
+//! The study evaluated again: about the arm of a fit, for the final fit, or for another search.
 
 use effects::Term;
 use rayon::prelude::*;
@@ -9,14 +9,13 @@ use crate::regression::fit::Fit;
 use crate::regression::table::Moving;
 
 impl Study {
-    /// Forms everything anew about the arm that `fit` found: what is not linear in a tilt, an encoder's offset or a
-    /// payload is then small. Sizes tried in vain are forgotten. Returns the numbers that the candidates `kept` have now,
-    /// or `None` if there was nothing to do.
+    /// Evaluates everything about the arm of `fit`, where tilts, encoder offsets and payloads are small. Unsuccessful trial
+    /// sizes are removed. Returns the new indices of the candidates `kept`, or `None` if nothing changes.
     pub fn relinearise(&mut self, fit: &Fit, kept: &[usize]) -> Option<Vec<usize>> {
         self.about(fit, kept, false)
     }
 
-    /// Forms everything anew, with the rows near reversals, for the last fit. The numbers that the candidates `kept` have now.
+    /// Evaluates everything with the rows near reversals, for the final fit; returns the new indices of the candidates `kept`.
     pub fn settle(&mut self, fit: &Fit, kept: &[usize]) -> Vec<usize> {
         self.moving = Moving::ThroughReversals;
         self.about(fit, kept, true).unwrap_or_default()
@@ -29,7 +28,7 @@ impl Study {
             bare,
             carried,
         } = About::new(self, fit);
-        // Nothing to carry, and nothing carried by an earlier choice.
+        // No effect to add to the arm, and none from an earlier selection.
         let carries = !carried.is_empty() || bare.is_some();
         if !carries && !self.carries && !anyway {
             return None;
@@ -55,8 +54,8 @@ impl Study {
         Some(set)
     }
 
-    /// Leaves out the trials that are not in `set`; the set's new numbers, and the terms that are left. The table is then to
-    /// be formed anew.
+    /// Removes the trial candidates that are not in `set`; returns the set's new indices, and the remaining terms. The table
+    /// must be evaluated again.
     fn forget_trials(&mut self, set: &[usize]) -> (Vec<usize>, Vec<Term>) {
         let old = &self.table.terms;
         let mut terms: Vec<Term> = Vec::new();
@@ -67,7 +66,7 @@ impl Study {
                 terms.len() - 1
             })
         };
-        // The background's columns stay the first.
+        // The background's columns stay first.
         (0..self.prior.terms().len()).for_each(|column| {
             keep(column);
         });
@@ -92,7 +91,7 @@ impl Study {
         self.refused.push((refused.hypothesis, refused.joint));
     }
 
-    /// How many were refused so far.
+    /// The number of refused hypotheses.
     pub fn refused(&self) -> usize {
         self.refused.len()
     }
@@ -106,7 +105,7 @@ impl Study {
         (0..self.candidates.len()).filter(is_allowed).collect()
     }
 
-    /// Forms everything about the arm as it was given again, for another search.
+    /// Evaluates everything about the nominal arm again, for another search.
     pub fn restart(&mut self) {
         self.moving = Moving::Steadily;
         self.strengths = self.stated.first(self.arm.dof());

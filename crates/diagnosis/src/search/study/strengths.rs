@@ -1,4 +1,4 @@
-//! How strong the background of every fit is: chosen together with the effects, by what the score gains.
+//! The strengths of the background, chosen together with the effects by the gain of the score.
 
 use effects::Scales;
 use effects::arm::Payload;
@@ -12,14 +12,14 @@ use crate::regression::fit::{Fit, Products};
 use crate::search::problem::{Chosen, Growth, MOST};
 use crate::thresholds::{MOVED, OWN_STRENGTHS, PER_IMITATION};
 
-/// So many effects may stand together in the place of a part of the background.
+/// The largest number of effects that may together replace a part of the background.
 const IN_PLACE: usize = 3;
 
-/// So often the strengths are changed in a row: weights found anew may raise a score again, so that two of them could take turns
-/// without end.
+/// The largest number of consecutive changes of the strengths. Recomputed weights may raise a score again, so that two
+/// strengths could alternate forever.
 const MOST_MOVES: usize = 24;
 
-/// Of each joint the recordings to be fitted that move it.
+/// The training recordings that move each joint.
 pub fn moved(motions: &Motions, scales: &Scales) -> Vec<Vec<usize>> {
     let of = |joint: usize| {
         let moves = |chunk: &&Chunk| {
@@ -39,13 +39,13 @@ pub fn moved(motions: &Motions, scales: &Scales) -> Vec<Vec<usize>> {
 }
 
 impl Study {
-    /// The prior variances of a link's ten inertial parameters, at the strength that the evidence gave it.
+    /// The prior variances of a link's ten inertial parameters, at the strength chosen by evidence.
     pub fn prior_variances(&self, link: usize) -> [f64; PER_LINK] {
         self.prior.variances(link, self.strengths.links[link])
     }
 
-    /// What the score of `chosen`, and the likelihood of the held-out recordings, lose if all links have the URDF's inertial
-    /// parameters (nats).
+    /// The loss of the score of `chosen`, and of the likelihood of the held-out recordings, if all links have the URDF's
+    /// inertial parameters (nats).
     pub fn evidence_of_inertials(
         &self,
         products: &Products,
@@ -62,7 +62,7 @@ impl Study {
         (without.score - chosen.score, outside)
     }
 
-    /// What the score and the loss of `chosen` lose (nats) if `link` differs from the URDF no more than most links.
+    /// The loss of score and likelihood of `chosen` (nats) if `link` differs from the URDF no more than most links.
     pub fn evidence_of_link(&self, products: &Products, chosen: &Chosen, link: usize) -> [f64; 2] {
         let mut links = self.strengths.links.clone();
         links[link] = self.strengths.common();
@@ -70,8 +70,8 @@ impl Study {
         [without.score - chosen.score, without.fit.loss - chosen.fit.loss]
     }
 
-    /// The links that may differ from the URDF in the place of `link`: each with what the score and the loss of `chosen` lose
-    /// by that (nats).
+    /// The links that may differ from the URDF in the place of `link`, each with the loss of score and likelihood of `chosen`
+    /// (nats).
     pub fn in_other_links(&self, products: &Products, chosen: &Chosen, link: usize) -> Vec<(usize, [f64; 2])> {
         let common = self.strengths.common();
         let as_most = |&other: &usize| self.strengths.links[other] == common;
@@ -101,8 +101,8 @@ impl Study {
         (products, next)
     }
 
-    /// The strengths, stronger somewhere than the present ones, at which a background without `set`'s other members does best:
-    /// the rivals of an effect that may be a part of what is wrong everywhere. Each with the link, and its fit.
+    /// The best strengths of a background without the other members of `set`, among those that are stronger somewhere than the
+    /// present ones: alternatives of an effect that may be a part of the background. Each has its link and its fit.
     pub fn in_the_background(&self, products: &Products, set: &[usize], near: &Chosen) -> Vec<(Option<usize>, Chosen)> {
         let common = self.strengths.common();
         let stronger = |strengths: &Strengths| {
@@ -129,14 +129,14 @@ impl Study {
             .collect()
     }
 
-    /// Inner products over the recordings to be fitted, with a background of other strengths.
+    /// Inner products over the training recordings, with a background of other strengths.
     pub fn products_at(&self, strengths: &Strengths) -> Products {
         let bare = self.bare_products(|r| self.fitted[r]);
         bare.with_background(self.prior.at(strengths))
     }
 
-    /// `chosen` with more of the candidates `allowed`, and with the strengths of the background that the evidence asks for: in
-    /// turns, whichever brings more. What then does not pay is taken out.
+    /// `chosen` with more of the candidates `allowed`, and with the strengths of the background that the evidence prefers. Each
+    /// step takes the one that gains more. Members that do not pay then are removed.
     pub fn grown(&mut self, mut chosen: Chosen, allowed: &[usize]) -> Chosen {
         let bare = self.bare_products(|r| self.fitted[r]);
         let mut products = bare.with_background(self.background());
@@ -158,7 +158,8 @@ impl Study {
                     ("largest gain", None, problem.reweighted(next))
                 }
                 (_, Some((strengths, other))) => ("more evidence for this background", Some(strengths), other),
-                // An effect that the background takes as a part of itself does not pay beside it, but beside less of it.
+                // An effect that is a part of the background does not pay in addition to it, but may do so with a smaller
+                // background.
                 (None, None) => match self.exchanged(&bare, &chosen, allowed) {
                     Some((strengths, next)) => {
                         let products = bare.with_background(self.prior.at(&strengths));
@@ -184,11 +185,11 @@ impl Study {
             }
         }
         let pruned = self.problem(&products).prune(chosen.clone());
-        self.note("does not pay its price", &chosen, &pruned);
+        self.note("costs more evidence than it brings", &chosen, &pruned);
         pruned
     }
 
-    /// `chosen` with less of the background and a few more of the candidates `allowed`, if that is better.
+    /// `chosen` with a smaller background and a few more of the candidates `allowed`, if that is better.
     fn exchanged(&self, bare: &Products, chosen: &Chosen, allowed: &[usize]) -> Option<(Strengths, Chosen)> {
         let weaker = self.strengths.weaker().into_iter();
         let trials = weaker
@@ -209,7 +210,7 @@ impl Study {
         trials.min_by(|a, b| a.1.score.total_cmp(&b.1.score))
     }
 
-    /// `chosen` with the strengths of the background that the evidence asks for.
+    /// `chosen` with the strengths of the background that the evidence prefers.
     pub fn with_best_strengths(&mut self, mut chosen: Chosen) -> Chosen {
         let bare = self.bare_products(|r| self.fitted[r]);
         for _ in 0..MOST_MOVES {
@@ -234,8 +235,8 @@ impl Study {
         chosen
     }
 
-    /// `chosen` with another body of a link in the place of the effects on its joint that may together imitate it: a scale of the
-    /// link and a spring on a lever are a centre of mass elsewhere. Effects that are clearly better stay.
+    /// `chosen` with another body of a link in the place of the effects on its joint that may together imitate it: a scale of
+    /// the link and a spring on a lever resemble a shifted centre of mass. Effects that are clearly better stay.
     pub fn without_imitations(&mut self, mut chosen: Chosen) -> Chosen {
         let bare = self.bare_products(|r| self.fitted[r]);
         for link in 0..self.arm.dof() {
@@ -272,7 +273,7 @@ impl Study {
     }
 
     /// `chosen` with a payload in the place of another body of the last link, if that is better. A search that takes the link
-    /// first does not come by it: both explain the same.
+    /// first does not find the payload, because both explain the same torque.
     pub fn with_payload_for_last_link(&mut self, chosen: Chosen) -> Chosen {
         let common = self.strengths.common();
         let is_payload = |&c: &usize| self.candidates[c].hypothesis.is(&Payload);
@@ -303,7 +304,7 @@ impl Study {
         }
     }
 
-    /// The best of the strengths `others`, with what is `chosen` fitted with them, if they are better.
+    /// The best of the strengths `others`, with `chosen` fitted again, if they are better.
     fn strengthened(&self, bare: &Products, chosen: &Chosen, others: Vec<Strengths>) -> Option<(Strengths, Chosen)> {
         let trials: Vec<(Strengths, Chosen)> = others
             .into_par_iter()
@@ -312,7 +313,7 @@ impl Study {
                 let products = bare.with_background(self.prior.at(&strengths));
                 let problem = self.problem(&products);
                 let next = problem.choose(chosen.set.clone(), &chosen.fit.weights);
-                // Without any background the weights may be far off.
+                // Without any background, the weights may be far from the right ones.
                 let next = if self.strengths.is_none() {
                     problem.reweighted(next)
                 } else {

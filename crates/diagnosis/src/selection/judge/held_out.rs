@@ -1,4 +1,4 @@
-//! What does not predict recordings it was not fitted to.
+//! Removal of effects that do not predict recordings they were not fitted to.
 
 use rayon::prelude::*;
 
@@ -7,8 +7,8 @@ use crate::regression::fit::Products;
 use crate::search::problem::{Chosen, Problem};
 use crate::search::study::Study;
 
-/// `chosen` without the unmodelled forms that do not predict recordings they were not fitted to. They may have stood for
-/// something simple, which is then looked for again.
+/// `chosen` without the unmodelled forms that do not predict recordings they were not fitted to. They may have replaced simple
+/// effects, which are then searched again.
 pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen: Chosen) -> Chosen {
     let hypothesis = |c: usize| study.candidates[c].hypothesis;
     let loss = |chosen: &Chosen| held.loss(&held.rss(&study.table, &chosen.fit.columns, &chosen.fit.coefficients));
@@ -39,13 +39,14 @@ pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut cho
     }
 }
 
-/// Drops what does not predict recordings it was not fitted to, and what makes a joint's prediction worse than the nominal one.
+/// Removes effects that do not predict recordings they were not fitted to, and effects that make a joint's prediction worse
+/// than the nominal model's.
 pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen: Chosen) -> Chosen {
     let table = &study.table;
     let rss = |chosen: &Chosen| held.rss(table, &chosen.fit.columns, &chosen.fit.coefficients);
     loop {
         let with = rss(&chosen);
-        // By how much the held-out loss grows without each.
+        // The increase of the held-out loss without each.
         let gains: Vec<(usize, f64, Vec<f64>)> = (0..chosen.set.len())
             .into_par_iter()
             .map(|k| {
@@ -54,7 +55,7 @@ pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut 
                 let rest = problem.choose(set, &chosen.fit.weights);
                 let without = rss(&rest);
                 let mut gain = held.loss(&without) - held.loss(&with);
-                // What the background would say in its place predicts as much, for more nats.
+                // The background in its place predicts as well, for more nats.
                 if problem.is_background_too(&study.candidates[removed]) {
                     gain += rest.score - chosen.score;
                 }
@@ -76,8 +77,8 @@ pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut 
             gains
                 .iter()
                 .filter(|(candidate, _, without)| {
-                    // What acts on all joints is judged by the likelihood of all, and what does not act on this one has no
-                    // part in it: there the background may be to blame, which the final fit takes back.
+                    // An effect on all joints is judged by the likelihood of all, and one that does not act on this joint is
+                    // not judged by it: there, the background may be the reason, which the final fit reduces.
                     let this = &study.candidates[*candidate];
                     let acts = this.columns.iter().any(|&column| table.place[joint][column].is_some());
                     this.joint.is_some() && acts && without[joint] < with[joint]
@@ -85,7 +86,7 @@ pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut 
                 .min_by(|a, b| a.2[joint].total_cmp(&b.2[joint]))
         };
         let (rule, bad) = match (useless, harmful()) {
-            (Some(&(bad, ..)), _) => ("held-out recordings are likelier without it", bad),
+            (Some(&(bad, ..)), _) => ("held-out recordings are more likely without it", bad),
             (None, Some(&(bad, ..))) => (HARMS, bad),
             (None, None) => return chosen,
         };

@@ -1,11 +1,11 @@
-//! When an effect set in, and within which times that is known.
+//! The onset of an effect, and its interval.
 
 use super::Reader;
 use crate::findings::report::Parameter;
 use crate::thresholds::{ONSET_INTERVAL, PUSH_START};
 
 impl Reader<'_> {
-    /// Notes when the candidate sets in, if it does not always act.
+    /// Records and returns the onset of the candidate; `None` if it always acts.
     pub(super) fn note_onset(&mut self) -> Option<f64> {
         let onset = self.study.terms(self.candidate).first()?.onset()?;
         let (value, ci95) = self.likeliest_onset(onset);
@@ -14,7 +14,7 @@ impl Reader<'_> {
         Some(value)
     }
 
-    /// Notes when a push of a `duration` (s) begins.
+    /// Records the start of a contact of a `duration` (s).
     pub(super) fn note_start(&mut self, start: f64, duration: f64) {
         let half = PUSH_START * duration;
         let parameter = Parameter {
@@ -25,16 +25,17 @@ impl Reader<'_> {
         self.parameters.insert("start", parameter);
     }
 
-    /// The likeliest onset (s), and the times about it at which the fit would not be clearly worse, with the sizes found from
-    /// `near` on, by all rows, those near reversals too. Were it earlier or later, the effect's torque on the rows between would
-    /// be added in vain or left over: where there is none, at rest or between recordings, nothing tells.
+    /// The most likely onset (s), and the interval of times at which the fit is not clearly worse, by all rows including those
+    /// near reversals, with the sizes found from `near` on. With an earlier or a later onset, the effect's torque on the rows
+    /// between would be added wrongly or remain in the residual. Where there is no such torque, at rest or between recordings,
+    /// the time is undetermined.
     fn likeliest_onset(&self, near: f64) -> (f64, [f64; 2]) {
         let study = self.study;
         let table = &study.table;
         let fitted = study.products(|recording| study.fitted[recording]);
         let columns = &study.candidates[self.candidate].columns;
         let value = |column: usize| self.resampled.column(column).map(|at| self.resampled.estimate[at]);
-        // What it would do if it always acted.
+        // Its torque if it always acted.
         let (always, sizes): (Vec<usize>, Vec<f64>) = columns
             .iter()
             .filter_map(|&column| {
@@ -56,7 +57,7 @@ impl Reader<'_> {
                 (joint, table.torque(joint, &always, &sizes), left, weight)
             })
             .collect();
-        // By how much a row's misfit grows (nats) if the effect also acts on it (−1), or does not (1).
+        // The increase of a row's misfit (nats) if the effect also acts on it (−1), or does not (1).
         let growth = |row: usize, sign: f64| -> f64 {
             let acting = joints.iter().filter(|(joint, ..)| table.joints[*joint].moving[row]);
             acting

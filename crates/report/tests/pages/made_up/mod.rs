@@ -20,7 +20,7 @@ use motion::{EFFECTS, Row, acts, arm, spread, trace};
 pub enum Plot {
     /// Nothing.
     Clean,
-    /// An effect a joint, one of the whole arm, something without a name.
+    /// An effect per joint, one of the whole arm, something without a name.
     Rich,
     /// Too little was recorded.
     TooShort,

@@ -98,7 +98,7 @@ struct Says {
     place: String,
 }
 
-/// One number a joint.
+/// One number per joint.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Numbers {
@@ -195,7 +195,7 @@ impl File {
     ///
     /// # Errors
     /// With file, line, reason and remedy: a joint that the URDF has not, a parameter that the effect has not, a unit that
-    /// is none of it, not one number a joint.
+    /// is none of it, not one number per joint.
     pub fn published(&self, robot: &Robot, arm: &Arm) -> anyhow::Result<Published> {
         let mut said = Vec::new();
         for says in &robot.says {
@@ -297,7 +297,7 @@ impl File {
             }
             let values = numbers.values.get_ref();
             if values.len() != count || !values.iter().all(|value| value.is_finite()) {
-                let reason = format!("there are {} values; give {count}, one a joint", values.len());
+                let reason = format!("there are {} values; give {count}, one per joint", values.len());
                 return Err(self.fail(numbers.values.span(), &reason));
             }
             let unit = numbers.unit.get_ref();

@@ -17,7 +17,7 @@ pub struct Run {
     /// The torques commanded (N m or N); empty likewise.
     #[cfg_attr(not(feature = "viewer"), expect(dead_code, reason = "the viewer is its reader"))]
     pub tau: Vec<f64>,
-    /// In how many ticks an effort limit cut the torque, one a joint.
+    /// In how many ticks an effort limit cut the torque, one per joint.
     cut: Vec<usize>,
 }
 
@@ -102,7 +102,7 @@ impl Run {
         }
     }
 
-    /// Root mean square and largest, one a joint; empty if the loop left all bounds.
+    /// Root mean square and largest, one per joint; empty if the loop left all bounds.
     fn errors(&self, course: &Course) -> (Vec<f64>, Vec<f64>) {
         if self.links.is_empty() {
             return (Vec::new(), Vec::new());

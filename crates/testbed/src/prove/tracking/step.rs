@@ -1,4 +1,4 @@
-//! Tracking as a step of the protocol: a file a case, whole, that is not made again.
+//! Tracking as a step of the protocol: a file per case, whole, that is not made again.
 
 use std::path::PathBuf;
 
