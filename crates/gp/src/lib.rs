@@ -36,6 +36,7 @@ mod pivoted;
 mod posterior;
 mod search;
 mod starts;
+mod wide;
 
 pub use conditioning::Conditioning;
 pub use data::{Hyperparameters, Lengths, TrainingSet};
