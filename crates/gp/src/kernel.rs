@@ -230,7 +230,7 @@ fn add_squares<const FUSED: bool>(rows: &[f64], x: &[f64; CHUNK], squares: &mut 
 
 /// `a * b + c`, in one rounding where the processor has the instruction: without it, `mul_add` is a slow library call.
 #[inline(always)]
-fn multiply_add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
+pub(crate) fn multiply_add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
     if FUSED { a.mul_add(b, c) } else { a * b + c }
 }
 

@@ -87,6 +87,11 @@ pub struct RunArgs {
     #[arg(long, value_enum)]
     pub length_scales: Option<LengthScalesArg>,
 
+    /// Whether the learned torque fades to the rigid-body model where its variance nears the prior's [default: the scenario's,
+    /// otherwise true]
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, default_missing_value = "true", action = clap::ArgAction::Set)]
+    pub fade: Option<bool>,
+
     /// Output to Rerun: off, save[=FILE], spawn or connect[=URL] [default: save in the run's folder]
     #[cfg_attr(not(feature = "viewer"), arg(hide = true))]
     #[arg(long, value_name = "WHERE", value_parser = parse_rerun)]

@@ -17,7 +17,7 @@ use crate::models::ModelKind;
 use crate::output::{self, Tracking};
 use crate::progress::Progress;
 use crate::scenario::Scenario;
-use crate::simulation::{self, Observer, Outcome};
+use crate::simulation::{self, Observer, Outcome, Weight};
 use crate::training;
 use crate::written::Written;
 use folder::RunFolder;
@@ -42,6 +42,9 @@ struct Summary<'a> {
     saturated: Vec<f64>,
     real_time_factor: f64,
     control_step_us: Percentiles,
+    /// The weights of the learned torques, one a joint; absent if they do not fade.
+    #[serde(skip_serializing_if = "<[Weight]>::is_empty")]
+    fade_weights: &'a [Weight],
     /// The regressions of the model, one a joint; none if it does not learn.
     regressions: Vec<Regression>,
 }
@@ -73,7 +76,8 @@ struct Percentiles {
 /// # Errors
 /// One that says what was being done, what was found and how to mend it.
 pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
-    let scenario = Scenario::load_chain(&args.scenario, chain)?;
+    let mut scenario = Scenario::load_chain(&args.scenario, chain)?;
+    scenario.fade = args.fade.unwrap_or(scenario.fade);
     let kind = args.model.unwrap_or(scenario.model);
     let sources = if kind.learns() {
         args.train.as_ref().unwrap_or(&scenario.training).clone()
@@ -131,6 +135,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
         torque_mse: torque_error(&scenario, model.as_ref())?,
         saturated: outcome.saturated.clone(),
         real_time_factor: outcome.real_time_factor,
+        fade_weights: &outcome.weights,
         control_step_us: Percentiles {
             median: outcome.control_step_median,
             p99: outcome.control_step_p99,
@@ -282,6 +287,23 @@ fn notes(args: &RunArgs, kind: ModelKind, scenario: &Scenario, samples: &Samples
     }
 }
 
+/// A sentence on the joints whose learned torque was faded.
+fn faded(scenario: &Scenario, outcome: &Outcome) -> String {
+    let joints = scenario.arm.joints().iter().zip(&outcome.weights);
+    let joints: Vec<String> = joints
+        .filter(|(_, weight)| weight.least < 0.995)
+        .map(|(joint, weight)| format!("{} ({:.2}, at the least {:.2})", joint.name, weight.mean, weight.least))
+        .collect();
+    if joints.is_empty() {
+        return String::new();
+    }
+    format!(
+        "The reference leaves what the learned torque knows; it is faded to the rigid body, with the mean weight in brackets: {}. \
+         --fade false is without.\n",
+        joints.join(", ")
+    )
+}
+
 /// The result for people.
 fn text(scenario: &Scenario, kind: ModelKind, sources: &[String], summary: &Summary<'_>, outcome: &Outcome) -> String {
     let trained = if sources.is_empty() {
@@ -314,6 +336,7 @@ fn text(scenario: &Scenario, kind: ModelKind, sources: &[String], summary: &Summ
         ]);
     }
     text += &format!("{table}\n");
+    text += &faded(scenario, outcome);
     text += &format!(
         "real-time factor {:.1}; control step {:.1} µs median, {:.1} µs at the 99th percentile\n",
         outcome.real_time_factor, outcome.control_step_median, outcome.control_step_p99

@@ -10,6 +10,7 @@ mod error;
 mod inputs;
 mod learned;
 mod model;
+mod reach;
 mod reference;
 mod rigid_body;
 mod samples;
