@@ -42,6 +42,8 @@ pub struct Cli {
 pub enum Command {
     /// Print tables I and II and figure 4 of the paper, with our results beside the published ones
     Tables(TablesArgs),
+    /// Compare what the data of each task are worth to the others: predicted and measured errors of every training set
+    Transfer(TransferArgs),
     /// Find the physical effects that a robot's model omits, from recordings
     Diagnose(Box<DiagnoseArgs>),
     /// Propose the motion of the first recording: the one from which inertial parameters and friction are estimated best
@@ -119,6 +121,38 @@ pub struct TablesArgs {
     /// Also write the tables to this file
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct TransferArgs {
+    /// The tasks to train on, alone and together; each is also tested on
+    #[arg(
+        long,
+        value_name = "A,B,…",
+        value_delimiter = ',',
+        default_value = "taskA,taskB,taskC"
+    )]
+    pub train: Vec<String>,
+
+    /// The scenario to test on, with the robot and its errors
+    #[arg(long, value_name = "NAME|FILE", default_value = "taskD")]
+    pub test: String,
+
+    /// The model to train
+    #[arg(long, value_enum, default_value = "independent-joint")]
+    pub model: ModelKind,
+
+    /// The length scales of the regressions: one for all inputs, as in the paper, or one per input
+    #[arg(long, value_enum, default_value = "one")]
+    pub length_scales: LengthScalesArg,
+
+    /// Also write the result to this file
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+
+    /// Also write the samples of every task into this folder, as CSV, for models of others
+    #[arg(long, value_name = "DIR")]
+    pub samples: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
