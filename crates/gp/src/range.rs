@@ -141,14 +141,7 @@ impl Range {
         if let Some(outer) = &self.outer {
             share += outer.square_of_product(kernel);
         }
-        // Comparisons rather than `clamp`, `max` or `min`: NaN stays NaN.
-        if share < 0.0 {
-            0.0
-        } else if share > 1.0 {
-            1.0
-        } else {
-            share
-        }
+        share.clamp(0.0, 1.0)
     }
 }
 

@@ -94,6 +94,11 @@ pub struct RunArgs {
     #[arg(long, value_name = "BOOL", num_args = 0..=1, default_missing_value = "true", action = clap::ArgAction::Set)]
     pub fade: Option<bool>,
 
+    /// With more samples than this, approximate each regression by so many inducing points; the result says how far off it is
+    /// [default: exact]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub inducing: Option<u32>,
+
     /// Output to Rerun: off, save[=FILE], spawn or connect[=URL] [default: save in the run's folder]
     #[cfg_attr(not(feature = "viewer"), arg(hide = true))]
     #[arg(long, value_name = "WHERE", value_parser = parse_rerun)]

@@ -97,7 +97,8 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     notes(args, kind, &scenario, &samples);
 
     let length_scales = args.length_scales.unwrap_or(scenario.length_scales);
-    let options = length_scales.training_options();
+    let mut options = length_scales.training_options();
+    options.inducing = args.inducing.map(|count| count as usize);
     let model = {
         let progress = Progress::new("training");
         if kind.learns() {
@@ -158,6 +159,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     let mut text = text(&scenario, kind, &sources, &summary, &outcome);
     if kind.learns() {
         text += &hardly_learned(&scenario, &summary.torque_mse, length_scales)?;
+        text += &approximated(model.regressions());
     }
     text += &written.lines();
     if rerun_file.is_some_and(|file| written.has(&file)) {
@@ -232,6 +234,27 @@ fn hardly_learned(scenario: &Scenario, errors: &[f64], length_scales: LengthScal
     ))
 }
 
+/// A sentence on regressions that are approximated: by what, and how far off they can be.
+fn approximated(regressions: &[Gp]) -> String {
+    let conditionings = regressions.iter().map(Gp::conditioning);
+    let gaps: Vec<(f64, &torque::Conditioning)> = conditionings
+        .filter_map(|conditioning| Some((conditioning.likelihood_gap?, conditioning)))
+        .collect();
+    let Some((gap, worst)) = gaps.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else {
+        return String::new();
+    };
+    let samples = worst.samples as f64;
+    format!(
+        "{} of {} regressions are approximated by {} inducing points (variational free energy); at the worst they leave {} of the \
+         prior variance at the samples, and the exact log likelihood is at most {} nats a sample higher.\n",
+        gaps.len(),
+        regressions.len(),
+        worst.rank,
+        rounded(worst.neglected / samples, 2),
+        rounded(gap / samples, 2)
+    )
+}
+
 fn regression(gp: &Gp) -> Regression {
     let hyperparameters = gp.hyperparameters();
     Regression {
@@ -255,9 +278,9 @@ fn notes(args: &RunArgs, kind: ModelKind, scenario: &Scenario, samples: &Samples
     if args.train.is_some() && !kind.learns() {
         eprintln!("note: the model \"{}\" is not trained; --train is ignored", kind.flag());
     }
-    if samples.len() > MANY_SAMPLES {
+    if samples.len() > MANY_SAMPLES && args.inducing.is_none() {
         eprintln!(
-            "note: training on {} samples may take minutes; a lower reference.sample_rate reduces their number",
+            "note: training on {} samples may take minutes; --inducing 200 or a lower reference.sample_rate shortens it",
             samples.len()
         );
     }

@@ -18,7 +18,7 @@ mod samples;
 pub use controller::{Command, Controller, Feedback};
 pub use corrected::Corrected;
 pub use error::TorqueError;
-pub use gp::{Gp, LengthScales, Lengths};
+pub use gp::{Conditioning, Gp, LengthScales, Lengths};
 pub use inputs::Inputs;
 pub use learned::{Learned, TrainingOptions};
 pub use model::{Prediction, TorqueModel, Workspace};
