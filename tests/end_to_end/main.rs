@@ -30,4 +30,5 @@ mod runs;
 mod schema;
 mod support;
 mod tidy;
+mod transfer;
 mod untrusted_names;

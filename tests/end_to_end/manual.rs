@@ -5,8 +5,9 @@ use std::process::Command;
 
 use crate::support::Sandbox;
 
-const COMMANDS: [&str; 9] = [
+const COMMANDS: [&str; 10] = [
     "tables",
+    "transfer",
     "diagnose",
     "inspect",
     "excite",

@@ -82,6 +82,28 @@ fn joints_that_hardly_learn_are_named_and_length_scales_are_chosen() {
 }
 
 #[test]
+fn an_approximation_says_how_far_off_it_is() {
+    let sandbox = Sandbox::new();
+    sandbox.write(
+        "one.toml",
+        &short_scenario("[training]\nscenarios = [\"taskC\"]\n[sensors]\ntorque_noise = 0.5\n"),
+    );
+    let run = |more: &[&str]| {
+        let usual = ["--scenario", "one.toml", "--rerun", "off", "--json", "s.json"];
+        let printed = sandbox.succeed(&[&usual[..], more].concat());
+        let summary = sandbox.json("s.json");
+        let conditioning = summary["regressions"][1]["conditioning"].as_str().expect("a sentence");
+        (printed, conditioning.to_owned())
+    };
+    let (printed, conditioning) = run(&["--inducing", "30"]);
+    assert!(printed.contains("approximated by 30 inducing points"), "{printed}");
+    assert!(conditioning.starts_with("30 inducing points"), "{conditioning}");
+    let (printed, conditioning) = run(&[]);
+    assert!(!printed.contains("inducing"), "{printed}");
+    assert!(!conditioning.contains("inducing"), "{conditioning}");
+}
+
+#[test]
 fn the_same_seed_gives_the_same_bytes_whatever_the_threads() {
     let sandbox = Sandbox::new();
     let noisy = short_scenario("[sensors]\nposition_noise = 1e-4\nvelocity_noise = 1e-3\ntorque_noise = 0.1\n");

@@ -1,6 +1,6 @@
 //! The squared-exponential kernel over blocks of points, laid out so that the compiler vectorises it.
 
-use pulp::{Arch, Simd, WithSimd};
+use crate::wide::{Wide, on_widest};
 
 /// Points in one block; the innermost loops run over a block. Sixteen doubles fill four AVX2 registers.
 pub(crate) const LANES: usize = 16;
@@ -60,7 +60,7 @@ impl Points {
 /// Kernel values, at unit amplitude, between the point `x` (unscaled) and all `points` (divided by `lengths`); `out` has `points.len()` values.
 pub(crate) fn kernel_column(points: &Points, x: &[f64], lengths: &[f64], out: &mut [f64]) {
     debug_assert_eq!(out.len(), points.len());
-    Arch::new().dispatch(Column {
+    on_widest(Column {
         points,
         x,
         lengths,
@@ -70,7 +70,7 @@ pub(crate) fn kernel_column(points: &Points, x: &[f64], lengths: &[f64], out: &m
 
 /// Sum over all `points` of weight times kernel value at unit amplitude; `weights` has `points.padded_len()` values, zero in the padding.
 pub(crate) fn kernel_sum(points: &Points, x: &[f64], lengths: &[f64], weights: &[f64]) -> f64 {
-    Arch::new().dispatch(Sum {
+    on_widest(Sum {
         points,
         x,
         lengths,
@@ -80,7 +80,7 @@ pub(crate) fn kernel_sum(points: &Points, x: &[f64], lengths: &[f64], weights: &
 
 /// Adds to `out[d]`, for every input `d`, the sum over `points` of weight times squared scaled distance along `d` from the scaled point `x`.
 pub(crate) fn weighted_squares(points: &Points, x: &[f64], weights: &[f64], out: &mut [f64]) {
-    Arch::new().dispatch(Squares {
+    on_widest(Squares {
         points,
         x,
         weights,
@@ -95,20 +95,9 @@ struct Column<'a> {
     out: &'a mut [f64],
 }
 
-impl WithSimd for Column<'_> {
+impl Wide for Column<'_> {
     type Output = ();
 
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        if S::IS_SCALAR {
-            self.run::<false>();
-        } else {
-            self.run::<true>();
-        }
-    }
-}
-
-impl Column<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
         let mut scaled = Scaled::new(self.x, self.lengths);
@@ -127,20 +116,9 @@ struct Sum<'a> {
     weights: &'a [f64],
 }
 
-impl WithSimd for Sum<'_> {
+impl Wide for Sum<'_> {
     type Output = f64;
 
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> f64 {
-        if S::IS_SCALAR {
-            self.run::<false>()
-        } else {
-            self.run::<true>()
-        }
-    }
-}
-
-impl Sum<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> f64 {
         let mut scaled = Scaled::new(self.x, self.lengths);
@@ -163,20 +141,9 @@ struct Squares<'a> {
     out: &'a mut [f64],
 }
 
-impl WithSimd for Squares<'_> {
+impl Wide for Squares<'_> {
     type Output = ();
 
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        if S::IS_SCALAR {
-            self.run::<false>();
-        } else {
-            self.run::<true>();
-        }
-    }
-}
-
-impl Squares<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
         let dim = self.points.dim;
@@ -236,16 +203,12 @@ impl<'a> Scaled<'a> {
 #[inline(always)]
 fn kernel_block<const FUSED: bool>(block: &[f64], x: &mut Scaled<'_>) -> [f64; LANES] {
     let mut squares = [0.0; LANES];
-    let many = x.x.len() > CHUNK;
-    for (chunk, rows) in block.chunks(LANES * CHUNK).enumerate() {
-        if many {
+    if x.x.len() <= CHUNK {
+        add_squares::<FUSED>(block, &x.values, &mut squares);
+    } else {
+        for (chunk, rows) in block.chunks(LANES * CHUNK).enumerate() {
             x.divide(chunk * CHUNK);
-        }
-        for (row, &scaled) in rows.chunks_exact(LANES).zip(&x.values) {
-            for lane in 0..LANES {
-                let difference = scaled - row[lane];
-                squares[lane] = multiply_add::<FUSED>(difference, difference, squares[lane]);
-            }
+            add_squares::<FUSED>(rows, &x.values, &mut squares);
         }
     }
     for square in &mut squares {
@@ -254,9 +217,20 @@ fn kernel_block<const FUSED: bool>(block: &[f64], x: &mut Scaled<'_>) -> [f64; L
     exp_of_negative::<FUSED, LANES>(squares)
 }
 
+/// Adds the squared distances of the points in `rows`, along as many inputs, from `x`.
+#[inline(always)]
+fn add_squares<const FUSED: bool>(rows: &[f64], x: &[f64; CHUNK], squares: &mut [f64; LANES]) {
+    for (row, &x) in rows.chunks_exact(LANES).zip(x) {
+        for lane in 0..LANES {
+            let difference = x - row[lane];
+            squares[lane] = multiply_add::<FUSED>(difference, difference, squares[lane]);
+        }
+    }
+}
+
 /// `a * b + c`, in one rounding where the processor has the instruction: without it, `mul_add` is a slow library call.
 #[inline(always)]
-fn multiply_add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
+pub(crate) fn multiply_add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
     if FUSED { a.mul_add(b, c) } else { a * b + c }
 }
 

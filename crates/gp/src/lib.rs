@@ -34,10 +34,13 @@ mod low_rank;
 mod model;
 mod pivoted;
 mod posterior;
+mod range;
 mod search;
 mod starts;
+mod wide;
 
 pub use conditioning::Conditioning;
 pub use data::{Hyperparameters, Lengths, TrainingSet};
 pub use error::GpError;
 pub use model::{FitOptions, Gp, LengthScales, Workspace};
+pub use range::Range;

@@ -8,6 +8,7 @@ use crate::error::GpError;
 use crate::file::Saved;
 use crate::likelihood::{Factored, Precision};
 use crate::posterior::Posterior;
+use crate::range::Range;
 use crate::search::search;
 use crate::starts::shapes;
 
@@ -275,6 +276,11 @@ impl Gp {
         let mean = self.mean(x);
         let unit = self.posterior.variance(x, &mut workspace.kernel);
         (mean, self.hyperparameters.amplitude.powi(2) * unit)
+    }
+
+    /// Where it knows something, for calls that cannot afford [`Gp::mean_and_variance`].
+    pub fn range(&self) -> Range {
+        Range::of(self)
     }
 }
 

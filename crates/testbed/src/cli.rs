@@ -42,6 +42,8 @@ pub struct Cli {
 pub enum Command {
     /// Print tables I and II and figure 4 of the paper, with our results beside the published ones
     Tables(TablesArgs),
+    /// Compare what the data of each task are worth to the others: predicted and measured errors of every training set
+    Transfer(TransferArgs),
     /// Find the physical effects that a robot's model omits, from recordings
     Diagnose(Box<DiagnoseArgs>),
     /// Propose the motion of the first recording: the one from which inertial parameters and friction are estimated best
@@ -87,6 +89,16 @@ pub struct RunArgs {
     #[arg(long, value_enum)]
     pub length_scales: Option<LengthScalesArg>,
 
+    /// Whether the learned torque fades to the rigid-body model where its variance nears the prior's [default: the scenario's,
+    /// otherwise true]
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, default_missing_value = "true", action = clap::ArgAction::Set)]
+    pub fade: Option<bool>,
+
+    /// With more samples than this, approximate each regression by so many inducing points; the result says how far off it is
+    /// [default: exact]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub inducing: Option<u32>,
+
     /// Output to Rerun: off, save[=FILE], spawn or connect[=URL] [default: save in the run's folder]
     #[cfg_attr(not(feature = "viewer"), arg(hide = true))]
     #[arg(long, value_name = "WHERE", value_parser = parse_rerun)]
@@ -114,6 +126,38 @@ pub struct TablesArgs {
     /// Also write the tables to this file
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct TransferArgs {
+    /// The tasks to train on, alone and together; each is also tested on
+    #[arg(
+        long,
+        value_name = "A,B,…",
+        value_delimiter = ',',
+        default_value = "taskA,taskB,taskC"
+    )]
+    pub train: Vec<String>,
+
+    /// The scenario to test on, with the robot and its errors
+    #[arg(long, value_name = "NAME|FILE", default_value = "taskD")]
+    pub test: String,
+
+    /// The model to train
+    #[arg(long, value_enum, default_value = "independent-joint")]
+    pub model: ModelKind,
+
+    /// The length scales of the regressions: one for all inputs, as in the paper, or one per input
+    #[arg(long, value_enum, default_value = "one")]
+    pub length_scales: LengthScalesArg,
+
+    /// Also write the result to this file
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+
+    /// Also write the samples of every task into this folder, as CSV, for models of others
+    #[arg(long, value_name = "DIR")]
+    pub samples: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -10,11 +10,12 @@ pub use serial::serial_urdf;
 use study::Source;
 
 /// The files are part of the program, so that it runs from any folder.
-const SCENARIOS: [(&str, &str); 4] = [
+const SCENARIOS: [(&str, &str); 5] = [
     ("taskA", include_str!("../../../scenarios/taskA.toml")),
     ("taskB", include_str!("../../../scenarios/taskB.toml")),
     ("taskC", include_str!("../../../scenarios/taskC.toml")),
     ("taskD", include_str!("../../../scenarios/taskD.toml")),
+    ("beyond", include_str!("../../../scenarios/beyond.toml")),
 ];
 
 /// Motor inertias (kg m²) and gear ratios of the PUMA 560 (Corke and Armstrong-Hélouvry 1994), which its URDF leaves out.

@@ -21,6 +21,7 @@ mod simulation;
 mod tables;
 mod telemetry;
 mod training;
+mod transfer;
 #[cfg(feature = "viewer")]
 mod viewer;
 mod written;
@@ -38,6 +39,7 @@ fn main() -> ExitCode {
         (Some(cli::Command::Tables(args)), _) => {
             tables::run(args.json.as_deref(), &args.length_scales.training_options())
         }
+        (Some(cli::Command::Transfer(args)), _) => transfer::run(args),
         (Some(cli::Command::Inspect(args)), _) => inspect::run(args),
         (Some(cli::Command::Diagnose(args)), _) => match diagnose::run(args) {
             Ok(status) => return status,

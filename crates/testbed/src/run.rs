@@ -17,7 +17,7 @@ use crate::models::ModelKind;
 use crate::output::{self, Tracking};
 use crate::progress::Progress;
 use crate::scenario::Scenario;
-use crate::simulation::{self, Observer, Outcome};
+use crate::simulation::{self, Observer, Outcome, Weight};
 use crate::training;
 use crate::written::Written;
 use folder::RunFolder;
@@ -42,7 +42,10 @@ struct Summary<'a> {
     saturated: Vec<f64>,
     real_time_factor: f64,
     control_step_us: Percentiles,
-    /// The regressions of the model, one per joint; none if it does not learn.
+    /// The weights of the learned torques, one a joint; absent if they do not fade.
+    #[serde(skip_serializing_if = "<[Weight]>::is_empty")]
+    fade_weights: &'a [Weight],
+    /// The regressions of the model, one a joint; none if it does not learn.
     regressions: Vec<Regression>,
 }
 
@@ -73,7 +76,8 @@ struct Percentiles {
 /// # Errors
 /// One that says what was being done, what was found and how to mend it.
 pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
-    let scenario = Scenario::load_chain(&args.scenario, chain)?;
+    let mut scenario = Scenario::load_chain(&args.scenario, chain)?;
+    scenario.fade = args.fade.unwrap_or(scenario.fade);
     let kind = args.model.unwrap_or(scenario.model);
     let sources = if kind.learns() {
         args.train.as_ref().unwrap_or(&scenario.training).clone()
@@ -93,7 +97,8 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     notes(args, kind, &scenario, &samples);
 
     let length_scales = args.length_scales.unwrap_or(scenario.length_scales);
-    let options = length_scales.training_options();
+    let mut options = length_scales.training_options();
+    options.inducing = args.inducing.map(|count| count as usize);
     let model = {
         let progress = Progress::new("training");
         if kind.learns() {
@@ -131,6 +136,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
         torque_mse: torque_error(&scenario, model.as_ref())?,
         saturated: outcome.saturated.clone(),
         real_time_factor: outcome.real_time_factor,
+        fade_weights: &outcome.weights,
         control_step_us: Percentiles {
             median: outcome.control_step_median,
             p99: outcome.control_step_p99,
@@ -153,6 +159,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     let mut text = text(&scenario, kind, &sources, &summary, &outcome);
     if kind.learns() {
         text += &hardly_learned(&scenario, &summary.torque_mse, length_scales)?;
+        text += &approximated(model.regressions());
     }
     text += &written.lines();
     if rerun_file.is_some_and(|file| written.has(&file)) {
@@ -227,6 +234,27 @@ fn hardly_learned(scenario: &Scenario, errors: &[f64], length_scales: LengthScal
     ))
 }
 
+/// A sentence on regressions that are approximated: by what, and how far off they can be.
+fn approximated(regressions: &[Gp]) -> String {
+    let conditionings = regressions.iter().map(Gp::conditioning);
+    let gaps: Vec<(f64, &torque::Conditioning)> = conditionings
+        .filter_map(|conditioning| Some((conditioning.likelihood_gap?, conditioning)))
+        .collect();
+    let Some((gap, worst)) = gaps.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else {
+        return String::new();
+    };
+    let samples = worst.samples as f64;
+    format!(
+        "{} of {} regressions are approximated by {} inducing points (variational free energy); at the worst they leave {} of the \
+         prior variance at the samples, and the exact log likelihood is at most {} nats a sample higher.\n",
+        gaps.len(),
+        regressions.len(),
+        worst.rank,
+        rounded(worst.neglected / samples, 2),
+        rounded(gap / samples, 2)
+    )
+}
+
 fn regression(gp: &Gp) -> Regression {
     let hyperparameters = gp.hyperparameters();
     Regression {
@@ -250,9 +278,9 @@ fn notes(args: &RunArgs, kind: ModelKind, scenario: &Scenario, samples: &Samples
     if args.train.is_some() && !kind.learns() {
         eprintln!("note: the model \"{}\" is not trained; --train is ignored", kind.flag());
     }
-    if samples.len() > MANY_SAMPLES {
+    if samples.len() > MANY_SAMPLES && args.inducing.is_none() {
         eprintln!(
-            "note: training on {} samples may take minutes; a lower reference.sample_rate reduces their number",
+            "note: training on {} samples may take minutes; --inducing 200 or a lower reference.sample_rate shortens it",
             samples.len()
         );
     }
@@ -280,6 +308,23 @@ fn notes(args: &RunArgs, kind: ModelKind, scenario: &Scenario, samples: &Samples
             names.join(", ")
         );
     }
+}
+
+/// A sentence on the joints whose learned torque was faded.
+fn faded(scenario: &Scenario, outcome: &Outcome) -> String {
+    let joints = scenario.arm.joints().iter().zip(&outcome.weights);
+    let joints: Vec<String> = joints
+        .filter(|(_, weight)| weight.least < 0.995)
+        .map(|(joint, weight)| format!("{} ({:.2}, at the least {:.2})", joint.name, weight.mean, weight.least))
+        .collect();
+    if joints.is_empty() {
+        return String::new();
+    }
+    format!(
+        "The reference leaves what the learned torque knows; it is faded to the rigid body, with the mean weight in brackets: {}. \
+         --fade false is without.\n",
+        joints.join(", ")
+    )
 }
 
 /// The result for people.
@@ -314,6 +359,7 @@ fn text(scenario: &Scenario, kind: ModelKind, sources: &[String], summary: &Summ
         ]);
     }
     text += &format!("{table}\n");
+    text += &faded(scenario, outcome);
     text += &format!(
         "real-time factor {:.1}; control step {:.1} µs median, {:.1} µs at the 99th percentile\n",
         outcome.real_time_factor, outcome.control_step_median, outcome.control_step_p99

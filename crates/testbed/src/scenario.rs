@@ -33,6 +33,8 @@ pub struct Scenario {
     pub model: ModelKind,
     /// The length scales of its regressions, unless others are asked for.
     pub length_scales: LengthScalesArg,
+    /// Whether its learned torque fades to the rigid body where it knows nothing, unless the command line says.
+    pub fade: bool,
     /// The factor on the masses and inertia tensors of the controller's model.
     pub inertia_scale: f64,
     /// The motion to follow.

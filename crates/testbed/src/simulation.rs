@@ -41,12 +41,23 @@ pub struct Outcome {
     pub max_error: Vec<f64>,
     /// Share of the steps in which the effort limit cut the torque, one per joint.
     pub saturated: Vec<f64>,
+    /// The learned torque's weights, one a joint; none if it does not fade.
+    pub weights: Vec<Weight>,
     /// Simulated time over the time it took.
     pub real_time_factor: f64,
     /// Median time of a control step (µs).
     pub control_step_median: f64,
     /// 99th percentile of the time of a control step (µs).
     pub control_step_p99: f64,
+}
+
+/// The weight of the learned torque of a joint over a run: 1 for all of it, 0 for the rigid body alone.
+#[derive(Clone, Copy, Debug, serde::Serialize)]
+pub struct Weight {
+    /// Over the steps.
+    pub mean: f64,
+    /// The least.
+    pub least: f64,
 }
 
 /// Runs `scenario` under `model` from its start on the reference to its end.
@@ -77,6 +88,9 @@ pub fn run(
     let mut plant = Plant::new(arm, &options).context("the plant cannot be built")?;
     let controller_arm = kind.controller_arm(arm, &scenario.nominal_arm());
     let mut controller = Controller::new(model, controller_arm, scenario.feedback.clone())?;
+    if scenario.fade && kind.learns() {
+        controller = controller.fading();
+    }
 
     let (mut here, mut middle) = (Motion::new(dof), Motion::new(dof));
     scenario.reference.at(0.0, &mut here);
@@ -112,6 +126,9 @@ pub fn run(
 
         accelerations.of(&mut plant, &command.torque, &mut measured.qdd)?;
         sensors.torque(&command.torque, &mut measured_torque);
+        if let Some(weights) = controller.weights() {
+            log.weigh(weights);
+        }
         log.push(&Step {
             time,
             q: plant.q(),
@@ -235,6 +252,8 @@ struct Log {
     learned: Vec<Vec<f64>>,
     feedback: Vec<Vec<f64>>,
     saturated: Vec<usize>,
+    /// Sum and least of the weights, joint by joint.
+    weights: Vec<Weight>,
     control_times: Vec<Duration>,
 }
 
@@ -257,7 +276,17 @@ impl Log {
             learned: signal(),
             feedback: signal(),
             saturated: vec![0; arm.dof()],
+            weights: Vec::new(),
             control_times: Vec::with_capacity(steps),
+        }
+    }
+
+    fn weigh(&mut self, weights: &[f64]) {
+        let none = Weight { mean: 0.0, least: 1.0 };
+        self.weights.resize(weights.len(), none);
+        for (sum, &weight) in self.weights.iter_mut().zip(weights) {
+            sum.mean += weight;
+            sum.least = sum.least.min(weight);
         }
     }
 
@@ -312,7 +341,12 @@ impl Log {
             let index = (share * (times.len().saturating_sub(1)) as f64).round() as usize;
             times.get(index).map_or(0.0, |time| time.as_secs_f64() * 1e6)
         };
+        let mean = |sum: &Weight| Weight {
+            mean: sum.mean / steps,
+            ..*sum
+        };
         Outcome {
+            weights: self.weights.iter().map(mean).collect(),
             rms_error,
             max_error,
             saturated: self.saturated.iter().map(|count| *count as f64 / steps).collect(),
@@ -323,3 +357,6 @@ impl Log {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

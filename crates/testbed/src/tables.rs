@@ -98,7 +98,9 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions) -> anyhow::Result<()>
     }
     let started = Instant::now();
     let progress = Progress::new("training 2 × 4 models of 6 joints");
-    let test = Scenario::load("taskD")?;
+    let mut test = Scenario::load("taskD")?;
+    // The paper's controller.
+    test.fade = false;
     let nominal = test.nominal_arm();
     let test_samples = training::own_samples(&test)?;
     let mut training_samples = Vec::new();

@@ -7,13 +7,16 @@ use divan::Bencher;
 use support::{motion, puma560, samples};
 use torque::{Command, Controller, Feedback, Inputs, Learned, RigidBody, TorqueModel, TrainingOptions};
 
-fn bench(bencher: Bencher, model: &dyn TorqueModel) {
+fn bench(bencher: Bencher, model: &dyn TorqueModel, fades: bool) {
     let nominal = puma560().with_scaled_inertias(1.2);
     let feedback = Feedback::MassMatrix {
         kp: vec![100.0; 6],
         kd: vec![20.0; 6],
     };
     let mut controller = Controller::new(model, nominal, feedback).expect("it fits");
+    if fades {
+        controller = controller.fading();
+    }
     let mut command = Command::new(6);
     let motions: Vec<_> = (0..256).map(|k| motion(f64::from(k) / 25.0, 1)).collect();
     let mut k = 0;
@@ -33,22 +36,27 @@ fn learned(inputs: Inputs) -> Learned {
 
 #[divan::bench]
 fn rigid_body(bencher: Bencher) {
-    bench(bencher, &RigidBody::new(puma560()));
+    bench(bencher, &RigidBody::new(puma560()), false);
 }
 
 #[divan::bench]
 fn hybrid(bencher: Bencher) {
-    bench(bencher, &learned(Inputs::JointMotion));
+    bench(bencher, &learned(Inputs::JointMotion), false);
 }
 
 #[divan::bench]
 fn independent_joint(bencher: Bencher) {
-    bench(bencher, &learned(Inputs::NewtonEuler12));
+    bench(bencher, &learned(Inputs::NewtonEuler12), false);
 }
 
 #[divan::bench]
 fn independent_joint_13(bencher: Bencher) {
-    bench(bencher, &learned(Inputs::NewtonEuler13));
+    bench(bencher, &learned(Inputs::NewtonEuler13), false);
+}
+
+#[divan::bench]
+fn independent_joint_13_fading(bencher: Bencher) {
+    bench(bencher, &learned(Inputs::NewtonEuler13), true);
 }
 
 fn main() {

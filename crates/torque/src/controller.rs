@@ -60,6 +60,17 @@ pub struct Controller<'a> {
     workspace: Workspace,
     arm_workspace: arm::Workspace,
     mass_matrix: DMatrix<f64>,
+    fade: Option<Fading>,
+}
+
+/// The weights of the learned torques.
+struct Fading {
+    /// One a joint.
+    weights: Vec<f64>,
+    /// The joint whose weight is due; none before the first step, when all are.
+    due: Option<usize>,
+    /// The rigid body's torque, for a model that has none.
+    rigid: Vec<f64>,
 }
 
 impl<'a> Controller<'a> {
@@ -96,7 +107,30 @@ impl<'a> Controller<'a> {
             model,
             arm,
             feedback,
+            fade: None,
         })
+    }
+
+    /// Lets the learned part of the feed-forward fade to the rigid-body model where the regressions do not know the torque:
+    /// τ_j = τ_rigid,j + w_j (τ_model,j - τ_rigid,j), with [`TorqueModel::weight`] w_j. Below a model that stands alone, the
+    /// rigid body is the controller's own.
+    ///
+    /// A weight costs a part of a control step, and the motion is slow against the control rate: after the first step, each
+    /// step renews the weight of one joint, in turn. A model without a learned part is fed forward as it is.
+    #[must_use]
+    pub fn fading(mut self) -> Self {
+        let dof = self.arm.dof();
+        self.fade = Some(Fading {
+            weights: vec![1.0; dof],
+            due: None,
+            rigid: vec![0.0; dof],
+        });
+        self
+    }
+
+    /// The weights of the learned torques in the last step, if they fade: 1 for all of it, 0 for the rigid body alone.
+    pub fn weights(&self) -> Option<&[f64]> {
+        self.fade.as_ref().map(|fade| fade.weights.as_slice())
     }
 
     /// The feed-forward torques for the motion `q`, `qd`, `qdd` of the reference, into `command`.
@@ -106,6 +140,27 @@ impl<'a> Controller<'a> {
     pub fn feed_forward(&mut self, q: &[f64], qd: &[f64], qdd: &[f64], command: &mut Command) {
         self.model
             .predict(&mut self.workspace, q, qd, qdd, &mut command.feedforward);
+        if let Some(fade) = &mut self.fade {
+            let dof = self.arm.dof();
+            let due = fade.due.map_or(0..dof, |joint| joint..joint + 1);
+            fade.due = Some(fade.due.map_or(0, |joint| (joint + 1) % dof));
+            for joint in due {
+                if let Some(weight) = self.model.weight(&self.workspace, joint) {
+                    fade.weights[joint] = weight;
+                }
+            }
+            let stands_alone = self.model.stands_alone();
+            if stands_alone {
+                self.arm
+                    .inverse_dynamics(&mut self.arm_workspace, q, qd, qdd, &mut fade.rigid);
+            }
+            for (joint, weight) in fade.weights.iter().enumerate() {
+                command.feedforward.learned[joint] *= weight;
+                if stands_alone {
+                    command.feedforward.rigid[joint] = (1.0 - weight) * fade.rigid[joint];
+                }
+            }
+        }
     }
 
     /// The feedback torques at the measured `q` for the errors `error` (rad or m) and `error_rate`, and

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use crate::error::TorqueError;
 use crate::inputs::Inputs;
 use crate::model::{Prediction, TorqueModel, Workspace};
+use crate::reach::Reach;
 use crate::samples::Samples;
 
 /// Options of the training; the default is the paper's.
@@ -40,6 +41,7 @@ pub struct Learned {
     rigid_body: Option<Arm>,
     inputs: Inputs,
     regressions: Vec<Gp>,
+    reaches: Vec<Reach>,
 }
 
 impl Learned {
@@ -88,6 +90,7 @@ impl Learned {
             rigid_body,
             inputs,
             regressions: Vec::new(),
+            reaches: Vec::new(),
         };
         let mut workspace = Workspace::new(dof);
         let dimension = inputs.dimension(dof);
@@ -119,6 +122,7 @@ impl Learned {
             })
             .collect();
         model.regressions = fitted?;
+        model.reaches = model.regressions.iter().map(Reach::of).collect();
         Ok(model)
     }
 
@@ -153,6 +157,14 @@ impl TorqueModel for Learned {
 
     fn regressions(&self) -> &[Gp] {
         &self.regressions
+    }
+
+    fn weight(&self, workspace: &Workspace, joint: usize) -> Option<f64> {
+        Some(self.reaches[joint].weight(self.inputs.of(joint, workspace)))
+    }
+
+    fn stands_alone(&self) -> bool {
+        self.rigid_body.is_none()
     }
 
     fn predict(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64], prediction: &mut Prediction) {

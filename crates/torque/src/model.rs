@@ -29,6 +29,17 @@ pub trait TorqueModel: Send + Sync {
         &[]
     }
 
+    /// What the learned part of `joint` is worth from 0 (nothing is known there) to 1, for the motion that was predicted last
+    /// with this workspace; `None` from a model without a learned part. See [`crate::Controller::fading`].
+    fn weight(&self, _workspace: &Workspace, _joint: usize) -> Option<f64> {
+        None
+    }
+
+    /// Whether the learned part is the whole torque, with no rigid body below it.
+    fn stands_alone(&self) -> bool {
+        false
+    }
+
     /// The mean squared torque error on `samples` for each joint ((N m)² or N²), the paper's measure.
     fn mean_squared_error(&self, samples: &Samples) -> Vec<f64> {
         let mut workspace = Workspace::new(self.dof());

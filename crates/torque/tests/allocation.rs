@@ -21,7 +21,9 @@ fn no_control_step_allocates() {
             kp: vec![100.0; 6],
             kd: vec![20.0; 6],
         };
-        let mut controller = Controller::new(&model, nominal.clone(), feedback).expect("it fits");
+        let mut controller = Controller::new(&model, nominal.clone(), feedback)
+            .expect("it fits")
+            .fading();
         let mut command = Command::new(6);
         let [q, qd, qdd] = motion(0.4, 0);
         let mut step = || {

@@ -171,3 +171,78 @@ fn the_controller_feeds_back_and_saturates() {
     }
     assert!(command.saturated[0] && !command.saturated[2]);
 }
+
+/// Along the training motion nothing fades; where nothing is known the rigid body is left alone, also below a model that has
+/// none; and what fades in between is what the weights say.
+#[test]
+fn a_learned_torque_fades_where_it_knows_nothing() {
+    let train = samples(300, 0);
+    let on_top = learned(Inputs::NewtonEuler13);
+    let alone = Learned::gp_only(&train, &TrainingOptions::default()).expect("it trains");
+    for model in [on_top, alone] {
+        let rigid = RigidBody::new(nominal());
+        let gains = Feedback::Gains {
+            kp: vec![0.0; 6],
+            kd: vec![0.0; 6],
+        };
+        let mut workspace = Workspace::new(6);
+        let (mut plain, mut below) = (Prediction::new(6), Prediction::new(6));
+        let mut smallest = [1.0_f64; 6];
+        for speed in [1.0, 2.0, 4.0, 100.0] {
+            let mut controller = Controller::new(&model, nominal(), gains.clone())
+                .expect("it fits")
+                .fading();
+            let mut command = Command::new(6);
+            let [q, qd, qdd] = motion(1.0, 0);
+            let qd: Vec<f64> = qd.iter().map(|v| speed * v).collect();
+            let qdd: Vec<f64> = qdd.iter().map(|a| speed * speed * a).collect();
+            controller.feed_forward(&q, &qd, &qdd, &mut command);
+            model.predict(&mut workspace, &q, &qd, &qdd, &mut plain);
+            rigid.predict(&mut workspace, &q, &qd, &qdd, &mut below);
+            let weights = controller.weights().expect("it fades").to_vec();
+            for joint in 0..6 {
+                let weight = weights[joint];
+                let expected = below.rigid[joint] + weight * (plain.torque(joint) - below.rigid[joint]);
+                assert!((command.feedforward.torque(joint) - expected).abs() < 1e-9 * expected.abs().max(1.0));
+                assert!((0.0..=1.0).contains(&weight));
+                assert!(
+                    weight <= smallest[joint] + 0.2,
+                    "{weights:?} at {speed}, {smallest:?} before"
+                );
+                smallest[joint] = smallest[joint].min(weight);
+                if speed == 1.0 {
+                    assert!(joint > 2 || weight == 1.0, "{weights:?}");
+                }
+                if speed == 100.0 {
+                    assert!(joint > 2 || weight < 1e-6, "{weights:?}");
+                }
+            }
+        }
+    }
+}
+
+/// After the first step each renews the weight of one joint, so that in six steps all follow the motion.
+#[test]
+fn one_weight_is_renewed_in_a_step() {
+    let model = learned(Inputs::NewtonEuler13);
+    let gains = Feedback::Gains {
+        kp: vec![0.0; 6],
+        kd: vec![0.0; 6],
+    };
+    let mut controller = Controller::new(&model, nominal(), gains).expect("it fits").fading();
+    let mut command = Command::new(6);
+    let [q, qd, qdd] = motion(1.0, 0);
+    controller.feed_forward(&q, &qd, &qdd, &mut command);
+    let near = controller.weights().expect("it fades").to_vec();
+    let fast = |values: &[f64], factor: f64| -> Vec<f64> { values.iter().map(|value| factor * value).collect() };
+    let (qd, qdd) = (fast(&qd, 100.0), fast(&qdd, 10_000.0));
+    let mut changed = 0;
+    for step in 1..=6 {
+        controller.feed_forward(&q, &qd, &qdd, &mut command);
+        let weights = controller.weights().expect("it fades");
+        let now = weights.iter().zip(&near).filter(|(now, then)| now != then).count();
+        assert!(now <= changed + 1, "step {step}: {weights:?} after {near:?}");
+        changed = now;
+    }
+    assert_eq!(changed, 6);
+}

@@ -53,6 +53,7 @@ pub struct RawModel {
     pub kind: Option<Spanned<String>>,
     pub inertia_scale: Option<Spanned<f64>>,
     pub length_scales: Option<Spanned<String>>,
+    pub fade: Option<bool>,
 }
 
 #[derive(Debug, Deserialize)]

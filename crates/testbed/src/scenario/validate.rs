@@ -136,6 +136,7 @@ pub fn scenario(source: &Source, raw: RawScenario, chosen: &ChainArgs) -> anyhow
         duration,
         model,
         length_scales,
+        fade: raw.model.fade.unwrap_or(true),
         inertia_scale,
         reference,
         sample_rate,

@@ -1,0 +1,43 @@
+//! The samples of tasks as CSV: what the models are trained and tested on.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use anyhow::Context;
+use torque::{Prediction, RigidBody, Samples, TorqueModel, Workspace};
+
+use super::short;
+use crate::output;
+use crate::scenario::Scenario;
+
+/// Writes `samples`, one set a task, to files of the tasks' names in `folder`: positions, velocities, accelerations, torques and the
+/// torques of the nominal rigid body, joint by joint.
+///
+/// # Errors
+/// If a file cannot be written.
+pub fn write(folder: &Path, scenario: &Scenario, tasks: &[String], samples: &[Samples]) -> anyhow::Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
+    let model = RigidBody::new(scenario.nominal_arm());
+    let dof = model.dof();
+    let mut workspace = Workspace::new(dof);
+    let mut rigid = Prediction::new(dof);
+    for (task, samples) in tasks.iter().zip(samples) {
+        let names = ["q", "qd", "qdd", "tau", "rigid"];
+        let header = names
+            .iter()
+            .flat_map(|name| (1..=dof).map(move |joint| format!("{name}_{joint}")));
+        let mut text = header.collect::<Vec<_>>().join(",");
+        text.push('\n');
+        for sample in samples.iter() {
+            model.predict(&mut workspace, sample.q, sample.qd, sample.qdd, &mut rigid);
+            let values = [sample.q, sample.qd, sample.qdd, sample.tau, &rigid.rigid].concat();
+            for (index, value) in values.iter().enumerate() {
+                let comma = if index == 0 { "" } else { "," };
+                write!(text, "{comma}{value:?}")?;
+            }
+            text.push('\n');
+        }
+        output::write_text(&folder.join(format!("{}.csv", short(task))), &text)?;
+    }
+    Ok(())
+}

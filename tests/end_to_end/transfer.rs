@@ -1,0 +1,60 @@
+//! `testbed transfer` through the built program: every training set, errors with their predictions, and refusals.
+
+use crate::support::Sandbox;
+
+#[test]
+fn every_training_set_is_tested_on_every_other_task() {
+    let sandbox = Sandbox::new();
+    let asked = [
+        "transfer",
+        "--train",
+        "taskA,taskC",
+        "--model",
+        "hybrid",
+        "--json",
+        "t.json",
+        "--samples",
+        "samples",
+    ];
+    let printed = sandbox.succeed(&asked);
+    let report = sandbox.json("t.json");
+    let rows = report["rows"].as_array().expect("rows");
+    let names: Vec<String> = rows
+        .iter()
+        .map(|row| format!("{} {}", row["train"], row["test"]).replace("task", ""))
+        .collect();
+    let expected = [
+        r#"["A"] "C""#,
+        r#"["A"] "D""#,
+        r#"["C"] "A""#,
+        r#"["C"] "D""#,
+        r#"["A","C"] "D""#,
+    ];
+    assert_eq!(names, expected);
+    for row in rows {
+        for key in ["error", "rigid", "predicted", "likelihood"] {
+            let values = row[key].as_array().expect("one a joint");
+            assert_eq!(values.len(), 6);
+            assert!(values.iter().all(serde_json::Value::is_f64), "{key}: {values:?}");
+        }
+    }
+    // Both tasks together are worth more to D than A alone, whose torque error the paper's table has.
+    let error = |row: usize| rows[row]["error"][1].as_f64().expect("a number");
+    assert!(error(4) < error(1), "{} and {}", error(4), error(1));
+    assert!((error(1).powi(2) - 6.08).abs() < 0.2, "{}", error(1));
+    for word in ["A, C", "likelihood", "Rank correlation"] {
+        assert!(printed.contains(word), "no {word} in\n{printed}");
+    }
+    assert_eq!(sandbox.list("samples"), ["A.csv", "C.csv", "D.csv"]);
+    let samples = std::fs::read_to_string(sandbox.path("samples/C.csv")).expect("it is there");
+    assert_eq!(samples.lines().count(), 481);
+    assert!(samples.starts_with("q_1,") && samples.lines().all(|line| line.split(',').count() == 30));
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let message = Sandbox::new().refuse(&["transfer", "--train", "taskA"]);
+    assert!(message.contains("2 to 6"), "{message}");
+    let message = Sandbox::new().refuse(&["transfer", "--model", "rigid-body"]);
+    assert!(message.contains("not trained"), "{message}");
+}
