@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
 use arm::{Arm, ChainOptions};
-use diagnosis::{Diagnosis, Input, Options, Step, Wanted};
+use diagnosis::{Diagnosis, Doubt, Input, Options, RecordingNames, Step, Wanted};
 use effects::Effect;
 
 use crate::effect_file::EffectFile;
@@ -95,6 +95,28 @@ impl Request {
         let joints: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
         listener.recordings(&notes, &joints);
         let recordings = recordings?;
+        let doubts: Vec<Doubt> = recordings
+            .iter()
+            .flat_map(|recording| recording.doubts.clone())
+            .collect();
+        if !doubts.is_empty() {
+            let names = |held_out: bool| {
+                let chosen = recordings
+                    .iter()
+                    .filter(|recording| (recording.role == Role::HeldOut) == held_out);
+                chosen.map(|recording| recording.name.clone()).collect()
+            };
+            let names = RecordingNames {
+                train: names(false),
+                held_out: names(true),
+            };
+            return Ok(Diagnosed {
+                diagnosis: Diagnosis::units_first(arm.name(), names, doubts),
+                robot,
+                arm,
+                effects: known,
+            });
+        }
         let list: Vec<Input<'_>> = recordings
             .iter()
             .map(|recording| Input {
