@@ -303,6 +303,38 @@ fn a_model_that_was_not_searched_is_not_written() {
 }
 
 #[test]
+fn numbered_joints_of_another_count_are_told_with_a_map_of_the_first() {
+    let case = case();
+    let text = changed(|cells| {
+        cells.insert(4, cells[1].clone());
+        cells.push(cells[5].clone());
+    });
+    let rows = text.split_once('\n').expect("a header").1;
+    let header = "t,q[0],q[1],q[2],q[3],tau[0],tau[1],tau[2],tau[3]";
+    case.sandbox.write("a.csv", &format!("{header}\n{rows}"));
+    let said = refused(&case, &[]);
+    says(
+        &said,
+        &[
+            "its 4 joints have numbers",
+            "the arm of trio has 3 joints",
+            "q = \"q[0]\"",
+        ],
+    );
+    case.sandbox.write("map.toml", &map_in(&said));
+    let alone = [
+        "--robot",
+        "robot.urdf",
+        "--train",
+        "a.csv",
+        "--map",
+        "map.toml",
+        "--torques-only",
+    ];
+    case.sandbox.succeed(&[&["diagnose"], &alone[..]].concat());
+}
+
+#[test]
 fn recordings_of_one_calendar_share_a_clock() {
     let case = case();
     let noted = |stamp: &dyn Fn(usize, f64) -> String, further: &[&str]| {
