@@ -7,8 +7,43 @@ use arm::Vector3;
 use crate::diagnose_made::{Case, ELBOW, SHOULDER, arguments, recording, trio};
 use crate::diagnose_refusals::{case, changed, refused, refused_command, refused_with, says};
 
+/// What a diagnosis with `text` as `a.csv` says: no effect, and units first, in every form.
+fn doubted(case: &Case, text: &str) -> String {
+    case.sandbox.write("a.csv", text);
+    let said = case.sandbox.succeed(&arguments(&[
+        "--json",
+        "o.json",
+        "--report",
+        "o.html",
+        "--markdown",
+        "o.md",
+    ]));
+    let json = case.sandbox.json("o.json");
+    assert_eq!(json["verdict"], "units_first", "{said}");
+    assert_eq!(json["findings"].as_array().map(Vec::len), Some(0));
+    let doubt = &json["doubts"][0];
+    assert_eq!(doubt["recording"], "a.csv");
+    let (page, markdown) = (case.text("o.html"), case.text("o.md"));
+    for form in [&said, &page, &markdown] {
+        says(form, &["Units, signs, order or zeros first", "no effect was searched"]);
+    }
+    // The map is the same everywhere.
+    if let Some(map) = doubt["column_map"].as_str() {
+        says(&said, &[map, "--map map.toml"]);
+        says(&markdown, &[map.trim_end()]);
+        says(&page, &[map.lines().next().expect("a line"), "<pre>"]);
+    }
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    words(&said)
+}
+
+/// What a diagnosis with `text` as `a.csv` says, where the others are as they should be.
+fn doubted_with(text: &str) -> String {
+    doubted(&case(), text)
+}
+
 #[test]
-fn torques_times_and_positions_in_another_unit_are_refused_with_the_remedy() {
+fn torques_times_and_positions_in_another_unit_are_told_with_the_remedy() {
     let scaled = |columns: std::ops::Range<usize>, factor: f64| {
         changed(|cells| {
             for cell in &mut cells[columns.clone()] {
@@ -18,23 +53,21 @@ fn torques_times_and_positions_in_another_unit_are_refused_with_the_remedy() {
     };
     for (factor, unit) in [(1e3, "mN m"), (1e-3, "kN m"), (1e2, "N cm")] {
         says(
-            &refused_with(&scaled(4..7, factor)),
-            &[
-                "a.csv: the torques of all joints",
-                "times the model's",
-                unit,
-                "--map",
-                "tau_",
-            ],
+            &doubted_with(&scaled(4..7, factor)),
+            &["the torques of all joints", "times the model's", unit, "--map", "tau_"],
         );
     }
     says(
-        &refused_with(&scaled(4..7, 0.01)),
-        &["a.csv: the torques of all joints", "motor's side", "gear"],
+        &doubted_with(&scaled(4..7, 0.01)),
+        &[
+            "a.csv (in this recording alone): the torques of all joints",
+            "motor's side",
+            "gear",
+        ],
     );
     says(
-        &refused_with(&scaled(0..1, 1e3)),
-        &["a.csv: its rows are 4.000 s apart", "ms", "--map"],
+        &doubted_with(&scaled(0..1, 1e3)),
+        &["its rows are 4.000 s apart", "unit = \"ms\"", "--map"],
     );
     let constant = changed(|cells| cells[4..].iter_mut().for_each(|cell| *cell = "5".into()));
     says(&refused_with(&constant), &["a.csv: all torques are constant", "--map"]);
@@ -186,30 +219,62 @@ fn zeros_signs_and_order_are_told_with_the_map_that_mends_them() {
 
 #[test]
 fn where_all_joints_are_wrong_nothing_is_searched_and_the_map_mends_it() {
-    let first = "Correct units, signs, order or zeros first: until then, no effect is searched.";
     let degrees = with_numbers(|row| row[1..4].iter_mut().for_each(|q| *q = q.to_degrees()));
+    let milliradians = with_numbers(|row| row[1..4].iter_mut().for_each(|q| *q *= 1e3));
     let currents = with_numbers(|row| {
         for (tau, constant) in row[4..].iter_mut().zip([12.0, 15.0, 9.0]) {
             *tau /= constant;
         }
     });
+    let milliseconds = with_numbers(|row| row[0] *= 1e3);
+    let zero = with_numbers(|row| row[1 + SHOULDER] += FRAC_PI_2);
+    let swapped = with_numbers(|row| row.swap(4 + SHOULDER, 4 + ELBOW));
+    let inverted = with_numbers(|row| row[4..].iter_mut().for_each(|tau| *tau *= -1.0));
     for (text, parts) in [
-        (degrees, ["turn: the position is in degrees", "q_unit = \"deg\""]),
+        (degrees, ["the positions are in degrees", "q_unit = \"deg\""]),
+        (milliradians, ["the positions are in milliradians", "q_unit = \"mrad\""]),
         (currents, ["motor currents", "tau_scale = "]),
+        (milliseconds, ["its rows are", "unit = \"ms\""]),
+        (zero, ["zero is off by π/2", "q_offset = "]),
+        (
+            swapped,
+            ["the torques of shoulder and elbow seem swapped", "tau = \"tau_elbow\""],
+        ),
+        (
+            inverted,
+            ["the torques of all joints have the sign opposite", "tau_sign = -1"],
+        ),
     ] {
         let case = case();
-        case.sandbox.write("a.csv", &text);
-        let said = refused(&case, &[]);
-        says(&said, &[first]);
-        says(&said, &parts);
-        // The others are as they should be, so that the map is for this one.
-        case.sandbox.write("map.toml", &map_in(&said));
-        let mended = case
-            .sandbox
-            .succeed(&["inspect", "a.csv", "--robot", "robot.urdf", "--map", "map.toml"]);
-        assert!(!mended.contains("column map"), "{mended}");
+        says(&doubted(&case, &text), &parts);
+        // Followed literally: saved as it is, and given to the same command. The other recordings are as they should be, so
+        // that the one is diagnosed alone.
+        let map = case.sandbox.json("o.json")["doubts"][0]["column_map"].clone();
+        case.sandbox.write("map.toml", map.as_str().expect("a map"));
+        let alone = [
+            "--robot",
+            "robot.urdf",
+            "--train",
+            "a.csv",
+            "--map",
+            "map.toml",
+            "--torques-only",
+        ];
+        let mut command = vec!["diagnose", "--json", "mended.json"];
+        command.extend(alone);
+        let said = case.sandbox.succeed(&command);
+        let mended = case.sandbox.json("mended.json");
+        assert!(mended.get("doubts").is_none(), "{parts:?}: {said}");
+        let friction = mended["findings"].as_array().expect("a list").iter();
+        let mut on_shoulder = friction.filter(|finding| finding["effect"] == "coulomb_friction");
+        assert!(
+            on_shoulder.any(|finding| finding["joint"] == "shoulder"),
+            "{parts:?}: {said}"
+        );
     }
-    // Something of no use at all.
+    // Nothing that a map could mend.
+    let counts = with_numbers(|row| row[1..4].iter_mut().for_each(|q| *q *= 5e4));
+    says(&doubted_with(&counts), &["in no unit of angle", "q_scale", "gear"]);
     let other = with_numbers(|row| {
         let time = row[0];
         for (joint, tau) in row[4..].iter_mut().enumerate() {
@@ -217,8 +282,89 @@ fn where_all_joints_are_wrong_nothing_is_searched_and_the_map_mends_it() {
         }
     });
     says(
-        &refused_with(&other),
-        &[first, "times the recorded one or more", "check units"],
+        &doubted_with(&other),
+        &["times the recorded one or more", "check units"],
+    );
+}
+
+#[test]
+fn a_model_that_was_not_searched_is_not_written() {
+    let case = case();
+    let text = with_numbers(|row| row[4..].iter_mut().for_each(|tau| *tau *= 1e3));
+    case.sandbox.write("a.csv", &text);
+    let message = case
+        .sandbox
+        .refuse(&arguments(&["--urdf", "o.urdf", "--json", "o.json"]));
+    says(&message, &["o.urdf: not written, because no effect was searched"]);
+    assert_eq!(case.sandbox.json("o.json")["verdict"], "units_first");
+    assert!(!case.path("o.urdf").exists());
+    let status = case.sandbox.run(&arguments(&["--fail-on-mismatch", "--quiet"])).status;
+    assert_eq!(status.code(), Some(3));
+}
+
+#[test]
+fn numbered_joints_of_another_count_are_told_with_a_map_of_the_first() {
+    let case = case();
+    let text = changed(|cells| {
+        cells.insert(4, cells[1].clone());
+        cells.push(cells[5].clone());
+    });
+    let rows = text.split_once('\n').expect("a header").1;
+    let header = "t,q[0],q[1],q[2],q[3],tau[0],tau[1],tau[2],tau[3]";
+    case.sandbox.write("a.csv", &format!("{header}\n{rows}"));
+    let said = refused(&case, &[]);
+    says(
+        &said,
+        &[
+            "its 4 joints have numbers",
+            "the arm of trio has 3 joints",
+            "q = \"q[0]\"",
+        ],
+    );
+    case.sandbox.write("map.toml", &map_in(&said));
+    let alone = [
+        "--robot",
+        "robot.urdf",
+        "--train",
+        "a.csv",
+        "--map",
+        "map.toml",
+        "--torques-only",
+    ];
+    case.sandbox.succeed(&[&["diagnose"], &alone[..]].concat());
+}
+
+#[test]
+fn recordings_of_one_calendar_share_a_clock() {
+    let case = case();
+    let noted = |stamp: &dyn Fn(usize, f64) -> String, further: &[&str]| {
+        for (number, name) in ["a.csv", "b.csv", "c.csv"].into_iter().enumerate() {
+            let text = case.text(name);
+            let mut lines = text.lines();
+            let mut out = lines.next().expect("a header").to_owned() + "\n";
+            let mut first = None;
+            for line in lines {
+                let (time, rest) = line.split_once(',').expect("cells");
+                let time: f64 = time.parse().expect("a number");
+                out += &format!("{},{rest}\n", stamp(number, time - *first.get_or_insert(time)));
+            }
+            case.sandbox.write(name, &out);
+        }
+        let output = case.sandbox.run(&arguments(further));
+        assert!(output.status.success());
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let overlaps = "overlap in time";
+    says(&noted(&|_, time| time.to_string(), &["--torques-only"]), &[overlaps]);
+    let dated = |number: usize, time: f64| format!("2024-03-01T{}:00:{time:09.6}Z", 12 + number);
+    let said = noted(&dated, &["--torques-only", "--residuals", "r.csv"]);
+    assert!(!said.contains(overlaps), "{said}");
+    let residuals = case.text("r.csv");
+    let last = residuals.lines().last().expect("a row");
+    let mut cells = last.split(',').filter_map(|cell| cell.parse::<f64>().ok());
+    assert!(
+        cells.any(|cell| (7200.0..7210.0).contains(&cell)),
+        "two hours later: {last}"
     );
 }
 

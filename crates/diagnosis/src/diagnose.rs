@@ -1,5 +1,7 @@
 //! The diagnosis from beginning to end: one phase after the other.
 
+use std::collections::BTreeMap;
+
 use arm::Arm;
 use effects::Effect;
 use torque::Reference;
@@ -9,7 +11,7 @@ use crate::data::motion::Input;
 use crate::error::DiagnosisError;
 use crate::findings::conclusion::Conclusion;
 use crate::findings::identified::identified;
-use crate::findings::report::{Report, Traces};
+use crate::findings::report::{Doubt, RecordingNames, Report, SCHEMA, Traces, Verdict};
 use crate::search::hypothesis::Wanted;
 use crate::search::study::Study;
 use crate::selection::FinalFit;
@@ -51,6 +53,37 @@ pub struct Diagnosis {
     pub remarks: Vec<String>,
     /// Every decision of the search, in order.
     pub trace: Vec<Decision>,
+}
+
+impl Diagnosis {
+    /// The answer where recordings do not fit the robot `robot` as they were read: `doubts`, and no effect.
+    pub fn units_first(robot: &str, recordings: RecordingNames, doubts: Vec<Doubt>) -> Self {
+        let report = Report {
+            schema: SCHEMA,
+            robot: robot.to_owned(),
+            recordings,
+            verdict: Verdict::UnitsFirst,
+            doubts,
+            findings: Vec::new(),
+            unexplained: Vec::new(),
+            not_observable: Vec::new(),
+            not_enough_data: Vec::new(),
+            located: Vec::new(),
+            fit: BTreeMap::new(),
+            changed: None,
+            inertials: BTreeMap::new(),
+            rollout: BTreeMap::new(),
+            next_experiment: None,
+        };
+        Self {
+            report,
+            traces: Traces::default(),
+            effects: Vec::new(),
+            next: None,
+            remarks: Vec::new(),
+            trace: Vec::new(),
+        }
+    }
 }
 
 /// A step of a diagnosis at its beginning.

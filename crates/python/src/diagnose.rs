@@ -134,6 +134,7 @@ impl Outcome {
 
     /// The corrected model as TOML.
     fn toml(&self) -> PyResult<String> {
+        self.searched()?;
         let file = EffectFile {
             robot: Some(self.study.arm.name().to_owned()),
             effects: self.study.effects.clone(),
@@ -143,6 +144,7 @@ impl Outcome {
 
     /// The corrected model as URDF, and what it cannot hold.
     fn urdf(&self) -> PyResult<(String, Vec<String>)> {
+        self.searched()?;
         let Diagnosed {
             robot, arm, effects, ..
         } = &self.study;
@@ -152,8 +154,21 @@ impl Outcome {
 
     /// The corrected model as MJCF, and what it cannot hold.
     fn mjcf(&self) -> PyResult<(String, Vec<String>)> {
+        self.searched()?;
         let export = mjcf_file::mjcf(&self.study.arm, &self.study.effects).map_err(|error| raised(&error))?;
         Ok((export.text, export.left))
+    }
+}
+
+impl Outcome {
+    /// Whether there is a model: where units come first there is none.
+    fn searched(&self) -> PyResult<()> {
+        if !self.study.diagnosis.report.doubts.is_empty() {
+            let text = "there is no corrected model, because no effect was searched: see `doubts`, and correct the recordings' units, \
+                        signs, order or zeros first";
+            return Err(JointwiseError::new_err(text));
+        }
+        Ok(())
     }
 }
 

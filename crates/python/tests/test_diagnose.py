@@ -137,11 +137,24 @@ def test_errors_say_where_what_and_how(recordings, tmp_path):
     assert "friction: no such effect is in the catalogue" in refusal(ARM, train=train, only="friction")
     other = frame(train).rename(columns=lambda name: name.replace("_shoulder", "_wrist"))
     assert "lock={\"shoulder\": VALUE}" in refusal(ARM, train=other)
-    millinewton = refusal(ARM, train={**train, "tau": 1000.0 * train["tau"]})
-    assert "mN m" in millinewton and "tau = \"tau_elbow\"\ntau_scale = 0.001" in millinewton
     assert "column_map" in refusal(ARM, train=frame(train).rename(columns={"t": "time"}))
     with pytest.raises(ValueError):
         jointwise.diagnose(ARM, train=frame(train).iloc[:1])
+
+
+def test_units_come_first(recordings, tmp_path):
+    train, _ = recordings
+    millinewton = {**train, "tau": 1000.0 * train["tau"]}
+    with pytest.warns(jointwise.RecordingWarning, match="no effect was searched: .*mN m") as warned:
+        result = jointwise.diagnose(ARM, train=millinewton, torques_only=True)
+    assert not any("--" in str(warning.message) for warning in warned)
+    assert result.verdict == "units_first" and result.effects == ()
+    with pytest.raises(jointwise.JointwiseError, match="no effect was searched"):
+        result.to_urdf()
+    path = tmp_path / "map.toml"
+    path.write_text(result.doubts[0].column_map, encoding="utf-8")
+    mended = jointwise.diagnose(ARM, train=millinewton, torques_only=True, column_map=path)
+    assert mended.doubts == () and {effect.name for effect in mended.effects} >= {"viscous_friction"}
 
 
 def test_doubtful_recordings_are_warned_of(recordings):

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use crate::column_map::template::capture;
+use crate::draft;
 use crate::header::Plan;
 use crate::{ColumnMap, Quantity, RecordingError, Warning};
 
@@ -57,27 +58,35 @@ pub fn plan(
     headers: &[String],
     first: &[String],
     file: &Path,
+    has_lines: bool,
 ) -> Result<(Plan, Warning), RecordingError> {
     let Some(system) = &map.system else {
         return Err(RecordingError::Header {
             path: file.to_owned(),
+            has_lines,
             reason: "there is no system of that name".to_owned(),
         });
     };
-    let plan = map.plan(headers, first, file).map_err(|error| match error {
+    let mut plan = map.plan(headers, first, file).map_err(|error| match error {
         RecordingError::Map { reason, .. } => RecordingError::Header {
             path: file.to_owned(),
+            has_lines,
             reason: if reason.contains("--map") {
                 reason
             } else {
                 format!(
-                    "the columns look like those of {}, but {reason}; {}",
-                    system.name, system.remedy
+                    "the columns look like those of {}, but {reason}; {}{}",
+                    system.name,
+                    system.remedy,
+                    draft::map(headers)
                 )
             },
         },
         other => other,
     })?;
+    // The texts of a system's own, a frame's name for one, are no news.
+    let is_text = |index: usize| first.get(index).is_some_and(|cell| cell.trim().parse::<f64>().is_err());
+    plan.others.retain(|(index, _)| !is_text(*index));
     let example = |quantity: Quantity| {
         let channel = plan.channels.iter().find(|channel| channel.quantity == quantity);
         channel.map_or("", |channel| channel.header.as_str())

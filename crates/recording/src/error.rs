@@ -24,10 +24,12 @@ pub enum RecordingError {
         reason: std::io::Error,
     },
     /// The header lacks a required column.
-    #[error("{path}:1: {reason}")]
+    #[error("{path}{}: {reason}", if *has_lines { ":1" } else { "" })]
     Header {
         /// The file.
         path: PathBuf,
+        /// Whether the header is a line of text.
+        has_lines: bool,
         /// What is missing or doubled, and the remedy.
         reason: String,
     },

@@ -14,7 +14,7 @@ use std::path::Path;
 use crate::input::Input;
 use crate::rows::Rows;
 use crate::table::{Column, Table};
-use crate::{ColumnMap, Recording, RecordingError, dialect, header};
+use crate::{ColumnMap, Recording, RecordingError, dialect, draft, header};
 
 /// Above this number of values, a file is reduced to means over longer times (1 GiB).
 const MOST_VALUES: usize = 1 << 27;
@@ -101,6 +101,7 @@ impl Recording {
         if let Some((header, column)) = columns.iter().find(|(_, column)| column.len() != length) {
             return Err(RecordingError::Header {
                 path: name.into(),
+                has_lines: false,
                 reason: format!(
                     "column \"{header}\" has {} values, column \"{}\" has {length}; give one value per sample in each",
                     column.len(),
@@ -113,8 +114,10 @@ impl Recording {
 
     fn of_table(mut table: Table, path: &Path, map: Option<&ColumnMap>, most: usize) -> Result<Self, RecordingError> {
         let topics = map.map_or(&[] as &[String], ColumnMap::topics);
+        let has_lines = table.has_lines;
         let header_error = |reason: String| RecordingError::Header {
             path: path.to_owned(),
+            has_lines,
             reason,
         };
         let mut warnings = std::mem::take(&mut table.warnings);
@@ -122,17 +125,18 @@ impl Recording {
             Some(map) => map.plan(&table.headers, &table.first, path)?,
             None => match dialect::of(&table.headers, topics) {
                 Some(ready) => {
-                    let (plan, note) = dialect::plan(&ready, &table.headers, &table.first, path)?;
+                    let (plan, note) = dialect::plan(&ready, &table.headers, &table.first, path, has_lines)?;
                     warnings.push(note);
                     plan
                 }
-                None => header::plan_by_names(&table.headers).map_err(header_error)?,
+                None => header::plan_by_names(&table.headers)
+                    .map_err(|reason| header_error(reason + &draft::of(&table.headers)))?,
             },
         };
         if let Some(header) = header::doubled(&table.headers, &plan) {
             return Err(header_error(format!("there are two columns \"{header}\"; rename one")));
         }
-        let mut rows = Rows::new(path, &plan, most, warnings);
+        let mut rows = Rows::new(path, has_lines, &plan, most, warnings);
         while let Some(row) = table.rows.next()? {
             rows.take(&row)?;
         }

@@ -1,6 +1,7 @@
 //! The columns that were read, combined into a recording.
 
 use crate::header::Plan;
+use crate::origin::Origin;
 use crate::table::Place;
 use crate::{PartialSignal, Quantity, Recording, Signal, Warning, wraps};
 
@@ -36,12 +37,19 @@ pub struct Gathered<'a> {
     pub numeric: Vec<bool>,
     /// What was found so far.
     pub warnings: Vec<Warning>,
+    /// The second of a calendar that the time is counted from.
+    pub epoch: Option<i64>,
 }
 
 impl Gathered<'_> {
     /// The recording; joints without positions or torques are left out.
     pub fn into_recording(mut self) -> Recording {
         let keeps = self.kept_joints();
+        let origin = Origin::of(self.plan, |index| {
+            let joint = self.plan.channels[index].joint;
+            let is_here = keeps[joint] && self.states[index] != State::LeftOut;
+            is_here.then(|| keeps[..joint].iter().filter(|keeps| **keeps).count())
+        });
         let others: Vec<Vec<f64>> = self.columns.split_off(1 + self.plan.channels.len());
         let mut channels = self.columns.split_off(1);
         let time = self.columns.swap_remove(0);
@@ -96,6 +104,8 @@ impl Gathered<'_> {
                 .collect(),
             breaks: self.breaks,
             warnings: self.warnings,
+            epoch: self.epoch,
+            origin: Some(origin),
         };
         wraps::unwrap(&mut recording);
         recording

@@ -90,6 +90,8 @@ fn picked(recording: &Recording, rows: &[usize]) -> Recording {
             .map(|&at| rows.partition_point(|&row| row < at))
             .collect(),
         warnings: recording.warnings.clone(),
+        epoch: recording.epoch,
+        origin: recording.origin.clone(),
     }
 }
 

@@ -11,6 +11,7 @@ mod clock;
 mod column_map;
 mod csv_write;
 mod dialect;
+mod draft;
 mod error;
 mod format;
 mod gathered;
@@ -19,6 +20,7 @@ mod held;
 mod input;
 mod interpolate;
 mod joint_state;
+mod origin;
 mod quality;
 mod regular;
 mod rows;
@@ -34,6 +36,7 @@ mod wraps;
 
 pub use column_map::ColumnMap;
 pub use error::{RecordingError, write_remedy};
+pub use origin::{Origin, OriginColumn};
 pub use quality::{Finding, FindingKind, JointQuality, Quality};
 pub use regular::{RegularRecording, Segment};
 pub use table::{Column, Place};
@@ -76,6 +79,10 @@ pub struct Recording {
     pub breaks: Vec<usize>,
     /// What was found and dealt with in reading.
     pub warnings: Vec<Warning>,
+    /// The second of a calendar that `time` is counted from (usually since 1970); `None` where the clock is the file's own.
+    pub epoch: Option<i64>,
+    /// The columns that it was read from; `None` of what was not read.
+    pub origin: Option<Origin>,
 }
 
 impl Recording {

@@ -84,6 +84,14 @@ impl RegularRecording {
         })
     }
 
+    /// Counts the time from `seconds` earlier on.
+    pub fn delay(&mut self, seconds: f64) {
+        self.start += seconds;
+        for segment in &mut self.segments {
+            segment.start += seconds;
+        }
+    }
+
     /// The times of all ticks (s).
     pub fn times(&self) -> impl Iterator<Item = f64> + '_ {
         self.segments.iter().flat_map(move |segment| {

@@ -25,6 +25,7 @@ const LATEST: f64 = 1e15;
 /// The rows read so far, by the plan.
 pub struct Rows<'a> {
     path: &'a Path,
+    has_lines: bool,
     plan: &'a Plan,
     /// The time, the channels, the other columns.
     values: Thinned,
@@ -55,9 +56,10 @@ pub struct Rows<'a> {
 
 impl<'a> Rows<'a> {
     /// None yet, of which at most `most` values are kept.
-    pub fn new(path: &'a Path, plan: &'a Plan, most: usize, warnings: Vec<Warning>) -> Self {
+    pub fn new(path: &'a Path, has_lines: bool, plan: &'a Plan, most: usize, warnings: Vec<Warning>) -> Self {
         Self {
             path,
+            has_lines,
             plan,
             values: Thinned::new(1 + plan.channels.len() + plan.others.len(), most),
             row: Vec::new(),
@@ -286,6 +288,7 @@ impl<'a> Rows<'a> {
             let found = if rows == 0 { "are no rows" } else { "is one row" };
             return Err(RecordingError::Header {
                 path,
+                has_lines: self.has_lines,
                 reason: format!("there {found} below the header; a motion takes at least two, and a fit thousands"),
             });
         }
@@ -335,6 +338,7 @@ impl<'a> Rows<'a> {
             states: self.states,
             numeric: self.numeric,
             warnings: self.warnings,
+            epoch: self.stamps.epoch(),
         };
         let recording = gathered.into_recording();
         match lacking {

@@ -8,59 +8,79 @@ use crate::table::{Cell, Row};
 /// Later stamps than this (s) are those of a calendar, and are counted from the first one's whole second: a number has
 /// not the digits for both.
 const CALENDAR: i64 = 1_000_000;
-/// Whole numbers above this have more digits than a number keeps.
-const EXACT: f64 = 9e15;
 const NANOS: i64 = 1_000_000_000;
 
 /// The stamps of one file, counted from where the first one says.
 #[derive(Debug, Default)]
 pub struct Stamps {
-    /// What is subtracted, in the unit of the stamps (whole numbers) or in s; unknown before the first stamp.
+    /// What is subtracted (s); unknown before the first stamp.
     origin: Option<i64>,
 }
 
 impl Stamps {
+    /// The second that the stamps are counted from, where they are a calendar's.
+    pub fn epoch(&self) -> Option<i64> {
+        self.origin.filter(|&origin| origin != 0)
+    }
+
     /// The time of `row` (s), if it has one.
     pub fn seconds(&mut self, row: &Row<'_>, time: &TimeColumn) -> Option<f64> {
         let cell = row.cell(time.index);
         if let Some((nanos, _)) = &time.nanos {
             let (whole, nanos) = (cell.number()?, row.cell(*nanos).number()?);
-            let origin = *self.origin.get_or_insert(from_calendar(whole as i64));
-            return Some((whole - origin as f64) + nanos * 1e-9);
+            return Some(self.from(whole as i64, (whole - whole.trunc()) + nanos * 1e-9));
         }
-        if let Cell::Nanos(nanos) = cell {
-            return Some(self.nanos(nanos));
+        let nanos = match cell {
+            Cell::Nanos(nanos) => Some(nanos),
+            Cell::Text(text) if cell.number().is_none() => Some(iso(std::str::from_utf8(text.trim_ascii()).ok()?)?),
+            _ => None,
+        };
+        if let Some(nanos) = nanos {
+            return Some(self.from(nanos.div_euclid(NANOS), nanos.rem_euclid(NANOS) as f64 * 1e-9));
         }
-        let Some(value) = cell.number() else {
-            let Cell::Text(text) = cell else { return None };
-            let nanos = iso(std::str::from_utf8(text.trim_ascii()).ok()?)?;
-            return Some(self.nanos(nanos));
+        let value = cell.number()?;
+        let seconds = value * time.factor;
+        if seconds.abs() <= CALENDAR as f64 || seconds.abs() >= i64::MAX as f64 {
+            let origin = *self.origin.get_or_insert(0);
+            return Some(seconds - origin as f64);
+        }
+        // Digits that a number has not the room for are those of a text and of a whole number.
+        let per_second = (1.0 / time.factor).round().max(1.0) as i64;
+        let text = match cell {
+            Cell::Text(text) => std::str::from_utf8(text.trim_ascii()).ok(),
+            _ => None,
         };
         let whole = match cell {
-            _ if value.abs() < EXACT => None,
             Cell::Integer(whole) => Some(whole),
-            Cell::Text(text) => std::str::from_utf8(text.trim_ascii()).ok()?.parse::<i64>().ok(),
-            Cell::Number(_) | Cell::Nanos(_) => None,
+            _ => text.and_then(|text| text.parse::<i64>().ok()),
         };
-        Some(match whole {
-            Some(whole) => {
-                let origin = *self.origin.get_or_insert(whole);
-                whole.saturating_sub(origin) as f64 * time.factor
-            }
-            None => value * time.factor,
-        })
+        if let Some(whole) = whole {
+            let rest = whole.rem_euclid(per_second) as f64 * time.factor;
+            return Some(self.from(whole.div_euclid(per_second), rest));
+        }
+        if let Some((whole, rest)) = text.filter(|_| per_second == 1).and_then(parted) {
+            return Some(self.from(whole, rest));
+        }
+        Some(self.from(seconds.floor() as i64, seconds - seconds.floor()))
     }
 
-    fn nanos(&mut self, nanos: i64) -> f64 {
-        let origin = *self.origin.get_or_insert(from_calendar(nanos.div_euclid(NANOS)));
-        let whole = nanos.div_euclid(NANOS) - origin;
-        whole as f64 + nanos.rem_euclid(NANOS) as f64 * 1e-9
+    /// The time of a stamp of `whole` seconds and a `rest`.
+    fn from(&mut self, whole: i64, rest: f64) -> f64 {
+        let origin = *self
+            .origin
+            .get_or_insert(if whole.abs() > CALENDAR { whole } else { 0 });
+        whole.saturating_sub(origin) as f64 + rest
     }
 }
 
-/// What is subtracted from seconds of which the first are `whole`.
-fn from_calendar(whole: i64) -> i64 {
-    if whole.abs() > CALENDAR { whole } else { 0 }
+/// Whole seconds and the rest of a decimal number that is not negative.
+fn parted(text: &str) -> Option<(i64, f64)> {
+    let (whole, rest) = text.split_once('.')?;
+    let is_digits = |text: &str| !text.is_empty() && text.bytes().all(|letter| letter.is_ascii_digit());
+    if !is_digits(whole) || !is_digits(rest) {
+        return None;
+    }
+    Some((whole.parse().ok()?, format!("0.{rest}").parse().ok()?))
 }
 
 /// The time that an ISO 8601 text is (ns since 1970, UTC where it names no zone).
@@ -77,6 +97,21 @@ fn iso(text: &str) -> Option<i64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_calendars_seconds_keep_their_nanoseconds() {
+        assert_eq!(parted("1709294400.000000001"), Some((1_709_294_400, 1e-9)));
+        for text in ["1709294400", "-1709294400.5", "1.7e9", "17.0e9", "1709294400."] {
+            assert_eq!(parted(text), None, "{text}");
+        }
+        let mut stamps = Stamps::default();
+        assert_eq!(stamps.from(1_709_294_400, 0.25), 0.25);
+        assert_eq!(stamps.from(1_709_294_402, 1e-9), 2.000_000_001);
+        assert_eq!(stamps.epoch(), Some(1_709_294_400));
+        let mut stamps = Stamps::default();
+        assert_eq!(stamps.from(900_000, 0.5), 900_000.5);
+        assert_eq!(stamps.epoch(), None);
+    }
 
     #[test]
     fn iso_8601_is_read_with_and_without_a_zone() {

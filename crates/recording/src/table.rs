@@ -183,6 +183,8 @@ pub trait RowSource {
 
 /// Named columns and the rows below them.
 pub struct Table {
+    /// Whether it is text with lines, of which the first names the columns.
+    pub has_lines: bool,
     /// The columns' names.
     pub headers: Vec<String>,
     /// The first row's cells, if they are text: joints may be named there.
@@ -199,6 +201,7 @@ impl Table {
         let (headers, columns): (Vec<String>, Vec<Column>) = columns.into_iter().unzip();
         let rows = columns.iter().map(Column::len).min().unwrap_or(0);
         Self {
+            has_lines: false,
             first: Vec::new(),
             headers,
             rows: Box::new(Held { columns, rows, next: 0 }),

@@ -39,6 +39,7 @@ fn the_columns_are_those_of_the_same_csv() {
     // Places apart, which are lines in a file and rows in memory.
     let without = |recording: Recording| Recording {
         warnings: Vec::new(),
+        origin: None,
         ..recording
     };
     assert_eq!(without(read), without(taken));

@@ -26,8 +26,13 @@ pub enum Block {
         /// The caption.
         caption: String,
     },
-    /// Commands.
-    Code(String),
+    /// Code in a language.
+    Code {
+        /// `sh`, `toml`.
+        language: &'static str,
+        /// The code.
+        code: String,
+    },
 }
 
 /// A table.

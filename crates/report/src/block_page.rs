@@ -28,7 +28,7 @@ fn markup(block: &Block) -> Markup {
         Block::Heading(heading) => html! { h2 { (heading) } },
         Block::Section(heading) => html! { h3 { (heading) } },
         Block::Text(text) => html! { p { (inline(text)) } },
-        Block::Code(code) => html! { pre { code { (code) } } },
+        Block::Code { code, .. } => html! { pre { code { (code) } } },
         Block::Figure { svg, caption } => html! { figure { (PreEscaped(svg)) figcaption { (caption) } } },
         Block::Table { head, rows, words } => {
             let is_wide = head.len() > 8;

@@ -6,7 +6,7 @@ use arm::{Arm, JointKind};
 use diagnosis::{Finding, NotObservable, Report};
 
 use crate::block::{Block, table, text};
-use crate::{markdown, next_words, numbers, terminal, words};
+use crate::{doubts, markdown, next_words, numbers, terminal, words};
 
 /// The diagnosis of `arm` as Markdown; the same report gives the same bytes.
 pub fn diagnosis_markdown(report: &Report, arm: &Arm) -> String {
@@ -24,6 +24,14 @@ fn blocks(report: &Report, arm: &Arm) -> Vec<Block> {
         blocks.push(text(words::changed(changed)));
     }
     blocks.push(text(format!("**{}**", words::verdict(report))));
+    for group in doubts::groups(report) {
+        blocks.extend(group.texts.into_iter().map(|sentence| text(format!("{sentence}."))));
+        if let Some(map) = group.map {
+            blocks.push(text(doubts::USE));
+            let code = map.to_owned();
+            blocks.push(Block::Code { language: "toml", code });
+        }
+    }
     blocks.push(text(recordings(report)));
     for reason in &report.not_enough_data {
         blocks.push(text(format!("Not enough data: {reason}.")));

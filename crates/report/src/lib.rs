@@ -7,6 +7,7 @@ pub mod block;
 mod block_page;
 pub mod chart;
 mod diagnosis_markdown;
+pub mod doubts;
 mod markdown;
 pub mod next_words;
 pub mod numbers;

@@ -11,7 +11,7 @@ pub fn markdown(blocks: &[Block], made: &str) -> String {
             Block::Heading(heading) => text.push_str(&format!("## {}\n\n", without_tags(heading))),
             Block::Section(heading) => text.push_str(&format!("### {}\n\n", without_tags(heading))),
             Block::Text(paragraph) => text.push_str(&format!("{}\n\n", without_tags(paragraph))),
-            Block::Code(code) => text.push_str(&format!("```sh\n{code}\n```\n\n")),
+            Block::Code { language, code } => text.push_str(&format!("```{language}\n{}\n```\n\n", code.trim_end())),
             Block::Figure { .. } => {}
             Block::Table { head, rows, words } => {
                 if rows.is_empty() {

@@ -70,7 +70,7 @@ impl<'a> Page<'a> {
     fn whole(&self) -> String {
         let arm_view = arm_view::draw(self.report, self.figures.traces, self.figures.arm);
         let joints = (0..self.figures.arm.dof()).map(|joint| self.joint(joint));
-        let all = [self.overview(), self.next_steps(), self.whole_arm()];
+        let all = [self.doubts(), self.overview(), self.next_steps(), self.whole_arm()];
         let rest = [
             self.quiet_joints(),
             self.errors(),
@@ -90,7 +90,9 @@ impl<'a> Page<'a> {
                 ol { @for section in &sections { li { a href={ "#" (section.id) } { (section.title) } } } }
             }
             main {
-                figure.hero { (PreEscaped(arm_view)) figcaption { (arm_view::legend()) } }
+                @if self.report.doubts.is_empty() {
+                    figure.hero { (PreEscaped(arm_view)) figcaption { (arm_view::legend()) } }
+                }
                 @for section in sections { section {
                     h2 id=(section.id) { (section.title) }
                     (section.body)

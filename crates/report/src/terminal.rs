@@ -7,7 +7,7 @@ use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle
 use diagnosis::{Finding, NotObservable, Report, Unexplained};
 
 use crate::statistics::rms;
-use crate::{next_words, numbers, words};
+use crate::{doubts, next_words, numbers, words};
 
 pub(crate) mod steps;
 
@@ -25,6 +25,20 @@ pub fn table(header: impl IntoIterator<Item = String>) -> Table {
         } else {
             CellAlignment::Right
         });
+    }
+    table
+}
+
+/// `table` with less room between its columns, as far as its lines would be too long otherwise.
+pub fn fitted(mut table: Table) -> Table {
+    for padding in [(0, 1), (0, 0)] {
+        let width = table.lines().map(|line| line.chars().count()).max().unwrap_or(0);
+        if width <= WIDTH {
+            break;
+        }
+        for column in table.column_iter_mut() {
+            column.set_padding(padding);
+        }
     }
     table
 }
@@ -80,6 +94,14 @@ fn opening(report: &Report) -> String {
     let changed = report.changed.as_ref().map(|list| wrapped(&words::changed(list), ""));
     let mut text = changed.unwrap_or_default();
     text += &wrapped(&words::verdict(report), "");
+    for group in doubts::groups(report) {
+        for sentence in &group.texts {
+            text += &wrapped(sentence, "- ");
+        }
+        if let Some(map) = group.map {
+            let _ = write!(text, "\n{}\n{map}\n", wrapped(&doubts::USE.replace('`', ""), ""));
+        }
+    }
     if !report.findings.is_empty() {
         let _ = writeln!(text, "\n{}\n", findings(report));
         text += &wrapped(&columns(report), "");

@@ -191,6 +191,11 @@ pub fn verdict(report: &Report) -> String {
             format!("The mismatch on {open} is unexplained: no effect in the catalogue accounts for it.")
         }
         Verdict::NotEnoughData => "The recordings do not contain enough data for a diagnosis.".into(),
+        Verdict::UnitsFirst => {
+            "Units, signs, order or zeros first: no effect was searched, because the recordings do not fit \
+                                the robot as they were read."
+                .into()
+        }
     }
 }
 

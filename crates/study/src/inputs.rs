@@ -1,11 +1,13 @@
 //! The recordings of a diagnosis, checked before anything is fitted.
 
+mod epoch;
 mod joints;
 
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use arm::Arm;
+use diagnosis::Doubt;
 use recording::{Column, ColumnMap, FindingKind, Quality, Recording, RecordingError, RegularRecording};
 
 use self::joints::{order, reordered};
@@ -69,8 +71,12 @@ pub struct Prepared {
     pub regular: RegularRecording,
     /// Its role.
     pub role: Role,
-    /// The column map that corrects contradictions with the arm.
+    /// The second of a calendar that its time is counted from.
+    epoch: Option<i64>,
+    /// The column map that mends what does not fit the arm.
     column_map: Option<String>,
+    /// Why it cannot be diagnosed as it was read; empty if it can.
+    pub doubts: Vec<Doubt>,
 }
 
 /// The role of a recording.
@@ -173,11 +179,12 @@ pub fn read(
         named::name_joints(&mut recording, arm);
         let map = map.as_ref().map(|(path, _)| *path);
         let order = order(&recording, arm, &name, &choosing, map)?;
-        let prepared = prepare(recording, name, &order, role, arm, map.is_some(), notes)?;
+        let prepared = prepare(recording, name, &order, role, arm, notes)?;
         if let Some(map) = &prepared.column_map
+            && prepared.doubts.is_empty()
             && list.iter().all(|other| other.column_map.as_ref() != Some(map))
         {
-            let text = format!("a column map that corrects it (--map):\n{map}");
+            let text = format!("a column map that mends it; save it as map.toml, and add --map map.toml:\n{map}");
             notes.add("note", &prepared.name, text);
         }
         // The same samples under another name.
@@ -204,6 +211,7 @@ pub fn read(
         }
         list.push(prepared);
     }
+    epoch::share(&mut list);
     if list
         .iter()
         .filter(|recording| recording.role == Role::Train)
@@ -239,13 +247,12 @@ fn prepare(
     order: &[usize],
     role: Role,
     arm: &Arm,
-    mapped: bool,
     notes: &mut Notes,
 ) -> anyhow::Result<Prepared> {
     let (regular, warnings) = recording.regular().with_context(|| name.clone())?;
     let quality = Quality::of(&recording, &regular);
     let misfits = check::check(arm, &regular, &quality);
-    let column_map = check::column_map(&misfits, &recording, mapped);
+    let column_map = check::column_map(&misfits, &recording);
     let (told, gaps) = shortened(recording.warnings.iter().chain(&warnings), |warning| warning);
     for warning in told {
         notes.add("note", &name, warning.to_string());
@@ -273,41 +280,31 @@ fn prepare(
     for misfit in misfits.iter().filter(|misfit| !misfit.spoils) {
         notes.add("warning", &name, about(&misfit.joint, &misfit.text));
     }
-    if let Some(misfit) = misfits.iter().find(|misfit| misfit.spoils) {
-        let joint = misfit
-            .joint
-            .as_ref()
-            .map_or_else(String::new, |joint| format!("{joint}: "));
-        let map = column_map.map_or_else(String::new, |map| format!(" A column map that corrects it:\n{map}"));
-        bail!(
-            "{name}: {joint}{}. Correct units, signs, order or zeros first: until then, no effect is searched.{map}",
-            misfit.text
-        );
-    }
+    let spoils = misfits.into_iter().filter(|misfit| misfit.spoils);
+    let doubts = spoils
+        .map(|misfit| Doubt {
+            recording: name.clone(),
+            joint: misfit.joint,
+            text: misfit.text,
+            column_map: column_map.clone(),
+        })
+        .collect();
     let regular = reordered(regular, order);
-    if let Some(reason) = unusable(&regular, &quality) {
+    if let Some(reason) = unusable(&regular) {
         bail!("{name}: {reason}");
     }
     Ok(Prepared {
         name,
         regular,
         role,
+        epoch: recording.epoch,
         column_map,
+        doubts,
     })
 }
 
-/// The least sampling rate of a drive (Hz).
-const SLOWEST: f64 = 10.0;
-
-/// Why a recording cannot be diagnosed for any arm, with the remedy.
-fn unusable(regular: &RegularRecording, quality: &Quality) -> Option<String> {
-    if quality.rate < SLOWEST {
-        return Some(format!(
-            "its rows are {:.3} s apart; are its stamps in ms? Give the unit in a column map (--map: unit = \"ms\" under \
-             [time]), or record at 100 Hz or more",
-            regular.period
-        ));
-    }
+/// Why a recording cannot be diagnosed for any arm, and the remedy.
+fn unusable(regular: &RegularRecording) -> Option<String> {
     if regular.tau.iter().all(|tau| tau.iter().all(|value| *value == tau[0])) {
         let what = if regular.tau.iter().flatten().all(|&tau| tau == 0.0) {
             "zero"
@@ -317,15 +314,6 @@ fn unusable(regular: &RegularRecording, quality: &Quality) -> Option<String> {
         return Some(format!(
             "all torques are {what}; check the torque columns (tau_<joint>), or name them in a column map (--map)"
         ));
-    }
-    let mut moving = quality.joints.iter().filter(|joint| joint.moves).peekable();
-    let degrees = |ratio: f64| (ratio.to_degrees() - 1.0).abs() < 0.04;
-    if moving.peek().is_some() && moving.all(|joint| joint.velocity_ratio.is_some_and(|ratio| degrees(ratio.abs()))) {
-        return Some(
-            "the positions of all joints that move are in degrees (their slopes are 57.3 times the recorded velocities); \
-             say so for each joint in a column map (--map): q_unit = \"deg\""
-                .to_owned(),
-        );
     }
     None
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
 use arm::{Arm, ChainOptions};
-use diagnosis::{Diagnosis, Input, Options, Step, Wanted};
+use diagnosis::{Diagnosis, Doubt, Input, Options, RecordingNames, Step, Wanted};
 use effects::Effect;
 
 use crate::effect_file::EffectFile;
@@ -95,6 +95,26 @@ impl Request {
         let joints: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
         listener.recordings(&notes, &joints);
         let recordings = recordings?;
+        let doubts = recordings.iter().flat_map(|recording| recording.doubts.clone());
+        let doubts = with_one_map(doubts.collect());
+        if !doubts.is_empty() {
+            let names = |held_out: bool| {
+                let chosen = recordings
+                    .iter()
+                    .filter(|recording| (recording.role == Role::HeldOut) == held_out);
+                chosen.map(|recording| recording.name.clone()).collect()
+            };
+            let names = RecordingNames {
+                train: names(false),
+                held_out: names(true),
+            };
+            return Ok(Diagnosed {
+                diagnosis: Diagnosis::units_first(arm.name(), names, doubts),
+                robot,
+                arm,
+                effects: known,
+            });
+        }
         let list: Vec<Input<'_>> = recordings
             .iter()
             .map(|recording| Input {
@@ -156,6 +176,27 @@ impl Request {
     }
 }
 
+/// `doubts`, of which those whose maps differ in the factors of torques alone have the first one's: each recording estimates
+/// them anew, and one map is given for all.
+fn with_one_map(mut doubts: Vec<Doubt>) -> Vec<Doubt> {
+    let without_factors = |map: &str| -> Vec<String> {
+        let lines = map.lines().map(|line| match line.split_once("tau_scale = ") {
+            Some(("", _)) => "tau_scale",
+            _ => line,
+        });
+        lines.map(str::to_owned).collect()
+    };
+    let Some(first) = doubts.iter().find_map(|doubt| doubt.column_map.clone()) else {
+        return doubts;
+    };
+    for map in doubts.iter_mut().filter_map(|doubt| doubt.column_map.as_mut()) {
+        if without_factors(map) == without_factors(&first) {
+            map.clone_from(&first);
+        }
+    }
+    doubts
+}
+
 /// The effects that `only` asks for: `effect:joint,…`, or a file that a diagnosis wrote.
 ///
 /// # Errors
@@ -189,4 +230,31 @@ pub fn wanted(only: &str, arm: &Arm) -> anyhow::Result<Vec<Wanted>> {
         "--only {only:?}: names no effect; give effect:joint, or a file that --model wrote"
     );
     Ok(wanted)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maps_that_differ_in_factors_of_torques_are_one() {
+        let doubt = |map: Option<&str>| Doubt {
+            recording: "a.csv".to_owned(),
+            joint: None,
+            text: String::new(),
+            column_map: map.map(str::to_owned),
+        };
+        let maps = [
+            None,
+            Some("q = \"q_a\"\ntau_scale = 5.3"),
+            Some("q = \"q_a\"\ntau_scale = 5.4 # a guess"),
+            Some("q = \"q_a\"\nq_offset = 1.5"),
+        ];
+        let found: Vec<Option<String>> = with_one_map(maps.map(doubt).into())
+            .into_iter()
+            .map(|doubt| doubt.column_map)
+            .collect();
+        let expected = [maps[0], maps[1], maps[1], maps[3]].map(|map| map.map(str::to_owned));
+        assert_eq!(found, expected);
+    }
 }

@@ -11,7 +11,7 @@ use anyhow::Context;
 use arm::{Arm, JointKind};
 use diagnosis::{Excitation, ExcitationError, ExcitationOptions, JointUse, Quality};
 use recording::Recording;
-use report::terminal::{table, wrapped};
+use report::terminal::{fitted, table, wrapped};
 use report::{numbers, words};
 use torque::Motion;
 
@@ -194,7 +194,7 @@ fn text(arm: &Arm, found: &Excitation, compared: &[(String, Quality)]) -> String
     for (name, quality) in compared {
         motions.add_row(row(name, quality));
     }
-    let _ = write!(text, "\n{joints}\n\n{motions}\n\n");
+    let _ = write!(text, "\n{}\n\n{}\n\n", fitted(joints), fitted(motions));
     text += &wrapped(
         "speed, torque: the largest, and its part of what is allowed, which is 80 % of the limit; condition number: of the base \
          regressor with the columns of friction and drive inertia; scaled: with all columns scaled to one norm; deviations: the \

@@ -106,7 +106,7 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
     let (regular, found) = recording.regular().with_context(|| file.display().to_string())?;
     let quality = Quality::of(&recording, &regular);
     let against_robot = arm.map_or(Vec::new(), |arm| check::check(arm, &regular, &quality));
-    let column_map = check::column_map(&against_robot, &recording, map.is_some());
+    let column_map = check::column_map(&against_robot, &recording);
     let warnings = recording.warnings.iter().cloned().chain(found);
     Ok(FileReport {
         file,
@@ -172,7 +172,7 @@ fn shown(report: &FileReport<'_>) -> String {
             })),
         ]);
     }
-    let _ = writeln!(text, "{table}");
+    let _ = writeln!(text, "{}", report::terminal::fitted(table));
     let (told, gaps) = shortened(report.warnings.iter(), |told| &told.warning);
     for told in told {
         let _ = writeln!(text, "- {}", told.text);

@@ -10,7 +10,7 @@ use super::found::findings;
 use super::inertials::{Inertials, inertials};
 use super::locate::locate;
 use super::observability::unseen;
-use super::report::{Finding, JointFit, Located, NotObservable, RecordingNames, Report, Traces, Unexplained};
+use super::report::{Finding, JointFit, Located, NotObservable, RecordingNames, Report, SCHEMA, Traces, Unexplained};
 use super::traces::traces;
 use super::verdict::{not_enough, poorly_predicted, unexplained, verdict};
 use super::{dual_sensor, sentences, transients};
@@ -154,12 +154,13 @@ impl Conclusion {
         let (next_experiment, next) = next.map_or((None, None), |next| (Some(next.report), next.motion));
         let findings: Vec<Finding> = self.findings.into_iter().map(|(finding, _)| finding).collect();
         let report = Report {
-            schema: "testbed.diagnosis/1",
+            schema: SCHEMA,
             robot: arm.name().to_owned(),
             recordings: RecordingNames {
                 train: names(false),
                 held_out: names(true),
             },
+            doubts: Vec::new(),
             verdict: verdict(&findings, &self.unexplained, &self.not_enough_data, &self.located),
             unexplained: self.unexplained,
             not_observable: self.not_observable,

@@ -9,12 +9,15 @@ use serde::Serialize;
 pub use crate::findings::inertials::LinkInertials;
 use crate::next::NextExperiment;
 
+/// What [`Report::schema`] is.
+pub(crate) const SCHEMA: &str = "testbed.diagnosis/1";
+
 /// The result of a diagnosis. Maps are keyed by the URDF joint's name.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 #[schemars(title = "testbed.diagnosis/1")]
 pub struct Report {
     /// `testbed.diagnosis/1`.
-    #[schemars(extend("const" = "testbed.diagnosis/1"))]
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: &'static str,
     /// The robot's name in its URDF.
     pub robot: String,
@@ -22,6 +25,10 @@ pub struct Report {
     pub recordings: RecordingNames,
     /// The verdict in one word.
     pub verdict: Verdict,
+    /// What is wrong with the recordings' units, signs, order or zeros, and mends it; no effect is searched before. Empty
+    /// in every other verdict.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub doubts: Vec<Doubt>,
     /// The effects found, the largest share first.
     pub findings: Vec<Finding>,
     /// Structured residuals that no effect in the catalogue explains.
@@ -76,6 +83,21 @@ pub enum Verdict {
     Unexplained,
     /// The recordings do not contain enough data.
     NotEnoughData,
+    /// Units, signs, order or zeros of the recordings come first: no effect was searched.
+    UnitsFirst,
+}
+
+/// A recording that does not fit the robot as it was read.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Doubt {
+    /// The recording, as it was named.
+    pub recording: String,
+    /// The joint, or `None` where it is about all that move.
+    pub joint: Option<String>,
+    /// What is wrong, and the remedy.
+    pub text: String,
+    /// The whole column map (TOML) that mends it, where one does.
+    pub column_map: Option<String>,
 }
 
 /// One effect named.

@@ -127,7 +127,12 @@ def diagnose(
     if error is not None:
         raise error
     assert outcome is not None
-    return Diagnosis._of(outcome, tuple(text for text, _ in notes))
+    result = Diagnosis._of(outcome, tuple(text for text, _ in notes))
+    for doubt in result.doubts:
+        joint = f"{doubt.joint}: " if doubt.joint else ""
+        text = doubt.text.replace("--map", "column_map")
+        warnings.warn(f"no effect was searched: {doubt.recording}: {joint}{text}", RecordingWarning, stacklevel=2)
+    return result
 
 
 def _locks(lock: Optional[Mapping[str, float]]) -> list[tuple[str, float]]:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from ._core import Outcome
 
-Verdict = Literal["no_mismatch", "explained", "partly_explained", "unexplained", "not_enough_data"]
+Verdict = Literal["no_mismatch", "explained", "partly_explained", "unexplained", "not_enough_data", "units_first"]
 
 
 @dataclass(frozen=True)
@@ -148,11 +148,26 @@ def _fit(of: dict[str, Any]) -> JointFit:
 
 
 @dataclass(frozen=True)
+class Doubt:
+    """A recording whose units, signs, order or zeros do not fit the robot."""
+
+    recording: str
+    joint: Optional[str]
+    """The joint, or None where it is about all that move."""
+    text: str
+    """What is wrong, and the remedy."""
+    column_map: Optional[str]
+    """The column map (TOML) that mends it, where one does."""
+
+
+@dataclass(frozen=True)
 class Diagnosis:
     """The result of a diagnosis."""
 
     robot: str
     verdict: Verdict
+    doubts: tuple[Doubt, ...]
+    """What comes first where the verdict is `units_first`: no effect was searched then. Empty otherwise."""
     effects: tuple[Effect, ...]
     """The effects that the model omits, the largest share first."""
     joints: Mapping[str, JointFit]
@@ -174,6 +189,9 @@ class Diagnosis:
         return cls(
             robot=report["robot"],
             verdict=report["verdict"],
+            doubts=tuple(
+                Doubt(of["recording"], of["joint"], of["text"], of["column_map"]) for of in report.get("doubts", [])
+            ),
             effects=tuple(_effect(finding) for finding in report["findings"]),
             joints=_frozen({joint: _fit(of) for joint, of in report["fit"].items()}),
             unexplained=tuple(

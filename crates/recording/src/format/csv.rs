@@ -50,7 +50,11 @@ impl Format for Csv {
             },
         };
         if let Some(reason) = header::numbers(&headers) {
-            return Err(RecordingError::Header { path, reason });
+            return Err(RecordingError::Header {
+                path,
+                has_lines: true,
+                reason,
+            });
         }
         let mut rows = Lines {
             path,
@@ -67,6 +71,7 @@ impl Format for Csv {
         let first = if rows.any { &rows.newest } else { &rows.before };
         let text = |cell: &[u8]| String::from_utf8_lossy(cell.trim_ascii()).into_owned();
         Ok(Table {
+            has_lines: true,
             first: first.iter().map(text).collect(),
             headers,
             rows: Box::new(rows),

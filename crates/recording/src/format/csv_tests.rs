@@ -34,6 +34,14 @@ fn read(text: &str) -> Result<Recording, RecordingError> {
     Recording::read(&write(&folder, text))
 }
 
+/// Without the names of the file's columns.
+fn without_origin(recording: Recording) -> Recording {
+    Recording {
+        origin: None,
+        ..recording
+    }
+}
+
 fn refusal(text: &str) -> String {
     read(text).expect_err("it is refused").to_string()
 }
@@ -43,7 +51,8 @@ fn what_is_written_reads_back_to_the_same_bits() {
     let folder = folder();
     let path = folder.path().join("r.csv");
     recording().write_csv(&path).expect("it writes");
-    assert_eq!(Recording::read(&path).expect("it reads"), recording());
+    let again = Recording::read(&path).expect("it reads");
+    assert_eq!(without_origin(again), recording());
 }
 
 #[test]
@@ -309,13 +318,14 @@ fn a_joint_without_any_torque_is_left_out() {
 
 #[test]
 fn spaces_and_the_other_forms_of_time_are_read() {
-    let plain = read("t,q_a,tau_a\n0,1,2\n1,1.5,2.5\n").expect("it reads");
+    let plain = without_origin(read("t,q_a,tau_a\n0,1,2\n1,1.5,2.5\n").expect("it reads"));
     for other in [
         "t q_a tau_a\n0 1 2\n1 1.5 2.5\n",
         "  t   q_a  tau_a \r\n 0.0   1 2  \r\n  1 1.5 2.5\r\n",
         "secs,nsecs,q_a,tau_a\n0,0,1,2\n1,0,1.5,2.5\n",
     ] {
-        assert_eq!(read(other).expect("it reads"), plain, "{other:?}");
+        let other_form = read(other).expect("it reads");
+        assert_eq!(without_origin(other_form), plain, "{other:?}");
     }
     for stamps in [
         ["2024-03-01T12:00:00Z", "2024-03-01T12:00:01Z"],

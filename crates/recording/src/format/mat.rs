@@ -18,6 +18,8 @@ const VERSION: usize = 124;
 const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
 /// Classes of arrays with numbers: double to uint64.
+/// Classes of structures and objects, tables and time series among these.
+const STRUCTURES: std::ops::RangeInclusive<u8> = 2..=3;
 const NUMERIC: std::ops::RangeInclusive<u8> = 6..=15;
 
 /// MATLAB, version 5.
@@ -31,27 +33,40 @@ impl Format for Mat {
 
     fn read(&self, input: Input, _: &Options<'_>) -> Result<Table, RecordingError> {
         let data = input.to_bytes()?;
-        let arrays = read(&data).map_err(|reason| input.error(NAME, reason))?;
+        let (arrays, structures) = read(&data).map_err(|reason| input.error(NAME, reason))?;
+        if let ([], [structure, ..]) = (&arrays[..], &structures[..]) {
+            let reason = format!(
+                "it holds the structure or table \"{structure}\", which is not read; save its fields as variables: \
+                 save(\"run.mat\", \"-struct\", \"{structure}\", \"-v7\") of a structure, save(\"run.mat\", \"t\", \"q\", \"tau\", \
+                 \"-v7\") of arrays"
+            );
+            return Err(input.error(NAME, reason));
+        }
         arrays::table(&input, NAME, &arrays)
     }
 }
 
 const DAMAGED: &str = "the file is damaged or cut; save or copy it again";
 
-/// The variables that are real arrays of numbers with two dimensions.
-fn read(data: &[u8]) -> Result<Vec<Array>, String> {
+/// The variables that are real arrays of numbers with two dimensions, and the names of those that are structures or objects.
+fn read(data: &[u8]) -> Result<(Vec<Array>, Vec<String>), String> {
     let big_endian = match data.get(VERSION + 2..HEADER) {
         Some(b"IM") => false,
         Some(b"MI") => true,
         _ => return Err(DAMAGED.to_owned()),
     };
     let mut room = most_expanded(data.len() as u64);
-    let mut arrays = Vec::new();
+    let (mut arrays, mut structures) = (Vec::new(), Vec::new());
+    let mut take = |found: Option<Variable>| match found {
+        Some(Variable::Array(array)) => arrays.push(array),
+        Some(Variable::Structure(name)) => structures.push(name),
+        None => {}
+    };
     let mut bytes = Bytes::new(&data[HEADER..], big_endian);
     while bytes.left() > 0 {
         let (kind, content) = element(&mut bytes, true).ok_or(DAMAGED)?;
         if kind != COMPRESSED {
-            arrays.extend(variable(kind, content, big_endian)?);
+            take(variable(kind, content, big_endian)?);
             continue;
         }
         let mut expanded = Vec::new();
@@ -61,9 +76,9 @@ fn read(data: &[u8]) -> Result<Vec<Array>, String> {
             "the variables expand to more than a hundred times the file's size, which no recording does; save them with -v6",
         )?;
         let (kind, content) = element(&mut Bytes::new(&expanded, big_endian), false).ok_or(DAMAGED)?;
-        arrays.extend(variable(kind, content, big_endian)?);
+        take(variable(kind, content, big_endian)?);
     }
-    Ok(arrays)
+    Ok((arrays, structures))
 }
 
 /// The next data element: its type and its bytes. Elements begin at multiples of eight bytes, but for compressed ones.
@@ -82,8 +97,15 @@ fn element<'a>(bytes: &mut Bytes<'a>, is_outer: bool) -> Option<(u32, &'a [u8])>
     Some((kind, data))
 }
 
-/// A variable, if it is a real array of numbers with two dimensions.
-fn variable(kind: u32, content: &[u8], big_endian: bool) -> Result<Option<Array>, String> {
+/// A variable that can be used, or could.
+enum Variable {
+    Array(Array),
+    /// The name of a structure or an object.
+    Structure(String),
+}
+
+/// A variable, if it is a real array of numbers with two dimensions, or a structure.
+fn variable(kind: u32, content: &[u8], big_endian: bool) -> Result<Option<Variable>, String> {
     if kind != MATRIX {
         return Ok(None);
     }
@@ -92,6 +114,9 @@ fn variable(kind: u32, content: &[u8], big_endian: bool) -> Result<Option<Array>
     let ((_, flags), (_, sizes), (_, name)) = (next()?, next()?, next()?);
     let flags = Bytes::new(flags, big_endian).u32().ok_or(DAMAGED)?;
     let (class, is_complex) = ((flags & 0xFF) as u8, flags & 0x800 != 0);
+    if STRUCTURES.contains(&class) {
+        return Ok(Some(Variable::Structure(String::from_utf8_lossy(name).into_owned())));
+    }
     let sizes = Bytes::new(sizes, big_endian)
         .integers(4, true, sizes.len() / 4)
         .ok_or(DAMAGED)?;
@@ -117,10 +142,10 @@ fn variable(kind: u32, content: &[u8], big_endian: bool) -> Result<Option<Array>
         13 => data.integers(8, false, count).map(Column::Integers),
         _ => None,
     };
-    Ok(Some(Array {
+    Ok(Some(Variable::Array(Array {
         name: String::from_utf8_lossy(name).into_owned(),
         shape,
         by_rows: false,
         values: values.ok_or(DAMAGED)?,
-    }))
+    })))
 }

@@ -50,9 +50,7 @@ impl Format for Rosbag2 {
         }
         files.sort();
         if files.is_empty() {
-            let reason =
-                "it is a folder without .db3 or .mcap files, and so no bag; give a recording's file or a bag's folder";
-            return Err(input.error(NAME, reason));
+            return Err(input.error(NAME, no_bag(&input.path)));
         }
         let mut warnings = Vec::new();
         for path in files {
@@ -67,6 +65,41 @@ impl Format for Rosbag2 {
         table.warnings.extend(warnings);
         Ok(table)
     }
+}
+
+/// What to give in the place of a folder that is no bag: the files below it that may be meant.
+fn no_bag(folder: &Path) -> String {
+    const DEPTH: usize = 4;
+    /// Of more folders on a level, a data set's are not the last.
+    const FOLDERS: usize = 64;
+    let mut level = vec![folder.to_owned()];
+    for _ in 0..DEPTH {
+        let mut entries: Vec<_> = level
+            .iter()
+            .filter_map(|folder| std::fs::read_dir(folder).ok())
+            .flatten()
+            .filter_map(|entry| Some(entry.ok()?.path()))
+            .collect();
+        entries.sort();
+        let has_end = |path: &&std::path::PathBuf| {
+            let name = path.to_string_lossy();
+            [".parquet", ".db3", ".mcap", ".csv", ".npz", ".mat"]
+                .iter()
+                .any(|end| name.ends_with(end))
+        };
+        if let Some(first) = entries.iter().find(has_end) {
+            return format!(
+                "it is a folder without .db3 or .mcap files, and so no bag; give the recordings themselves, such as {}",
+                first.display()
+            );
+        }
+        level = entries
+            .into_iter()
+            .filter(|path| path.is_dir() && !path.is_symlink())
+            .take(FOLDERS)
+            .collect();
+    }
+    "it is a folder without .db3 or .mcap files, and so no bag; give a recording's file or a bag's folder".to_owned()
 }
 
 /// Refuses a link in a bag's folder that leads out of it.

@@ -10,7 +10,8 @@ const KNOWN: &[(&[u8], &str, &str)] = &[
     (
         b"MATLAB 7.3",
         ".mat",
-        "version 7.3 is not read; save it with save(\"file.mat\", \"-v7\")",
+        "version 7.3 (HDF5) is not read; save it again from MATLAB: save(\"run.mat\", \"t\", \"q\", \"tau\", \"-v7\"); or from Python: \
+         scipy.io.savemat(\"run.mat\", {\"t\": t, \"q\": q, \"tau\": tau})",
     ),
     (
         b"\x89HDF\r\n",

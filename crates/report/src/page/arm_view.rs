@@ -10,9 +10,12 @@ use crate::chart::Svg;
 use crate::{numbers, words};
 
 const WIDTH: f64 = 800.0;
-const HEIGHT: f64 = 396.0;
-/// The box of the arm in the picture: left, top, right, bottom.
-const BOX: [f64; 4] = [270.0, 34.0, 530.0, 372.0];
+/// The arm's own part of the picture: from left to right, from the top down.
+const SIDES: [f64; 2] = [270.0, 530.0];
+const TOP: f64 = 34.0;
+/// Its greatest height, and the picture's below it.
+const TALLEST: f64 = 338.0;
+const BELOW: f64 = 24.0;
 /// Height of the camera above the horizon (rad).
 const ELEVATION: f64 = 0.42;
 const RADIUS: f64 = 12.0;
@@ -65,10 +68,12 @@ pub fn draw(report: &Report, traces: &Traces, arm: &Arm) -> String {
     let floor = 0.28 * reach;
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
         .map(|[x, y]| camera.see(&Vector3::new(floor * x, floor * y, 0.0)));
-    let fit = fit_into_box(seen.iter().chain(&corners));
+    let fit = fit_into_box(seen.iter().chain(&corners), arm.dof());
+    let bottom = fit.bottom;
+    let fit = |point: [f64; 2]| fit.place(point);
     let mut svg = Svg::new(
         WIDTH,
-        HEIGHT,
+        bottom + BELOW,
         "the arm, its joints coloured by the nominal model's error",
     );
     svg.area(&corners.map(&fit), "floor");
@@ -90,7 +95,7 @@ pub fn draw(report: &Report, traces: &Traces, arm: &Arm) -> String {
     let joints = spread_out(&placed[1..=arm.dof()]);
     let tool = placed[arm.dof() + 1];
     svg.raw(format_args!("<g class=\"labels\">"));
-    labels(&mut svg, report, arm, &joints, tool);
+    labels(&mut svg, report, arm, (&joints, tool), bottom);
     svg.raw(format_args!("</g>"));
     for (i, [x, y]) in joints.iter().enumerate() {
         let [from_x, from_y] = placed[i + 1];
@@ -165,8 +170,26 @@ fn skeleton(arm: &Arm, workspace: &mut Workspace, q: &[f64]) -> Vec<Vector3<f64>
     std::iter::once(Vector3::zeros()).chain(joints).chain([tool]).collect()
 }
 
-/// The map of the points into the middle of the box.
-fn fit_into_box<'a>(points: impl Iterator<Item = &'a [f64; 2]>) -> impl Fn([f64; 2]) -> [f64; 2] + Copy {
+/// The map of a picture.
+struct InBox {
+    /// The middle of what is seen.
+    middle: [f64; 2],
+    zoom: f64,
+    /// The lower end of the arm's part of the picture.
+    bottom: f64,
+}
+
+impl InBox {
+    fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [
+            0.5 * (SIDES[0] + SIDES[1]) + self.zoom * (x - self.middle[0]),
+            0.5 * (TOP + self.bottom) + self.zoom * (y - self.middle[1]),
+        ]
+    }
+}
+
+/// The map that puts the points into the middle of the box, which is as high as they and the labels of `dof` joints need.
+fn fit_into_box<'a>(points: impl Iterator<Item = &'a [f64; 2]>, dof: usize) -> InBox {
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];
     for point in points {
@@ -175,14 +198,14 @@ fn fit_into_box<'a>(points: impl Iterator<Item = &'a [f64; 2]>) -> impl Fn([f64;
             high[axis] = high[axis].max(point[axis]);
         }
     }
-    let [left, top, right, bottom] = BOX;
     let size = |axis: usize| (high[axis] - low[axis]).max(1e-3);
-    let zoom = ((right - left) / size(0)).min((bottom - top) / size(1));
-    move |[x, y]| {
-        [
-            0.5 * (left + right) + zoom * (x - 0.5 * (low[0] + high[0])),
-            0.5 * (top + bottom) + zoom * (y - 0.5 * (low[1] + high[1])),
-        ]
+    let zoom = ((SIDES[1] - SIDES[0]) / size(0)).min(TALLEST / size(1));
+    // One label more for the whole arm, on two sides.
+    let of_labels = LABEL * (dof + 1).div_ceil(2) as f64;
+    InBox {
+        middle: [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])],
+        zoom,
+        bottom: TOP + (zoom * size(1)).max(of_labels).min(TALLEST),
     }
 }
 
@@ -215,7 +238,7 @@ fn spread_out(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
 }
 
 /// Names and findings at both sides, with lines to the joints.
-fn labels(svg: &mut Svg, report: &Report, arm: &Arm, joints: &[[f64; 2]], tool: [f64; 2]) {
+fn labels(svg: &mut Svg, report: &Report, arm: &Arm, (joints, tool): (&[[f64; 2]], [f64; 2]), bottom: f64) {
     let mut all: Vec<Label> = Vec::new();
     let effects = |joint: Option<&str>| {
         let own = report
@@ -261,10 +284,13 @@ fn labels(svg: &mut Svg, report: &Report, arm: &Arm, joints: &[[f64; 2]], tool: 
     }
     all.sort_by(|a, b| a.at[0].total_cmp(&b.at[0]));
     let right = all.split_off(all.len() / 2);
-    for (mut side, x, anchor, sign) in [(all, BOX[0] - 30.0, "end", 1.0), (right, BOX[2] + 30.0, "start", -1.0)] {
+    for (mut side, x, anchor, sign) in [
+        (all, SIDES[0] - 30.0, "end", 1.0),
+        (right, SIDES[1] + 30.0, "start", -1.0),
+    ] {
         side.sort_by(|a, b| a.at[1].total_cmp(&b.at[1]));
         let wanted: Vec<f64> = side.iter().map(|label| label.at[1]).collect();
-        for (label, y) in side.iter().zip(stacked(&wanted)) {
+        for (label, y) in side.iter().zip(stacked(&wanted, bottom)) {
             svg.raw(format_args!(
                 "<path class=\"leader\" d=\"M{:.1} {:.1}L{:.1} {:.1}L{:.1} {:.1}\"/>",
                 x + 6.0 * sign,
@@ -298,9 +324,9 @@ fn labels(svg: &mut Svg, report: &Report, arm: &Arm, joints: &[[f64; 2]], tool: 
     }
 }
 
-/// Heights near the wanted ones (in order), at which no two labels overlap.
-fn stacked(wanted: &[f64]) -> Vec<f64> {
-    let (top, bottom) = (BOX[1], BOX[3] - 10.0);
+/// Heights near the wanted ones (in order), no two labels in each other's way.
+fn stacked(wanted: &[f64], bottom: f64) -> Vec<f64> {
+    let (top, bottom) = (TOP, bottom - 10.0);
     let mut placed: Vec<f64> = Vec::new();
     for &y in wanted {
         let free = placed.last().map_or(top, |last| last + LABEL);

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::table::{brief_table, number, words as text};
 use super::{Page, Section, key};
-use crate::{numbers, terminal, words};
+use crate::{doubts, numbers, terminal, words};
 
 impl Page<'_> {
     /// `4 recordings, 1 held out`.
@@ -56,6 +56,28 @@ impl Page<'_> {
                 }
             }
         }
+    }
+
+    /// What is wrong with units, signs, order or zeros, with the column maps that mend it.
+    pub(super) fn doubts(&self) -> Option<Section> {
+        let groups = doubts::groups(self.report);
+        if groups.is_empty() {
+            return None;
+        }
+        let body = html! {
+            @for group in groups {
+                ul.steps { @for sentence in &group.texts { li { (sentence) "." } } }
+                @if let Some(map) = group.map {
+                    p { (coded(doubts::USE)) }
+                    pre { code { (map) } }
+                }
+            }
+        };
+        Some(Section::new(
+            "units",
+            html! { "Units, signs, order or zeros first" },
+            body,
+        ))
     }
 
     /// All findings in a table.
@@ -117,6 +139,15 @@ impl Page<'_> {
             (key("k-after", "after: measured − nominal model − effects found"))
             (key("box k-rest", "at rest, not fitted"))
             @if has_windows { (key("box k-window", "largest residual")) }
+        }
+    }
+}
+
+/// `text` with code between backticks.
+fn coded(text: &str) -> Markup {
+    html! {
+        @for (index, part) in text.split('`').enumerate() {
+            @if index % 2 == 1 { code { (part) } } @else { (part) }
         }
     }
 }

@@ -12,7 +12,8 @@ pub fn of(report: &Report) -> Vec<String> {
         .iter()
         .map(|reason| format!("not enough data: {reason}"))
         .collect();
-    if report.recordings.held_out.is_empty() && report.verdict != Verdict::NotEnoughData {
+    let is_searched = !matches!(report.verdict, Verdict::NotEnoughData | Verdict::UnitsFirst);
+    if report.recordings.held_out.is_empty() && is_searched {
         steps.push("validate the fit with a recording of another motion (--held-out)".to_owned());
     }
     steps.extend(residuals(report));

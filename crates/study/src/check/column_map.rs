@@ -1,14 +1,16 @@
-//! The column map that corrects a recording: TOML, ready to paste.
+//! The column map that mends what does not fit: TOML, whole, ready to paste.
 
 use std::fmt::Write;
 
-/// The value of a key in a joint's table.
+use recording::{Origin, OriginColumn, Quantity, Recording};
+
+/// What a key of a column map is to be.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A number.
     Number(f64),
-    /// A text.
-    Text(&'static str),
+    /// A unit, and what one of it is in the unit that the recording was read in.
+    Unit(&'static str, f64),
     /// The column that the named joint has for this key.
     ColumnOf(String),
 }
@@ -16,18 +18,31 @@ pub enum Value {
 /// A key of a column map that corrects something.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Change {
-    joint: String,
+    /// The joint's table, or that of the time.
+    joint: Option<String>,
     key: &'static str,
     value: Value,
+    remark: Option<&'static str>,
 }
 
 impl Change {
     /// `key = value` in the table of `joint`.
     pub fn new(joint: &str, key: &'static str, value: Value) -> Self {
         Self {
-            joint: joint.to_owned(),
+            joint: Some(joint.to_owned()),
             key,
             value,
+            remark: None,
+        }
+    }
+
+    /// The unit of the time stamps, and how many seconds it is.
+    pub fn time(unit: &'static str, seconds: f64) -> Self {
+        Self {
+            joint: None,
+            key: "unit",
+            value: Value::Unit(unit, seconds),
+            remark: None,
         }
     }
 
@@ -36,43 +51,188 @@ impl Change {
         let short = format!("{factor:.2e}").parse().unwrap_or(factor);
         Self::new(joint, "tau_scale", Value::Number(short))
     }
+
+    /// The same with a comment behind it.
+    pub fn with_remark(self, remark: &'static str) -> Self {
+        Self {
+            remark: Some(remark),
+            ..self
+        }
+    }
 }
 
-/// The map with `changes`: complete for a recording with testbed's own column names (`own`, with velocities or not); otherwise,
-/// the keys to change in the map that gives the columns.
-pub fn text(joints: &[String], changes: &[Change], own: bool, velocities: bool) -> Option<String> {
+/// The whole map of `recording` with `changes`; `None` if there are none.
+pub fn text(recording: &Recording, changes: &[Change]) -> Option<String> {
     if changes.is_empty() {
         return None;
     }
-    let mut text = if own {
-        "[time]\ncolumn = \"t\"\n".to_owned()
-    } else {
-        "# keys to add to the column map; a factor multiplies the one that is there, an offset is added to it\n"
-            .to_owned()
+    let own;
+    let origin = match &recording.origin {
+        Some(origin) => origin,
+        None => {
+            own = own_columns(recording);
+            &own
+        }
     };
-    for joint in joints {
-        let is_here = |change: &&Change| change.joint == *joint && (velocities || change.key != "qd");
-        let here: Vec<&Change> = changes.iter().filter(is_here).collect();
-        if !own && here.is_empty() {
-            continue;
-        }
-        let _ = writeln!(text, "[joints.{}]", key_of(joint));
-        if own {
-            let columns = ["q", "tau", "qd"].iter().take(if velocities { 3 } else { 2 });
-            for key in columns.filter(|key| here.iter().all(|change| change.key != **key)) {
-                let _ = writeln!(text, "{key} = {}", quoted(&format!("{key}_{joint}")));
-            }
-        }
-        for Change { key, value, .. } in here {
-            let _ = match value {
-                Value::Number(number) => writeln!(text, "{key} = {number}"),
-                Value::Text(word) => writeln!(text, "{key} = {}", quoted(word)),
-                Value::ColumnOf(other) if own => writeln!(text, "{key} = {}", quoted(&format!("{key}_{other}"))),
-                Value::ColumnOf(other) => writeln!(text, "# {key}: the column that [joints.{}] has", key_of(other)),
-            };
+    let mut text = format!("[time]\ncolumn = {}\n", quoted(&origin.time));
+    let of_time = changes.iter().find(|change| change.joint.is_none());
+    let unit = match of_time.map(|change| &change.value) {
+        Some(Value::Unit(unit, _)) => Some(*unit),
+        _ => time_unit(origin.time_factor),
+    };
+    let keys = [
+        ("unit", unit),
+        ("nanosec", origin.nanosec.as_deref()),
+        ("run", origin.run.as_deref()),
+    ];
+    for (key, value) in keys {
+        if let Some(value) = value {
+            let _ = writeln!(text, "{key} = {}", quoted(value));
         }
     }
+    if let Some(one) = for_all(recording, origin, changes) {
+        return Some(text + &one);
+    }
+    for (index, joint) in recording.joints.iter().enumerate() {
+        let here: Vec<&Change> = changes
+            .iter()
+            .filter(|change| change.joint.as_ref() == Some(joint))
+            .collect();
+        let _ = writeln!(text, "[joints.{}]", key_of(joint));
+        text += &keys_of_joint(origin, &recording.joints, index, &here);
+    }
     Some(text)
+}
+
+/// One table for all joints, where each has the same changes, and columns with its name in the same place.
+fn for_all(recording: &Recording, origin: &Origin, changes: &[Change]) -> Option<String> {
+    const JOINT: &str = "{joint}";
+    let names = &recording.joints;
+    let tables = names.iter().enumerate().map(|(index, joint)| {
+        let here: Vec<&Change> = changes
+            .iter()
+            .filter(|change| change.joint.as_ref() == Some(joint))
+            .collect();
+        let is_named = |column: &OriginColumn| column.header.matches(joint.as_str()).count() == 1;
+        let own = origin.columns.iter().filter(|column| column.joint == index);
+        let is_alone = names.iter().filter(|other| other.contains(joint.as_str())).count() == 1;
+        let is_whole = here.iter().any(|change| matches!(change.value, Value::ColumnOf(_)));
+        if !is_alone || is_whole || !own.clone().all(is_named) {
+            return None;
+        }
+        Some(keys_of_joint(origin, names, index, &here).replace(joint.as_str(), JOINT))
+    });
+    let tables: Vec<String> = tables.collect::<Option<_>>()?;
+    let first = tables
+        .first()
+        .filter(|first| tables.len() > 2 && tables.iter().all(|table| table == *first))?;
+    Some(format!("[joints.\"{JOINT}\"]\n{first}"))
+}
+
+/// The lines of a joint's table.
+fn keys_of_joint(origin: &Origin, joints: &[String], joint: usize, changes: &[&Change]) -> String {
+    let mut text = String::new();
+    let change = |key: &str| changes.iter().find(|change| change.key == key);
+    let mut columns: Vec<(&str, &OriginColumn)> = Vec::new();
+    for own in origin.columns.iter().filter(|column| column.joint == joint) {
+        let key = own.quantity.prefix().trim_end_matches('_');
+        let of = |name: &String| {
+            let other = joints.iter().position(|other| other == name)?;
+            let mut all = origin.columns.iter();
+            all.find(|column| column.joint == other && column.quantity == own.quantity)
+        };
+        let column = match change(key).map(|change| &change.value) {
+            Some(Value::ColumnOf(name)) => of(name).unwrap_or(own),
+            _ => own,
+        };
+        columns.push((key, column));
+    }
+    // Where the columns were read as they are, the changes say what they mean; else the factors hold both.
+    let is_plain = columns
+        .iter()
+        .all(|(_, column)| column.factor == 1.0 && column.offset == 0.0);
+    for (key, column) in &columns {
+        // Units other than these cannot be told from a factor.
+        let is_written = matches!(column.quantity, Quantity::Current | Quantity::Temperature);
+        if is_written && (column.factor != 1.0 || column.offset != 0.0) {
+            continue;
+        }
+        let _ = writeln!(text, "{key} = {}", quoted(&column.header));
+        if is_plain || is_written {
+            continue;
+        }
+        let (factor, offset) = folded(column, changes);
+        if factor != 1.0 {
+            let _ = writeln!(text, "{key}_scale = {factor}");
+        }
+        if offset != 0.0 && column.quantity == Quantity::Position {
+            let _ = writeln!(text, "q_offset = {offset}");
+        }
+    }
+    for change in changes.iter().filter(|_| is_plain) {
+        let value = match &change.value {
+            Value::Number(number) => number.to_string(),
+            Value::Unit(unit, _) => quoted(unit),
+            Value::ColumnOf(_) => continue,
+        };
+        // A unit of velocities that were not recorded.
+        if change.key == "qd_unit" && columns.iter().all(|(key, _)| *key != "qd") {
+            continue;
+        }
+        let remark = change.remark.map_or(String::new(), |remark| format!(" # {remark}"));
+        let _ = writeln!(text, "{} = {value}{remark}", change.key);
+    }
+    text
+}
+
+/// Factor and offset of a column after `changes`.
+fn folded(column: &OriginColumn, changes: &[&Change]) -> (f64, f64) {
+    let value = |key: &str, missing: f64| {
+        let found = changes.iter().find(|change| change.key == key);
+        found.map_or(missing, |change| match change.value {
+            Value::Number(number) | Value::Unit(_, number) => number,
+            Value::ColumnOf(_) => missing,
+        })
+    };
+    let sign = value("sign", 1.0);
+    let torque = sign * value("tau_sign", 1.0) * value("tau_scale", 1.0);
+    let motion = match column.quantity {
+        Quantity::Position | Quantity::Acceleration => sign * value("q_unit", 1.0),
+        Quantity::Velocity => sign * value("qd_unit", 1.0),
+        Quantity::Torque => return (column.factor * torque, 0.0),
+        _ => sign,
+    };
+    (column.factor * motion, sign * column.offset + value("q_offset", 0.0))
+}
+
+/// The columns of a recording that was not read, as it would be written.
+fn own_columns(recording: &Recording) -> Origin {
+    let mut quantities = vec![Quantity::Position, Quantity::Torque];
+    if recording.qd.is_some() {
+        quantities.push(Quantity::Velocity);
+    }
+    let columns = recording.joints.iter().enumerate().flat_map(|(joint, name)| {
+        quantities.iter().map(move |&quantity| OriginColumn {
+            joint,
+            quantity,
+            header: format!("{}{name}", quantity.prefix()),
+            factor: 1.0,
+            offset: 0.0,
+        })
+    });
+    Origin {
+        time: "t".to_owned(),
+        time_factor: 1.0,
+        columns: columns.collect(),
+        ..Origin::default()
+    }
+}
+
+/// The unit of time stamps of so many seconds.
+fn time_unit(seconds: f64) -> Option<&'static str> {
+    let units = [("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9), ("min", 60.0)];
+    let unit = units.iter().find(|(_, factor)| *factor == seconds);
+    unit.map(|(name, _)| *name)
 }
 
 fn quoted(text: &str) -> String {
@@ -91,24 +251,76 @@ fn key_of(joint: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use recording::Column;
+
     use super::*;
 
+    fn recording(velocities: bool) -> Recording {
+        let names = if velocities {
+            &["t", "q_a", "q_b/c", "qd_a", "qd_b/c", "tau_a", "tau_b/c"][..]
+        } else {
+            &["t", "q_a", "q_b/c", "tau_a", "tau_b/c"]
+        };
+        let columns = names
+            .iter()
+            .map(|name| (name.to_string(), Column::Numbers(vec![0.0, 1.0])));
+        Recording::of_columns("r", columns.collect(), None).expect("it is whole")
+    }
+
     #[test]
-    fn the_map_is_whole_for_own_columns_and_only_what_changes_for_others() {
-        let joints = ["a".to_owned(), "b/c".to_owned()];
+    fn the_map_is_whole() {
         let changes = [
             Change::new("a", "tau", Value::ColumnOf("b/c".into())),
-            Change::new("b/c", "q_unit", Value::Text("deg")),
-            Change::scale("b/c", 0.012_345),
+            Change::new("b/c", "q_unit", Value::Unit("deg", 0.0174)),
+            Change::new("b/c", "qd_unit", Value::Unit("deg/s", 0.0174)),
+            Change::scale("b/c", 0.012_345).with_remark("a guess"),
+            Change::time("ms", 1e-3),
         ];
-        let whole = text(&joints, &changes, true, true).expect("there are changes");
-        let expected = "[time]\ncolumn = \"t\"\n[joints.a]\nq = \"q_a\"\nqd = \"qd_a\"\ntau = \"tau_b/c\"\n\
-                        [joints.\"b/c\"]\nq = \"q_b/c\"\ntau = \"tau_b/c\"\nqd = \"qd_b/c\"\nq_unit = \"deg\"\n\
-                        tau_scale = 0.0123\n";
+        let whole = text(&recording(true), &changes).expect("there are changes");
+        let expected = "[time]\ncolumn = \"t\"\nunit = \"ms\"\n[joints.a]\nq = \"q_a\"\nqd = \"qd_a\"\ntau = \"tau_b/c\"\n\
+                        [joints.\"b/c\"]\nq = \"q_b/c\"\nqd = \"qd_b/c\"\ntau = \"tau_b/c\"\nq_unit = \"deg\"\n\
+                        qd_unit = \"deg/s\"\ntau_scale = 0.0123 # a guess\n";
         assert_eq!(whole, expected);
-        let part = text(&joints, &changes[1..2], false, true).expect("there are changes");
-        assert!(part.ends_with("\n[joints.\"b/c\"]\nq_unit = \"deg\"\n"), "{part}");
-        assert!(!part.contains("joints.a"), "{part}");
-        assert_eq!(text(&joints, &[], true, false), None);
+        let without = text(&recording(false), &changes[1..3]).expect("there are changes");
+        assert!(without.contains("q_unit") && !without.contains("qd"), "{without}");
+        assert_eq!(text(&recording(true), &[]), None);
+    }
+
+    #[test]
+    fn joints_with_the_same_changes_are_one_table() {
+        let names = ["t", "q_one", "q_two", "q_six", "tau_one", "tau_two", "tau_six"];
+        let columns = names.map(|name| (name.to_owned(), Column::Numbers(vec![0.0, 1.0])));
+        let recording = Recording::of_columns("r", columns.into(), None).expect("it is whole");
+        let mut changes: Vec<Change> = ["one", "two", "six"]
+            .iter()
+            .map(|joint| Change::new(joint, "q_unit", Value::Unit("deg", 0.0174)))
+            .collect();
+        let expected = "[time]\ncolumn = \"t\"\n[joints.\"{joint}\"]\nq = \"q_{joint}\"\ntau = \"tau_{joint}\"\nq_unit = \"deg\"\n";
+        assert_eq!(text(&recording, &changes).as_deref(), Some(expected));
+        changes.pop();
+        let apart = text(&recording, &changes).expect("there are changes");
+        assert!(apart.contains("[joints.six]") && !apart.contains('{'), "{apart}");
+    }
+
+    #[test]
+    fn factors_of_a_map_are_multiplied() {
+        let mut recording = recording(false);
+        let origin = recording.origin.as_mut().expect("it was read");
+        (origin.time, origin.time_factor) = ("stamp".to_owned(), 1e-3);
+        for column in &mut origin.columns {
+            (column.factor, column.offset) = match column.quantity {
+                Quantity::Position => (0.5, 0.25),
+                _ => (3.0, 0.0),
+            };
+        }
+        let changes = [
+            Change::new("a", "sign", Value::Number(-1.0)),
+            Change::new("a", "q_offset", Value::Number(1.0)),
+            Change::new("a", "tau_scale", Value::Number(2.0)),
+        ];
+        let expected = "[time]\ncolumn = \"stamp\"\nunit = \"ms\"\n[joints.a]\nq = \"q_a\"\nq_scale = -0.5\nq_offset = 0.75\n\
+                        tau = \"tau_a\"\ntau_scale = -6\n[joints.\"b/c\"]\nq = \"q_b/c\"\nq_scale = 0.5\nq_offset = 0.25\n\
+                        tau = \"tau_b/c\"\ntau_scale = 3\n";
+        assert_eq!(text(&recording, &changes).as_deref(), Some(expected));
     }
 }

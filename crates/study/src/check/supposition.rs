@@ -26,8 +26,17 @@ pub enum Supposition {
     PositionsSwapped(usize, usize),
     /// A joint's zero is wrong: this is to be added to its position (rad).
     Zero(usize, f64),
-    /// Gravity has another direction (in the base's frame), as on a wall or a ceiling. That is an effect and not a mistake, and
-    /// must not be reported as a wrong zero.
+    /// All positions are in another unit, of so many rad.
+    Unit(f64),
+    /// All torques have the other sign, or all positions, or all of both.
+    AllTorquesFlipped,
+    AllPositionsFlipped,
+    AllFlipped,
+    /// The columns of all joints are in the opposite order, or those of the torques alone.
+    Reversed,
+    TorquesReversed,
+    /// Gravity has another direction (base frame), as on a wall or a ceiling. That is an effect and no
+    /// mistake, and must not be taken for a wrong zero.
     Gravity(Vector3<f64>),
 }
 
@@ -49,6 +58,13 @@ impl Supposition {
                 all.push(Self::PositionsSwapped(first, second));
             }
         }
+        if moves.iter().filter(|moves| **moves).count() > 1 {
+            all.extend([Self::AllTorquesFlipped, Self::AllPositionsFlipped, Self::AllFlipped]);
+        }
+        // Of three joints or fewer, two are swapped.
+        if dof > 3 {
+            all.extend([Self::Reversed, Self::TorquesReversed]);
+        }
         let strength = arm.gravity().norm();
         let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
         let directions = axes.into_iter().flat_map(|axis| [axis * strength, -axis * strength]);
@@ -57,7 +73,38 @@ impl Supposition {
         all
     }
 
-    /// Whether both concern the signs or the zero of one joint.
+    /// Whether it is about the signs of all joints.
+    pub fn is_of_all_signs(self) -> bool {
+        matches!(
+            self,
+            Self::AllTorquesFlipped | Self::AllPositionsFlipped | Self::AllFlipped
+        )
+    }
+
+    /// Whether both are about the signs of all joints: which ones hardly matters to a motion without much acceleration.
+    pub fn same_signs(self, other: Self) -> bool {
+        self.is_of_all_signs() && other.is_of_all_signs()
+    }
+
+    /// What is wrong, in a few words; none where it needs no words.
+    pub fn words(self, names: &[&str]) -> Option<String> {
+        Some(match self {
+            Self::AsItIs | Self::Unit(_) | Self::Gravity(_) => return None,
+            Self::Flipped(joint) => format!("the position of {} has the other sign", names[joint]),
+            Self::TorqueFlipped(joint) => format!("the torque of {} has the other sign", names[joint]),
+            Self::Swapped(a, b) => format!("the columns of {} and {} are swapped", names[a], names[b]),
+            Self::TorquesSwapped(a, b) => format!("the torques of {} and {} are swapped", names[a], names[b]),
+            Self::PositionsSwapped(a, b) => format!("the positions of {} and {} are swapped", names[a], names[b]),
+            Self::Zero(joint, _) => format!("the zero of {} is off by a quarter or half of a turn", names[joint]),
+            Self::AllTorquesFlipped => "all torques have the other sign".to_owned(),
+            Self::AllPositionsFlipped => "all positions have the other sign".to_owned(),
+            Self::AllFlipped => "all positions and torques have the other sign".to_owned(),
+            Self::Reversed => "all columns are in the opposite order".to_owned(),
+            Self::TorquesReversed => "all torques are in the opposite order".to_owned(),
+        })
+    }
+
+    /// Whether both are about the signs or the zero of one joint.
     pub fn same_joint(self, other: Self) -> bool {
         let joint = |supposition| match supposition {
             Self::Flipped(joint) | Self::TorqueFlipped(joint) | Self::Zero(joint, _) => Some(joint),
@@ -105,11 +152,31 @@ pub fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
     let mut source: Vec<usize> = (0..dof).collect();
     let mut torque_source = source.clone();
     let mut sign = vec![1.0; dof];
+    let mut scale = vec![1.0; dof];
+    let mut torque_sign = 1.0;
     let mut offset = vec![0.0; dof];
     match supposition {
         Supposition::AsItIs | Supposition::TorqueFlipped(_) | Supposition::Gravity(_) => {}
         Supposition::Zero(joint, added) => offset[joint] = added,
         Supposition::Flipped(joint) => sign[joint] = -1.0,
+        Supposition::Unit(factor) => {
+            for (scale, joint) in scale.iter_mut().zip(arm.joints()) {
+                if joint.kind == JointKind::Revolute {
+                    *scale = factor;
+                }
+            }
+        }
+        Supposition::AllTorquesFlipped => torque_sign = -1.0,
+        Supposition::AllPositionsFlipped => sign.fill(-1.0),
+        Supposition::AllFlipped => {
+            sign.fill(-1.0);
+            torque_sign = -1.0;
+        }
+        Supposition::Reversed => {
+            source.reverse();
+            torque_source.reverse();
+        }
+        Supposition::TorquesReversed => torque_source.reverse(),
         Supposition::Swapped(a, b) => {
             source.swap(a, b);
             torque_source.swap(a, b);
@@ -122,7 +189,8 @@ pub fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
     let mut model = vec![vec![0.0; count]; dof];
     let mut tau = vec![0.0; dof];
     for k in 0..count {
-        let pick = |signal: &[Vec<f64>]| -> Vec<f64> { (0..dof).map(|j| sign[j] * signal[source[j]][k]).collect() };
+        let pick =
+            |signal: &[Vec<f64>]| -> Vec<f64> { (0..dof).map(|j| sign[j] * scale[j] * signal[source[j]][k]).collect() };
         let (mut q, qd, qdd) = (pick(&smooth.q), pick(&smooth.qd), pick(&smooth.qdd));
         q.iter_mut().zip(&offset).for_each(|(q, offset)| *q += offset);
         arm.inverse_dynamics(&mut workspace, &q, &qd, &qdd, &mut tau);
@@ -148,7 +216,7 @@ pub fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
         let explains = match supposition {
             Supposition::Flipped(flipped) if flipped == joint => true,
             Supposition::TorqueFlipped(flipped) if flipped == joint => factor < 0.0,
-            _ => factor >= 0.0,
+            _ => torque_sign * factor >= 0.0,
         };
         fit.left.push(if explains { left } else { without });
         fit.factor.push(factor);

@@ -85,7 +85,9 @@ pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Chan
     }
     let large = all(&|size| size > LARGE_EVERYWHERE);
     let small = all(&|size| size < MOTOR_SIDE);
-    let currents = moving.len() > 1 && evident.len() == moving.len() && all(&|size| size < SMALL_EVERYWHERE);
+    // A joint with more friction than weight does not tell; all that do must agree, and be more than one.
+    let agree = evident.iter().all(|&joint| fit.factor[joint] < SMALL_EVERYWHERE);
+    let currents = evident.len() > 1 && agree;
     if !(large || small || currents) {
         return None;
     }
@@ -117,11 +119,18 @@ pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Chan
                 .collect();
             let text = format!(
                 "{said} ({}): another unit, motor currents, or the motor's side of the gears? Give each joint's tau_unit, \
-                 tau_scale or gear in a column map (--map)",
+                 tau_scale or gear in a column map (--map); the factors below are those of the URDF's masses",
                 each.join(", ")
             );
-            let scale = |&joint: &usize| Change::scale(names[joint], 1.0 / fit.factor[joint]);
-            (text, evident.iter().map(scale).collect())
+            let scale = |&joint: &usize| {
+                if evident.contains(&joint) {
+                    return Change::scale(names[joint], 1.0 / fit.factor[joint]);
+                }
+                Change::scale(names[joint], 1.0 / middle)
+                    .with_remark("not told by its torque: the middle of the others")
+            };
+            let all: Vec<usize> = (0..names.len()).collect();
+            (text, all.iter().map(scale).collect())
         }
     })
 }

@@ -49,6 +49,17 @@ pub(super) fn order(
         .filter(|joint| !recording.joints.contains(joint))
         .cloned()
         .collect();
+    let is_numbered = recording.joints.iter().all(|joint| joint.parse::<usize>().is_ok());
+    if lacking.len() == known.len() && is_numbered {
+        bail!(
+            "{name}: its {} joints have numbers, and the arm of {} has {} joints; say in a column map (--map) which are meant, or \
+             fix those that did not move (--lock JOINT=VALUE). A map of the first ones, to be corrected:\n{}",
+            recording.joints.len(),
+            arm.name(),
+            known.len(),
+            first_ones(recording, &known)
+        );
+    }
     if lacking.len() == known.len() {
         bail!(
             "{name}: belongs to another robot: its joints are {}, those of {} are {}; give the URDF of the robot that was recorded, or a column map (--map)",
@@ -110,4 +121,24 @@ pub(super) fn reordered(mut recording: RegularRecording, order: &[usize]) -> Reg
     recording.current = partial(&recording.current);
     recording.temperature = partial(&recording.temperature);
     recording
+}
+
+/// A column map of the first numbered joints, with the names `known`.
+fn first_ones(recording: &Recording, known: &[String]) -> String {
+    let Some(origin) = &recording.origin else {
+        return String::new();
+    };
+    let quoted = |text: &str| toml::Value::String(text.to_owned()).to_string();
+    let mut map = format!("[time]\ncolumn = {}\n", quoted(&origin.time));
+    if let Some(run) = &origin.run {
+        map += &format!("run = {}\n", quoted(run));
+    }
+    for (joint, name) in known.iter().enumerate().take(recording.joints.len()) {
+        map += &format!("[joints.{}]\n", quoted(name));
+        for column in origin.columns.iter().filter(|column| column.joint == joint) {
+            let key = column.quantity.prefix().trim_end_matches('_');
+            map += &format!("{key} = {}\n", quoted(&column.header));
+        }
+    }
+    map
 }

@@ -1,9 +1,9 @@
 //! The command itself: files in, diagnosis, files out.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use arm::Arm;
 use diagnosis::{Diagnosis, Step, Verdict};
 use study::effect_file::EffectFile;
@@ -146,6 +146,9 @@ fn write<'a>(
     effects: Vec<effects::Effect>,
 ) -> Files<'a> {
     let mut written = Files::default();
+    if diagnosis.report.verdict == Verdict::UnitsFirst {
+        return write_doubts(args, arm, diagnosis);
+    }
     let urdf = |_| urdf_file::corrected_urdf(&robot.text, arm, &effects);
     let mjcf = |_| mjcf_file::mjcf(arm, &effects);
     let exports = [
@@ -190,6 +193,17 @@ fn write<'a>(
     if let Some(path) = &args.residuals {
         files.add(path, || residuals_file::write(path, arm, &diagnosis.traces));
     }
+    write_reports(args, arm, diagnosis, files);
+    let shown = || show(args, arm, &robot.path, diagnosis);
+    match args.rerun_file() {
+        Some(path) => files.add(path, shown),
+        None => files.attempt(shown),
+    }
+    written
+}
+
+/// Writes the answer as page, Markdown and JSON, as far as they are asked for.
+fn write_reports(args: &DiagnoseArgs, arm: &Arm, diagnosis: &Diagnosis, files: &mut Written) {
     if let Some(path) = &args.report {
         let page = || report::page(&diagnosis.report, &diagnosis.traces, arm);
         files.add(path, || output::write_text(path, &page()));
@@ -201,10 +215,29 @@ fn write<'a>(
     if let Some(path) = args.json_file() {
         files.add(path, || output::write_json(path, &diagnosis.report));
     }
-    let shown = || show(args, arm, &robot.path, diagnosis);
-    match args.rerun_file() {
-        Some(path) => files.add(path, shown),
-        None => files.attempt(shown),
+}
+
+/// Writes the answer where units, signs, order or zeros come first. There is no model and no residual then: what asks for one
+/// is an error.
+fn write_doubts<'a>(args: &'a DiagnoseArgs, arm: &Arm, diagnosis: &Diagnosis) -> Files<'a> {
+    let mut written = Files::default();
+    write_reports(args, arm, diagnosis, &mut written.files);
+    let of_a_search = [
+        &args.model,
+        &args.urdf,
+        &args.mjcf,
+        &args.next,
+        &args.trace,
+        &args.residuals,
+    ];
+    let asked = of_a_search.into_iter().flatten().map(PathBuf::as_path);
+    for path in asked.chain(args.rerun_file()) {
+        written.files.add(path, || {
+            bail!(
+                "{}: not written, because no effect was searched: correct the recordings' units, signs, order or zeros first",
+                path.display()
+            )
+        });
     }
     written
 }

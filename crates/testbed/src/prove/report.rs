@@ -68,7 +68,10 @@ fn injected(proof: &Proof) -> Vec<Block> {
              is the public command with the same arguments for all cases, and because the same seed and program give the same bytes. A seed of your own choice \
              excludes that the diagnosis was tuned on the cases.",
         ),
-        Block::Code(proof.command.clone()),
+        Block::Code {
+            language: "sh",
+            code: proof.command.clone(),
+        },
     ]
 }
 

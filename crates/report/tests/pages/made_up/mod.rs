@@ -129,6 +129,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
             Plot::Rich => Verdict::PartlyExplained,
             Plot::TooShort => Verdict::NotEnoughData,
         },
+        doubts: Vec::new(),
         findings,
         unexplained: (rich && joints > 4)
             .then(|| Unexplained {

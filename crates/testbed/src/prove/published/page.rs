@@ -266,7 +266,10 @@ fn protocol(real: &Real) -> Vec<Block> {
              The test with unseen injected faults is in `docs/proof.md`. The publications are not a complete ground truth either: their values are estimates with another filter, possibly from other recordings, \
              or constants of a controller. A name therefore counts as false only where the publication contradicts it; a name without a publication is listed as such, and its correctness is unknown.",
         ),
-        Block::Code(real.command.clone()),
+        Block::Code {
+            language: "sh",
+            code: real.command.clone(),
+        },
     ]
 }
 

@@ -1,0 +1,55 @@
+//! What is wrong with the units, signs, order or zeros of recordings, and the column maps that mend it.
+
+use diagnosis::{Doubt, Report};
+
+use crate::words;
+
+/// How a column map is used.
+pub const USE: &str = "A column map that mends it: save it as `map.toml`, and add `--map map.toml` to the command.";
+
+/// What is said of recordings with the same column map.
+pub struct Group<'a> {
+    /// In sentences, one a doubt of the first recording.
+    pub texts: Vec<String>,
+    /// The map (TOML), where one mends it.
+    pub map: Option<&'a str>,
+}
+
+/// The doubts of `report`; recordings with the same map are one group, which the first recording speaks for.
+pub fn groups(report: &Report) -> Vec<Group<'_>> {
+    let mut groups: Vec<Vec<&Doubt>> = Vec::new();
+    for doubt in &report.doubts {
+        let same = |group: &&mut Vec<&Doubt>| group[0].column_map == doubt.column_map;
+        match groups.iter_mut().find(same) {
+            Some(group) => group.push(doubt),
+            None => groups.push(vec![doubt]),
+        }
+    }
+    let all = report.recordings.train.len() + report.recordings.held_out.len();
+    groups.into_iter().map(|doubts| group(&doubts, all)).collect()
+}
+
+/// The group of `doubts`, of which there is at least one, among `all` recordings.
+fn group<'a>(doubts: &[&'a Doubt], all: usize) -> Group<'a> {
+    let first = &doubts[0].recording;
+    let mut files: Vec<&str> = doubts.iter().map(|doubt| doubt.recording.as_str()).collect();
+    files.dedup();
+    let others = match files.len() - 1 {
+        0 if all == 1 => String::new(),
+        0 => " (in this recording alone)".to_owned(),
+        more if more + 1 == all => format!(" (and the same in {})", words::count(more, "other recording")),
+        more => format!(" (and the same in {more} of {} other recordings)", all - 1),
+    };
+    let own = doubts.iter().filter(|doubt| doubt.recording == *first);
+    let text = |doubt: &&Doubt| {
+        let joint = doubt
+            .joint
+            .as_ref()
+            .map_or_else(String::new, |joint| format!("{joint}: "));
+        format!("{first}{others}: {joint}{}", doubt.text)
+    };
+    Group {
+        texts: own.map(text).collect(),
+        map: doubts[0].column_map.as_deref(),
+    }
+}

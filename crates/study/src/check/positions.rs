@@ -1,0 +1,216 @@
+//! Positions in another unit than the model's, and times with which no robot could have moved.
+
+use std::f64::consts::{PI, TAU};
+
+use arm::{Arm, Joint, JointKind};
+use recording::{FindingKind, JointQuality, Quality};
+use report::numbers::rounded;
+
+use super::column_map::{Change, Value};
+use super::smooth::Smooth;
+use super::supposition::{Supposition, fit};
+use super::{BEYOND, Misfit};
+
+/// Rows further apart (s) are no drive's.
+const SLOWEST_PERIOD: f64 = 0.1;
+/// Degrees and milliradians: the unit, that of velocities, and how many rad it is.
+const UNITS: [(&str, &str, f64); 2] = [("deg", "deg/s", PI / 180.0), ("mrad", "mrad/s", 1e-3)];
+/// A unit must be better than the other by at least this reduction of the mean log residual.
+const LEAD: f64 = 0.5;
+
+/// A joint of the arm and what was measured of it.
+pub type Pair<'a> = (&'a Joint, &'a JointQuality);
+
+/// The unit of the time stamps, where rows are too far apart for a drive.
+pub fn of_time(quality: &Quality) -> Option<Misfit> {
+    let period = 1.0 / quality.rate;
+    if period <= SLOWEST_PERIOD {
+        return None;
+    }
+    let told = quality
+        .findings
+        .iter()
+        .find(|finding| finding.kind == FindingKind::TimeUnit);
+    // Recorded velocities tell the unit; without them it is the largest with which the rows are close enough.
+    let units = [("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
+    let by_velocity = told.and_then(|finding| {
+        let unit = |name: &str| finding.text.contains(&format!("are in {name};"));
+        units.into_iter().find(|(name, _)| unit(name))
+    });
+    let (unit, seconds) = by_velocity.or_else(|| {
+        let is_close = |(_, seconds): &(&str, f64)| period * seconds <= SLOWEST_PERIOD;
+        units.into_iter().find(is_close)
+    })?;
+    let text = format!(
+        "its rows are {period:.3} s apart; are its stamps in {unit}? Give the unit in a column map (--map: unit = \"{unit}\" \
+         under [time]), or record at 100 Hz or more"
+    );
+    Some(Misfit {
+        spoils: true,
+        ..Misfit::new(None, text, vec![Change::time(unit, seconds)])
+    })
+}
+
+/// What the positions' ranges, their slopes against the recorded velocities, and the torques say about the positions' unit.
+pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> Vec<Misfit> {
+    let moving: Vec<&Pair<'_>> = pairs
+        .iter()
+        .filter(|(joint, measured)| measured.moves && joint.kind == JointKind::Revolute)
+        .collect();
+    let evident: Vec<&&Pair<'_>> = moving.iter().filter(|pair| is_beyond(pair)).collect();
+    let slow = |factor: f64| {
+        let ratio = |pair: &&Pair<'_>| pair.1.velocity_ratio;
+        !moving.is_empty()
+            && moving
+                .iter()
+                .all(|pair| ratio(pair).is_some_and(|ratio| (ratio.abs() / factor - 1.0).abs() < 0.04))
+    };
+    let by_velocity = UNITS.into_iter().find(|(_, _, factor)| slow(*factor));
+    if by_velocity.is_none() && 2 * evident.len() < moving.len().max(1) {
+        return Vec::new();
+    }
+    let fits = |(_, _, factor): &(&str, &str, f64)| {
+        moving.iter().all(|(joint, measured)| {
+            let limits = joint.limits;
+            let slack = 0.1 * (limits.upper - limits.lower) + 1e-2;
+            limits.upper <= limits.lower
+                || (measured.q_range.0 * factor > limits.lower - slack
+                    && measured.q_range.1 * factor < limits.upper + slack)
+        })
+    };
+    let mut possible: Vec<(&str, &str, f64)> = UNITS.into_iter().filter(fits).collect();
+    if let (Some(smooth), [a, b]) = (smooth, &possible[..]) {
+        let score = |unit: &(&str, &str, f64)| fit(arm, smooth, Supposition::Unit(unit.2)).score();
+        if score(a) - score(b) > LEAD {
+            possible.swap(0, 1);
+        }
+    }
+    let shown = evident.first().or(moving.first().as_ref()).map(|pair| **pair);
+    let Some((joint, measured)) = shown else {
+        return Vec::new();
+    };
+    let range = format!(
+        "{} spans {} … {}",
+        joint.name,
+        rounded(measured.q_range.0, 4),
+        rounded(measured.q_range.1, 4)
+    );
+    let Some((unit, of_velocity, factor)) = by_velocity.or(possible.first().copied()) else {
+        let text = format!(
+            "the positions are in no unit of angle: {range}, and the URDF's limits are {:.3} … {:.3} rad. Counts of an encoder, \
+             or the motors' side of the gears? Give each joint's q_scale (rad of one count) or gear in a column map (--map)",
+            joint.limits.lower, joint.limits.upper
+        );
+        return vec![Misfit {
+            spoils: true,
+            ..Misfit::new(None, text, Vec::new())
+        }];
+    };
+    let name = if unit == "deg" { "degrees" } else { "milliradians" };
+    let why = if by_velocity.is_some() {
+        format!(
+            "their slopes are {} times the recorded velocities",
+            rounded(1.0 / factor, 3)
+        )
+    } else {
+        format!(
+            "{range}, which the URDF's limits {:.3} … {:.3} rad allow in {name} only",
+            joint.limits.lower, joint.limits.upper
+        )
+    };
+    let text = format!("the positions are in {name}: {why}; say so in a column map (--map): q_unit = \"{unit}\"");
+    // All of them are spoilt together, because each position is a part of all torques.
+    let mut changes = Vec::new();
+    let slopes = moving.iter().filter(|(_, measured)| {
+        measured
+            .velocity_ratio
+            .is_some_and(|ratio| (0.5..2.0).contains(&ratio.abs()))
+    });
+    let velocities_too = 2 * slopes.count() >= moving.len();
+    for (joint, _) in pairs.iter().filter(|(joint, _)| joint.kind == JointKind::Revolute) {
+        changes.push(Change::new(&joint.name, "q_unit", Value::Unit(unit, factor)));
+        // Velocities that are the positions' slopes are in the same unit.
+        if velocities_too {
+            changes.push(Change::new(&joint.name, "qd_unit", Value::Unit(of_velocity, factor)));
+        }
+    }
+    vec![Misfit {
+        spoils: true,
+        ..Misfit::new(None, text, changes)
+    }]
+}
+
+/// Whether the positions span two turns and more than the URDF's limits allow. A zero that is off by turns keeps the span,
+/// and many a motion exceeds the limits of its URDF.
+fn is_beyond((joint, measured): &Pair<'_>) -> bool {
+    let (low, high) = measured.q_range;
+    let limits = joint.limits;
+    limits.upper > limits.lower && high - low > (2.0 * TAU).max(1.5 * (limits.upper - limits.lower))
+}
+
+/// One joint alone whose positions fit into its limits as degrees.
+pub fn of_one((joint, measured): &Pair<'_>) -> Option<Misfit> {
+    let (low, high) = measured.q_range;
+    let limits = joint.limits;
+    let fits = low.to_radians() > limits.lower - 1e-2 && high.to_radians() < limits.upper + 1e-2;
+    if joint.kind != JointKind::Revolute || !is_beyond(&(joint, measured)) || !fits {
+        return None;
+    }
+    let text = format!(
+        "the position is in degrees: it spans {} … {}, which the URDF's limits {:.3} … {:.3} rad allow in degrees only; \
+         say so in a column map (--map): q_unit = \"deg\"",
+        rounded(low, 4),
+        rounded(high, 4),
+        limits.lower,
+        limits.upper
+    );
+    let (unit, of_velocity, factor) = UNITS[0];
+    let mut changes = vec![Change::new(&joint.name, "q_unit", Value::Unit(unit, factor))];
+    if measured
+        .velocity_ratio
+        .is_some_and(|ratio| (0.5..2.0).contains(&ratio.abs()))
+    {
+        changes.push(Change::new(&joint.name, "qd_unit", Value::Unit(of_velocity, factor)));
+    }
+    Some(Misfit::new(Some(&joint.name), text, changes))
+}
+
+/// Speeds that no joint of the robot has, where all that move have them.
+pub fn of_speeds(pairs: &[Pair<'_>]) -> Option<Misfit> {
+    let moving: Vec<&Pair<'_>> = pairs.iter().filter(|(_, measured)| measured.moves).collect();
+    let mut times: Vec<f64> = moving
+        .iter()
+        .map(|(joint, measured)| measured.speed_max / joint.limits.velocity)
+        .collect();
+    times.sort_by(f64::total_cmp);
+    let (least, most) = (*times.first()?, *times.last()?);
+    let has_limits = moving.iter().all(|(joint, _)| joint.limits.velocity > 0.0);
+    if !has_limits || least <= BEYOND || moving.len() < 2 {
+        return None;
+    }
+    let ratios: Vec<f64> = moving
+        .iter()
+        .filter_map(|(_, measured)| measured.velocity_ratio)
+        .collect();
+    let mean = ratios.iter().sum::<f64>() / ratios.len().max(1) as f64;
+    let same = ratios.len() == moving.len() && ratios.iter().all(|ratio| (ratio / mean - 1.0).abs() < 0.04);
+    let hint = if same && !(0.8..1.25).contains(&mean) {
+        format!(
+            "; the recorded velocities are {} times the positions' slopes on all of them, so that the time stamps are probably \
+             too close by that factor",
+            rounded(mean, 3)
+        )
+    } else {
+        String::new()
+    };
+    let text = format!(
+        "the speeds of all joints that move are {} to {} times the URDF's velocity limits{hint}; check the units of time and \
+         positions (unit under [time], q_unit, q_scale in a column map)",
+        rounded(least, 2),
+        rounded(most, 2)
+    );
+    Some(Misfit {
+        spoils: true,
+        ..Misfit::new(None, text, Vec::new())
+    })
+}
