@@ -167,3 +167,50 @@ fn without_effects_or_seed_both_are_offered() {
         "{message}"
     );
 }
+
+/// Where all links are wrong, a mass at the wrist's centre, which the last joints do not feel, may be any link's before them: it was
+/// called a payload of 1.5 kg.
+#[test]
+fn a_wrong_link_before_the_wrist_is_no_payload() {
+    let sandbox = Sandbox::new();
+    let friction = "schema = \"testbed.model/1\"\n\n[[effects]]\neffect = \"viscous_friction\"\njoint = \"joint4\"\ncoefficient = 0.05\n";
+    sandbox.write("friction.toml", friction);
+    sandbox.succeed(&[
+        "conceal",
+        "--robot",
+        "puma560",
+        "--effects",
+        "friction.toml",
+        "--urdf-error",
+        "0.3",
+        "--friction",
+        "--seed",
+        "3",
+        "--out",
+        "cases",
+    ]);
+    let file = |name: &str| format!("cases/case_000/{name}");
+    let (robot, held_out) = (file("robot.urdf"), file("held_out.csv"));
+    let train: Vec<String> = (1..=3).map(|k| file(&format!("train_{k}.csv"))).collect();
+    sandbox.succeed(&[
+        "diagnose",
+        "--robot",
+        &robot,
+        "--train",
+        &train[0],
+        &train[1],
+        &train[2],
+        "--held-out",
+        &held_out,
+        "--json",
+        "diagnosis.json",
+    ]);
+    let diagnosis = sandbox.json("diagnosis.json");
+    let findings = diagnosis["findings"].as_array().expect("there are findings");
+    let names: Vec<&str> = findings
+        .iter()
+        .filter_map(|finding| finding["effect"].as_str())
+        .collect();
+    assert!(names.contains(&"inertial_parameters"), "{names:?}");
+    assert!(!names.contains(&"payload"), "{names:?}");
+}

@@ -95,5 +95,6 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
         chosen = refine(study, chosen, false);
     }
     let chosen = study.without_imitations(chosen);
-    study.with_payload_for_last_link(chosen)
+    let chosen = study.with_payload_for_last_link(chosen);
+    study.without_payload_of_a_link(chosen)
 }

@@ -21,6 +21,7 @@ use crate::trace::Trace;
 
 mod about;
 mod anew;
+mod payloads;
 mod strengths;
 
 pub use about::About;

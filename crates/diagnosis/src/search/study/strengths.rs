@@ -1,7 +1,6 @@
 //! The strengths of the background, chosen together with the effects by the gain of the score.
 
 use effects::Scales;
-use effects::arm::Payload;
 use rayon::prelude::*;
 
 use super::Study;
@@ -270,38 +269,6 @@ impl Study {
             }
         }
         chosen
-    }
-
-    /// `chosen` with a payload in the place of another body of the last link, if that is better. A search that takes the link
-    /// first does not find the payload, because both explain the same torque.
-    pub fn with_payload_for_last_link(&mut self, chosen: Chosen) -> Chosen {
-        let common = self.strengths.common();
-        let is_payload = |&c: &usize| self.candidates[c].hypothesis.is(&Payload);
-        let Some(last) = self.arm.dof().checked_sub(1) else {
-            return chosen;
-        };
-        if self.strengths.links[last] <= common || chosen.set.iter().any(is_payload) {
-            return chosen;
-        }
-        let mut strengths = self.strengths.clone();
-        strengths.links[last] = common;
-        let products = self.products_at(&strengths);
-        let problem = self.problem(&products);
-        let trials = self.allowed().into_iter().filter(is_payload).filter_map(|payload| {
-            let mut set = chosen.set.clone();
-            set.push(payload);
-            let next = problem.choose(set, &chosen.fit.weights);
-            problem.is_possible(payload, &next.fit).then_some(next)
-        });
-        let best = trials.min_by(|a, b| a.score.total_cmp(&b.score));
-        match best {
-            Some(next) if next.score < chosen.score => {
-                self.strengths = strengths;
-                self.note_strengths("a payload in the place of the last link", &chosen, &next);
-                next
-            }
-            _ => chosen,
-        }
     }
 
     /// The best of the strengths `others`, with `chosen` fitted again, if they are better.

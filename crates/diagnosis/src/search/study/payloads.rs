@@ -1,0 +1,85 @@
+//! Payloads against the bodies of the links, which explain the same torque.
+
+use effects::arm::Payload;
+
+use super::Study;
+use crate::data::statistics;
+use crate::search::problem::Chosen;
+use crate::thresholds::FELT;
+
+/// The last joints, on which a payload shows whatever its place: the axis of one may go through its centre of mass.
+const LAST_JOINTS: usize = 2;
+
+impl Study {
+    /// `chosen` with a payload in the place of another body of the last link, if that is better. A search that takes the link
+    /// first does not find the payload, because both explain the same torque.
+    pub fn with_payload_for_last_link(&mut self, chosen: Chosen) -> Chosen {
+        let common = self.strengths.common();
+        let is_payload = |&c: &usize| self.candidates[c].hypothesis.is(&Payload);
+        let Some(last) = self.arm.dof().checked_sub(1) else {
+            return chosen;
+        };
+        if self.strengths.links[last] <= common || chosen.set.iter().any(is_payload) {
+            return chosen;
+        }
+        let mut strengths = self.strengths.clone();
+        strengths.links[last] = common;
+        let products = self.products_at(&strengths);
+        let problem = self.problem(&products);
+        let trials = self.allowed().into_iter().filter(is_payload).filter_map(|payload| {
+            let mut set = chosen.set.clone();
+            set.push(payload);
+            let next = problem.choose(set, &chosen.fit.weights);
+            problem.is_possible(payload, &next.fit).then_some(next)
+        });
+        let best = trials.min_by(|a, b| a.score.total_cmp(&b.score));
+        match best {
+            Some(next) if next.score < chosen.score => {
+                self.strengths = strengths;
+                self.note_strengths("a payload in the place of the last link", &chosen, &next);
+                next
+            }
+            _ => chosen,
+        }
+    }
+
+    /// `chosen` without a payload that the last joints hardly feel, where the URDF's links are wrong, too: its centre of mass lies
+    /// where their axes meet, and a link before them that is heavier than in the URDF explains the same torque. What sets in later
+    /// is no link's.
+    pub fn without_payload_of_a_link(&mut self, chosen: Chosen) -> Chosen {
+        let is_unfelt = |&c: &usize| {
+            let sets_in = || self.terms(c).iter().any(|term| term.onset().is_some());
+            self.candidates[c].hypothesis.is(&Payload) && !sets_in() && !self.is_felt_at_the_end(&chosen, c)
+        };
+        let unfelt: Vec<usize> = chosen.set.iter().copied().filter(is_unfelt).collect();
+        let (Some(&payload), true) = (unfelt.first(), self.strengths.common() > 0.0) else {
+            return chosen;
+        };
+        self.refuse(payload);
+        let rest = chosen.set.iter().copied().filter(|c| !unfelt.contains(c)).collect();
+        let products = self.training_products();
+        let next = self.problem(&products).choose(rest, &chosen.fit.weights);
+        self.note(
+            "the last joints hardly feel it, so that a link may carry it",
+            &chosen,
+            &next,
+        );
+        let next = self.with_best_strengths(next);
+        let allowed = self.allowed();
+        self.grown(next, &allowed)
+    }
+
+    /// Whether the torque of `candidate` is on one of the last joints as large a part of what is measured there as on the others.
+    fn is_felt_at_the_end(&self, chosen: &Chosen, candidate: usize) -> bool {
+        let columns = &self.candidates[candidate].columns;
+        let values = chosen.fit.values(columns);
+        let share = |joint: usize| {
+            let torque = self.table.torque(joint, columns, &values);
+            let rows = self.training_rows(joint);
+            statistics::deviation(rows.iter().map(|&row| torque[row])) / self.scales.torque[joint].max(1e-300)
+        };
+        let shares: Vec<f64> = (0..self.arm.dof()).map(share).collect();
+        let most = |shares: &[f64]| shares.iter().fold(0.0, |most: f64, &share| most.max(share));
+        most(&shares[shares.len().saturating_sub(LAST_JOINTS)..]) >= FELT * most(&shares)
+    }
+}
