@@ -23,7 +23,7 @@ pub const PER_LINK_APART: f64 = 8.0;
 /// The evidence by which two effects on a joint that imitate another body of its link must beat that body (nats).
 pub const PER_IMITATION: f64 = 8.0;
 /// The part of its largest share in any joint's torque that a payload has on one of the last two joints. Source: simulated cases with
-/// wrong URDFs, 0.7 and more for payloads that are there, 0.4 and less for those that stood for a link before the wrist.
+/// wrong URDFs, 0.7 and more for payloads that are there, 0.43 and less for those that stood for a link before the wrist.
 pub const FELT: f64 = 0.55;
 /// The prior standard deviation of the links' common strength: a URDF is seldom off by more than this part everywhere.
 pub const USUAL_STRENGTH: f64 = 0.3;
