@@ -26,6 +26,11 @@ pub struct Change {
 }
 
 impl Change {
+    /// Whether it is a change of `joint`.
+    pub fn is_of(&self, joint: &str) -> bool {
+        self.joint.as_deref() == Some(joint)
+    }
+
     /// `key = value` in the table of `joint`.
     pub fn new(joint: &str, key: &'static str, value: Value) -> Self {
         Self {

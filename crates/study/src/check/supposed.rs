@@ -55,7 +55,7 @@ pub fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_i
     let evidence = |joint: usize| {
         let share = |fit: &Fit| (100.0 * (1.0 - fit.left[joint])).round();
         format!(
-            "mended, the model and friction explain {} % of the torque's variance at {}, and {} % as it is{beside}",
+            "with this correction, the model and friction explain {} % of the torque's variance at {}; without it, {} %{beside}",
             share(fit),
             names[joint],
             share(as_it_is)

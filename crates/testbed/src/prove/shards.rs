@@ -280,7 +280,7 @@ mod tests {
         let path = |number: usize| folder.path().join(format!("shard-{number}-of-2.parquet"));
         write(&path(2), &label(2, 2), &[row(1), row(3)]).expect("it writes");
         let error = merge(folder.path()).expect_err("one is missing").to_string();
-        assert!(error.contains("shares 1 of 2 are missing"), "{error}");
+        assert!(error.contains("parts 1 of 2 are missing"), "{error}");
         write(&path(1), &label(1, 2), &[row(0), row(2)]).expect("it writes");
         let (whole, rows) = merge(folder.path()).expect("both are there");
         assert_eq!(whole.source, "4 cases drawn from seed 7");
