@@ -19,6 +19,27 @@ com = [0.0, 0.0, 0.1]
 onset = 12.0
 "#;
 
+/// The diagnosis of the first concealed case.
+fn diagnosed(sandbox: &Sandbox) -> serde_json::Value {
+    let file = |name: &str| format!("cases/case_000/{name}");
+    let (robot, held_out) = (file("robot.urdf"), file("held_out.csv"));
+    let train: Vec<String> = (1..=3).map(|k| file(&format!("train_{k}.csv"))).collect();
+    sandbox.succeed(&[
+        "diagnose",
+        "--robot",
+        &robot,
+        "--train",
+        &train[0],
+        &train[1],
+        &train[2],
+        "--held-out",
+        &held_out,
+        "--json",
+        "out.json",
+    ]);
+    sandbox.json("out.json")
+}
+
 #[test]
 fn what_is_concealed_is_found() {
     let sandbox = Sandbox::new();
@@ -64,23 +85,7 @@ fn what_is_concealed_is_found() {
     let refused = sandbox.refuse(&arguments);
     assert!(refused.contains("nothing is overwritten"), "{refused}");
 
-    let folder = |file: &str| format!("cases/case_000/{file}");
-    let (robot, held_out) = (folder("robot.urdf"), folder("held_out.csv"));
-    let train: Vec<String> = (1..=3).map(|k| folder(&format!("train_{k}.csv"))).collect();
-    sandbox.succeed(&[
-        "diagnose",
-        "--robot",
-        &robot,
-        "--train",
-        &train[0],
-        &train[1],
-        &train[2],
-        "--held-out",
-        &held_out,
-        "--json",
-        "out.json",
-    ]);
-    let found = sandbox.json("out.json");
+    let found = diagnosed(&sandbox);
     let findings = found["findings"].as_array().expect("there is a list");
     let named: Vec<String> = findings
         .iter()
@@ -189,23 +194,7 @@ fn a_wrong_link_before_the_wrist_is_no_payload() {
         "--out",
         "cases",
     ]);
-    let file = |name: &str| format!("cases/case_000/{name}");
-    let (robot, held_out) = (file("robot.urdf"), file("held_out.csv"));
-    let train: Vec<String> = (1..=3).map(|k| file(&format!("train_{k}.csv"))).collect();
-    sandbox.succeed(&[
-        "diagnose",
-        "--robot",
-        &robot,
-        "--train",
-        &train[0],
-        &train[1],
-        &train[2],
-        "--held-out",
-        &held_out,
-        "--json",
-        "diagnosis.json",
-    ]);
-    let diagnosis = sandbox.json("diagnosis.json");
+    let diagnosis = diagnosed(&sandbox);
     let findings = diagnosis["findings"].as_array().expect("there are findings");
     let names: Vec<&str> = findings
         .iter()

@@ -7,6 +7,17 @@ use arm::Vector3;
 use crate::diagnose_made::{Case, ELBOW, SHOULDER, arguments, recording, trio};
 use crate::diagnose_refusals::{case, changed, refused, refused_command, refused_with, says};
 
+/// One recording with a column map, by its torques.
+const ALONE: [&str; 7] = [
+    "--robot",
+    "robot.urdf",
+    "--train",
+    "a.csv",
+    "--map",
+    "map.toml",
+    "--torques-only",
+];
+
 /// What a diagnosis with `text` as `a.csv` says: no effect, and units first, in every form.
 fn doubted(case: &Case, text: &str) -> String {
     case.sandbox.write("a.csv", text);
@@ -244,17 +255,8 @@ fn where_all_joints_are_wrong_nothing_is_searched_and_the_map_mends_it() {
         // that the one is diagnosed alone.
         let map = case.sandbox.json("o.json")["doubts"][0]["column_map"].clone();
         case.sandbox.write("map.toml", map.as_str().expect("a map"));
-        let alone = [
-            "--robot",
-            "robot.urdf",
-            "--train",
-            "a.csv",
-            "--map",
-            "map.toml",
-            "--torques-only",
-        ];
         let mut command = vec!["diagnose", "--json", "mended.json"];
-        command.extend(alone);
+        command.extend(ALONE);
         let said = case.sandbox.succeed(&command);
         let mended = case.sandbox.json("mended.json");
         assert!(mended.get("doubts").is_none(), "{parts:?}: {said}");
@@ -315,16 +317,7 @@ fn numbered_joints_of_another_count_are_told_with_a_map_of_the_first() {
         ],
     );
     case.sandbox.write("map.toml", &map_in(&said));
-    let alone = [
-        "--robot",
-        "robot.urdf",
-        "--train",
-        "a.csv",
-        "--map",
-        "map.toml",
-        "--torques-only",
-    ];
-    case.sandbox.succeed(&[&["diagnose"], &alone[..]].concat());
+    case.sandbox.succeed(&[&["diagnose"], &ALONE[..]].concat());
 }
 
 #[test]
