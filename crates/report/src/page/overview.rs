@@ -103,7 +103,7 @@ impl Page<'_> {
                         span.nowrap { (numbers::with_interval(name, parameter)) }
                     }
                 },
-                html! { (bar(finding.share)) (numbers::share(finding.share)) },
+                html! { span.nowrap { (bar(finding.share)) (numbers::share(finding.share)) } },
                 html! { (numbers::probability(finding.probability)) },
                 html! { (terminal::error(self.report, finding)) },
                 html! { (terminal::alternatives(finding)) },
@@ -114,7 +114,7 @@ impl Page<'_> {
                 self.link(Some(&open.joint)),
                 html! { "unexplained residual" },
                 html! {},
-                html! { (bar(open.share)) (numbers::share(open.share)) },
+                html! { span.nowrap { (bar(open.share)) (numbers::share(open.share)) } },
                 html! {},
                 html! { (terminal::error_of(self.report, &open.joint)) },
                 html! {},
