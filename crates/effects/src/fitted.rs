@@ -20,6 +20,9 @@ pub trait Fitted {
     /// The coefficient of its k-th column.
     fn value(&self, k: usize) -> f64;
 
+    /// The coefficient of a column of the background beside it; zero if the fit has no such column.
+    fn background(&self, term: &Term) -> f64;
+
     /// Its k-th column on the rows of its joint; `None` if it has none there, or if it acts on the whole arm.
     fn column(&self, k: usize) -> Option<&[f64]>;
 

@@ -13,7 +13,8 @@ use crate::search::scan;
 use crate::search::study::Study;
 use crate::selection::judge::Selection;
 use crate::thresholds::{
-    BURST_PIECE, BURST_STRETCH, LEAST_BURST_ROWS, LEAST_PUSHED, MOST_BURSTS, ONE_FORCE, OVER_THE_REST,
+    BURST_PIECE, BURST_STRETCH, LEAST_BURST_ROWS, LEAST_MOVING, LEAST_PUSHED, LEAST_STRETCHES, MOST_BURSTS, ONE_FORCE,
+    OVER_THE_REST,
 };
 
 /// The largest number of bursts that are searched.
@@ -82,12 +83,7 @@ pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
             // The joint on which it stands out most.
             let window = (from, to);
             let at = (0..study.motions.dof)
-                .map(|joint| {
-                    (
-                        joint_rms(study, &times, left, joint, window) * weights[joint].sqrt(),
-                        joint,
-                    )
-                })
+                .map(|joint| (powers[joint], joint))
                 .max_by(|a, b| a.0.total_cmp(&b.0));
             if let Some((_, joint)) = at {
                 let rms = joint_rms(study, &times, left, joint, window) / study.scales.torque[joint].max(1e-300);
@@ -112,12 +108,16 @@ pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
     bursts
 }
 
-/// The usual residual of a joint: the median over stretches of all moving rows.
+/// The usual residual of a joint: the median over stretches of all moving rows, or that of a held-out recording alone where it is
+/// larger. Friction that differs in a recording, or links that its poses load otherwise, raise all of its residuals; a burst
+/// exceeds those, too.
 fn usual(study: &Study, joint: usize, left: &[Vec<f64>]) -> f64 {
     let moving = &study.table.joints[joint].moving;
-    let mut stretches = Vec::new();
+    let mut all = Vec::new();
+    let mut largest = 0.0_f64;
     for (recording, rows) in study.table.rows.iter().enumerate() {
         let length = ((BURST_STRETCH / study.seconds[recording]) as usize).max(3);
+        let mut stretches = Vec::new();
         let mut from = rows.start;
         while from < rows.end {
             let to = (from + length).min(rows.end);
@@ -130,9 +130,17 @@ fn usual(study: &Study, joint: usize, left: &[Vec<f64>]) -> f64 {
             }
             from = to;
         }
+        all.extend_from_slice(&stretches);
+        if !study.fitted[recording] && stretches.len() >= LEAST_STRETCHES {
+            largest = largest.max(median(stretches));
+        }
     }
-    stretches.sort_by(f64::total_cmp);
-    stretches.get(stretches.len() / 2).copied().unwrap_or(0.0)
+    median(all).max(largest)
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// The moving rows of a window, joint by joint.
@@ -165,11 +173,17 @@ fn power(
         sums[joint].0 += weights[joint] * left[joint][row].powi(2);
         sums[joint].1 += 1.0;
     }
+    let recording = at?;
+    let all = study.table.rows[recording].clone();
+    let all = all
+        .filter(|&row| times[row] >= window.0 && times[row] <= window.1)
+        .count() as f64;
+    // A joint that hardly moves in the window only stops or starts there, where dry friction is not determined.
     let powers = sums
         .iter()
-        .map(|sum| if sum.1 > 0.0 { sum.0 / sum.1 } else { 0.0 })
+        .map(|&(sum, moving)| if moving > LEAST_MOVING * all { sum / moving } else { 0.0 })
         .collect();
-    at.map(|recording| (recording, powers))
+    Some((recording, powers))
 }
 
 fn joint_rms(study: &Study, times: &[f64], left: &[Vec<f64>], joint: usize, window: (f64, f64)) -> f64 {

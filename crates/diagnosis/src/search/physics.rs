@@ -29,6 +29,12 @@ impl Fitted for InFit<'_> {
         self.fit.coefficient(self.candidate.columns[k])
     }
 
+    fn background(&self, term: &Term) -> f64 {
+        let columns = &self.fit.columns[..self.fit.background];
+        let at = columns.iter().position(|&column| self.table.terms[column] == *term);
+        at.map_or(0.0, |k| self.fit.coefficients[k])
+    }
+
     fn column(&self, k: usize) -> Option<&[f64]> {
         let joint = self.candidate.joint?;
         let place = self.table.place[joint][self.candidate.columns[k]]?;

@@ -24,6 +24,10 @@ pub const MOST_BURSTS: usize = 4;
 pub const LEAST_BURST_ROWS: usize = 50;
 /// The length of the stretches whose residuals are compared with a burst (s).
 pub const BURST_STRETCH: f64 = 0.4;
+/// A held-out recording with fewer stretches of motion has no usual residual of its own.
+pub const LEAST_STRETCHES: usize = 8;
+/// A joint takes part in a burst if it moves on this part of the burst's rows.
+pub const LEAST_MOVING: f64 = 0.5;
 /// The length of the pieces of a burst of which every other is fitted (s).
 pub const BURST_PIECE: f64 = 0.1;
 /// A push on the tool acts on at least this many joints, if the arm has more.

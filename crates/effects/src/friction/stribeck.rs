@@ -2,6 +2,7 @@
 
 use ::arm::JointKind;
 
+use crate::background::FRICTION_CURVE;
 use crate::laws::SIGN;
 use crate::{
     Against, Cone, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
@@ -66,6 +67,10 @@ pub fn velocity(terms: &[Term]) -> Option<f64> {
 /// The least Coulomb friction of a joint in motion, as a part of the additional breakaway friction.
 const LEAST_COULOMB: f64 = 0.1;
 
+/// The largest part of the additional breakaway friction that the background may take back at standstill. Simulated cases: true
+/// Stribeck friction loses 0.01 at most, friction that reaches its level gradually 1.5 and more.
+const MOST_TAKEN_BACK: f64 = 0.5;
+
 impl EffectKind for StribeckFriction {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -85,7 +90,8 @@ impl EffectKind for StribeckFriction {
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        fitted.value(1) > 0.0 && fitted.value(0) > LEAST_COULOMB * fitted.value(1) && fades(fitted)
+        let (coulomb, falling) = (fitted.value(0), fitted.value(1));
+        falling > 0.0 && coulomb > LEAST_COULOMB * falling && fades(fitted) && falls(fitted)
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
@@ -115,6 +121,14 @@ impl EffectKind for StribeckFriction {
         let speed = 2.0 * velocity(terms)?;
         Some(format!("below about {speed:.3} {}", Quantity::Speed.unit(joint)))
     }
+}
+
+/// Whether friction with the background's curve is larger at standstill than in motion. Friction that reaches its level gradually
+/// has a background that is negative at low speed, in which the additional friction only mends the form.
+fn falls(fitted: &dyn Fitted) -> bool {
+    let curve = fitted.term(1).joint.map(|joint| Term::on(&FRICTION_CURVE, joint));
+    let taken_back = curve.map_or(0.0, |curve| -fitted.background(&curve));
+    taken_back < MOST_TAKEN_BACK * fitted.value(1)
 }
 
 /// Whether the additional friction has fallen below half on most of the moving rows, so that it is a friction at low speed.

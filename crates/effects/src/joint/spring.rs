@@ -274,6 +274,10 @@ mod tests {
         fn value(&self, k: usize) -> f64 {
             self.values[k]
         }
+        fn background(&self, _: &Term) -> f64 {
+            0.0
+        }
+
         fn column(&self, k: usize) -> Option<&[f64]> {
             Some(&self.columns[k])
         }
