@@ -13,6 +13,7 @@ mod joined;
 mod left_out;
 
 use eliminated::Eliminated;
+pub use left_out::LeftOut;
 
 /// The ridge, relative to the diagonal, so that collinear columns share a torque.
 const RIDGE: f64 = 1e-9;
@@ -268,7 +269,7 @@ impl Products {
         let scale: Vec<f64> = (0..p)
             .map(|i| {
                 let diagonal = match &eliminated {
-                    Some(_) => self.own_product(table, weights, columns[i]),
+                    Some(eliminated) => self.own_product(table, eliminated, columns[i]),
                     None => matrix[(i, i)],
                 };
                 if diagonal > 0.0 { diagonal.sqrt() } else { 1.0 }
@@ -312,6 +313,9 @@ impl Products {
     pub fn drop(&self, table: &Table, fit: &Fit, added: &[usize]) -> f64 {
         let chosen = fit.chosen();
         let (p, c) = (chosen.len(), added.len());
+        if let Some(eliminated) = &fit.eliminated {
+            eliminated.store(chosen);
+        }
         let inner = |a: usize, b: Option<usize>| self.inner(table, &fit.weights, fit.eliminated.as_deref(), a, b);
         let mut cross = DMatrix::zeros(p, c);
         let mut own = DMatrix::zeros(c, c);
@@ -319,7 +323,7 @@ impl Products {
         let mut size = vec![1.0; c];
         for k in 0..c {
             let diagonal = match &fit.eliminated {
-                Some(_) => self.own_product(table, &fit.weights, added[k]),
+                Some(eliminated) => self.own_product(table, eliminated, added[k]),
                 None => inner(added[k], Some(added[k])),
             };
             if diagonal > 0.0 {

@@ -1,11 +1,12 @@
 //! The joint search: which candidates together explain the residual.
 
 use std::collections::HashMap;
+use std::sync::OnceLock;
 
 use arm::Arm;
 use rayon::prelude::*;
 
-use crate::regression::fit::{Fit, Products};
+use crate::regression::fit::{Fit, LeftOut, Products};
 use crate::regression::table::Table;
 use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::physics::is_possible;
@@ -187,21 +188,28 @@ impl Problem<'_> {
             .collect();
         turns.sort_by_key(|&(turn, _)| turn);
         let mut waiting = turns.into_iter().map(|(_, candidate)| candidate);
+        // What the candidates of a joint are added to is fitted once.
+        let bases: Vec<OnceLock<LeftOut<'_>>> = (0..self.table.dof()).map(|_| OnceLock::new()).collect();
         for _ in 0..BATCHES {
             let mut batch = Vec::with_capacity(TRIED);
-            for candidate in waiting.by_ref() {
-                if self.predicts(chosen, candidate) {
-                    batch.push(candidate);
-                } else {
-                    growth.refused.push(candidate);
-                    growth.tried.push((
-                        candidate,
-                        chosen.score,
-                        "does not improve the prediction of recordings it was not fitted to",
-                    ));
-                }
-                if batch.len() == TRIED {
+            while batch.len() < TRIED {
+                let next: Vec<usize> = waiting.by_ref().take(TRIED - batch.len()).collect();
+                if next.is_empty() {
                     break;
+                }
+                let predicts = next.par_iter().map(|&candidate| self.predicts(chosen, candidate, &bases));
+                let predicts: Vec<bool> = predicts.collect();
+                for (candidate, predicts) in next.into_iter().zip(predicts) {
+                    if predicts {
+                        batch.push(candidate);
+                    } else {
+                        growth.refused.push(candidate);
+                        growth.tried.push((
+                            candidate,
+                            chosen.score,
+                            "does not improve the prediction of recordings it was not fitted to",
+                        ));
+                    }
                 }
             }
             if batch.is_empty() {
@@ -275,8 +283,9 @@ impl Problem<'_> {
         self.products.has_background() && candidate.hypothesis.is_certain_in_form()
     }
 
-    /// Whether `candidate` improves the prediction of recordings that it was not fitted to.
-    fn predicts(&self, chosen: &Chosen, candidate: usize) -> bool {
+    /// Whether `candidate` improves the prediction of recordings that it was not fitted to. `bases` are the fits of `chosen` on
+    /// the joints.
+    fn predicts<'a>(&'a self, chosen: &'a Chosen, candidate: usize, bases: &[OnceLock<LeftOut<'a>>]) -> bool {
         let candidate = &self.candidates[candidate];
         if candidate.hypothesis.is_passing() || candidate.hypothesis.is_baseline() || self.is_background_too(candidate)
         {
@@ -289,10 +298,12 @@ impl Problem<'_> {
                 .arm_gain(self.table, columns, &candidate.columns, &chosen.fit.weights)
                 > 0.0;
         };
-        let weights = &chosen.fit.weights;
-        let (inside, outside) = self
-            .products
-            .gains(self.table, joint, columns, &candidate.columns, weights);
+        let fit = || {
+            self.products
+                .left_out(self.table, joint, columns, &chosen.fit.weights)
+        };
+        let base = bases[joint].get_or_init(fit);
+        let (inside, outside) = self.products.gains(self.table, base, &candidate.columns);
         outside
             > if candidate.hypothesis.name().is_none() {
                 self.thresholds.predicted * inside

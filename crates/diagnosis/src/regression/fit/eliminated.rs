@@ -3,6 +3,7 @@
 //! With A = BᵀWB + K = LLᵀ for the background's columns B, their precision K and W the weights of the evidence, a product of two
 //! columns becomes xᵀWx' − (L⁻¹BᵀWx)ᵀ(L⁻¹BᵀWx'), and the background costs ½ (ln det A − ln det K) + ½ δᵀKδ.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock, PoisonError};
 
 use nalgebra::{Cholesky, DMatrix};
@@ -13,6 +14,9 @@ use crate::regression::table::Table;
 
 /// The number of weights for which the elimination is stored.
 const KEPT: usize = 12;
+
+/// A product that was not formed yet: bits of no number.
+const NOT_FORMED: u64 = u64::MAX;
 
 /// The background eliminated at given weights.
 #[derive(Debug)]
@@ -27,6 +31,8 @@ pub struct Eliminated {
     with_y: Vec<f64>,
     /// L⁻¹ BᵀW x of each requested column of the table.
     with_columns: Vec<OnceLock<Vec<f64>>>,
+    /// The products of a column of a fit with all others, as bits: every candidate asks for them, in every round.
+    with_others: Vec<OnceLock<Vec<AtomicU64>>>,
     /// ½ (ln det A − ln det K) (nats).
     pub occam: f64,
 }
@@ -63,6 +69,7 @@ impl Eliminated {
             lower,
             with_y: Vec::new(),
             with_columns: (0..table.terms.len()).map(|_| OnceLock::new()).collect(),
+            with_others: (0..table.terms.len()).map(|_| OnceLock::new()).collect(),
             occam: 0.5 * (log_det - background.log_det),
         };
         let right = columns
@@ -87,6 +94,20 @@ impl Eliminated {
             let product = |&own: &usize| products.product(table, &self.scaled, column, Some(own));
             self.forward(background.columns.iter().map(product).collect())
         })
+    }
+
+    /// Stores the products of these columns with others from now on.
+    pub fn store(&self, columns: &[usize]) {
+        let none = || self.with_others.iter().map(|_| AtomicU64::new(NOT_FORMED)).collect();
+        for &column in columns {
+            self.with_others[column].get_or_init(none);
+        }
+    }
+
+    /// The place where the product of two columns is stored, if that is wanted of one of them.
+    fn place(&self, a: usize, b: usize) -> Option<&AtomicU64> {
+        let of = |one: usize, other: usize| self.with_others[one].get().map(|row| &row[other]);
+        of(b, a).or_else(|| of(a, b))
     }
 
     /// The background's coefficients for `values` of the chosen `columns`.
@@ -155,17 +176,31 @@ impl Products {
         let (Some(eliminated), Some(background)) = (eliminated, self.background.as_deref()) else {
             return self.product(table, weights, a, b);
         };
-        let full = self.product(table, &eliminated.scaled, a, b);
-        let x = eliminated.with_column(self, table, background, a);
-        match b {
-            Some(b) => full - dot(x, eliminated.with_column(self, table, background, b)),
-            None => full - dot(x, &eliminated.with_y),
+        let form = || {
+            let full = self.product(table, &eliminated.scaled, a, b);
+            let x = eliminated.with_column(self, table, background, a);
+            match b {
+                Some(b) => full - dot(x, eliminated.with_column(self, table, background, b)),
+                None => full - dot(x, &eliminated.with_y),
+            }
+        };
+        let Some(place) = b.and_then(|b| eliminated.place(a, b)) else {
+            return form();
+        };
+        // The product has the same bits whichever thread forms it, and in either order of the columns.
+        match place.load(Ordering::Relaxed) {
+            NOT_FORMED => {
+                let value = form();
+                place.store(value.to_bits(), Ordering::Relaxed);
+                value
+            }
+            bits => f64::from_bits(bits),
         }
     }
 
-    /// The weighted square of a column, with rows counted as evidence, minus the part that the background explains.
-    pub(super) fn own_product(&self, table: &Table, weights: &[f64], column: usize) -> f64 {
-        self.product(table, &self.evidence_weights(weights), column, Some(column))
+    /// The weighted square of a column, with rows counted as evidence.
+    pub(super) fn own_product(&self, table: &Table, eliminated: &Eliminated, column: usize) -> f64 {
+        self.product(table, &eliminated.scaled, column, Some(column))
     }
 
     /// The joints' `weights` with rows counted as evidence, as the background's prior needs; without a background, they are
