@@ -208,7 +208,9 @@ struct Along {
 
 impl Along {
     fn new(chunk: &Chunk, offset: &[f64], ticks: Range<usize>) -> Self {
-        let all = |signal: &[Vec<f64>]| -> Vec<f64> { signal.iter().flat_map(|joint| &joint[ticks.clone()]).copied().collect() };
+        let all = |signal: &[Vec<f64>]| -> Vec<f64> {
+            signal.iter().flat_map(|joint| &joint[ticks.clone()]).copied().collect()
+        };
         let mut q = all(&chunk.q);
         for (q, offset) in q.chunks_exact_mut(ticks.len()).zip(offset) {
             q.iter_mut().for_each(|q| *q += offset);

@@ -197,7 +197,9 @@ impl Problem<'_> {
                 if next.is_empty() {
                     break;
                 }
-                let predicts = next.par_iter().map(|&candidate| self.predicts(chosen, candidate, &bases));
+                let predicts = next
+                    .par_iter()
+                    .map(|&candidate| self.predicts(chosen, candidate, &bases));
                 let predicts: Vec<bool> = predicts.collect();
                 for (candidate, predicts) in next.into_iter().zip(predicts) {
                     if predicts {
@@ -298,10 +300,7 @@ impl Problem<'_> {
                 .arm_gain(self.table, columns, &candidate.columns, &chosen.fit.weights)
                 > 0.0;
         };
-        let fit = || {
-            self.products
-                .left_out(self.table, joint, columns, &chosen.fit.weights)
-        };
+        let fit = || self.products.left_out(self.table, joint, columns, &chosen.fit.weights);
         let base = bases[joint].get_or_init(fit);
         let (inside, outside) = self.products.gains(self.table, base, &candidate.columns);
         outside

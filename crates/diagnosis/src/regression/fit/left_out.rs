@@ -26,14 +26,11 @@ pub struct LeftOut<'a> {
 impl Products {
     /// The fit of `columns` on `joint` for [`Self::gains`]. `weights` are those of the joints; if there is a background, it comes
     /// first in `columns` and keeps its prior.
-    pub fn left_out<'a>(
-        &self,
-        table: &'a Table,
-        joint: usize,
-        columns: &'a [usize],
-        weights: &[f64],
-    ) -> LeftOut<'a> {
-        let places: Vec<usize> = columns.iter().filter_map(|&column| table.place[joint][column]).collect();
+    pub fn left_out<'a>(&self, table: &'a Table, joint: usize, columns: &'a [usize], weights: &[f64]) -> LeftOut<'a> {
+        let places: Vec<usize> = columns
+            .iter()
+            .filter_map(|&column| table.place[joint][column])
+            .collect();
         let scale = weights[joint] * self.evidence_per_row(joint);
         let mut base = LeftOut {
             joint,
@@ -256,8 +253,8 @@ impl Normal {
                 column.rows_range_mut(k..).axpy(-row[k], &row.rows_range(k..), 1.0);
             }
         }
-        let own = Cholesky::new_with_substitute(own, RIDGE)
-            .map_or_else(|| DMatrix::identity(new, new), Cholesky::unpack);
+        let own =
+            Cholesky::new_with_substitute(own, RIDGE).map_or_else(|| DMatrix::identity(new, new), Cholesky::unpack);
         let mut factor = DMatrix::zeros(p, p);
         factor.view_mut((0, 0), (known, known)).copy_from(&self.factor);
         factor.view_mut((known, 0), (new, known)).copy_from(&rows);

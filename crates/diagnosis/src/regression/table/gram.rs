@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use faer::{Accum, Mat, MatRef, Par, linalg::matmul::matmul};
+use gp::release_vectors;
 
 use crate::thresholds::STRETCHES;
 
@@ -73,6 +74,7 @@ impl Stretch {
                 1.0,
                 Par::Seq,
             );
+            release_vectors();
             for k in from..to {
                 self.gram.rows.push((0..=k).map(|i| product[(i, k - from)]).collect());
             }
