@@ -6,7 +6,8 @@ use fearless_simd::{Level, Simd};
 
 /// A computation whose loops run over a block of numbers at a time. Every number has the same operations in every width, so that
 /// the results of processors with fused multiply-add are the same bits.
-pub(crate) trait Wide {
+pub trait Wide {
+    /// What it computes.
     type Output;
 
     /// With fused multiply-add, or without.
@@ -14,7 +15,7 @@ pub(crate) trait Wide {
 }
 
 /// Runs `task` with the widest vectors that the processor has.
-pub(crate) fn on_widest<W: Wide>(task: W) -> W::Output {
+pub fn on_widest<W: Wide>(task: W) -> W::Output {
     static LEVEL: OnceLock<Level> = OnceLock::new();
     match *LEVEL.get_or_init(Level::new) {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

@@ -14,6 +14,7 @@ use crate::thresholds::{KNOWN_DRIVE, TELLING_DRIVES, Thresholds};
 
 mod exchange;
 mod exclusion;
+mod promise;
 
 /// The number of the most promising candidates that are fitted in full each round.
 const TRIED: usize = 8;
@@ -125,38 +126,6 @@ impl Problem<'_> {
         is_possible(&self.candidates[candidate], self.table, fit, self.arm)
     }
 
-    /// The first-order gain of `candidate` in addition to `chosen` (nats, minus the costs).
-    pub fn promise(&self, chosen: &Chosen, candidate: usize) -> f64 {
-        let new: Vec<usize> = {
-            let have = &chosen.fit.columns;
-            let columns = &self.candidates[candidate].columns;
-            columns
-                .iter()
-                .copied()
-                .filter(|c| have.binary_search(c).is_err())
-                .collect()
-        };
-        if new.is_empty() {
-            return f64::NEG_INFINITY;
-        }
-        let drop = self.products.drop(self.table, &chosen.fit, &new);
-        let cost = self.candidates[candidate].cost
-            - self.thresholds.per_coefficient * (self.candidates[candidate].columns.len() - new.len()) as f64;
-        let log = |drop: f64, joint: usize| {
-            let count = self.products.count[joint].max(1.0);
-            -0.5 * self.products.evidence[joint] * (1.0 - (drop / count).min(0.999_999)).ln()
-        };
-        let gain = match self.candidates[candidate].joint {
-            Some(joint) => log(drop, joint),
-            // At least the gain of an evenly distributed reduction.
-            None => {
-                let joints = self.products.count.len();
-                (0..joints).map(|joint| log(drop / joints as f64, joint)).sum::<f64>()
-            }
-        };
-        gain - cost
-    }
-
     /// The best addition to `chosen` among `allowed`, if one pays. Candidates that `growth` refused before are not tried again.
     pub fn grow(&self, chosen: &Chosen, allowed: &[usize], growth: &mut Growth) -> Option<Chosen> {
         let free: Vec<usize> = allowed
@@ -168,10 +137,7 @@ impl Problem<'_> {
                     && !chosen.set.iter().any(|&other| self.exclude(c, other))
             })
             .collect();
-        let mut promises: Vec<(f64, usize)> = free
-            .par_iter()
-            .map(|&candidate| (self.promise(chosen, candidate), candidate))
-            .collect();
+        let mut promises = self.promises(chosen, &free);
         promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         promises.retain(|(promise, _)| *promise > 0.0);
         // The most promising of each kind comes first: a candidate that contains a simpler one promises as much, in all its

@@ -9,6 +9,7 @@ use std::sync::{Arc, OnceLock, PoisonError};
 use nalgebra::{Cholesky, DMatrix};
 
 use super::Products;
+use super::lanes::{LANES, Lanes, dot, dots_of, dots_with, forward};
 use crate::regression::background::Background;
 use crate::regression::table::Table;
 
@@ -130,19 +131,6 @@ impl Eliminated {
     }
 }
 
-/// The inner product over the length of the second vector.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (x, y) = (a[..b.len()].chunks_exact(4), b.chunks_exact(4));
-    let rest: f64 = x.remainder().iter().zip(y.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in x.zip(y) {
-        for lane in 0..4 {
-            sums[lane] += x[lane] * y[lane];
-        }
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
-}
-
 impl Products {
     /// The background eliminated at `weights`; `None` if there is none.
     pub(super) fn eliminated(&self, table: &Table, weights: &[f64]) -> Option<Arc<Eliminated>> {
@@ -195,6 +183,104 @@ impl Products {
                 value
             }
             bits => f64::from_bits(bits),
+        }
+    }
+
+    /// Eliminates the background from these columns of the table, several at a time.
+    pub(super) fn eliminate(&self, table: &Table, eliminated: &Eliminated, columns: &[usize]) {
+        let is_new = |column: &usize| eliminated.with_columns[*column].get().is_none();
+        let new: Vec<usize> = columns.iter().copied().filter(is_new).collect();
+        for group in new.chunks(LANES) {
+            self.in_lanes(table, eliminated, group);
+        }
+    }
+
+    /// L⁻¹ BᵀW x of up to [`LANES`] columns, which are stored, too.
+    fn in_lanes(&self, table: &Table, eliminated: &Eliminated, group: &[usize]) -> Vec<Lanes> {
+        let known = |&column: &usize| eliminated.with_columns[column].get();
+        if let Some(known) = group.iter().map(known).collect::<Option<Vec<_>>>() {
+            let row = |i: usize| std::array::from_fn(|lane| known.get(lane).map_or(0.0, |x| x[i]));
+            return (0..eliminated.lower.len()).map(row).collect();
+        }
+        let Some(background) = self.background.as_deref() else {
+            return Vec::new();
+        };
+        let mut right = vec![[0.0; LANES]; background.columns.len()];
+        for (lane, &column) in group.iter().enumerate() {
+            for (row, &own) in right.iter_mut().zip(&background.columns) {
+                row[lane] = self.product(table, &eliminated.scaled, column, Some(own));
+            }
+        }
+        forward(&eliminated.lower, &mut right);
+        for (lane, &column) in group.iter().enumerate() {
+            eliminated.with_columns[column].get_or_init(|| right.iter().map(|row| row[lane]).collect());
+        }
+        right
+    }
+
+    /// The products as of [`Self::inner`] of each of `others` with the columns of a group.
+    pub(super) fn inner_in_lanes(
+        &self,
+        table: &Table,
+        eliminated: &Eliminated,
+        group: &[usize],
+        others: &[usize],
+    ) -> Vec<Lanes> {
+        let columns = self.in_lanes(table, eliminated, group);
+        let Some(background) = self.background.as_deref() else {
+            return Vec::new();
+        };
+        let with = |&other: &usize| eliminated.with_column(self, table, background, other);
+        let rows: Vec<&[f64]> = others.iter().map(with).collect();
+        let mut products = dots_of(&rows, &columns);
+        for (row, &other) in products.iter_mut().zip(others) {
+            for (value, &column) in row.iter_mut().zip(group) {
+                *value = self.product(table, &eliminated.scaled, column, Some(other)) - *value;
+                if let Some(place) = eliminated.place(column, other) {
+                    place.store(value.to_bits(), Ordering::Relaxed);
+                }
+            }
+        }
+        products
+    }
+
+    /// The products as of [`Self::inner`] of a column with each of `others`, to the beginning of `row`.
+    pub(super) fn inner_with(
+        &self,
+        table: &Table,
+        weights: &[f64],
+        eliminated: Option<&Eliminated>,
+        a: usize,
+        others: &[usize],
+        row: &mut [f64],
+    ) {
+        let (Some(eliminated), Some(background)) = (eliminated, self.background.as_deref()) else {
+            for (value, &b) in row.iter_mut().zip(others) {
+                *value = self.product(table, weights, a, Some(b));
+            }
+            return;
+        };
+        let mut missing: Vec<usize> = Vec::with_capacity(others.len());
+        for (k, &b) in others.iter().enumerate() {
+            let bits = eliminated
+                .place(a, b)
+                .map_or(NOT_FORMED, |place| place.load(Ordering::Relaxed));
+            if bits == NOT_FORMED {
+                missing.push(k);
+            } else {
+                row[k] = f64::from_bits(bits);
+            }
+        }
+        if missing.is_empty() {
+            return;
+        }
+        let with = |column: usize| eliminated.with_column(self, table, background, column);
+        let columns: Vec<&[f64]> = missing.iter().map(|&k| with(others[k])).collect();
+        for (&k, explained) in missing.iter().zip(dots_with(with(a), &columns)) {
+            row[k] = self.product(table, &eliminated.scaled, a, Some(others[k])) - explained;
+            if let Some(place) = eliminated.place(a, others[k]) {
+                place.store(row[k].to_bits(), Ordering::Relaxed);
+            }
         }
     }
 
