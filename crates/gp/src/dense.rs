@@ -1,10 +1,11 @@
 //! The marginal likelihood and its gradient where the kernel matrix has full rank, or nearly.
 
-use faer::linalg::matmul::triangular::{BlockStructure, matmul as triangular_matmul};
-use faer::{Accum, Mat, Par};
+use faer::linalg::matmul::triangular::BlockStructure;
+use faer::{Accum, Mat};
 
 use crate::algebra::{
     cholesky, dot, inverse_of_lower, log_determinant, solve_lower, solve_lower_transposed, sum_of_squares,
+    triangular_matmul,
 };
 use crate::kernel::{Points, kernel_column, weighted_squares};
 use crate::likelihood::Evaluation;
@@ -58,15 +59,11 @@ impl Dense {
         let outer_inverse = inverse_of_lower(self.outer.as_ref());
         let mut inverse = Mat::<f64>::zeros(n, n);
         triangular_matmul(
-            inverse.as_mut(),
-            BlockStructure::TriangularLower,
+            (inverse.as_mut(), BlockStructure::TriangularLower),
             Accum::Replace,
-            outer_inverse.transpose(),
-            BlockStructure::TriangularUpper,
-            outer_inverse.as_ref(),
-            BlockStructure::TriangularLower,
+            (outer_inverse.transpose(), BlockStructure::TriangularUpper),
+            (outer_inverse.as_ref(), BlockStructure::TriangularLower),
             1.0,
-            Par::Seq,
         );
         let trace: f64 = (0..n).map(|j| inverse[(j, j)]).sum();
         let mut gradient = vec![0.0; points.dim() + 1];

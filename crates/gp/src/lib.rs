@@ -44,3 +44,4 @@ pub use data::{Hyperparameters, Lengths, TrainingSet};
 pub use error::GpError;
 pub use model::{FitOptions, Gp, LengthScales, Workspace};
 pub use range::Range;
+pub use wide::{Wide, on_widest, release_vectors};

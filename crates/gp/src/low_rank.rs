@@ -1,12 +1,11 @@
 //! The marginal likelihood and its gradient where the kernel matrix has a rank well below its size.
 
-use faer::linalg::matmul::matmul;
-use faer::linalg::matmul::triangular::{BlockStructure, matmul as triangular_matmul};
-use faer::{Accum, Mat, Par};
+use faer::linalg::matmul::triangular::BlockStructure;
+use faer::{Accum, Mat};
 
 use crate::algebra::{
-    add_product, cholesky, dot, inverse_of_lower, log_determinant, qr_factor, solve_lower, solve_lower_transposed,
-    sum_of_squares,
+    add_product, cholesky, dot, inverse_of_lower, log_determinant, matmul, qr_factor, solve_lower,
+    solve_lower_transposed, sum_of_squares, triangular_matmul,
 };
 use crate::kernel::{Points, kernel_sum, weighted_squares};
 use crate::likelihood::Evaluation;
@@ -50,15 +49,11 @@ impl LowRank {
         if method == Method::Normal {
             outer = Mat::zeros(r, r);
             triangular_matmul(
-                outer.as_mut(),
-                BlockStructure::TriangularLower,
+                (outer.as_mut(), BlockStructure::TriangularLower),
                 Accum::Replace,
-                factor.transpose(),
-                BlockStructure::Rectangular,
-                factor,
-                BlockStructure::Rectangular,
+                (factor.transpose(), BlockStructure::Rectangular),
+                (factor, BlockStructure::Rectangular),
                 1.0,
-                Par::Seq,
             );
             for j in 0..r {
                 outer[(j, j)] += rho;
@@ -152,15 +147,11 @@ impl LowRank {
         let r = self.outer.nrows();
         let mut square = Mat::from_fn(r, r, |i, j| if i == j { -share } else { 0.0 });
         triangular_matmul(
-            square.as_mut(),
-            BlockStructure::Rectangular,
+            (square.as_mut(), BlockStructure::Rectangular),
             Accum::Add,
-            self.outer.as_ref(),
-            BlockStructure::TriangularLower,
-            self.outer.transpose(),
-            BlockStructure::TriangularUpper,
+            (self.outer.as_ref(), BlockStructure::TriangularLower),
+            (self.outer.transpose(), BlockStructure::TriangularUpper),
             1.0,
-            Par::Seq,
         );
         square
     }
@@ -210,27 +201,19 @@ impl LowRank {
         // Y = G⁻¹ L_S⁻¹; C⁻¹ B = F (Fᵀ F + ρ I)⁻¹ L_S⁻¹ = F G⁻ᵀ Y.
         let mut y = Mat::<f64>::zeros(r, r);
         triangular_matmul(
-            y.as_mut(),
-            BlockStructure::TriangularLower,
+            (y.as_mut(), BlockStructure::TriangularLower),
             Accum::Replace,
-            outer_inverse.as_ref(),
-            BlockStructure::TriangularLower,
-            triangle_inverse.as_ref(),
-            BlockStructure::TriangularLower,
+            (outer_inverse.as_ref(), BlockStructure::TriangularLower),
+            (triangle_inverse.as_ref(), BlockStructure::TriangularLower),
             1.0,
-            Par::Seq,
         );
         let mut inner = Mat::<f64>::zeros(r, r);
         triangular_matmul(
-            inner.as_mut(),
-            BlockStructure::Rectangular,
+            (inner.as_mut(), BlockStructure::Rectangular),
             Accum::Replace,
-            outer_inverse.transpose(),
-            BlockStructure::TriangularUpper,
-            y.as_ref(),
-            BlockStructure::TriangularLower,
+            (outer_inverse.transpose(), BlockStructure::TriangularUpper),
+            (y.as_ref(), BlockStructure::TriangularLower),
             1.0,
-            Par::Seq,
         );
         // The penalty changes by -½ tr(d(F Fᵀ)) / ρ: C⁻¹ is then C⁻¹ - I / ρ, and B = F L_S⁻¹.
         let truncated = self.pivoted.truncated;
@@ -242,20 +225,16 @@ impl LowRank {
             }
         }
         let mut weights = Mat::<f64>::zeros(n, r);
-        matmul(weights.as_mut(), Accum::Replace, factor, inner.as_ref(), -1.0, Par::Seq);
+        matmul(weights.as_mut(), Accum::Replace, factor, inner.as_ref(), -1.0);
         // Bᵀ C⁻¹ B = L_S⁻ᵀ (I - ρ (Fᵀ F + ρ I)⁻¹) L_S⁻¹ = L_S⁻ᵀ L_S⁻¹ - ρ Yᵀ Y.
         let mut pivot_weights = Mat::<f64>::zeros(r, r);
         for (matrix, sign) in [(&triangle_inverse, 0.5), (&y, -0.5 * self.rho)] {
             triangular_matmul(
-                pivot_weights.as_mut(),
-                BlockStructure::Rectangular,
+                (pivot_weights.as_mut(), BlockStructure::Rectangular),
                 Accum::Add,
-                matrix.transpose(),
-                BlockStructure::TriangularUpper,
-                matrix.as_ref(),
-                BlockStructure::TriangularLower,
+                (matrix.transpose(), BlockStructure::TriangularUpper),
+                (matrix.as_ref(), BlockStructure::TriangularLower),
                 sign,
-                Par::Seq,
             );
         }
         if truncated {
@@ -264,26 +243,18 @@ impl LowRank {
             let inverse = triangle_inverse.as_ref();
             let mut right = Mat::<f64>::zeros(r, r);
             triangular_matmul(
-                right.as_mut(),
-                BlockStructure::Rectangular,
+                (right.as_mut(), BlockStructure::Rectangular),
                 Accum::Replace,
-                square.as_ref(),
-                BlockStructure::Rectangular,
-                inverse,
-                BlockStructure::TriangularLower,
+                (square.as_ref(), BlockStructure::Rectangular),
+                (inverse, BlockStructure::TriangularLower),
                 1.0,
-                Par::Seq,
             );
             triangular_matmul(
-                pivot_weights.as_mut(),
-                BlockStructure::Rectangular,
+                (pivot_weights.as_mut(), BlockStructure::Rectangular),
                 Accum::Add,
-                inverse.transpose(),
-                BlockStructure::TriangularUpper,
-                right.as_ref(),
-                BlockStructure::Rectangular,
+                (inverse.transpose(), BlockStructure::TriangularUpper),
+                (right.as_ref(), BlockStructure::Rectangular),
                 -0.5 / self.rho,
-                Par::Seq,
             );
         }
         let mut beta = self.coefficients.clone();

@@ -1,9 +1,8 @@
 //! Pivoted Cholesky factorisation of a kernel matrix: its numerical rank, and a factor of that rank.
 
-use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use faer::{Accum, Mat, MatMut, MatRef};
 
+use crate::algebra::{matmul, solve_lower_all};
 use crate::kernel::{Points, kernel_column};
 
 /// Pivots taken together, so that the work is in matrix products rather than in passes over memory.
@@ -96,8 +95,8 @@ impl PivotedCholesky {
             let (old, new) = this.factor.split_at_mut(rank * n);
             let old = MatRef::from_column_major_slice(old, n, rank);
             let mut new = MatMut::from_column_major_slice_mut(new, n, taken);
-            matmul(new.as_mut(), Accum::Add, old, earlier.transpose(), -1.0, Par::Seq);
-            solve_lower_triangular_in_place(triangle, new.as_mut().transpose_mut(), Par::Seq);
+            matmul(new.as_mut(), Accum::Add, old, earlier.transpose(), -1.0);
+            solve_lower_all(triangle, new.as_mut().transpose_mut());
             for (t, &i) in block.iter().enumerate() {
                 // Zero but for rounding; exactly zero makes the pivots' rows a triangle.
                 for later in t + 1..taken {
@@ -150,7 +149,6 @@ impl PivotedCholesky {
             earlier.as_ref(),
             earlier.transpose(),
             -1.0,
-            Par::Seq,
         );
         let mut left: Vec<f64> = worthy.iter().map(|&i| residual[i]).collect();
         let mut taken: Vec<usize> = Vec::with_capacity(BLOCK);

@@ -1,7 +1,9 @@
 //! The rigid model along the recorded motion: torques, and their derivatives with respect to possible errors.
 
+use std::ops::Range;
+
 use arm::{Arm, PARAMETERS_PER_LINK, Workspace};
-use nalgebra::{DMatrix, Matrix6xX, Vector3};
+use nalgebra::{Matrix6xX, Vector3};
 
 use crate::data::motion::Chunk;
 
@@ -43,23 +45,12 @@ impl Rigid {
 
     /// Sets the background to the difference of the torque from that of `arm` for the same positions of the joints.
     pub fn set_background(&mut self, arm: &Arm, chunk: &Chunk) {
-        let mut workspace = Workspace::new(arm);
-        let at = |signal: &[Vec<f64>], tick: usize| -> Vec<f64> { signal.iter().map(|joint| joint[tick]).collect() };
-        let mut tau = vec![0.0; arm.dof()];
+        let along = Along::new(chunk, &self.offset, 0..chunk.ticks());
+        let mut tau = vec![0.0; along.q.len()];
+        arm.inverse_dynamics_batch(&along.q, &along.qd, &along.qdd, &mut tau);
         self.background = self.tau.clone();
-        for tick in 0..chunk.ticks() {
-            let mut q = at(&chunk.q, tick);
-            q.iter_mut().zip(&self.offset).for_each(|(q, offset)| *q += offset);
-            arm.inverse_dynamics(
-                &mut workspace,
-                &q,
-                &at(&chunk.qd, tick),
-                &at(&chunk.qdd, tick),
-                &mut tau,
-            );
-            for (joint, tau) in tau.iter().enumerate() {
-                self.background[joint][tick] -= tau;
-            }
+        for (background, tau) in self.background.iter_mut().zip(tau.chunks_exact(chunk.ticks())) {
+            background.iter_mut().zip(tau).for_each(|(sum, tau)| *sum -= tau);
         }
     }
 
@@ -83,67 +74,74 @@ impl Rigid {
             arm: Some(arm.clone()),
             offset: offset.to_vec(),
         };
-        let mut workspace = Workspace::new(arm);
-        let tool = arm.tool_frame();
         let gravity = *arm.gravity();
         let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
         let along = axes.map(|axis| arm.clone().with_gravity(axis));
         // Turning the base by a small angle about x turns gravity by the opposite angle in the base's frame.
         let turned = [Vector3::x(), Vector3::y()].map(|axis| -axis.cross(&gravity));
-        let (mut q, mut qd, mut qdd) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-        let (mut tau, mut pull) = (vec![0.0; n], vec![0.0; n]);
-        let still = vec![0.0; n];
-        let mut regressor = DMatrix::zeros(n, PARAMETERS_PER_LINK * n);
-        let mut mass = DMatrix::zeros(n, n);
-        let (mut by_position, mut by_velocity) = (DMatrix::zeros(n, n), DMatrix::zeros(n, n));
-        let mut jacobian = Matrix6xX::zeros(n);
         let to_link = payload_to_link(arm);
-        for tick in 0..ticks {
+        for from in (0..ticks).step_by(TOGETHER) {
+            let span = from..ticks.min(from + TOGETHER);
+            let states = Along::new(chunk, offset, span.clone());
+            let (count, len) = (span.len(), states.q.len());
+            let [q, qd, qdd] = [&states.q, &states.qd, &states.qdd];
+            let mut tau = vec![0.0; len];
+            arm.inverse_dynamics_batch(q, qd, qdd, &mut tau);
             for joint in 0..n {
-                q[joint] = chunk.q[joint][tick] + offset[joint];
-                qd[joint] = chunk.qd[joint][tick];
-                qdd[joint] = chunk.qdd[joint][tick];
+                rigid.tau[joint][span.clone()].copy_from_slice(&tau[joint * count..(joint + 1) * count]);
             }
-            arm.inverse_dynamics(&mut workspace, &q, &qd, &qdd, &mut tau);
+            let mut regressor = vec![0.0; len * PARAMETERS_PER_LINK * n];
+            arm.torque_regressor_batch(q, qd, qdd, &mut regressor);
             for joint in 0..n {
-                rigid.tau[joint][tick] = tau[joint];
-            }
-            arm.torque_regressor(&mut workspace, &q, &qd, &qdd, &mut regressor);
-            for joint in 0..n {
+                let at = |column: usize, k: usize| regressor[(column * n + joint) * count + k];
                 for link in joint..n {
                     let from = link * PARAMETERS_PER_LINK;
-                    rigid.links[joint][link][tick] = (from..from + PARAMETERS_PER_LINK)
-                        .map(|k| regressor[(joint, k)] * nominal[k])
-                        .sum();
+                    for (k, tick) in span.clone().enumerate() {
+                        let parameters = from..from + PARAMETERS_PER_LINK;
+                        rigid.links[joint][link][tick] = parameters.map(|column| at(column, k) * nominal[column]).sum();
+                    }
                 }
                 let last = (n - 1) * PARAMETERS_PER_LINK;
-                for k in 0..10 {
-                    rigid.payload[joint][k][tick] = (0..10).map(|l| regressor[(joint, last + l)] * to_link[l][k]).sum();
-                }
-            }
-            if derivatives {
-                arm.inverse_dynamics_derivatives(&mut workspace, &q, &qd, &qdd, &mut by_position, &mut by_velocity);
-                for joint in 0..n {
-                    for by in 0..n {
-                        rigid.by_position[joint][by][tick] = by_position[(joint, by)];
-                        rigid.by_velocity[joint][by][tick] = by_velocity[(joint, by)];
+                for parameter in 0..10 {
+                    for (k, tick) in span.clone().enumerate() {
+                        rigid.payload[joint][parameter][tick] =
+                            (0..10).map(|l| at(last + l, k) * to_link[l][parameter]).sum();
                     }
                 }
             }
-            arm.mass_matrix(&mut workspace, &q, &mut mass);
-            for joint in 0..n {
-                for by in 0..n {
-                    rigid.mass[joint][by][tick] = mass[(joint, by)];
-                }
-            }
-            for (axis, along) in along.iter().enumerate() {
-                along.inverse_dynamics(&mut workspace, &q, &still, &still, &mut pull);
+            let store = |to: &mut [Vec<Vec<f64>>], values: &[f64]| {
                 for joint in 0..n {
-                    rigid.gravity[joint][axis][tick] = pull[joint];
+                    for by in 0..n {
+                        let from = (by * n + joint) * count;
+                        to[joint][by][span.clone()].copy_from_slice(&values[from..from + count]);
+                    }
+                }
+            };
+            let (mut first, mut second) = (vec![0.0; len * n], vec![0.0; len * n]);
+            if derivatives {
+                arm.inverse_dynamics_derivatives_batch(q, qd, qdd, &mut first, &mut second);
+                store(&mut rigid.by_position, &first);
+                store(&mut rigid.by_velocity, &second);
+            }
+            arm.mass_matrix_batch(q, &mut first);
+            store(&mut rigid.mass, &first);
+            let still = vec![0.0; len];
+            for (axis, along) in along.iter().enumerate() {
+                along.inverse_dynamics_batch(q, &still, &still, &mut tau);
+                for joint in 0..n {
+                    let pull = &tau[joint * count..(joint + 1) * count];
+                    rigid.gravity[joint][axis][span.clone()].copy_from_slice(pull);
                 }
             }
+        }
+        let mut workspace = Workspace::new(arm);
+        let tool = arm.tool_frame();
+        let mut q = vec![0.0; n];
+        let mut jacobian = Matrix6xX::zeros(n);
+        for tick in 0..ticks {
             // The torque is linear in gravity.
             for joint in 0..n {
+                q[joint] = chunk.q[joint][tick] + offset[joint];
                 let [x, y, z] = [0, 1, 2].map(|axis: usize| rigid.gravity[joint][axis][tick]);
                 for (axis, turned) in turned.iter().enumerate() {
                     rigid.tilt[joint][axis][tick] = turned.x * x + turned.y * y + turned.z * z;
@@ -166,8 +164,6 @@ impl Rigid {
     pub fn inertial_columns(&self, chunk: &Chunk) -> Vec<Vec<Vec<f64>>> {
         let Some(arm) = &self.arm else { return Vec::new() };
         let (n, ticks) = (arm.dof(), chunk.ticks());
-        let mut workspace = Workspace::new(arm);
-        let mut regressor = DMatrix::zeros(n, PARAMETERS_PER_LINK * n);
         let mut signals: Vec<Vec<Vec<f64>>> = (0..n)
             .map(|joint| {
                 let acts = |k: usize| k / PARAMETERS_PER_LINK >= joint;
@@ -176,15 +172,16 @@ impl Rigid {
                     .collect()
             })
             .collect();
-        let at = |signal: &[Vec<f64>], tick: usize| -> Vec<f64> { signal.iter().map(|joint| joint[tick]).collect() };
-        for tick in 0..ticks {
-            let mut q = at(&chunk.q, tick);
-            q.iter_mut().zip(&self.offset).for_each(|(q, offset)| *q += offset);
-            let (qd, qdd) = (at(&chunk.qd, tick), at(&chunk.qdd, tick));
-            arm.torque_regressor(&mut workspace, &q, &qd, &qdd, &mut regressor);
+        for from in (0..ticks).step_by(TOGETHER) {
+            let span = from..ticks.min(from + TOGETHER);
+            let states = Along::new(chunk, &self.offset, span.clone());
+            let count = span.len();
+            let mut regressor = vec![0.0; states.q.len() * PARAMETERS_PER_LINK * n];
+            arm.torque_regressor_batch(&states.q, &states.qd, &states.qdd, &mut regressor);
             for (joint, columns) in signals.iter_mut().enumerate() {
                 for (k, column) in columns.iter_mut().enumerate().skip(joint * PARAMETERS_PER_LINK) {
-                    column[tick] = regressor[(joint, k)];
+                    let from = (k * n + joint) * count;
+                    column[span.clone()].copy_from_slice(&regressor[from..from + count]);
                 }
             }
         }
@@ -196,6 +193,33 @@ impl Rigid {
             };
         }
         signals
+    }
+}
+
+/// The number of ticks that are evaluated together: as many regressors as stay in the processor's caches.
+const TOGETHER: usize = 64;
+
+/// The states at some ticks of a chunk, joint after joint.
+struct Along {
+    q: Vec<f64>,
+    qd: Vec<f64>,
+    qdd: Vec<f64>,
+}
+
+impl Along {
+    fn new(chunk: &Chunk, offset: &[f64], ticks: Range<usize>) -> Self {
+        let all = |signal: &[Vec<f64>]| -> Vec<f64> {
+            signal.iter().flat_map(|joint| &joint[ticks.clone()]).copied().collect()
+        };
+        let mut q = all(&chunk.q);
+        for (q, offset) in q.chunks_exact_mut(ticks.len()).zip(offset) {
+            q.iter_mut().for_each(|q| *q += offset);
+        }
+        Self {
+            q,
+            qd: all(&chunk.qd),
+            qdd: all(&chunk.qdd),
+        }
     }
 }
 

@@ -102,11 +102,8 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
                 known.hypothesis == other.hypothesis && known.joint == other.joint
             })
     };
-    let mut promises: Vec<(f64, usize)> = (0..study.candidates.len())
-        .into_par_iter()
-        .filter(|&c| is_other(c))
-        .map(|c| (problem.promise(&ground, c), c))
-        .collect();
+    let others: Vec<usize> = (0..study.candidates.len()).filter(|&c| is_other(c)).collect();
+    let mut promises = problem.promises(&ground, &others);
     promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     // The best size of each hypothesis.
     let mut tried: Vec<usize> = Vec::new();

@@ -8,11 +8,15 @@ use crate::regression::background::Background;
 use crate::regression::table::{Gram, Table};
 use crate::thresholds::{EVIDENCE_PER_PERIOD, EVIDENCE_RATE, MOST_EVIDENCE_RATE};
 
+mod added;
 mod eliminated;
 mod joined;
+mod lanes;
 mod left_out;
 
+pub use added::Reduced;
 use eliminated::Eliminated;
+pub use left_out::LeftOut;
 
 /// The ridge, relative to the diagonal, so that collinear columns share a torque.
 const RIDGE: f64 = 1e-9;
@@ -254,21 +258,25 @@ impl Products {
     pub fn solve(&self, table: &Table, columns: &[usize], weights: &[f64]) -> Fit {
         let p = columns.len();
         let eliminated = self.eliminated(table, weights);
-        let inner = |a: usize, b: Option<usize>| self.inner(table, weights, eliminated.as_deref(), a, b);
+        if let Some(eliminated) = &eliminated {
+            self.eliminate(table, eliminated, columns);
+        }
         let mut matrix = DMatrix::zeros(p, p);
         let mut right = DVector::zeros(p);
+        let mut row = vec![0.0; p];
         for i in 0..p {
+            let eliminated = eliminated.as_deref();
+            self.inner_with(table, weights, eliminated, columns[i], &columns[..=i], &mut row);
             for k in 0..=i {
-                let value = inner(columns[i], Some(columns[k]));
-                matrix[(i, k)] = value;
-                matrix[(k, i)] = value;
+                matrix[(i, k)] = row[k];
+                matrix[(k, i)] = row[k];
             }
-            right[i] = inner(columns[i], None);
+            right[i] = self.inner(table, weights, eliminated, columns[i], None);
         }
         let scale: Vec<f64> = (0..p)
             .map(|i| {
                 let diagonal = match &eliminated {
-                    Some(_) => self.own_product(table, weights, columns[i]),
+                    Some(eliminated) => self.own_product(table, eliminated, columns[i]),
                     None => matrix[(i, i)],
                 };
                 if diagonal > 0.0 { diagonal.sqrt() } else { 1.0 }
@@ -305,66 +313,6 @@ impl Products {
             scale,
             reduced,
             eliminated,
-        }
-    }
-
-    /// The reduction of the weighted sum of squares of `fit` by `added` columns, at its weights.
-    pub fn drop(&self, table: &Table, fit: &Fit, added: &[usize]) -> f64 {
-        let chosen = fit.chosen();
-        let (p, c) = (chosen.len(), added.len());
-        let inner = |a: usize, b: Option<usize>| self.inner(table, &fit.weights, fit.eliminated.as_deref(), a, b);
-        let mut cross = DMatrix::zeros(p, c);
-        let mut own = DMatrix::zeros(c, c);
-        let mut right = DVector::zeros(c);
-        let mut size = vec![1.0; c];
-        for k in 0..c {
-            let diagonal = match &fit.eliminated {
-                Some(_) => self.own_product(table, &fit.weights, added[k]),
-                None => inner(added[k], Some(added[k])),
-            };
-            if diagonal > 0.0 {
-                size[k] = diagonal.sqrt();
-            }
-        }
-        for k in 0..c {
-            for i in 0..p {
-                cross[(i, k)] = inner(added[k], Some(chosen[i])) / (fit.scale[i] * size[k]);
-            }
-            for l in 0..=k {
-                let value = inner(added[k], Some(added[l])) / (size[k] * size[l]);
-                own[(k, l)] = value;
-                own[(l, k)] = value;
-            }
-            right[k] = inner(added[k], None) / size[k];
-        }
-        if p > 0 {
-            fit.factor.solve_lower_triangular_mut(&mut cross);
-            own -= cross.tr_mul(&cross);
-            right -= cross.tr_mul(&fit.reduced);
-        }
-        // The span of the present columns must not be gained again.
-        for k in 0..c {
-            own[(k, k)] += 1e-6;
-        }
-        let factor = cholesky(&own);
-        let drop = factor.solve_lower_triangular(&right).map_or(0.0, |z| z.norm_squared());
-        match (&fit.eliminated, added.first()) {
-            (Some(_), Some(&first)) => drop / self.per_row(table, first),
-            _ => drop,
-        }
-    }
-
-    /// The amount that a column with a coefficient of one adds to the weighted sum of squares in addition to the columns of
-    /// `fit`.
-    pub fn drop_of(&self, table: &Table, fit: &Fit, column: usize) -> f64 {
-        let inner = |b: usize| self.inner(table, &fit.weights, fit.eliminated.as_deref(), column, Some(b));
-        let own = inner(column);
-        let mut cross = DVector::from_fn(fit.chosen().len(), |i, _| inner(fit.chosen()[i]) / fit.scale[i]);
-        fit.factor.solve_lower_triangular_mut(&mut cross);
-        let drop = (own - cross.norm_squared()).max(0.0);
-        match &fit.eliminated {
-            Some(_) => drop / self.per_row(table, column),
-            None => drop,
         }
     }
 }

@@ -221,54 +221,50 @@ impl Table {
                         .collect()
                 })
                 .collect();
-            let places: Vec<Vec<Option<usize>>> = self
-                .joints
-                .par_iter_mut()
-                .enumerate()
-                .map(|(joint, table)| {
-                    let mut places = Vec::with_capacity(terms.len());
-                    for ((&term, &copy), links) in terms.iter().zip(copies).zip(&links) {
-                        if let (Some(copy), Some(known)) = (copy, known) {
-                            places.push(known.place[joint][copy].map(|place| {
-                                table.x.push(known.joints[joint].x[place].clone());
-                                table.x.len() - 1
-                            }));
-                            continue;
-                        }
-                        if term.is(&INERTIAL_PARAMETER) {
-                            let k = term.of[0] * bodies::PER_LINK + term.of[1];
-                            let column: Vec<f64> =
-                                inertial.iter().flat_map(|chunk| &chunk[joint][k]).copied().collect();
-                            let acts = column.len() == table.y.len() && column.iter().any(|&v| v != 0.0);
-                            places.push(acts.then(|| {
-                                table.x.push(column);
-                                table.x.len() - 1
-                            }));
-                            continue;
-                        }
-                        let mut column = Vec::new();
-                        for (c, (chunk, rigid)) in motions.chunks.iter().zip(rigid).enumerate() {
-                            let values = match links.get(c) {
-                                Some(link) => Some(behind_torque(link, joint, chunk, rigid, scales)),
-                                None => values(term, joint, chunk, rigid, scales),
-                            };
-                            match values {
-                                Some(values) if values.iter().all(|&v| v == 0.0) => {
-                                    column.resize(column.len() + chunk.rows(), 0.0);
-                                }
-                                Some(values) => column.extend(chunk.filter(&values)),
-                                None => break,
+            // The column of every term on every joint; `None` if it does not act there.
+            let rows = self.len();
+            let evaluate = |joint: usize, at: usize| -> Option<Vec<f64>> {
+                let (term, links) = (terms[at], &links[at]);
+                if let (Some(copy), Some(known)) = (copies[at], known) {
+                    return known.place[joint][copy].map(|place| known.joints[joint].x[place].clone());
+                }
+                let mut column = Vec::new();
+                if term.is(&INERTIAL_PARAMETER) {
+                    let k = term.of[0] * bodies::PER_LINK + term.of[1];
+                    column = inertial.iter().flat_map(|chunk| &chunk[joint][k]).copied().collect();
+                } else {
+                    for (c, (chunk, rigid)) in motions.chunks.iter().zip(rigid).enumerate() {
+                        let values = match links.get(c) {
+                            Some(link) => Some(behind_torque(link, joint, chunk, rigid, scales)),
+                            None => values(term, joint, chunk, rigid, scales),
+                        };
+                        match values {
+                            Some(values) if values.iter().all(|&v| v == 0.0) => {
+                                column.resize(column.len() + chunk.rows(), 0.0);
                             }
+                            Some(values) => column.extend(chunk.filter(&values)),
+                            None => break,
                         }
-                        let acts = column.len() == table.y.len() && column.iter().any(|&v| v != 0.0);
-                        places.push(acts.then(|| {
-                            table.x.push(column);
-                            table.x.len() - 1
-                        }));
                     }
-                    places
-                })
+                }
+                let acts = column.len() == rows && column.iter().any(|&v| v != 0.0);
+                acts.then_some(column)
+            };
+            let dof = self.dof();
+            let mut columns: Vec<Option<Vec<f64>>> = (0..dof * terms.len())
+                .into_par_iter()
+                .map(|k| evaluate(k / terms.len(), k % terms.len()))
                 .collect();
+            let places = self.joints.iter_mut().zip(columns.chunks_mut(terms.len()));
+            let places = places.map(|(table, columns)| {
+                let push = |column: &mut Option<Vec<f64>>| {
+                    column.take().map(|column| {
+                        table.x.push(column);
+                        table.x.len() - 1
+                    })
+                };
+                columns.iter_mut().map(push).collect::<Vec<_>>()
+            });
             for (place, more) in self.place.iter_mut().zip(places) {
                 place.extend(more);
             }

@@ -1,11 +1,12 @@
 //! The joint search: which candidates together explain the residual.
 
 use std::collections::HashMap;
+use std::sync::OnceLock;
 
 use arm::Arm;
 use rayon::prelude::*;
 
-use crate::regression::fit::{Fit, Products};
+use crate::regression::fit::{Fit, LeftOut, Products};
 use crate::regression::table::Table;
 use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::physics::is_possible;
@@ -13,6 +14,7 @@ use crate::thresholds::{KNOWN_DRIVE, TELLING_DRIVES, Thresholds};
 
 mod exchange;
 mod exclusion;
+mod promise;
 
 /// The number of the most promising candidates that are fitted in full each round.
 const TRIED: usize = 8;
@@ -124,38 +126,6 @@ impl Problem<'_> {
         is_possible(&self.candidates[candidate], self.table, fit, self.arm)
     }
 
-    /// The first-order gain of `candidate` in addition to `chosen` (nats, minus the costs).
-    pub fn promise(&self, chosen: &Chosen, candidate: usize) -> f64 {
-        let new: Vec<usize> = {
-            let have = &chosen.fit.columns;
-            let columns = &self.candidates[candidate].columns;
-            columns
-                .iter()
-                .copied()
-                .filter(|c| have.binary_search(c).is_err())
-                .collect()
-        };
-        if new.is_empty() {
-            return f64::NEG_INFINITY;
-        }
-        let drop = self.products.drop(self.table, &chosen.fit, &new);
-        let cost = self.candidates[candidate].cost
-            - self.thresholds.per_coefficient * (self.candidates[candidate].columns.len() - new.len()) as f64;
-        let log = |drop: f64, joint: usize| {
-            let count = self.products.count[joint].max(1.0);
-            -0.5 * self.products.evidence[joint] * (1.0 - (drop / count).min(0.999_999)).ln()
-        };
-        let gain = match self.candidates[candidate].joint {
-            Some(joint) => log(drop, joint),
-            // At least the gain of an evenly distributed reduction.
-            None => {
-                let joints = self.products.count.len();
-                (0..joints).map(|joint| log(drop / joints as f64, joint)).sum::<f64>()
-            }
-        };
-        gain - cost
-    }
-
     /// The best addition to `chosen` among `allowed`, if one pays. Candidates that `growth` refused before are not tried again.
     pub fn grow(&self, chosen: &Chosen, allowed: &[usize], growth: &mut Growth) -> Option<Chosen> {
         let free: Vec<usize> = allowed
@@ -167,10 +137,7 @@ impl Problem<'_> {
                     && !chosen.set.iter().any(|&other| self.exclude(c, other))
             })
             .collect();
-        let mut promises: Vec<(f64, usize)> = free
-            .par_iter()
-            .map(|&candidate| (self.promise(chosen, candidate), candidate))
-            .collect();
+        let mut promises = self.promises(chosen, &free);
         promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         promises.retain(|(promise, _)| *promise > 0.0);
         // The most promising of each kind comes first: a candidate that contains a simpler one promises as much, in all its
@@ -187,21 +154,30 @@ impl Problem<'_> {
             .collect();
         turns.sort_by_key(|&(turn, _)| turn);
         let mut waiting = turns.into_iter().map(|(_, candidate)| candidate);
+        // What the candidates of a joint are added to is fitted once.
+        let bases: Vec<OnceLock<LeftOut<'_>>> = (0..self.table.dof()).map(|_| OnceLock::new()).collect();
         for _ in 0..BATCHES {
             let mut batch = Vec::with_capacity(TRIED);
-            for candidate in waiting.by_ref() {
-                if self.predicts(chosen, candidate) {
-                    batch.push(candidate);
-                } else {
-                    growth.refused.push(candidate);
-                    growth.tried.push((
-                        candidate,
-                        chosen.score,
-                        "does not improve the prediction of recordings it was not fitted to",
-                    ));
-                }
-                if batch.len() == TRIED {
+            while batch.len() < TRIED {
+                let next: Vec<usize> = waiting.by_ref().take(TRIED - batch.len()).collect();
+                if next.is_empty() {
                     break;
+                }
+                let predicts = next
+                    .par_iter()
+                    .map(|&candidate| self.predicts(chosen, candidate, &bases));
+                let predicts: Vec<bool> = predicts.collect();
+                for (candidate, predicts) in next.into_iter().zip(predicts) {
+                    if predicts {
+                        batch.push(candidate);
+                    } else {
+                        growth.refused.push(candidate);
+                        growth.tried.push((
+                            candidate,
+                            chosen.score,
+                            "does not improve the prediction of recordings it was not fitted to",
+                        ));
+                    }
                 }
             }
             if batch.is_empty() {
@@ -275,8 +251,9 @@ impl Problem<'_> {
         self.products.has_background() && candidate.hypothesis.is_certain_in_form()
     }
 
-    /// Whether `candidate` improves the prediction of recordings that it was not fitted to.
-    fn predicts(&self, chosen: &Chosen, candidate: usize) -> bool {
+    /// Whether `candidate` improves the prediction of recordings that it was not fitted to. `bases` are the fits of `chosen` on
+    /// the joints.
+    fn predicts<'a>(&'a self, chosen: &'a Chosen, candidate: usize, bases: &[OnceLock<LeftOut<'a>>]) -> bool {
         let candidate = &self.candidates[candidate];
         if candidate.hypothesis.is_passing() || candidate.hypothesis.is_baseline() || self.is_background_too(candidate)
         {
@@ -289,10 +266,9 @@ impl Problem<'_> {
                 .arm_gain(self.table, columns, &candidate.columns, &chosen.fit.weights)
                 > 0.0;
         };
-        let weights = &chosen.fit.weights;
-        let (inside, outside) = self
-            .products
-            .gains(self.table, joint, columns, &candidate.columns, weights);
+        let fit = || self.products.left_out(self.table, joint, columns, &chosen.fit.weights);
+        let base = bases[joint].get_or_init(fit);
+        let (inside, outside) = self.products.gains(self.table, base, &candidate.columns);
         outside
             > if candidate.hypothesis.name().is_none() {
                 self.thresholds.predicted * inside

@@ -133,7 +133,7 @@ pub fn ripples(
     let count = ((most_periods - least) / step).ceil().max(0.0) as usize;
     let every = samples.len().div_ceil(MOST_SAMPLES).max(1);
     let coarse: Vec<Sample> = samples.iter().step_by(every).copied().collect();
-    let values: Vec<f64> = (0..count).map(|k| at(&coarse, least + step * k as f64)).collect();
+    let values = spectrum(&coarse, motions.chunks[0].kernel.width(), least, step, count);
     peaks(least, step, &values, most, |periods| at(&samples, periods))
 }
 
@@ -163,6 +163,64 @@ fn samples(table: &Table, motions: &Motions, joint: usize, residual: &[f64], fit
         }
     }
     samples
+}
+
+/// The number of periods of a [`spectrum`] between which sines and exponentials are not evaluated, but multiplied.
+const BETWEEN: usize = 32;
+
+/// The powers that ripples of `count` periods from `least` on take, `step` from each other, weakened by a filter of a width (s):
+/// with E = e^(−a p²), p = p₀ + j s is reached from p₀ by the factors e^(−2 a p₀ s)ʲ and e^(−a s² j²), and its sine by a turn.
+fn spectrum(samples: &[Sample], width: f64, least: f64, step: f64, count: usize) -> Vec<f64> {
+    let mut sums = vec![[[0.0; BETWEEN]; 5]; count.div_ceil(BETWEEN)];
+    let lanes = std::array::from_fn::<f64, BETWEEN, _>(|j| j as f64);
+    for sample in samples {
+        let a = 0.5 * (width * sample.qd).powi(2);
+        let turns = lanes.map(|j| (j * step * sample.q).sin_cos());
+        let bend = lanes.map(|j| (-a * (step * j).powi(2)).exp());
+        for (block, [ss, sc, cc, sr, cr]) in sums.iter_mut().enumerate() {
+            let from = least + step * (block * BETWEEN) as f64;
+            let first = (-a * from * from).exp();
+            if first < NOTHING {
+                break;
+            }
+            let (sine, cosine) = (from * sample.q).sin_cos();
+            let slope = powers((-2.0 * a * from * step).exp());
+            for j in 0..BETWEEN {
+                let periods = from + step * lanes[j];
+                // The gain of the filter.
+                let gain = (1.0 + a * periods * periods) * (first * slope[j] * bend[j]);
+                let (turned, along) = turns[j];
+                let s = gain * (sine * along + cosine * turned);
+                let c = gain * (cosine * along - sine * turned);
+                ss[j] += s * s;
+                sc[j] += s * c;
+                cc[j] += c * c;
+                sr[j] += s * sample.residual;
+                cr[j] += c * sample.residual;
+            }
+        }
+    }
+    let at = |k: usize| {
+        let [ss, sc, cc, sr, cr] = sums[k / BETWEEN].map(|sums| sums[k % BETWEEN]);
+        explained_by_two(ss, sc, cc, sr, cr)
+    };
+    (0..count).map(at).collect()
+}
+
+/// A gain below which nothing passes.
+const NOTHING: f64 = 1e-30;
+
+/// The powers of a number, from one on.
+fn powers(base: f64) -> [f64; BETWEEN] {
+    let mut powers = [1.0; BETWEEN];
+    for j in 1..4 {
+        powers[j] = powers[j - 1] * base;
+    }
+    let fourth = powers[3] * base;
+    for j in 4..BETWEEN {
+        powers[j] = powers[j - 4] * fourth;
+    }
+    powers
 }
 
 /// The part of the residual's power that a sine and a cosine take.

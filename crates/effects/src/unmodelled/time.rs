@@ -19,6 +19,10 @@ static MOMENT: Law = Law {
     name: "moment",
     column: |term, _, motion| {
         let [centre, width, ..] = term.sizes;
+        // Most tents are in other stretches.
+        if motion.time(0) >= centre + width || motion.time(motion.ticks()) <= centre - width {
+            return Some(vec![0.0; motion.ticks()]);
+        }
         motion.map(|k| tent(motion.time(k), centre, width))
     },
     ..Law::PLAIN

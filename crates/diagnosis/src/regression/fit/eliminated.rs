@@ -3,16 +3,21 @@
 //! With A = BᵀWB + K = LLᵀ for the background's columns B, their precision K and W the weights of the evidence, a product of two
 //! columns becomes xᵀWx' − (L⁻¹BᵀWx)ᵀ(L⁻¹BᵀWx'), and the background costs ½ (ln det A − ln det K) + ½ δᵀKδ.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock, PoisonError};
 
 use nalgebra::{Cholesky, DMatrix};
 
 use super::Products;
+use super::lanes::{LANES, Lanes, dot, dots_of, dots_with, forward};
 use crate::regression::background::Background;
 use crate::regression::table::Table;
 
 /// The number of weights for which the elimination is stored.
 const KEPT: usize = 12;
+
+/// A product that was not formed yet: bits of no number.
+const NOT_FORMED: u64 = u64::MAX;
 
 /// The background eliminated at given weights.
 #[derive(Debug)]
@@ -27,6 +32,8 @@ pub struct Eliminated {
     with_y: Vec<f64>,
     /// L⁻¹ BᵀW x of each requested column of the table.
     with_columns: Vec<OnceLock<Vec<f64>>>,
+    /// The products of a column of a fit with all others, as bits: every candidate asks for them, in every round.
+    with_others: Vec<OnceLock<Vec<AtomicU64>>>,
     /// ½ (ln det A − ln det K) (nats).
     pub occam: f64,
 }
@@ -63,6 +70,7 @@ impl Eliminated {
             lower,
             with_y: Vec::new(),
             with_columns: (0..table.terms.len()).map(|_| OnceLock::new()).collect(),
+            with_others: (0..table.terms.len()).map(|_| OnceLock::new()).collect(),
             occam: 0.5 * (log_det - background.log_det),
         };
         let right = columns
@@ -89,6 +97,20 @@ impl Eliminated {
         })
     }
 
+    /// Stores the products of these columns with others from now on.
+    pub fn store(&self, columns: &[usize]) {
+        let none = || self.with_others.iter().map(|_| AtomicU64::new(NOT_FORMED)).collect();
+        for &column in columns {
+            self.with_others[column].get_or_init(none);
+        }
+    }
+
+    /// The place where the product of two columns is stored, if that is wanted of one of them.
+    fn place(&self, a: usize, b: usize) -> Option<&AtomicU64> {
+        let of = |one: usize, other: usize| self.with_others[one].get().map(|row| &row[other]);
+        of(b, a).or_else(|| of(a, b))
+    }
+
     /// The background's coefficients for `values` of the chosen `columns`.
     pub fn coefficients(&self, products: &Products, table: &Table, columns: &[usize], values: &[f64]) -> Vec<f64> {
         let mut solution = self.with_y.clone();
@@ -107,19 +129,6 @@ impl Eliminated {
         }
         solution
     }
-}
-
-/// The inner product over the length of the second vector.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (x, y) = (a[..b.len()].chunks_exact(4), b.chunks_exact(4));
-    let rest: f64 = x.remainder().iter().zip(y.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in x.zip(y) {
-        for lane in 0..4 {
-            sums[lane] += x[lane] * y[lane];
-        }
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 impl Products {
@@ -155,17 +164,129 @@ impl Products {
         let (Some(eliminated), Some(background)) = (eliminated, self.background.as_deref()) else {
             return self.product(table, weights, a, b);
         };
-        let full = self.product(table, &eliminated.scaled, a, b);
-        let x = eliminated.with_column(self, table, background, a);
-        match b {
-            Some(b) => full - dot(x, eliminated.with_column(self, table, background, b)),
-            None => full - dot(x, &eliminated.with_y),
+        let form = || {
+            let full = self.product(table, &eliminated.scaled, a, b);
+            let x = eliminated.with_column(self, table, background, a);
+            match b {
+                Some(b) => full - dot(x, eliminated.with_column(self, table, background, b)),
+                None => full - dot(x, &eliminated.with_y),
+            }
+        };
+        let Some(place) = b.and_then(|b| eliminated.place(a, b)) else {
+            return form();
+        };
+        // The product has the same bits whichever thread forms it, and in either order of the columns.
+        match place.load(Ordering::Relaxed) {
+            NOT_FORMED => {
+                let value = form();
+                place.store(value.to_bits(), Ordering::Relaxed);
+                value
+            }
+            bits => f64::from_bits(bits),
         }
     }
 
-    /// The weighted square of a column, with rows counted as evidence, minus the part that the background explains.
-    pub(super) fn own_product(&self, table: &Table, weights: &[f64], column: usize) -> f64 {
-        self.product(table, &self.evidence_weights(weights), column, Some(column))
+    /// Eliminates the background from these columns of the table, several at a time.
+    pub(super) fn eliminate(&self, table: &Table, eliminated: &Eliminated, columns: &[usize]) {
+        let is_new = |column: &usize| eliminated.with_columns[*column].get().is_none();
+        let new: Vec<usize> = columns.iter().copied().filter(is_new).collect();
+        for group in new.chunks(LANES) {
+            self.in_lanes(table, eliminated, group);
+        }
+    }
+
+    /// L⁻¹ BᵀW x of up to [`LANES`] columns, which are stored, too.
+    fn in_lanes(&self, table: &Table, eliminated: &Eliminated, group: &[usize]) -> Vec<Lanes> {
+        let known = |&column: &usize| eliminated.with_columns[column].get();
+        if let Some(known) = group.iter().map(known).collect::<Option<Vec<_>>>() {
+            let row = |i: usize| std::array::from_fn(|lane| known.get(lane).map_or(0.0, |x| x[i]));
+            return (0..eliminated.lower.len()).map(row).collect();
+        }
+        let Some(background) = self.background.as_deref() else {
+            return Vec::new();
+        };
+        let mut right = vec![[0.0; LANES]; background.columns.len()];
+        for (lane, &column) in group.iter().enumerate() {
+            for (row, &own) in right.iter_mut().zip(&background.columns) {
+                row[lane] = self.product(table, &eliminated.scaled, column, Some(own));
+            }
+        }
+        forward(&eliminated.lower, &mut right);
+        for (lane, &column) in group.iter().enumerate() {
+            eliminated.with_columns[column].get_or_init(|| right.iter().map(|row| row[lane]).collect());
+        }
+        right
+    }
+
+    /// The products as of [`Self::inner`] of each of `others` with the columns of a group.
+    pub(super) fn inner_in_lanes(
+        &self,
+        table: &Table,
+        eliminated: &Eliminated,
+        group: &[usize],
+        others: &[usize],
+    ) -> Vec<Lanes> {
+        let columns = self.in_lanes(table, eliminated, group);
+        let Some(background) = self.background.as_deref() else {
+            return Vec::new();
+        };
+        let with = |&other: &usize| eliminated.with_column(self, table, background, other);
+        let rows: Vec<&[f64]> = others.iter().map(with).collect();
+        let mut products = dots_of(&rows, &columns);
+        for (row, &other) in products.iter_mut().zip(others) {
+            for (value, &column) in row.iter_mut().zip(group) {
+                *value = self.product(table, &eliminated.scaled, column, Some(other)) - *value;
+                if let Some(place) = eliminated.place(column, other) {
+                    place.store(value.to_bits(), Ordering::Relaxed);
+                }
+            }
+        }
+        products
+    }
+
+    /// The products as of [`Self::inner`] of a column with each of `others`, to the beginning of `row`.
+    pub(super) fn inner_with(
+        &self,
+        table: &Table,
+        weights: &[f64],
+        eliminated: Option<&Eliminated>,
+        a: usize,
+        others: &[usize],
+        row: &mut [f64],
+    ) {
+        let (Some(eliminated), Some(background)) = (eliminated, self.background.as_deref()) else {
+            for (value, &b) in row.iter_mut().zip(others) {
+                *value = self.product(table, weights, a, Some(b));
+            }
+            return;
+        };
+        let mut missing: Vec<usize> = Vec::with_capacity(others.len());
+        for (k, &b) in others.iter().enumerate() {
+            let bits = eliminated
+                .place(a, b)
+                .map_or(NOT_FORMED, |place| place.load(Ordering::Relaxed));
+            if bits == NOT_FORMED {
+                missing.push(k);
+            } else {
+                row[k] = f64::from_bits(bits);
+            }
+        }
+        if missing.is_empty() {
+            return;
+        }
+        let with = |column: usize| eliminated.with_column(self, table, background, column);
+        let columns: Vec<&[f64]> = missing.iter().map(|&k| with(others[k])).collect();
+        for (&k, explained) in missing.iter().zip(dots_with(with(a), &columns)) {
+            row[k] = self.product(table, &eliminated.scaled, a, Some(others[k])) - explained;
+            if let Some(place) = eliminated.place(a, others[k]) {
+                place.store(row[k].to_bits(), Ordering::Relaxed);
+            }
+        }
+    }
+
+    /// The weighted square of a column, with rows counted as evidence.
+    pub(super) fn own_product(&self, table: &Table, eliminated: &Eliminated, column: usize) -> f64 {
+        self.product(table, &eliminated.scaled, column, Some(column))
     }
 
     /// The joints' `weights` with rows counted as evidence, as the background's prior needs; without a background, they are

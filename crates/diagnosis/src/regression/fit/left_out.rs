@@ -1,46 +1,69 @@
 //! The gain of columns on recordings that they were not fitted to.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::{Products, cholesky, solved};
+use super::{Products, RIDGE, cholesky, solved};
 use crate::regression::table::{Stretch, Table};
 use crate::thresholds::RECORDING_GROUPS;
 
+/// A fit on one joint, and the same with groups of recordings left out in turn: what columns are added to.
+pub struct LeftOut<'a> {
+    joint: usize,
+    /// The fitted columns of the table, and their places on the joint.
+    columns: &'a [usize],
+    places: Vec<usize>,
+    /// The groups, and inner products over each of them.
+    groups: Vec<Vec<&'a Stretch>>,
+    folds: Vec<DMatrix<f64>>,
+    /// The precision of the background's columns.
+    prior: DMatrix<f64>,
+    /// The fit of all groups, then of all but one.
+    fits: Vec<Normal>,
+    /// The residual sum of squares where it was fitted, and on the groups left out.
+    left: [f64; 2],
+}
+
 impl Products {
-    /// The gain of `added` columns in addition to `columns` on `joint` (nats): where they were fitted, and on groups of
-    /// recordings left out in turn, or on stretches of the only recording. `weights` are those of the joints; if there is a
-    /// background, it comes first in `columns` and keeps its prior.
-    pub fn gains(
-        &self,
-        table: &Table,
-        joint: usize,
-        columns: &[usize],
-        added: &[usize],
-        weights: &[f64],
-    ) -> (f64, f64) {
-        let place = |&column: &usize| table.place[joint][column];
-        let mut with: Vec<usize> = columns.iter().filter_map(place).collect();
-        let without = with.len();
-        with.extend(
-            added
-                .iter()
-                .filter(|column| !columns.contains(column))
-                .filter_map(place),
-        );
-        let folds = self.folds(table, joint, &with, false);
-        if folds.len() < 2 {
+    /// The fit of `columns` on `joint` for [`Self::gains`]. `weights` are those of the joints; if there is a background, it comes
+    /// first in `columns` and keeps its prior.
+    pub fn left_out<'a>(&self, table: &'a Table, joint: usize, columns: &'a [usize], weights: &[f64]) -> LeftOut<'a> {
+        let places: Vec<usize> = columns
+            .iter()
+            .filter_map(|&column| table.place[joint][column])
+            .collect();
+        let scale = weights[joint] * self.evidence_per_row(joint);
+        let mut base = LeftOut {
+            joint,
+            columns,
+            groups: self.groups(table, joint, false),
+            folds: Vec::new(),
+            prior: self.prior(|column| table.place[joint][column].is_some(), scale),
+            fits: Vec::new(),
+            left: [0.0; 2],
+            places,
+        };
+        if base.groups.len() > 1 {
+            base.folds = base.groups.iter().map(|group| gram(group, &base.places)).collect();
+            let fit = |gram: &DMatrix<f64>| Normal::new(gram, base.places.len(), &base.prior);
+            (base.fits, base.left) = fitted(&base.folds, |gram, _| fit(gram));
+        }
+        base
+    }
+
+    /// The gain of `added` columns in addition to those of `base` (nats): where they were fitted, and on groups of recordings
+    /// left out in turn, or on stretches of the only recording.
+    pub fn gains(&self, table: &Table, base: &LeftOut<'_>, added: &[usize]) -> (f64, f64) {
+        if base.groups.len() < 2 {
             return (0.0, 0.0);
         }
-        let scale = weights[joint] * self.evidence_per_row(joint);
-        let prior = self.prior(|column| table.place[joint][column].is_some(), scale);
-        let all = folds.iter().skip(1).fold(folds[0].clone(), |sum, fold| sum + fold);
-        let inside = |p: usize| left(&all, &solution(&all, p, &prior));
-        let rest = |fold: &DMatrix<f64>, p: usize| solution(&(&all - fold), p, &prior);
-        let outside = |p: usize| -> f64 { folds.iter().map(|fold| left(fold, &rest(fold, p))).sum() };
-        let gain = |left: &dyn Fn(usize) -> f64| {
-            self.joint_loss(joint, left(without)) - self.joint_loss(joint, left(with.len()))
-        };
-        (gain(&inside), gain(&outside))
+        let new = added.iter().filter(|column| !base.columns.contains(column));
+        let new: Vec<usize> = new.filter_map(|&column| table.place[base.joint][column]).collect();
+        let with = [&base.places[..], &new].concat();
+        let folds = base.groups.iter().zip(&base.folds);
+        let folds: Vec<DMatrix<f64>> = folds.map(|(group, known)| extended(group, known, &with)).collect();
+        let (_, left) = fitted(&folds, |gram, k| base.fits[k].with(gram, with.len(), &base.prior));
+        let gain = |k: usize| self.joint_loss(base.joint, base.left[k]) - self.joint_loss(base.joint, left[k]);
+        (gain(0), gain(1))
     }
 
     /// The gain of `added` columns that act on several joints where they were not fitted (nats); `weights` are those of the
@@ -55,7 +78,8 @@ impl Products {
                     .filter(|&i| table.place[joint][all[i]].is_some())
                     .collect();
                 let places: Vec<usize> = mine.iter().filter_map(|&i| table.place[joint][all[i]]).collect();
-                let folds = self.folds(table, joint, &places, true);
+                let groups = self.groups(table, joint, true);
+                let folds = groups.iter().map(|group| gram(group, &places)).collect();
                 (mine, folds)
             })
             .collect();
@@ -79,7 +103,7 @@ impl Products {
                         }
                     }
                 }
-                let solved = solution(&gram, p, &prior);
+                let solved = Normal::new(&gram, p, &prior).solution(&gram);
                 for ((mine, folds), rss) in joints.iter().zip(&mut rss) {
                     if let Some(gram) = folds.get(fold) {
                         let own = DVector::from_iterator(
@@ -107,11 +131,10 @@ impl Products {
         DMatrix::from_fn(mine.len(), mine.len(), entry)
     }
 
-    /// Inner products of a joint's columns at `places` and, last, of y, over each of several groups of recordings, or over
-    /// stretches if there is only one. With `common`, the groups are the same on all joints.
-    fn folds(&self, table: &Table, joint: usize, places: &[usize], common: bool) -> Vec<DMatrix<f64>> {
+    /// Groups of the recordings of a joint, or its stretches if there is only one. With `common`, the groups are the same on all
+    /// joints.
+    fn groups<'a>(&self, table: &'a Table, joint: usize, common: bool) -> Vec<Vec<&'a Stretch>> {
         let this = &table.joints[joint];
-        let p = places.len();
         let excited: Vec<usize> = self
             .recordings
             .iter()
@@ -123,46 +146,129 @@ impl Products {
                 .iter()
                 .filter(move |stretch| stretch.recording == recording)
         };
-        let folds: Vec<Vec<&Stretch>> = if let [only] = excited[..] {
+        if let [only] = excited[..] {
             of(only).map(|stretch| vec![stretch]).collect()
         } else {
             let count = excited.len().min(RECORDING_GROUPS);
             let fold = |k: usize| excited.iter().skip(k).step_by(count).flat_map(|&r| of(r)).collect();
             (0..count).map(fold).collect()
-        };
-        folds
-            .iter()
-            .map(|stretches| {
-                DMatrix::from_fn(p + 1, p + 1, |i, k| {
-                    stretches
-                        .iter()
-                        .map(|stretch| match (i < p, k < p) {
-                            (true, true) => stretch.gram.of(places[i], places[k]),
-                            (true, false) => stretch.gram.with_y(places[i]),
-                            (false, true) => stretch.gram.with_y(places[k]),
-                            (false, false) => stretch.gram.y_square(),
-                        })
-                        .sum()
-                })
-            })
-            .collect()
+        }
     }
 }
 
-/// The coefficients of the first `p` columns, from inner products of columns and, last, of y; `prior` is the precision of the
-/// first of them.
-fn solution(gram: &DMatrix<f64>, p: usize, prior: &DMatrix<f64>) -> DVector<f64> {
-    let last = gram.nrows() - 1;
+/// Inner products of a joint's columns at `places` and, last, of y, over a group.
+fn gram(group: &[&Stretch], places: &[usize]) -> DMatrix<f64> {
+    extended(group, &DMatrix::zeros(1, 1), places)
+}
+
+/// Inner products as of [`gram`], of which those of the first places are `known`.
+fn extended(group: &[&Stretch], known: &DMatrix<f64>, places: &[usize]) -> DMatrix<f64> {
+    let (p, before) = (places.len(), known.nrows() - 1);
+    let mut gram = DMatrix::zeros(p + 1, p + 1);
+    for k in 0..=p {
+        let from = if k < before { before } else { 0 };
+        if k < before {
+            gram.view_mut((0, k), (before, 1))
+                .copy_from(&known.view((0, k), (before, 1)));
+        }
+        for i in from..=p {
+            gram[(i, k)] = group
+                .iter()
+                .map(|stretch| match (i < p, k < p) {
+                    (true, true) => stretch.gram.of(places[i], places[k]),
+                    (true, false) => stretch.gram.with_y(places[i]),
+                    (false, true) => stretch.gram.with_y(places[k]),
+                    (false, false) => stretch.gram.y_square(),
+                })
+                .sum();
+        }
+    }
+    gram
+}
+
+/// The fits of all groups and, in turn, of all but one, by `fit` of their inner products; and their residual sums of squares
+/// where they were fitted, and on what was left out.
+fn fitted(folds: &[DMatrix<f64>], fit: impl Fn(&DMatrix<f64>, usize) -> Normal) -> (Vec<Normal>, [f64; 2]) {
+    let all = folds.iter().skip(1).fold(folds[0].clone(), |sum, fold| sum + fold);
+    let mut fits = vec![fit(&all, 0)];
+    let inside = left(&all, &fits[0].solution(&all));
+    let mut outside = Vec::with_capacity(folds.len());
+    for (k, fold) in folds.iter().enumerate() {
+        let rest = &all - fold;
+        let fit = fit(&rest, k + 1);
+        outside.push(left(fold, &fit.solution(&rest)));
+        fits.push(fit);
+    }
+    (fits, [inside, outside.into_iter().sum()])
+}
+
+/// The normal equations of a fit: scaled and factorised.
+struct Normal {
+    scale: Vec<f64>,
+    /// The lower Cholesky factor.
+    factor: DMatrix<f64>,
+}
+
+/// An inner product, with `prior`, the precision of the first columns.
+fn entry(gram: &DMatrix<f64>, prior: &DMatrix<f64>, i: usize, k: usize) -> f64 {
     let known = prior.nrows();
-    let entry = |i: usize, k: usize| {
-        let own = if i < known && k < known { prior[(i, k)] } else { 0.0 };
-        gram[(i, k)] + own
-    };
-    let scale: Vec<f64> = (0..p).map(|i| entry(i, i).max(0.0).sqrt().max(1e-150)).collect();
-    let matrix = DMatrix::from_fn(p, p, |i, k| entry(i, k) / (scale[i] * scale[k]));
-    let right = DVector::from_fn(p, |i, _| gram[(i, last)] / scale[i]);
-    let [_, scaled] = solved(&cholesky(&matrix), &right);
-    DVector::from_fn(p, |i, _| scaled[i] / scale[i])
+    let own = if i < known && k < known { prior[(i, k)] } else { 0.0 };
+    gram[(i, k)] + own
+}
+
+fn scale(entry: f64) -> f64 {
+    entry.max(0.0).sqrt().max(1e-150)
+}
+
+impl Normal {
+    /// The fit of the first `p` columns.
+    fn new(gram: &DMatrix<f64>, p: usize, prior: &DMatrix<f64>) -> Self {
+        let scale: Vec<f64> = (0..p).map(|i| scale(entry(gram, prior, i, i))).collect();
+        let matrix = DMatrix::from_fn(p, p, |i, k| entry(gram, prior, i, k) / (scale[i] * scale[k]));
+        Self {
+            scale,
+            factor: cholesky(&matrix),
+        }
+    }
+
+    /// The fit of the first `p` columns, of which these are the first: their factor stays, and gets more rows. It has the bits of
+    /// [`Self::new`].
+    fn with(&self, gram: &DMatrix<f64>, p: usize, prior: &DMatrix<f64>) -> Self {
+        let known = self.scale.len();
+        let new = p - known;
+        let mut scale = self.scale.clone();
+        scale.extend((known..p).map(|i| self::scale(entry(gram, prior, i, i))));
+        let of = |i: usize, k: usize| entry(gram, prior, i, k) / (scale[i] * scale[k]);
+        let mut cross = DMatrix::from_fn(known, new, |k, i| of(known + i, k));
+        self.factor.solve_lower_triangular_mut(&mut cross);
+        let rows = cross.transpose();
+        let mut own = DMatrix::from_fn(new, new, |i, k| of(known + i, known + k));
+        for i in 0..new {
+            own[(i, i)] += RIDGE;
+        }
+        // Column by column, as the factorisation of the whole matrix goes on.
+        for row in rows.column_iter() {
+            for k in 0..new {
+                let mut column = own.column_mut(k);
+                column.rows_range_mut(k..).axpy(-row[k], &row.rows_range(k..), 1.0);
+            }
+        }
+        let own =
+            Cholesky::new_with_substitute(own, RIDGE).map_or_else(|| DMatrix::identity(new, new), Cholesky::unpack);
+        let mut factor = DMatrix::zeros(p, p);
+        factor.view_mut((0, 0), (known, known)).copy_from(&self.factor);
+        factor.view_mut((known, 0), (new, known)).copy_from(&rows);
+        factor.view_mut((known, known), (new, new)).copy_from(&own);
+        Self { scale, factor }
+    }
+
+    /// The coefficients, for the right side in the last column of `gram`.
+    fn solution(&self, gram: &DMatrix<f64>) -> DVector<f64> {
+        let (p, last) = (self.scale.len(), gram.nrows() - 1);
+        let right = DVector::from_fn(p, |i, _| gram[(i, last)] / self.scale[i]);
+        let [_, scaled] = solved(&self.factor, &right);
+        DVector::from_fn(p, |i, _| scaled[i] / self.scale[i])
+    }
 }
 
 /// The residual sum of squares with coefficients of the first columns.

@@ -3,8 +3,12 @@
 use std::ops::Range;
 
 use faer::{Accum, Mat, MatRef, Par, linalg::matmul::matmul};
+use gp::release_vectors;
 
 use crate::thresholds::STRETCHES;
+
+/// The number of new columns whose inner products are formed together; only those with columns up to them are needed.
+const TOGETHER: usize = 64;
 
 /// A recording, or a stretch of it, in which one joint moves.
 #[derive(Clone, Debug)]
@@ -59,17 +63,21 @@ impl Stretch {
             self.packed.extend(x);
         }
         let all = MatRef::from_column_major_slice(&self.packed, y.len(), total);
-        let mut product = Mat::zeros(total, total - known);
-        matmul(
-            product.as_mut(),
-            Accum::Replace,
-            all.transpose(),
-            all.subcols(known, total - known),
-            1.0,
-            Par::Seq,
-        );
-        for k in known..total {
-            self.gram.rows.push((0..=k).map(|i| product[(i, k - known)]).collect());
+        for from in (known..total).step_by(TOGETHER) {
+            let to = total.min(from + TOGETHER);
+            let mut product = Mat::zeros(to, to - from);
+            matmul(
+                product.as_mut(),
+                Accum::Replace,
+                all.subcols(0, to).transpose(),
+                all.subcols(from, to - from),
+                1.0,
+                Par::Seq,
+            );
+            release_vectors();
+            for k in from..to {
+                self.gram.rows.push((0..=k).map(|i| product[(i, k - from)]).collect());
+            }
         }
     }
 }

@@ -1,0 +1,51 @@
+//! The gains that candidates promise before they are fitted.
+
+use rayon::prelude::*;
+
+use super::{Chosen, Problem};
+use crate::regression::fit::Reduced;
+
+impl Problem<'_> {
+    /// The first-order gain of each of the candidates `free` in addition to `chosen` (nats, minus the costs), with its index.
+    pub fn promises(&self, chosen: &Chosen, free: &[usize]) -> Vec<(f64, usize)> {
+        let mut columns: Vec<usize> = free.iter().flat_map(|&c| self.new_columns(chosen, c)).collect();
+        columns.sort_unstable();
+        columns.dedup();
+        let reduced = self.products.reduced(self.table, &chosen.fit, &columns);
+        free.par_iter()
+            .map(|&candidate| (self.promise(chosen, candidate, &reduced), candidate))
+            .collect()
+    }
+
+    /// The columns of `candidate` that `chosen` does not have.
+    fn new_columns(&self, chosen: &Chosen, candidate: usize) -> Vec<usize> {
+        let have = &chosen.fit.columns;
+        let columns = self.candidates[candidate].columns.iter().copied();
+        columns.filter(|c| have.binary_search(c).is_err()).collect()
+    }
+
+    /// The first-order gain of `candidate` in addition to `chosen` (nats, minus the costs). Its columns are among those that are
+    /// `reduced`.
+    fn promise(&self, chosen: &Chosen, candidate: usize, reduced: &Reduced) -> f64 {
+        let new = self.new_columns(chosen, candidate);
+        if new.is_empty() {
+            return f64::NEG_INFINITY;
+        }
+        let drop = self.products.drop(self.table, &chosen.fit, &new, reduced);
+        let cost = self.candidates[candidate].cost
+            - self.thresholds.per_coefficient * (self.candidates[candidate].columns.len() - new.len()) as f64;
+        let log = |drop: f64, joint: usize| {
+            let count = self.products.count[joint].max(1.0);
+            -0.5 * self.products.evidence[joint] * (1.0 - (drop / count).min(0.999_999)).ln()
+        };
+        let gain = match self.candidates[candidate].joint {
+            Some(joint) => log(drop, joint),
+            // At least the gain of an evenly distributed reduction.
+            None => {
+                let joints = self.products.count.len();
+                (0..joints).map(|joint| log(drop / joints as f64, joint)).sum::<f64>()
+            }
+        };
+        gain - cost
+    }
+}
