@@ -374,3 +374,19 @@ fn walls_ceilings_and_offsets_of_effects_are_no_mistakes() {
         assert!(!said.contains("column map"), "{offset}: {said}");
     }
 }
+
+#[test]
+fn names_numbers_and_files_that_do_not_fit_the_flag_are_told() {
+    let case = case();
+    let with = |flags: &[&str]| refused(&case, flags);
+    says(
+        &with(&["--only", "coulomb_fricton:elbow"]),
+        &["coulomb_fricton on elbow", "did you mean coulomb_friction?"],
+    );
+    let output = case.sandbox.run(&arguments(&["--cutoff", "-3"]));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("give a frequency from 0.1 to 1000 Hz"));
+    says(
+        &with(&["--before", "a.csv"]),
+        &["a.csv: is given with --before and with --train"],
+    );
+}

@@ -26,7 +26,7 @@ pub enum DiagnosisError {
         /// Its joint.
         joint: Option<String>,
         /// What is wrong with it.
-        reason: &'static str,
+        reason: String,
     },
     /// There is no recording to fit.
     #[error("no recording to train on")]

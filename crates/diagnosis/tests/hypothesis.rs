@@ -103,9 +103,20 @@ fn what_is_not_in_the_catalogue_or_on_the_arm_is_refused() {
     for (list, part) in [
         (
             vec![("stiction", Some("elbow"))],
-            "stiction on elbow: no such effect is in the catalogue",
+            "stiction on elbow: no such effect is in the catalogue, which has viscous_friction, ",
         ),
-        (vec![("spring", Some("wrist"))], "no such joint"),
+        (
+            vec![("coulomb_fricton", Some("elbow"))],
+            "did you mean coulomb_friction?",
+        ),
+        (
+            vec![("Coulomb friction", Some("elbow"))],
+            "did you mean coulomb_friction?",
+        ),
+        (
+            vec![("spring", Some("elbw"))],
+            "the robot has no joint elbw; did you mean elbow? its joints are turn, shoulder, elbow",
+        ),
         (vec![("spring", None)], "is on a joint"),
         (vec![("payload", Some("elbow"))], "is on the whole arm"),
         (

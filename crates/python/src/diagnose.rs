@@ -120,7 +120,7 @@ impl Outcome {
     fn text(&self, everything: bool) -> String {
         let report = &self.study.diagnosis.report;
         if everything {
-            report::terminal::complete(report)
+            report::terminal::complete(report, &self.study.arm)
         } else {
             report::terminal::diagnosis(report)
         }

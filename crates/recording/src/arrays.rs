@@ -61,6 +61,14 @@ pub fn table(input: &Input, format: &'static str, arrays: &[Array]) -> Result<Ta
         let transposed = match array.shape {
             (rows, _) if rows == samples => false,
             (_, columns) if columns == samples => true,
+            (rows, columns) if ["q", "tau"].contains(&array.name.as_str()) => {
+                let reason = format!(
+                    "{} has {rows} rows and {columns} columns, and the longest vector has {samples} values; save a row of {0} for \
+                     each sample",
+                    array.name
+                );
+                return Err(input.error(format, reason));
+            }
             _ => {
                 left_out.push(array.name.as_str());
                 continue;

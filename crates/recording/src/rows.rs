@@ -285,11 +285,19 @@ impl<'a> Rows<'a> {
         let path = self.path.to_owned();
         let rows = self.values.read();
         if rows < 2 {
-            let found = if rows == 0 { "are no rows" } else { "is one row" };
+            let reason = match (rows, self.duplicates) {
+                (1, 1..) => format!(
+                    "all {} rows have the time {} s; check the column of the time",
+                    1 + self.duplicates,
+                    short(self.stamp)
+                ),
+                (0, _) => "there are no rows below the header; a motion takes at least two, and a fit thousands".into(),
+                _ => "there is one row below the header; a motion takes at least two, and a fit thousands".into(),
+            };
             return Err(RecordingError::Header {
                 path,
                 has_lines: self.has_lines,
-                reason: format!("there {found} below the header; a motion takes at least two, and a fit thousands"),
+                reason,
             });
         }
         if self.differing as f64 > DIFFERING_SHARE * rows as f64 + 1.0 {

@@ -245,6 +245,11 @@ fn arrays_of_numpy_and_matlab_are_read() {
     let map = "[time]\ncolumn = \"t\"\n[joints.shoulder]\nq = \"q[0]\"\nqd = \"qd[0]\"\ntau = \"tau[0]\"\n";
     check(&read_with("arrays.npz", map).expect("it fits"), 60, 0.0);
     assert!(refusal("new.mat").contains("-v7"));
+    let short = refusal("short.npz");
+    assert!(
+        short.contains("q has 57 rows and 2 columns, and the longest vector has 60 values"),
+        "{short}"
+    );
 }
 
 /// Every file of a format, cut and changed at many places, is read or refused, and nothing else.

@@ -77,7 +77,7 @@ fn findings(report: &Report) -> Vec<Block> {
                 numbers::with_interval(name, parameter)
             }),
             terminal::alternatives(finding),
-            numbers::share(finding.share),
+            words::share(finding).map_or_else(|| "–".into(), numbers::share),
             numbers::probability(finding.probability),
             terminal::error(report, finding),
         ]

@@ -68,7 +68,9 @@ impl<'a> Page<'a> {
     }
 
     fn whole(&self) -> String {
-        let arm_view = arm_view::draw(self.report, self.figures.traces, self.figures.arm);
+        let arm_view = arm_view::draw(self.report, self.figures.traces, self.figures.arm, |joint| {
+            self.has_section(joint)
+        });
         let joints = (0..self.figures.arm.dof()).map(|joint| self.joint(joint));
         let all = [self.doubts(), self.overview(), self.next_steps(), self.whole_arm()];
         let rest = [
@@ -91,7 +93,7 @@ impl<'a> Page<'a> {
             }
             main {
                 @if self.report.doubts.is_empty() {
-                    figure.hero { (PreEscaped(arm_view)) figcaption { (arm_view::legend()) } }
+                    figure.hero { (PreEscaped(arm_view)) figcaption { (arm_view::legend(self.report)) } }
                 }
                 @for section in sections { section {
                     h2 id=(section.id) { (section.title) }

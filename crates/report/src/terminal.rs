@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use arm::{Arm, JointKind};
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, Width, presets};
 use diagnosis::{Finding, NotObservable, Report, Unexplained};
 
@@ -61,7 +62,7 @@ pub fn diagnosis(report: &Report) -> String {
 
 /// The complete text of a diagnosis: with the findings' further parameters and alternatives, effects that are not testable, and
 /// the simulated motion; it ends with a newline.
-pub fn complete(report: &Report) -> String {
+pub fn complete(report: &Report, arm: &Arm) -> String {
     let mut text = opening(report);
     for finding in &report.findings {
         text += &details(finding);
@@ -82,7 +83,7 @@ pub fn complete(report: &Report) -> String {
     for sentence in report.next_experiment.iter().flat_map(next_words::sentences) {
         text += &wrapped(&sentence, "- next experiment: ");
     }
-    let rollout = rollout(report);
+    let rollout = rollout(report, arm);
     if !rollout.is_empty() {
         text += &wrapped(&rollout, "- ");
     }
@@ -164,11 +165,7 @@ fn details(finding: &Finding) -> String {
 
 /// The explanation of the table's last two columns.
 fn columns(report: &Report) -> String {
-    let recordings = if report.recordings.held_out.is_empty() {
-        "training"
-    } else {
-        "held-out"
-    };
+    let recordings = recordings(report);
     format!(
         "share: standard deviation of the effect's torque over that of the measured torque; error: RMS torque error on the \
          {recordings} recordings over the same, nominal model → with the effects found"
@@ -229,7 +226,7 @@ fn findings(report: &Report) -> String {
                 size.map_or("–".into(), |(name, parameter)| {
                     numbers::with_interval(name, parameter)
                 }),
-                numbers::share(finding.share),
+                words::share(finding).map_or_else(|| "–".into(), numbers::share),
                 if is_first || joint.is_none() {
                     error(report, finding)
                 } else {
@@ -244,6 +241,15 @@ fn findings(report: &Report) -> String {
         .map(str::trim_end)
         .collect::<Vec<_>>()
         .join("\n")
+}
+
+/// Which recordings errors are of: the held-out ones, if there are any.
+pub fn recordings(report: &Report) -> &'static str {
+    if report.recordings.held_out.is_empty() {
+        "training"
+    } else {
+        "held-out"
+    }
 }
 
 /// Whether errors are of held-out recordings, or of those that were fitted.
@@ -291,18 +297,27 @@ fn not_testable(list: &[NotObservable]) -> String {
 }
 
 /// How closely the simulated arm follows the recording, with the nominal model and with the effects found.
-fn rollout(report: &Report) -> String {
-    let over_joints =
-        |pick: fn(&diagnosis::JointRollout) -> f64| rms(report.rollout.values().map(pick)).map(|rms| 1e3 * rms);
-    let errors = over_joints(|joint| joint.nominal_rms_rad).zip(over_joints(|joint| joint.augmented_rms_rad));
-    let Some((before, after)) = errors else {
-        return String::new();
+fn rollout(report: &Report, arm: &Arm) -> String {
+    let of_kind = |kind: JointKind, unit: &str| {
+        let joints = arm.joints().iter().filter(|joint| joint.kind == kind);
+        let errors: Vec<_> = joints.filter_map(|joint| report.rollout.get(&joint.name)).collect();
+        let before = rms(errors.iter().map(|joint| joint.nominal_rms_rad))?;
+        let after = rms(errors.iter().map(|joint| joint.augmented_rms_rad))?;
+        let [before, after] = [before, after].map(|error| numbers::short(1e3 * error));
+        Some(format!("{before} → {after} {unit}"))
     };
-    format!(
-        "simulated motion, RMS position error over the joints: {} → {} mrad (or mm)",
-        numbers::short(before),
-        numbers::short(after)
-    )
+    let kinds = [(JointKind::Revolute, "mrad"), (JointKind::Prismatic, "mm")];
+    let errors: Vec<String> = kinds
+        .into_iter()
+        .filter_map(|(kind, unit)| of_kind(kind, unit))
+        .collect();
+    match errors.as_slice() {
+        [] => String::new(),
+        errors => format!(
+            "simulated motion, RMS position error over the joints: {}",
+            words::list(errors)
+        ),
+    }
 }
 
 /// Breaks `text` between words; the first line begins with `start`, the others have the same indent. It ends with a newline.

@@ -30,9 +30,34 @@ pub fn effect(finding: &Finding) -> String {
     }
 }
 
+/// Whether a finding is between two sensors of its joint, so that its torque is not a part of the measured one.
+pub fn is_between_sensors(finding: &Finding) -> bool {
+    !finding.corrects && finding.joint.is_some() && finding.place.state.is_some()
+}
+
+/// A finding's share of the torque; a spring between two encoders has none.
+pub fn share(finding: &Finding) -> Option<f64> {
+    let is_friction = finding.effect.ends_with("_friction");
+    (is_friction || !is_between_sensors(finding)).then_some(finding.share)
+}
+
 /// A finding's effect with its parameters, as a noun phrase; for a finding between two sensors, with its place.
 pub fn described(finding: &Finding) -> String {
-    let text = diagnosis::described(finding, &numbers::quantity);
+    // A parameter has the digits of its interval, as beside its name.
+    let quantity = |value: f64, unit: &str| {
+        let mut texts = finding.parameters.iter().filter_map(|(name, own)| {
+            let (text, _) = numbers::value_and_interval(name, own);
+            if own.value == value && own.unit == unit {
+                Some(text)
+            } else if 100.0 * own.value == value {
+                text.strip_suffix(" %").map(str::to_owned)
+            } else {
+                None
+            }
+        });
+        texts.next().unwrap_or_else(|| numbers::quantity(value, unit))
+    };
+    let text = diagnosis::described(finding, &quantity);
     match &finding.place.state {
         Some(place) if !finding.corrects => format!("{text}, {place}"),
         _ => text,

@@ -212,14 +212,15 @@ pub fn read(
         list.push(prepared);
     }
     epoch::share(&mut list);
-    if list
-        .iter()
-        .filter(|recording| recording.role == Role::Train)
-        .all(|recording| is_still(&recording.regular))
-    {
+    let training = || list.iter().filter(|recording| recording.role == Role::Train);
+    if training().all(|recording| is_still(&recording.regular)) {
         bail!(
-            "{}: no joint moves in the training recordings; record a motion, or check the position columns",
-            list[0].name
+            "{}: no joint moves by more than 0.001 rad or m in the {:.2} s of the training recordings; record a longer motion, or \
+             check the position columns",
+            list[0].name,
+            training()
+                .map(|recording| recording.regular.len() as f64 * recording.regular.period)
+                .sum::<f64>()
         );
     }
     Ok(list)
@@ -234,7 +235,11 @@ fn refuse_twice(list: &[(&Given, Role)]) -> anyhow::Result<()> {
                     "{}: is given as a training and as a held-out recording; a held-out recording must be independent",
                     given.name()
                 ),
-                _ => bail!("{}: is given twice", given.name()),
+                _ if other == role => bail!("{}: is given twice; give each recording once", given.name()),
+                _ => bail!(
+                    "{}: is given with --before and with --train; a recording is either from before or from after the change",
+                    given.name()
+                ),
             }
         }
     }

@@ -35,6 +35,16 @@ pub enum ValidateError {
         /// The error of the effect.
         source: TorqueError,
     },
+    /// The effects take all inertia from a joint, such as a body that is not mounted from a URDF whose last link is lighter.
+    #[error(
+        "{which} cannot be simulated: they leave joint \"{joint}\" no inertia to move; correct the links beyond it in the URDF"
+    )]
+    Emptied {
+        /// Which of the two arms.
+        which: &'static str,
+        /// The joint's name.
+        joint: String,
+    },
     /// The plant cannot simulate the arm.
     #[error("{which} cannot be simulated: {source}")]
     Plant {

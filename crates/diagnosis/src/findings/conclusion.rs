@@ -93,7 +93,7 @@ impl Conclusion {
         Self {
             located: locate(study, residual),
             traces: traces(study, judged, &findings, [residual, &by_exported]),
-            not_observable: unseen(study, products, &judged.named),
+            not_observable: not_named(unseen(study, products, &judged.named), &findings),
             findings,
             inertials,
             not_enough_data,
@@ -184,6 +184,16 @@ impl Conclusion {
     }
 }
 
+/// The effects of `list` that no finding names: a second encoder or a motor current shows what the torque alone does not.
+fn not_named(mut list: Vec<NotObservable>, findings: &[(Finding, Option<usize>)]) -> Vec<NotObservable> {
+    let is_named = |entry: &NotObservable| {
+        let same = |finding: &Finding| finding.effect == entry.effect && finding.joint == entry.joint;
+        findings.iter().any(|(finding, _)| same(finding))
+    };
+    list.retain(|entry| !is_named(entry));
+    list
+}
+
 /// How well each joint's torque is predicted; `left` is the residual of the augmented model, and that of the exported model.
 fn fit(study: &Study, left: [&[Vec<f64>]; 2], identified: &[Option<f64>]) -> BTreeMap<String, JointFit> {
     let of = |(joint, residual): (usize, &Vec<f64>)| {
@@ -196,4 +206,34 @@ fn fit(study: &Study, left: [&[Vec<f64>]; 2], identified: &[Option<f64>]) -> BTr
         (study.arm.joints()[joint].name.clone(), errors)
     };
     left[0].iter().enumerate().map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use effects::drive::JointElasticity;
+
+    use super::*;
+
+    #[test]
+    fn what_is_named_is_not_listed_as_not_testable() {
+        let entry = |effect, joint: &str| NotObservable {
+            effect,
+            joint: Some(joint.to_owned()),
+            because: String::new(),
+            would_be_seen_above: BTreeMap::new(),
+            would_be_seen_below: BTreeMap::new(),
+        };
+        let list = vec![
+            entry("joint_elasticity", "a"),
+            entry("joint_elasticity", "b"),
+            entry("backlash", "a"),
+        ];
+        let finding = Finding::of(Effect::of(&JointElasticity).on("a".to_owned()));
+        let left = not_named(list, &[(finding, None)]);
+        let left: Vec<_> = left
+            .iter()
+            .map(|entry| (entry.effect, entry.joint.as_deref()))
+            .collect();
+        assert_eq!(left, [("joint_elasticity", Some("b")), ("backlash", Some("a"))]);
+    }
 }

@@ -52,11 +52,17 @@ pub fn unseen(study: &Study, products: &Products, chosen: &Chosen) -> Vec<NotObs
         if products.count[joint] > 0.0 {
             continue;
         }
+        // A channel without torque has no scale.
+        let because = if study.scales.torque[joint] == 0.0 {
+            "the recordings hold no torque of the joint"
+        } else {
+            "the joint does not move in the training recordings"
+        };
         for kind in in_turn().filter(|kind| kind.spec().is_baseline) {
             list.push(NotObservable {
                 effect: kind.spec().name,
                 joint: Some(study.arm.joints()[joint].name.clone()),
-                because: "the joint does not move in the training recordings".into(),
+                because: because.into(),
                 would_be_seen_above: BTreeMap::new(),
                 would_be_seen_below: BTreeMap::new(),
             });
@@ -108,6 +114,7 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
                 if is_seen_below {
                     // The largest detectable size for which all smaller ones are detectable.
                     let last = sizes.iter().take_while(|(_, seen)| *seen).last();
+                    let because = if last.is_none() { if_none } else { because };
                     add(because, None, last.map(|&(size, _)| size));
                 } else {
                     let least = sizes.iter().rev().take_while(|(_, seen)| *seen).last();

@@ -115,11 +115,13 @@ pub struct Finding {
     pub parameters: BTreeMap<&'static str, Parameter>,
     /// The probability that this effect is present on this joint; `None` where it was not calibrated.
     pub probability: Option<f64>,
-    /// Standard deviation of its torque over that of the measured torque, training recordings; the largest of the joints.
+    /// Standard deviation of its torque over that of the measured torque, training recordings; the largest of the joints. Of a
+    /// spring between two encoders: that of the encoders' difference over the joint's range.
     pub share: f64,
     /// The share of each joint that it acts on.
     pub share_by_joint: BTreeMap<String, f64>,
-    /// Relative reduction of the NRMSE on recordings that the finding was not fitted to; `None` if none of them tests it.
+    /// Relative reduction of the NRMSE on recordings that the finding was not fitted to; `None` if none of them tests it. Of a
+    /// finding between two sensors: of their difference.
     pub held_out_gain: Option<f64>,
     /// Effects that explain nearly as much in its place.
     pub confusable_with: Vec<Confusable>,

@@ -40,11 +40,21 @@ pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> S
         }
         text.push_str(rest);
     }
+    if is_undetermined(finding) {
+        text.push_str(", of a size that these recordings do not determine");
+    }
     match finding.parameters.get("onset") {
         _ if finding.since_before => format!("{text}, absent in the recordings from before"),
         Some(onset) => format!("{text} from {} on", quantity(onset.value, onset.unit)),
         None => text,
     }
+}
+
+/// Whether zero lies within the interval of the parameter that measures the finding's size.
+fn is_undetermined(finding: &Finding) -> bool {
+    let main = finding.as_effect.kind().get().spec().main;
+    let size = main.iter().find_map(|name| finding.parameters.get(name));
+    size.is_some_and(|size| size.ci95[0] < 0.0 && size.ci95[1] > 0.0)
 }
 
 /// A ratio of standard deviations in words; a ratio above one is no percentage.

@@ -110,8 +110,16 @@ pub fn not_enough(study: &Study, products: &Products) -> Vec<String> {
             .sum()
     };
     let longest = (0..study.motions.dof).map(seconds).fold(0.0, f64::max);
+    let all: f64 = (study.table.rows.iter().zip(&study.seconds).zip(&study.fitted))
+        .filter(|(_, fitted)| **fitted)
+        .map(|((rows, seconds), _)| rows.len() as f64 * seconds)
+        .sum();
     let mut reasons = Vec::new();
-    if products.count.iter().all(|&count| count == 0.0) {
+    if all < LEAST_MOTION {
+        reasons.push(format!(
+            "the training recordings are {all:.1} s long without the filter's ends; a diagnosis needs at least {LEAST_MOTION:.0} s of motion and several reversals of each joint"
+        ));
+    } else if products.count.iter().all(|&count| count == 0.0) {
         reasons.push("no joint moves in the training recordings".to_owned());
     } else if longest < LEAST_MOTION {
         reasons.push(format!(

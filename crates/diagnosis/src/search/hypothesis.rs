@@ -1,8 +1,9 @@
 //! A hypothesis of the user (`--only`): the requested effects are fitted together, without search and selection.
 
 use arm::Arm;
-use effects::Scope;
 use effects::drive::FARTHEST_COUPLED;
+use effects::{CATALOGUE, Scope};
+use recording::nearest;
 
 use crate::diagnose::Options;
 use crate::error::DiagnosisError;
@@ -39,11 +40,11 @@ struct Place<'a> {
 }
 
 impl Wanted {
-    fn refused(&self, reason: &'static str) -> DiagnosisError {
+    fn refused(&self, reason: impl Into<String>) -> DiagnosisError {
         DiagnosisError::Wanted {
             effect: self.effect.clone(),
             joint: self.joint.clone(),
-            reason,
+            reason: reason.into(),
         }
     }
 }
@@ -126,9 +127,7 @@ fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, Diag
     for (k, one) in wanted.iter().enumerate() {
         let number = |name: &String| study.arm.joints().iter().position(|joint| joint.name == *name);
         let joint_of = |name: &Option<String>| match name {
-            Some(name) => number(name)
-                .map(Some)
-                .ok_or_else(|| one.refused("the robot has no such joint")),
+            Some(name) => number(name).map(Some).ok_or_else(|| one.refused(no_joint(name, study))),
             None => Ok(None),
         };
         let (mut joint, mut other) = (joint_of(&one.joint)?, joint_of(&one.other)?);
@@ -142,7 +141,7 @@ fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, Diag
             return Err(one.refused("acts on joints that are neighbours or have one joint between them"));
         }
         let Some(spec) = effects::spec(&one.effect) else {
-            return Err(one.refused("no such effect is in the catalogue"));
+            return Err(one.refused(no_effect(&one.effect)));
         };
         match (joint, spec.scope) {
             (Some(_), Scope::Arm) => return Err(one.refused("is on the whole arm; leave the joint out")),
@@ -150,12 +149,35 @@ fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, Diag
             _ => {}
         }
         if !spec.may_repeat && wanted[..k].contains(one) {
-            return Err(one.refused("is given twice"));
+            return Err(one.refused("is given twice; give it once"));
         }
         let wanted = one;
         places.push(Place { wanted, joint, other });
     }
     Ok(places)
+}
+
+/// What to say of an effect that is not in the catalogue: the name that is meant, which may be given as its title, or all names.
+fn no_effect(name: &str) -> String {
+    let names: Vec<String> = CATALOGUE.iter().map(|kind| kind.spec().name.to_owned()).collect();
+    let titled = CATALOGUE
+        .iter()
+        .find(|kind| kind.spec().title.eq_ignore_ascii_case(name));
+    let meant = titled.map(|kind| kind.spec().name).or_else(|| nearest(name, &names));
+    match meant {
+        Some(meant) => format!("no such effect is in the catalogue; did you mean {meant}?"),
+        None => format!("no such effect is in the catalogue, which has {}", names.join(", ")),
+    }
+}
+
+/// What to say of a joint that the robot does not have.
+fn no_joint(name: &str, study: &Study) -> String {
+    let names: Vec<String> = study.arm.joints().iter().map(|joint| joint.name.clone()).collect();
+    let meant = nearest(name, &names).map_or_else(String::new, |meant| format!("did you mean {meant}? "));
+    format!(
+        "the robot has no joint {name}; {meant}its joints are {}",
+        names.join(", ")
+    )
 }
 
 /// `chosen` with the best form of an effect in the place of the member at `instead`, or added.

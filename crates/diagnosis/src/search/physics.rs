@@ -8,6 +8,9 @@ use crate::regression::table::Table;
 use crate::search::candidate::Candidate;
 use crate::thresholds::LARGEST_TORQUE_SHARE;
 
+/// The powers of a thousandth of a size that are tried in its place.
+const SMALLER: i32 = 6;
+
 /// A candidate with the coefficients of a fit.
 struct InFit<'a> {
     candidate: &'a Candidate,
@@ -82,7 +85,8 @@ fn is_physical(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bo
     })
 }
 
-/// Whether no effect of `candidate` has a coefficient of ±`size` on `column`, although one a thousandth as large is possible.
+/// Whether no effect of `candidate` has a coefficient of ±`size` on `column`, although a smaller one is possible: one a thousandth
+/// as large, a millionth, and so on.
 pub fn is_beyond_physics(size: f64, column: usize, candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bool {
     let is_possible = |size: f64| {
         [size, -size].into_iter().any(|size| {
@@ -97,7 +101,13 @@ pub fn is_beyond_physics(size: f64, column: usize, candidate: &Candidate, table:
             is_physical(candidate, table, &other, arm)
         })
     };
-    is_possible(1e-3 * size) && !is_possible(size)
+    is_too_large(size, is_possible)
+}
+
+/// Whether `size` is impossible and a thousandth of it is possible, or a millionth, and so on.
+fn is_too_large(size: f64, is_possible: impl Fn(f64) -> bool) -> bool {
+    let mut smaller = (1..=SMALLER).map(|thousandths| size * 1e-3_f64.powi(thousandths));
+    !is_possible(size) && smaller.any(is_possible)
 }
 
 /// Whether the coefficient of a simulated effect is near one.
@@ -118,4 +128,22 @@ fn torque_share(candidate: &Candidate, table: &Table, fit: &Fit, joint: usize) -
             .sum()
     };
     (power(&torque) / power(&this.y).max(1e-300)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_too_large;
+
+    #[test]
+    fn a_size_far_beyond_its_limit_is_too_large_and_an_impossible_effect_is_not() {
+        let below = |limit: f64| move |size: f64| size < limit;
+        for (size, limit, too_large) in [
+            (0.1, 0.2, false),
+            (0.3, 0.2, true),
+            (4e14, 0.2, true),
+            (0.3, 0.0, false),
+        ] {
+            assert_eq!(is_too_large(size, below(limit)), too_large, "{size} of {limit}");
+        }
+    }
 }

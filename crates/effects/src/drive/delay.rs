@@ -30,7 +30,7 @@ static SPEC: Spec = Spec {
     experiment: Some(SECOND_ENCODER),
     unseen: Unseen::Sized {
         because: "a shorter delay changes the torque by less than the noise",
-        if_none: "a shorter delay changes the torque by less than the noise",
+        if_none: "no delay that a drive has changes the torque by more than the noise",
         is_seen_below: false,
     },
     unseen_turn: 5,

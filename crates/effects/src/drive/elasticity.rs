@@ -32,7 +32,7 @@ static SPEC: Spec = Spec {
     experiment: Some(SECOND_ENCODER),
     unseen: Unseen::Sized {
         because: "a stiffer joint deflects less than these recordings can resolve",
-        if_none: "a stiffer joint deflects less than these recordings can resolve",
+        if_none: "a joint of any usual stiffness deflects less than these recordings can resolve",
         is_seen_below: true,
     },
     unseen_turn: 4,

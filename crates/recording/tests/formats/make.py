@@ -226,6 +226,7 @@ def parquet_files():
 def array_files():
     named, arrays = columns()
     np.savez(HERE / "named.npz", **named)
+    np.savez_compressed(HERE / "short.npz", t=arrays["t"], q=arrays["q"][:-3], tau=arrays["tau"])
     np.savez_compressed(HERE / "arrays.npz", **arrays, rate=100.0, joints=np.array(NAMES))
     np.savez(HERE / "fortran.npz", **{name: np.asfortranarray(values.astype(">f8")) for name, values in arrays.items()})
     scipy.io.savemat(HERE / "named.mat", named)

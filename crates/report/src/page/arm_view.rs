@@ -1,13 +1,13 @@
 //! The arm in a posture of a recording, its joints coloured by the nominal model's torque error.
 
 use arm::{Arm, Vector3, Workspace};
-use diagnosis::{Report, Traces};
+use diagnosis::{JointFit, Report, Traces};
 
 use maud::{Markup, html};
 
 use super::key;
 use crate::chart::Svg;
-use crate::{numbers, words};
+use crate::{numbers, terminal, words};
 
 const WIDTH: f64 = 800.0;
 /// The arm's own part of the picture: from left to right, from the top down.
@@ -31,12 +31,12 @@ pub fn class_of(error: f64) -> usize {
     CLASSES.iter().filter(|&&end| error >= end).count()
 }
 
-/// One label beside the arm, and the joint it points to.
+/// One label beside the arm, and the section that it leads to.
 struct Label {
     at: [f64; 2],
     name: String,
     below: String,
-    link: Option<usize>,
+    link: Option<String>,
 }
 
 /// A camera on a circle around the arm.
@@ -60,8 +60,8 @@ impl Camera {
     }
 }
 
-/// The picture.
-pub fn draw(report: &Report, traces: &Traces, arm: &Arm) -> String {
+/// The picture; the label of a joint with a section leads to it.
+pub fn draw(report: &Report, traces: &Traces, arm: &Arm, has_section: impl Fn(usize) -> bool) -> String {
     let (points, camera) = best_view(traces, arm);
     let seen: Vec<[f64; 2]> = points.iter().map(|point| camera.see(point)).collect();
     let reach = points.iter().map(Vector3::norm).fold(0.05, f64::max);
@@ -95,7 +95,7 @@ pub fn draw(report: &Report, traces: &Traces, arm: &Arm) -> String {
     let joints = spread_out(&placed[1..=arm.dof()]);
     let tool = placed[arm.dof() + 1];
     svg.raw(format_args!("<g class=\"labels\">"));
-    labels(&mut svg, report, arm, (&joints, tool), bottom);
+    labels(&mut svg, report, arm, (&joints, tool), bottom, &has_section);
     svg.raw(format_args!("</g>"));
     for (i, [x, y]) in joints.iter().enumerate() {
         let [from_x, from_y] = placed[i + 1];
@@ -103,7 +103,7 @@ pub fn draw(report: &Report, traces: &Traces, arm: &Arm) -> String {
             svg.line([from_x, from_y], [*x, *y], "leader");
         }
         let name = &arm.joints()[i].name;
-        let error = report.fit.get(name).map(|fit| fit.train_nrmse_nominal);
+        let error = report.fit.get(name).map(nominal_error);
         let class = error.map_or("m-none".to_owned(), |error| format!("m{}", class_of(error)));
         svg.circle([*x, *y], RADIUS, &format!("joint {class}"));
         svg.text(
@@ -237,8 +237,20 @@ fn spread_out(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     points
 }
 
+/// The nominal model's error on the held-out recordings, or on the training recordings where no held-out one has it.
+fn nominal_error(fit: &JointFit) -> f64 {
+    fit.held_out_nrmse_nominal.unwrap_or(fit.train_nrmse_nominal)
+}
+
 /// Names and findings at both sides, with lines to the joints.
-fn labels(svg: &mut Svg, report: &Report, arm: &Arm, (joints, tool): (&[[f64; 2]], [f64; 2]), bottom: f64) {
+fn labels(
+    svg: &mut Svg,
+    report: &Report,
+    arm: &Arm,
+    (joints, tool): (&[[f64; 2]], [f64; 2]),
+    bottom: f64,
+    has_section: &impl Fn(usize) -> bool,
+) {
     let mut all: Vec<Label> = Vec::new();
     let effects = |joint: Option<&str>| {
         let own = report
@@ -249,7 +261,7 @@ fn labels(svg: &mut Svg, report: &Report, arm: &Arm, (joints, tool): (&[[f64; 2]
         names.join(", ")
     };
     for (i, joint) in arm.joints().iter().enumerate() {
-        let error = report.fit.get(&joint.name).map(|fit| fit.train_nrmse_nominal);
+        let error = report.fit.get(&joint.name).map(nominal_error);
         let mut below = effects(Some(&joint.name));
         if report.unexplained.iter().any(|open| open.joint == joint.name) {
             below = if below.is_empty() {
@@ -270,7 +282,7 @@ fn labels(svg: &mut Svg, report: &Report, arm: &Arm, (joints, tool): (&[[f64; 2]
             at: joints[i],
             name,
             below,
-            link: Some(i),
+            link: has_section(i).then(|| format!("joint-{}", i + 1)),
         });
     }
     let whole = effects(None);
@@ -279,7 +291,7 @@ fn labels(svg: &mut Svg, report: &Report, arm: &Arm, (joints, tool): (&[[f64; 2]
             at: tool,
             name: "whole arm".into(),
             below: whole,
-            link: None,
+            link: Some("whole-arm".into()),
         });
     }
     all.sort_by(|a, b| a.at[0].total_cmp(&b.at[0]));
@@ -301,12 +313,9 @@ fn labels(svg: &mut Svg, report: &Report, arm: &Arm, (joints, tool): (&[[f64; 2]
                 label.at[1]
             ));
             let is_quiet = label.below.is_empty();
-            svg.raw(format_args!(
-                "<a href=\"#{}\">",
-                label
-                    .link
-                    .map_or("whole-arm".to_owned(), |i| format!("joint-{}", i + 1))
-            ));
+            if let Some(link) = &label.link {
+                svg.raw(format_args!("<a href=\"#{link}\">"));
+            }
             svg.text(
                 [x, y],
                 if is_quiet { "label quiet" } else { "label" },
@@ -319,7 +328,9 @@ fn labels(svg: &mut Svg, report: &Report, arm: &Arm, (joints, tool): (&[[f64; 2]
                 anchor,
                 &clipped(&label.below, LONGEST_LABEL + 6),
             );
-            svg.raw(format_args!("</a>"));
+            if label.link.is_some() {
+                svg.raw(format_args!("</a>"));
+            }
         }
     }
 }
@@ -348,14 +359,14 @@ fn clipped(text: &str, longest: usize) -> String {
 }
 
 /// The legend of the joints' colours.
-pub fn legend() -> Markup {
+pub fn legend(report: &Report) -> Markup {
     let words = |class: usize| match (class.checked_sub(1).map(|k| CLASSES[k]), CLASSES.get(class)) {
         (None, Some(end)) => format!("below {:.0} %", 100.0 * end),
         (Some(from), Some(end)) => format!("{:.0} to {:.0} %", 100.0 * from, 100.0 * end),
         (from, None) => format!("over {:.0} %", 100.0 * from.unwrap_or_default()),
     };
     html! {
-        "The model's torque error over the torque's standard deviation: "
+        "RMS torque error of the nominal model on the " (terminal::recordings(report)) " recordings, relative to the torque's standard deviation: "
         @for class in 0..=CLASSES.len() { (key(&format!("dot b{class}"), &words(class))) }
     }
 }

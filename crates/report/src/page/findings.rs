@@ -204,13 +204,7 @@ impl Page<'_> {
                         span.size { (numbers::with_interval(name, parameter)) }
                     }
                     span.odds {
-                        @if finding.probability.is_some() {
-                            "probability " (numbers::probability(finding.probability)) " · "
-                        }
-                        (numbers::share(finding.share)) " of the torque"
-                        @if let Some(gain) = finding.held_out_gain {
-                            " · reduces the held-out error by " (numbers::percent(gain))
-                        }
+                        (odds(finding).join(" · "))
                     }
                 }
                 p.sentence { (words::capital(&words::described(finding))) "." }
@@ -269,6 +263,23 @@ impl Page<'_> {
             }
         }
     }
+}
+
+/// What a card says beside its title: probability, share of the torque, and what it improves on held-out recordings.
+fn odds(finding: &Finding) -> Vec<String> {
+    let probability = finding
+        .probability
+        .map(|_| format!("probability {}", numbers::probability(finding.probability)));
+    let share = words::share(finding).map(|share| format!("{} of the torque", numbers::share(share)));
+    let improved = if words::is_between_sensors(finding) {
+        "held-out difference between the two sensors"
+    } else {
+        "held-out error"
+    };
+    let gain = finding
+        .held_out_gain
+        .map(|gain| format!("reduces the {improved} by {}", numbers::percent(gain)));
+    [probability, share, gain].into_iter().flatten().collect()
 }
 
 fn parameters(finding: &Finding) -> Markup {

@@ -103,7 +103,9 @@ impl Page<'_> {
                         span.nowrap { (numbers::with_interval(name, parameter)) }
                     }
                 },
-                html! { span.nowrap { (bar(finding.share)) (numbers::share(finding.share)) } },
+                html! { span.nowrap {
+                    @match words::share(finding) { Some(share) => { (bar(share)) (numbers::share(share)) }, None => "–" }
+                } },
                 html! { (numbers::probability(finding.probability)) },
                 html! { (terminal::error(self.report, finding)) },
                 html! { (terminal::alternatives(finding)) },

@@ -94,6 +94,27 @@ fn the_same_diagnosis_gives_the_same_bytes() {
     assert_eq!(page(6, Plot::Rich), page(6, Plot::Rich));
 }
 
+/// Labels in the picture of the arm lead to the joints' sections, where there are any.
+#[test]
+fn every_link_leads_somewhere() {
+    for plot in [Plot::Clean, Plot::Rich, Plot::TooShort] {
+        let text = page(6, plot);
+        let targets = |before: &str| -> Vec<String> {
+            let parts = text.split(before).skip(1);
+            parts
+                .filter_map(|part| part.split('"').next())
+                .map(str::to_owned)
+                .collect()
+        };
+        let ids = targets(" id=\"");
+        let links = targets("href=\"#");
+        assert!(!links.is_empty());
+        for link in links {
+            assert!(ids.contains(&link), "#{link} leads nowhere");
+        }
+    }
+}
+
 #[test]
 fn any_arm_and_any_verdict_make_a_page() {
     for joints in 1..=7 {

@@ -32,8 +32,8 @@ pub(super) fn order(
         .find(|fixed| fixed.reason == FixedBecause::NotRecorded && recording.joints.contains(&fixed.name));
     if let Some(FixedJoint { name: joint, .. }) = lost {
         bail!(
-            "{first}: has no column q_{joint} for \"{joint}\" of {}, and {name} has one; record all joints of the arm in every \
-             recording, or fix a joint that did not move: --lock {joint}=VALUE",
+            "{first}: has no positions and torques (q_{joint}, tau_{joint}) of \"{joint}\" of {}, and {name} has them; record all \
+             joints of the arm in every recording, or fix a joint that did not move: --lock {joint}=VALUE",
             arm.name()
         );
     }
@@ -84,7 +84,7 @@ pub(super) fn order(
             format!("; the name of its column q_{near} is similar")
         });
         bail!(
-            "{name}: has no column q_{joint} for {} of {}{hint}; record all joints of the arm, name their columns in a column map (--map), or fix a joint that did not move: --lock {joint}=VALUE",
+            "{name}: has no positions and torques (q_{joint}, tau_{joint}) of {} of {}{hint}; record all joints of the arm, name their columns in a column map (--map), or fix a joint that did not move: --lock {joint}=VALUE",
             quoted(&lacking),
             arm.name()
         );

@@ -34,12 +34,12 @@ pub struct DiagnoseArgs {
 
     /// The relative error of each link's mass, centre of mass and inertia in the URDF (0.1: ten per cent)
     /// [default: estimated from the recordings]
-    #[arg(long, value_name = "FRACTION", value_parser = parse_accuracy)]
+    #[arg(long, value_name = "FRACTION", value_parser = parse_accuracy, allow_negative_numbers = true)]
     pub urdf_accuracy: Option<f64>,
 
     /// The relative standard deviation of the torque constants (0.05: five per cent), included in every interval
     /// [default: unknown; sizes are then in the newton metres of the recorded torque]
-    #[arg(long, value_name = "FRACTION", value_parser = parse_accuracy)]
+    #[arg(long, value_name = "FRACTION", value_parser = parse_accuracy, allow_negative_numbers = true)]
     pub torque_accuracy: Option<f64>,
 
     /// The held-out recordings, on which the fit is validated; without one, no finding is validated
@@ -127,7 +127,7 @@ pub struct DiagnoseArgs {
     pub jobs: Option<u16>,
 
     /// The half-power frequency of the low-pass filter (Hz)
-    #[arg(long, value_name = "HZ", value_parser = parse_frequency)]
+    #[arg(long, value_name = "HZ", value_parser = parse_frequency, allow_negative_numbers = true)]
     pub cutoff: Option<f64>,
 
     #[command(flatten)]

@@ -54,7 +54,7 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     let deferred = interrupt::Deferred::start();
     let written = write(args, &arm, &robot, &diagnosis, effects);
     drop(deferred);
-    tell(args, &diagnosis, &written)?;
+    tell(args, &arm, &diagnosis, &written)?;
     written.files.finish()?;
     let explains = diagnosis.report.verdict == Verdict::NoMismatch && diagnosis.report.findings.is_empty();
     Ok(if args.fail_on_mismatch && !explains {
@@ -92,12 +92,12 @@ impl Listener for Terminal<'_> {
 }
 
 /// Prints the result and the files written. JSON on standard output has it for itself.
-fn tell(args: &DiagnoseArgs, diagnosis: &Diagnosis, written: &Files<'_>) -> anyhow::Result<()> {
+fn tell(args: &DiagnoseArgs, arm: &Arm, diagnosis: &Diagnosis, written: &Files<'_>) -> anyhow::Result<()> {
     let report = &diagnosis.report;
     if args.prints_json() {
         output::print(&(serde_json::to_string_pretty(report)? + "\n"))?;
     } else if args.verbose {
-        output::print(&report::terminal::complete(report))?;
+        output::print(&report::terminal::complete(report, arm))?;
     } else if !args.quiet {
         output::print(&report::terminal::diagnosis(report))?;
     }

@@ -19,7 +19,7 @@ use super::disturbance::{self, Disturbance};
 use super::rows::{self, Row};
 use super::shards::{self, Label};
 use super::tracking::{self, CaseTracking};
-use super::vault::Vault;
+use super::vault::{Vault, make_folder};
 use super::{experiments, published, report, work};
 use crate::cli::ProveArgs;
 use crate::{interrupt, output};
@@ -63,7 +63,7 @@ pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
     if let Some(folder) = &args.merge {
         let (label, rows) = shards::merge(folder)?;
         let proof = Proof::new(label.program, label.source, label.command, &rows)?;
-        std::fs::create_dir_all(&args.out).with_context(|| args.out.display().to_string())?;
+        make_folder(&args.out)?;
         return write(args, &args.out, &proof);
     }
     let out = match args.shard {

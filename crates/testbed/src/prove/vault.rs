@@ -57,6 +57,20 @@ pub struct Vault {
     _alone: Alone,
 }
 
+/// Makes a folder of the proof.
+///
+/// # Errors
+/// If the system refuses.
+pub(super) fn make_folder(folder: &Path) -> anyhow::Result<()> {
+    let remedy = || {
+        format!(
+            "{}: the folder cannot be made; give another with --out DIR",
+            folder.display()
+        )
+    };
+    std::fs::create_dir_all(folder).with_context(remedy)
+}
+
 impl Vault {
     /// Opens or makes the folder.
     ///
@@ -65,7 +79,7 @@ impl Vault {
     pub fn new(out: &Path) -> anyhow::Result<Self> {
         for folder in ["", "cases", "truth", "diagnoses", "controls", "next", "tracking"] {
             let folder = out.join(folder);
-            std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+            make_folder(&folder)?;
         }
         let executable = std::env::current_exe().context("finding this program")?;
         let program = Program {

@@ -56,8 +56,11 @@ impl Variant {
             viscous: model.viscous(),
             coulomb: Vec::new(),
         };
-        let plant = Plant::new(&model.arm().clone().with_rotor_inertias(&rotors), &options)
-            .map_err(|source| ValidateError::Plant { which, source })?;
+        let plant =
+            Plant::new(&model.arm().clone().with_rotor_inertias(&rotors), &options).map_err(|source| match source {
+                PlantError::Massless { joint } if !effects.is_empty() => ValidateError::Emptied { which, joint },
+                source => ValidateError::Plant { which, source },
+            })?;
         let zeros = || vec![0.0; dof];
         Ok(Self {
             is_loaded: !effects.is_empty(),
