@@ -75,3 +75,26 @@ fn a_centre_of_mass_off_is_named_on_its_link() {
         }
     }
 }
+
+/// All links too heavy is the two that carry the load too heavy: a pair of wrong links is an alternative, though neither alone is.
+#[test]
+fn a_common_factor_has_a_pair_of_links_as_its_alternative() {
+    let robot = trio().with_scaled_inertias(0.8);
+    let diagnosis = diagnosed(
+        &trio(),
+        &robot,
+        &|motion, tau| baseline_friction(motion, tau),
+        Vec::new(),
+    );
+    let mut findings = diagnosis.report.findings.iter();
+    let finding = findings.find(|finding| finding.effect == "inertial_scale");
+    let finding = finding.unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)));
+    let is_link = |other: &diagnosis::Confusable| other.effect == "link_inertial_error";
+    let pairs = &finding.confusable_with_pairs;
+    assert!(pairs.iter().any(|pair| pair.iter().all(is_link)), "{pairs:?}");
+    assert!(
+        !finding.confusable_with.iter().any(is_link),
+        "{:?}",
+        finding.confusable_with
+    );
+}

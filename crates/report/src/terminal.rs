@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use arm::{Arm, JointKind};
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, Width, presets};
-use diagnosis::{Finding, NotObservable, Report, Unexplained};
+use diagnosis::{Confusable, Finding, NotObservable, Report, Unexplained};
 
 use crate::statistics::rms;
 use crate::{doubts, next_words, numbers, words};
@@ -150,7 +150,7 @@ fn details(finding: &Finding) -> String {
     let could_be = format!("could also be {}", alternatives(finding));
     let sizes = effects::spec(finding.effect).map_or(0, |spec| spec.sentence.matches('{').count());
     let has_more = sizes > 1 || finding.parameters.contains_key("onset") || !finding.corrects;
-    match (has_more, finding.confusable_with.is_empty()) {
+    match (has_more, !has_alternatives(finding)) {
         (false, true) => String::new(),
         (false, false) => wrapped(&format!("{start}: {could_be}"), "- "),
         (true, is_alone) => {
@@ -172,16 +172,24 @@ fn columns(report: &Report) -> String {
     )
 }
 
-/// A finding's alternatives: `payload, or asymmetric friction on joint_2`.
+/// A finding's alternatives: `payload, or asymmetric friction on joint_2, or torque scale on joint_2 with one on joint_3`.
 pub fn alternatives(finding: &Finding) -> String {
-    let alternatives = finding.confusable_with.iter().map(|other| {
+    let one = |other: &Confusable| {
         let name = words::wording(other.effect).name;
         match &other.joint {
             Some(joint) if Some(joint) != finding.joint.as_ref() => format!("{name} on {joint}"),
             _ => name.to_owned(),
         }
-    });
-    alternatives.collect::<Vec<_>>().join(", or ")
+    };
+    let alone = finding.confusable_with.iter().map(one);
+    let pairs = finding.confusable_with_pairs.iter();
+    let pairs = pairs.map(|[first, second]| format!("{} together with {}", one(first), one(second)));
+    alone.chain(pairs).collect::<Vec<_>>().join(", or ")
+}
+
+/// Whether a finding has alternatives.
+pub fn has_alternatives(finding: &Finding) -> bool {
+    !finding.confusable_with.is_empty() || !finding.confusable_with_pairs.is_empty()
 }
 
 /// The findings by joint, the joint with the largest share first.

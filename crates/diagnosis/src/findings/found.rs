@@ -6,7 +6,7 @@ use effects::laws::ACCELERATION;
 use rayon::prelude::*;
 
 use crate::findings::report::{Confusable, Finding, Place};
-use crate::findings::rivals::{Standing, standing};
+use crate::findings::rivals::{Named, Standing, standing};
 use crate::regression::bootstrap::Resampled;
 use crate::regression::fit::{Fit, Products};
 use crate::search::candidate::Hypothesis;
@@ -81,6 +81,10 @@ fn finding(
         .collect();
     let place = place(study, candidate.hypothesis, member.candidate);
     let gain = held_out_gain(study, problem, held, judged, member);
+    let confusable = |&(hypothesis, joint): &Named| Confusable {
+        effect: hypothesis.name().unwrap_or_default(),
+        joint: joint.map(joint_name),
+    };
     let mut list = Vec::new();
     for (k, named) in name(study, resampled, member.candidate).into_iter().enumerate() {
         let share = if k == 0 {
@@ -105,16 +109,21 @@ fn finding(
             held_out_gain: gain,
             confusable_with: if k == 0 {
                 let mut list: Vec<Confusable> = Vec::new();
-                for &(hypothesis, joint) in &standing.rivals {
-                    let rival = Confusable {
-                        effect: hypothesis.name().unwrap_or_default(),
-                        joint: joint.map(joint_name),
-                    };
+                for rival in standing.rivals.iter().map(confusable) {
                     if !list.contains(&rival) {
                         list.push(rival);
                     }
                 }
                 list
+            } else {
+                Vec::new()
+            },
+            confusable_with_pairs: if k == 0 {
+                standing
+                    .pairs
+                    .iter()
+                    .map(|pair| pair.each_ref().map(confusable))
+                    .collect()
             } else {
                 Vec::new()
             },

@@ -125,6 +125,9 @@ pub struct Finding {
     pub held_out_gain: Option<f64>,
     /// Effects that explain nearly as much in its place.
     pub confusable_with: Vec<Confusable>,
+    /// Pairs of effects that explain nearly as much together as the finding does, and neither alone.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub confusable_with_pairs: Vec<[Confusable; 2]>,
     /// Where it acts.
     #[serde(rename = "where")]
     pub place: Place,
@@ -154,6 +157,7 @@ impl Finding {
             share_by_joint: BTreeMap::new(),
             held_out_gain: None,
             confusable_with: Vec::new(),
+            confusable_with_pairs: Vec::new(),
             place: Place::default(),
             sentence: String::new(),
             since_before: false,

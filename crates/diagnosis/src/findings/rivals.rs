@@ -13,11 +13,20 @@ use crate::thresholds::{MARGIN_SCALE, NEARLY, NEARLY_NATS, SUREST};
 /// The number of the most promising alternatives that are fitted in full.
 const TRIED: usize = 8;
 
+/// How many alternatives that explain too little alone are tried in pairs, and the number of partners of each.
+const PAIRED: usize = 3;
+const PARTNERS: usize = 2;
+
+/// An effect and its joint; `None` is the whole arm.
+pub type Named = (Hypothesis, Option<usize>);
+
 /// The comparison of a finding with its alternatives.
 #[derive(Clone, Debug)]
 pub struct Standing {
     /// Effects that explain nearly as much, the best first.
-    pub rivals: Vec<(Hypothesis, Option<usize>)>,
+    pub rivals: Vec<Named>,
+    /// Two effects that explain nearly as much together, and neither alone, the best first.
+    pub pairs: Vec<[Named; 2]>,
     /// The evidence for the finding against its best alternative (nats).
     pub margin: f64,
 }
@@ -170,14 +179,101 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         results.extend(best);
     }
     results.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)).then(a.3.cmp(&b.3)));
+    let rivals: Vec<Named> = results
+        .iter()
+        .filter(|(loss, ..)| *loss <= allowance)
+        .map(|&(_, _, hypothesis, joint)| (hypothesis, joint))
+        .collect();
+    let others: Vec<usize> = promises.iter().map(|&(_, c)| c).collect();
+    let found = Paired {
+        study,
+        problem,
+        chosen,
+        set: &set,
+        allowance,
+        rivals: &rivals,
+    };
+    let pairs = if finding.hypothesis.is_baseline() {
+        Vec::new()
+    } else {
+        found.pairs(&tried, &others)
+    };
     // A simpler hypothesis is more probable: the margin includes the costs.
-    let margin = results.iter().map(|result| result.1).fold(explained, f64::min);
+    let scores = results
+        .iter()
+        .map(|result| result.1)
+        .chain(pairs.iter().map(|pair| pair.1));
+    let margin = scores.fold(explained, f64::min);
     Standing {
-        rivals: results
-            .into_iter()
-            .filter(|(loss, ..)| *loss <= allowance)
-            .map(|(_, _, hypothesis, joint)| (hypothesis, joint))
-            .collect(),
+        rivals,
+        pairs: pairs.into_iter().map(|pair| pair.2).collect(),
         margin,
+    }
+}
+
+/// The search of two effects that explain together what a finding does.
+struct Paired<'a> {
+    study: &'a Study,
+    problem: &'a Problem<'a>,
+    chosen: &'a Chosen,
+    /// What is beside the finding.
+    set: &'a [usize],
+    /// The largest loss of an alternative (nats).
+    allowance: f64,
+    /// The effects that are alternatives alone.
+    rivals: &'a [Named],
+}
+
+impl Paired<'_> {
+    /// Loss and score beyond the finding's (nats) and names of each pair. One is of those `tried` that are nearest to an
+    /// alternative alone, the other of `others`.
+    fn pairs(&self, tried: &[usize], others: &[usize]) -> Vec<(f64, f64, [Named; 2])> {
+        let alone = tried.iter().filter(|&&c| !self.rivals.contains(&self.named(c)));
+        let mut alone: Vec<(f64, usize, Chosen)> = alone
+            .map(|&c| {
+                let next = self.with(&[c]);
+                (next.fit.loss, c, next)
+            })
+            .filter(|(_, c, next)| self.problem.is_possible(*c, &next.fit))
+            .collect();
+        alone.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut pairs: Vec<(f64, f64, [Named; 2])> = Vec::new();
+        for (_, one, next) in alone.into_iter().take(PAIRED) {
+            let is_partner = |c: &usize| {
+                let named = self.named(*c);
+                named != self.named(one) && !self.rivals.contains(&named) && !self.problem.exclude(one, *c)
+            };
+            let free: Vec<usize> = others.iter().copied().filter(is_partner).collect();
+            let mut promises = self.problem.promises(&next, &free);
+            promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+            let mut partners: Vec<usize> = Vec::new();
+            for (_, c) in promises {
+                if partners.len() < PARTNERS && !partners.iter().any(|&known| self.named(known) == self.named(c)) {
+                    partners.push(c);
+                }
+            }
+            for other in partners {
+                let both = self.with(&[one, other]);
+                let mut names = [self.named(one), self.named(other)];
+                names.sort();
+                let loss = both.fit.loss - self.chosen.fit.loss;
+                let are_possible = [one, other].iter().all(|&c| self.problem.is_possible(c, &both.fit));
+                if are_possible && loss <= self.allowance && !pairs.iter().any(|pair| pair.2 == names) {
+                    pairs.push((loss, both.score - self.chosen.score, names));
+                }
+            }
+        }
+        pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
+        pairs
+    }
+
+    fn named(&self, c: usize) -> Named {
+        (self.study.candidates[c].hypothesis, self.study.candidates[c].joint)
+    }
+
+    /// The fit with candidates in the finding's place.
+    fn with(&self, added: &[usize]) -> Chosen {
+        self.problem
+            .choose([self.set, added].concat(), &self.chosen.fit.weights)
     }
 }

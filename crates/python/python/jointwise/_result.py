@@ -56,6 +56,8 @@ class Effect:
     held_out_gain: Optional[float]
     """Relative drop of the error over recordings that it was not fitted to; None if none of them tries it."""
     alternatives: tuple[Alternative, ...]
+    alternative_pairs: tuple[tuple[Alternative, Alternative], ...]
+    """Two effects that explain nearly as much together, and neither alone."""
     sentence: str
     since_before: bool
     """Whether it is present since the recordings from before."""
@@ -118,6 +120,9 @@ def _effect(finding: dict[str, Any]) -> Effect:
         low, high = of["ci95"]
         return Parameter(of["value"], (low, high), of["unit"])
 
+    def alternative(of: dict[str, Any]) -> Alternative:
+        return Alternative(of["effect"], of["joint"])
+
     return Effect(
         name=finding["effect"],
         joint=finding["joint"],
@@ -127,7 +132,10 @@ def _effect(finding: dict[str, Any]) -> Effect:
         share=finding["share"],
         share_by_joint=_frozen(finding["share_by_joint"]),
         held_out_gain=finding["held_out_gain"],
-        alternatives=tuple(Alternative(of["effect"], of["joint"]) for of in finding["confusable_with"]),
+        alternatives=tuple(alternative(of) for of in finding["confusable_with"]),
+        alternative_pairs=tuple(
+            (alternative(one), alternative(other)) for one, other in finding.get("confusable_with_pairs", ())
+        ),
         sentence=finding["sentence"],
         since_before=finding.get("since_before", False),
         time=tuple((start, end) for start, end in finding["where"]["time"]),

@@ -2,7 +2,7 @@
 
 use diagnosis::{Report, Verdict};
 
-use super::{alternatives, unexplained};
+use super::{alternatives, has_alternatives, unexplained};
 use crate::{next_words, words};
 
 /// The next steps, in sentences: missing data, unexplained residuals, the proposed motion, findings with alternatives.
@@ -54,10 +54,7 @@ fn residuals(report: &Report) -> Vec<String> {
 
 /// The findings with alternatives, with the experiment that distinguishes them.
 fn ambiguous(report: &Report) -> Vec<String> {
-    let findings = report
-        .findings
-        .iter()
-        .filter(|finding| !finding.confusable_with.is_empty());
+    let findings = report.findings.iter().filter(|finding| has_alternatives(finding));
     let said = findings.map(|finding| {
         let place = words::joint(finding.joint.as_deref());
         let what = format!(

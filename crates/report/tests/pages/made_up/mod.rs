@@ -75,6 +75,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
             share: shares.values().copied().fold(0.0, f64::max),
             share_by_joint: shares,
             held_out_gain: Some(0.6 / (1.0 + f as f64)),
+            confusable_with_pairs: Vec::new(),
             confusable_with: match row.0 {
                 "spring" => vec![Confusable {
                     effect: "payload",
