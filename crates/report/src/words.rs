@@ -8,6 +8,9 @@ use diagnosis::{Finding, JointFit, NotObservable, Parameter, Report, Verdict};
 use crate::numbers;
 use crate::statistics::rms;
 
+/// The error of a joint with the effects found, over the torque's standard deviation, from which the verdict gives it.
+const TOLD_ERROR: f64 = 0.1;
+
 /// The texts of an effect.
 pub struct Wording {
     /// Its title in two or three words.
@@ -181,7 +184,13 @@ pub fn verdict(report: &Report) -> String {
         }
         Verdict::NoMismatch => format!("The model explains the recordings, apart from {effects} on {on}."),
         Verdict::Explained if is_validated => {
-            format!("The model omits {effects} on {on}. With these effects, the model explains the recordings.")
+            let up_to = largest_error(report).map_or_else(String::new, |(joint, error)| {
+                format!(
+                    ", up to {} times the torque's standard deviation on {joint}",
+                    numbers::nrmse(error)
+                )
+            });
+            format!("The model omits {effects} on {on}. With these effects, the model explains the recordings{up_to}.")
         }
         Verdict::Explained => format!(
             "The model omits {effects} on {on}. With these effects, the model fits the training recordings; the fit is \
@@ -222,6 +231,14 @@ pub fn verdict(report: &Report) -> String {
                 .into()
         }
     }
+}
+
+/// The joint with the largest error on the held-out recordings with the effects found, if that is worth a word.
+fn largest_error(report: &Report) -> Option<(&str, f64)> {
+    let errors = report.fit.iter();
+    let errors = errors.filter_map(|(joint, fit)| Some((joint.as_str(), fit.held_out_nrmse_augmented?)));
+    let largest = errors.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (largest.1 >= TOLD_ERROR).then_some(largest)
 }
 
 /// The RMS over the joints of the relative torque error, nominal and with the effects found, where more than half of it
