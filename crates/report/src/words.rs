@@ -95,6 +95,15 @@ pub fn main_parameter(finding: &Finding) -> Option<(&'static str, &Parameter)> {
     found.map(|(name, parameter)| (*name, parameter))
 }
 
+/// A parameter's name in words.
+pub fn parameter(name: &str) -> String {
+    match (name, name.strip_prefix("com_")) {
+        (_, Some(axis)) => format!("centre of mass, {axis}"),
+        ("halfgap", _) => "half the gap".to_owned(),
+        _ => name.replace('_', " "),
+    }
+}
+
 /// `start` with a capital.
 pub fn capital(text: &str) -> String {
     let mut letters = text.chars();
@@ -256,7 +265,7 @@ pub fn count(number: usize, what: &str) -> String {
     format!("{number} {what}{ending}")
 }
 
-/// The sizes from which an effect on a joint of `kind` is detectable, with the units of its parameters: `halfgap above 2 mrad`.
+/// The sizes from which an effect on a joint of `kind` is detectable, with the units of its parameters: `half the gap above 2 mrad`.
 pub fn detectable_sizes(entry: &NotObservable, kind: JointKind) -> String {
     let above = entry.would_be_seen_above.iter().map(|size| ("above", size));
     let below = entry.would_be_seen_below.iter().map(|size| ("below", size));
@@ -265,8 +274,8 @@ pub fn detectable_sizes(entry: &NotObservable, kind: JointKind) -> String {
         let size = numbers::round_quantity(*size, unit.filter(|unit| *unit != "1").unwrap_or_default());
         match name.strip_suffix("factor") {
             // A factor is measured by its distance from one.
-            Some(_) => format!("{} off by more than {size}", name.replace('_', " ")),
-            None => format!("{} {side} {size}", name.replace('_', " ")),
+            Some(_) => format!("{} off by more than {size}", parameter(name)),
+            None => format!("{} {side} {size}", parameter(name)),
         }
     });
     sizes.collect::<Vec<_>>().join(", ")
