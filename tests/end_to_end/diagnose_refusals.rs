@@ -87,7 +87,11 @@ fn joints_that_do_not_fit_the_robot_are_named_with_their_columns() {
     }
     says(
         &refused_with(&lacking),
-        &["a.csv", "no column q_elbow for \"elbow\" of trio", "record all joints"],
+        &[
+            "a.csv",
+            "no positions and torques (q_elbow, tau_elbow) of \"elbow\" of trio",
+            "record all joints",
+        ],
     );
     let mut is_header = true;
     let mut more = String::new();

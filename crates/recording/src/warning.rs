@@ -292,7 +292,7 @@ impl fmt::Display for Warning {
             ),
             Self::Jitter { rms, max, time, period } => write!(
                 f,
-                "the time stamps deviate from a clock of {:.6} Hz by {:.1} % of its period (at most {:.0} %, at {time:.3} s); \
+                "the time stamps deviate from a clock of {:.2} Hz by {:.1} % of its period (at most {:.0} %, at {time:.3} s); \
                  rows were assigned to its ticks",
                 1.0 / period,
                 100.0 * rms / period,
@@ -300,7 +300,7 @@ impl fmt::Display for Warning {
             ),
             Self::NoRegularClock { share, period } => write!(
                 f,
-                "no regular clock fits the time stamps (they deviate by {:.0} % of the period from {:.3} Hz); resampled by \
+                "no regular clock fits the time stamps (they deviate by {:.0} % of the period from {:.2} Hz); resampled by \
                  interpolation, which makes derivatives less accurate: record with the drive's own clock",
                 100.0 * share,
                 1.0 / period

@@ -108,9 +108,9 @@ fn findings(report: &Report) -> Vec<Block> {
         Block::Heading("What was found"),
         table(&head, 4, report.findings.iter().map(overview).collect()),
         text(
-            "Share: standard deviation of the effect's torque over that of the measured torque. Error: RMS torque error over the \
-             same, with the nominal model → with all effects found; it belongs to the joint and is repeated for each of its \
-             findings.",
+            "Share and error are relative to the standard deviation of the measured torque. Share: standard deviation of the \
+             effect's torque. Error: RMS torque error, with the nominal model → with all effects found; it belongs to the joint \
+             and is repeated for each of its findings.",
         ),
         Block::Heading("All parameters, in SI units at the joint"),
         table(

@@ -167,8 +167,8 @@ fn details(finding: &Finding) -> String {
 fn columns(report: &Report) -> String {
     let recordings = recordings(report);
     format!(
-        "share: standard deviation of the effect's torque over that of the measured torque; error: RMS torque error on the \
-         {recordings} recordings over the same, nominal model → with the effects found"
+        "share and error are relative to the standard deviation of the measured torque; share: standard deviation of the \
+         effect's torque; error: RMS torque error on the {recordings} recordings, nominal model → with the effects found"
     )
 }
 

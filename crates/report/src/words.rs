@@ -8,6 +8,9 @@ use diagnosis::{Finding, JointFit, NotObservable, Parameter, Report, Verdict};
 use crate::numbers;
 use crate::statistics::rms;
 
+/// The error of a joint with the effects found, over the torque's standard deviation, from which the verdict gives it.
+const TOLD_ERROR: f64 = 0.1;
+
 /// The texts of an effect.
 pub struct Wording {
     /// Its title in two or three words.
@@ -90,6 +93,15 @@ pub fn main_parameter(finding: &Finding) -> Option<(&'static str, &Parameter)> {
         .find_map(|name| finding.parameters.get_key_value(name).filter(|(_, p)| p.value != 0.0));
     let found = named.or_else(|| finding.parameters.iter().next());
     found.map(|(name, parameter)| (*name, parameter))
+}
+
+/// A parameter's name in words.
+pub fn parameter(name: &str) -> String {
+    match (name, name.strip_prefix("com_")) {
+        (_, Some(axis)) => format!("centre of mass, {axis}"),
+        ("halfgap", _) => "half the gap".to_owned(),
+        _ => name.replace('_', " "),
+    }
 }
 
 /// `start` with a capital.
@@ -181,7 +193,13 @@ pub fn verdict(report: &Report) -> String {
         }
         Verdict::NoMismatch => format!("The model explains the recordings, apart from {effects} on {on}."),
         Verdict::Explained if is_validated => {
-            format!("The model omits {effects} on {on}. With these effects, the model explains the recordings.")
+            let up_to = largest_error(report).map_or_else(String::new, |(joint, error)| {
+                format!(
+                    ", up to {} times the torque's standard deviation on {joint}",
+                    numbers::nrmse(error)
+                )
+            });
+            format!("The model omits {effects} on {on}. With these effects, the model explains the recordings{up_to}.")
         }
         Verdict::Explained => format!(
             "The model omits {effects} on {on}. With these effects, the model fits the training recordings; the fit is \
@@ -224,6 +242,14 @@ pub fn verdict(report: &Report) -> String {
     }
 }
 
+/// The joint with the largest error on the held-out recordings with the effects found, if that is worth a word.
+fn largest_error(report: &Report) -> Option<(&str, f64)> {
+    let errors = report.fit.iter();
+    let errors = errors.filter_map(|(joint, fit)| Some((joint.as_str(), fit.held_out_nrmse_augmented?)));
+    let largest = errors.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (largest.1 >= TOLD_ERROR).then_some(largest)
+}
+
 /// The RMS over the joints of the relative torque error, nominal and with the effects found, where more than half of it
 /// remains; on held-out recordings where there are any.
 fn remaining(report: &Report) -> Option<[f64; 2]> {
@@ -239,7 +265,7 @@ pub fn count(number: usize, what: &str) -> String {
     format!("{number} {what}{ending}")
 }
 
-/// The sizes from which an effect on a joint of `kind` is detectable, with the units of its parameters: `halfgap above 2 mrad`.
+/// The sizes from which an effect on a joint of `kind` is detectable, with the units of its parameters: `half the gap above 2 mrad`.
 pub fn detectable_sizes(entry: &NotObservable, kind: JointKind) -> String {
     let above = entry.would_be_seen_above.iter().map(|size| ("above", size));
     let below = entry.would_be_seen_below.iter().map(|size| ("below", size));
@@ -248,8 +274,8 @@ pub fn detectable_sizes(entry: &NotObservable, kind: JointKind) -> String {
         let size = numbers::round_quantity(*size, unit.filter(|unit| *unit != "1").unwrap_or_default());
         match name.strip_suffix("factor") {
             // A factor is measured by its distance from one.
-            Some(_) => format!("{} off by more than {size}", name.replace('_', " ")),
-            None => format!("{} {side} {size}", name.replace('_', " ")),
+            Some(_) => format!("{} off by more than {size}", parameter(name)),
+            None => format!("{} {side} {size}", parameter(name)),
         }
     });
     sizes.collect::<Vec<_>>().join(", ")

@@ -8,6 +8,7 @@ mod supposition;
 mod torque_unit;
 
 use arm::Arm;
+use effects::Quantity;
 use recording::{FindingKind, Quality, Recording, RegularRecording, nearest};
 use report::numbers::rounded;
 use serde::Serialize;
@@ -95,26 +96,30 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
         let mut add = |text: String| misfits.push(Misfit::new(Some(&joint.name), text, Vec::new()));
         if measured.speed_max > BEYOND * limits.velocity && limits.velocity > 0.0 {
             add(format!(
-                "the speed reaches {}, {} times the URDF's velocity limit {}; check the units of position and time",
+                "the speed reaches {}, {} times the URDF's velocity limit {} {}; check the units of position and time",
                 rounded(measured.speed_max, 3),
                 rounded(measured.speed_max / limits.velocity, 2),
-                rounded(limits.velocity, 4)
+                rounded(limits.velocity, 4),
+                Quantity::Speed.unit(joint.kind)
             ));
         }
         if low < limits.lower - 1e-2 || high > limits.upper + 1e-2 {
             add(format!(
-                "positions {} … {} exceed the URDF's limits {:.3} … {:.3}; check unit, zero and sign, or the limits",
+                "positions {} … {} exceed the URDF's limits {:.3} … {:.3} {}; check unit, zero and sign, or the limits",
                 rounded(low, 4),
                 rounded(high, 4),
                 limits.lower,
-                limits.upper
+                limits.upper,
+                Quantity::Position.unit(joint.kind)
             ));
         }
         let torque = measured.tau_range.0.abs().max(measured.tau_range.1.abs());
         if limits.effort > 0.0 && torque > 1.05 * limits.effort {
             add(format!(
-                "the torque reaches {torque:.4}, above the URDF's effort limit {:.4}; check its unit and side of the gear",
-                limits.effort
+                "the torque reaches {}, above the URDF's effort limit {} {}; check its unit and side of the gear",
+                rounded(torque, 3),
+                rounded(limits.effort, 4),
+                Quantity::Torque.unit(joint.kind)
             ));
         }
     }

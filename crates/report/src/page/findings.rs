@@ -286,7 +286,7 @@ fn parameters(finding: &Finding) -> Markup {
     let row = |(name, parameter): (&&'static str, &Parameter)| {
         let (value, interval) = numbers::value_and_interval(name, parameter);
         vec![
-            html! { (name.replace('_', " ")) },
+            html! { (words::parameter(name)) },
             html! {
                 (value)
                 @if parameter.unit == "rad" && parameter.value.abs() > 1e-3 {

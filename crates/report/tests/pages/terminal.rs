@@ -103,6 +103,16 @@ fn little_explained_and_no_held_out_recording_are_said_first() {
     let text = terminal::diagnosis(&report);
     assert!(text.starts_with("Most of the mismatch is unexplained: "), "{text}");
     report.verdict = diagnosis::Verdict::Explained;
+    let name = report.fit.keys().next().expect("a joint").clone();
+    report.fit.get_mut(&name).expect("it is there").held_out_nrmse_augmented = Some(0.95);
+    let remaining = format!("up to 0.95 times the torque's standard deviation on {name}.").replace(' ', "");
+    let text = terminal::diagnosis(&report).replace(char::is_whitespace, "");
+    assert!(text.contains(&remaining), "{text}");
+    for fit in report.fit.values_mut() {
+        fit.held_out_nrmse_augmented = Some(0.05);
+    }
+    let text = terminal::diagnosis(&report).replace('\n', " ");
+    assert!(text.contains("the model explains the recordings. "), "{text}");
     report.recordings.held_out.clear();
     let text = terminal::diagnosis(&report);
     assert!(

@@ -84,7 +84,7 @@ pub(super) fn order(
             format!("; the name of its column q_{near} is similar")
         });
         bail!(
-            "{name}: has no positions and torques (q_{joint}, tau_{joint}) of {} of {}{hint}; record all joints of the arm, name their columns in a column map (--map), or fix a joint that did not move: --lock {joint}=VALUE",
+            "{name}: has no column q_{joint} for {} of {}{hint}; record all joints of the arm, name their columns in a column map (--map), or fix a joint that did not move: --lock {joint}=VALUE",
             quoted(&lacking),
             arm.name()
         );

@@ -48,7 +48,7 @@ const QUANTITIES: [Quantity; 4] = [
 /// Every line: its entity under the joint's, its name in the legend, its colour and its width (points).
 /// Rerun draws them by the order of their names: the first of a plot lies under the others, hence its width.
 const LINES: [(&str, &str, [u8; 3], f32); 8] = [
-    ("error", "reference - actual", RED, 1.25),
+    ("error", "reference − actual", RED, 1.25),
     ("torque/applied", "applied", GREY, 3.0),
     ("torque/feedback", "feedback", AMBER, 1.25),
     ("torque/learned", "learned", GREEN, 1.25),
@@ -60,9 +60,9 @@ const LINES: [(&str, &str, [u8; 3], f32); 8] = [
 
 /// What the colours mean, for the eye; the entity it is logged to.
 const KEY: &str = "\
-**position** actual blue, reference amber  
-**error** reference - actual  
-**torque** applied grey; of it model blue, learned green, feedback amber";
+**position**: actual blue, reference amber  
+**error**: reference − actual  
+**torque**: applied grey; its parts: model blue, learned green, feedback amber";
 const KEY_ENTITY: &str = "key";
 
 /// Logs the key, and the lines' names, colours and widths.
@@ -93,7 +93,7 @@ pub fn send(
 
 fn write(layout: &mut Layout<'_>, arm: &Arm, has_variance: bool) -> RecordingStreamResult<Node> {
     let scene = layout.scene(arm, &format!("{}: actual (solid), reference (amber)", arm.name()), 1.0)?;
-    let key = layout.view("TextDocument", "Key", KEY_ENTITY, &[])?;
+    let key = layout.view("TextDocument", "Legend", KEY_ENTITY, &[])?;
     let left = layout.container(ContainerKind::Vertical, &[scene, key], |c| {
         c.with_row_shares([0.84, 0.16])
     })?;

@@ -140,7 +140,7 @@ fn word(model: Model) -> &'static str {
 fn write_layout(layout: &mut Layout<'_>, arm: &Arm) -> RecordingStreamResult<Node> {
     let title = format!("{}: with the diagnosed effects (solid), reference (amber)", arm.name());
     let scene = layout.scene(arm, &title, 1.0)?;
-    let key = layout.view("TextDocument", "Key", KEY, &[])?;
+    let key = layout.view("TextDocument", "Legend", KEY, &[])?;
     let left = layout.container(ContainerKind::Vertical, &[scene, key], |c| {
         c.with_row_shares([0.72, 0.28])
     })?;
