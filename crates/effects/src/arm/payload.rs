@@ -51,7 +51,7 @@ pub static PARAMETER: Law = Law {
     name: "payload",
     column: |term, joint, motion| Some(motion.rigid.payload[joint][term.of[0]].clone()),
     needs_model: true,
-    carry: Some(|term, value, carried| carried.payload[term.of[0]] = value),
+    carry: Some(|term, value, carried| carried.payload[term.of[0]] += value),
     ..Law::PLAIN
 };
 

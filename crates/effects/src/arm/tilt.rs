@@ -41,7 +41,7 @@ pub static TILT: Law = Law {
     name: "tilt",
     column: |term, joint, motion| Some(motion.rigid.tilt[joint][term.of[0]].clone()),
     needs_model: true,
-    carry: Some(|term, value, carried| carried.tilt[term.of[0]] = value),
+    carry: Some(|term, value, carried| carried.tilt[term.of[0]] += value),
     ..Law::PLAIN
 };
 

@@ -35,7 +35,7 @@ pub static SLOPE: Law = Law {
     column: |term, joint, motion| Some(motion.rigid.by_position[joint][term.of[0]].clone()),
     needs_model: true,
     needs_derivatives: true,
-    carry: Some(|term, value, carried| carried.offset[term.of[0]] = value),
+    carry: Some(|term, value, carried| carried.offset[term.of[0]] += value),
     ..Law::PLAIN
 };
 

@@ -23,12 +23,23 @@ pub struct About {
 impl About {
     /// The arm of `study` with the links' scale errors of `fit`, and nothing else.
     pub fn scaled(study: &Study, fit: &Fit) -> Arm {
-        collected(study, fit).0.arm
+        collected(study, fit, false).0.arm
     }
 
-    /// The arm of `study` with the effects of `fit`.
+    /// The arm of `study` with the effects of `fit` that always act.
     pub fn new(study: &Study, fit: &Fit) -> Self {
-        let (found, carried) = collected(study, fit);
+        Self::with(study, fit, collected(study, fit, false))
+    }
+
+    /// The arm since the recordings from before, with all effects of `fit`; `None` if it is the same as before. Torque constants,
+    /// and whatever else is in proportion to the joints' torques, then act on the torque of a new payload, too.
+    pub fn since_before(study: &Study, fit: &Fit) -> Option<Self> {
+        let (found, carried) = collected(study, fit, true);
+        let sets_in = carried.iter().any(|(term, _)| term.onset().is_some());
+        sets_in.then(|| Self::with(study, fit, (found, carried)))
+    }
+
+    fn with(study: &Study, fit: &Fit, (found, carried): (Carried, Vec<(Term, f64)>)) -> Self {
         let mut inertial = vec![0.0; bodies::PER_LINK * study.arm.dof()];
         for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
             let term = study.table.terms[column];
@@ -77,8 +88,9 @@ impl About {
     }
 }
 
-/// Adds the effects of `fit` to the arm; returns the terms that it then contains, with their coefficients.
-fn collected(study: &Study, fit: &Fit) -> (Carried, Vec<(Term, f64)>) {
+/// Adds the effects of `fit` to the arm, with those that are there since the recordings from before if `since_before`; returns the
+/// terms that it then contains, with their coefficients.
+fn collected(study: &Study, fit: &Fit, since_before: bool) -> (Carried, Vec<(Term, f64)>) {
     let mut found = Carried {
         arm: study.arm.clone(),
         offset: vec![0.0; study.arm.dof()],
@@ -89,7 +101,8 @@ fn collected(study: &Study, fit: &Fit) -> (Carried, Vec<(Term, f64)>) {
     let mut carried = Vec::new();
     for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
         let term = study.table.terms[column];
-        if let (Some(carry), None) = (term.law.carry, term.onset()) {
+        let acts = term.onset().is_none() || since_before && term.onset() == study.motions.changed_at;
+        if let (Some(carry), true) = (term.law.carry, acts) {
             carry(&term, value, &mut found);
             carried.push((term, value));
         }

@@ -22,14 +22,12 @@ impl Study {
     }
 
     fn about(&mut self, fit: &Fit, kept: &[usize], anyway: bool) -> Option<Vec<usize>> {
-        let About {
-            arm,
-            offset,
-            bare,
-            carried,
-        } = About::new(self, fit);
+        let about = About::new(self, fit);
+        let since_before = About::since_before(self, fit);
+        // Those that always act are among those that act since the recordings from before.
+        let carried = &since_before.as_ref().unwrap_or(&about).carried;
         // No effect to add to the arm, and none from an earlier selection.
-        let carries = !carried.is_empty() || bare.is_some();
+        let carries = !carried.is_empty() || about.bare.is_some();
         if !carries && !self.carries && !anyway {
             return None;
         }
@@ -40,8 +38,11 @@ impl Study {
             .chunks
             .par_iter()
             .map(|chunk| {
-                let mut rigid = Rigid::new(&arm, &nominal, &offset, chunk);
-                if let Some(bare) = &bare {
+                let is_later = self.motions.changed_at.is_some_and(|at| chunk.start >= at);
+                let later = since_before.as_ref().filter(|_| is_later);
+                let About { arm, offset, bare, .. } = later.unwrap_or(&about);
+                let mut rigid = Rigid::new(arm, &nominal, offset, chunk);
+                if let Some(bare) = bare {
                     rigid.set_background(bare, chunk);
                 }
                 rigid
@@ -50,7 +51,7 @@ impl Study {
         let (set, terms) = self.forget_trials(kept);
         self.table = self
             .table
-            .formed_anew(&self.motions, &self.rigid, &self.scales, terms, &carried, self.moving);
+            .formed_anew(&self.motions, &self.rigid, &self.scales, terms, carried, self.moving);
         Some(set)
     }
 
