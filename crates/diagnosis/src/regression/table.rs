@@ -44,7 +44,7 @@ pub struct JointTable {
 }
 
 /// The columns of all joints.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Table {
     /// All terms.
     pub terms: Vec<Term>,
@@ -173,9 +173,9 @@ impl Table {
         }
     }
 
-    /// `terms` for another arm along these motions; terms that depend on the motion alone are copied from `self`.
+    /// `terms` for another arm along these motions; terms that depend on the motion alone are taken from `self`.
     pub fn formed_anew(
-        &self,
+        mut self,
         motions: &Motions,
         rigid: &[Rigid],
         scales: &Scales,
@@ -183,24 +183,26 @@ impl Table {
         carried: &[(Term, f64)],
         moving: Moving,
     ) -> Self {
+        // Their inner products are over other rows: they are not needed beside the new ones.
+        self.joints.iter_mut().for_each(|joint| joint.stretches = Vec::new());
         let mut table = Self::new(motions, rigid, scales, Vec::new(), carried, moving);
         table.add(motions, rigid, scales, terms, Some(self));
         table
     }
 
-    /// Evaluates more terms; those that depend on the motion alone are copied from `known` if it contains them.
+    /// Evaluates more terms; those that depend on the motion alone are taken from `known` if it contains them.
     pub fn add(
         &mut self,
         motions: &Motions,
         rigid: &[Rigid],
         scales: &Scales,
         terms: Vec<Term>,
-        known: Option<&Table>,
+        mut known: Option<Table>,
     ) {
         let copies: Vec<Option<usize>> = terms
             .iter()
             .map(|&term| {
-                let known = known.filter(|_| !term.is_dynamic())?;
+                let known = known.as_ref().filter(|_| !term.is_dynamic())?;
                 known.terms.iter().position(|&other| other == term)
             })
             .collect();
@@ -225,8 +227,8 @@ impl Table {
             let rows = self.len();
             let evaluate = |joint: usize, at: usize| -> Option<Vec<f64>> {
                 let (term, links) = (terms[at], &links[at]);
-                if let (Some(copy), Some(known)) = (copies[at], known) {
-                    return known.place[joint][copy].map(|place| known.joints[joint].x[place].clone());
+                if copies[at].is_some() {
+                    return None;
                 }
                 let mut column = Vec::new();
                 if term.is(&INERTIAL_PARAMETER) {
@@ -255,6 +257,16 @@ impl Table {
                 .into_par_iter()
                 .map(|k| evaluate(k / terms.len(), k % terms.len()))
                 .collect();
+            if let Some(known) = &mut known {
+                for (joint, columns) in columns.chunks_mut(terms.len()).enumerate() {
+                    for (column, copy) in columns.iter_mut().zip(copies) {
+                        let place = copy.and_then(|copy| known.place[joint][copy]);
+                        if let Some(place) = place {
+                            *column = Some(std::mem::take(&mut known.joints[joint].x[place]));
+                        }
+                    }
+                }
+            }
             let places = self.joints.iter_mut().zip(columns.chunks_mut(terms.len()));
             let places = places.map(|(table, columns)| {
                 let push = |column: &mut Option<Vec<f64>>| {

@@ -49,9 +49,8 @@ impl Study {
             })
             .collect();
         let (set, terms) = self.forget_trials(kept);
-        self.table = self
-            .table
-            .formed_anew(&self.motions, &self.rigid, &self.scales, terms, carried, self.moving);
+        let old = std::mem::take(&mut self.table);
+        self.table = old.formed_anew(&self.motions, &self.rigid, &self.scales, terms, carried, self.moving);
         Some(set)
     }
 
