@@ -195,9 +195,10 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
     if let Some(misfit) = supposed(arm, smooth, moves, &names, &as_it_is) {
         // With signs or an order of all joints that are another arm's no search is of use. A zero, a sign or a swap of one or two
         // joints is only told: where the URDF's inertial parameters are wrong a light link's centre of mass may lie in another
-        // direction, and torques do not tell that from a zero off by a quarter of a turn.
+        // direction, and torques do not tell that from a zero off by a quarter of a turn. So do the light links of an arm whose
+        // heavy ones explain the torque of most joints as they are, because they look the same in a mirror.
         let is_changed = |name: &&str| misfit.changes.iter().any(|change| change.is_of(name));
-        let spoils = names.iter().all(is_changed);
+        let spoils = names.iter().all(is_changed) && !as_it_is.explains_most(moves);
         return vec![Misfit { spoils, ..misfit }];
     }
     let mut misfits = Vec::new();
