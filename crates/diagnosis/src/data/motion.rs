@@ -5,6 +5,7 @@ use recording::RegularRecording;
 
 use crate::data::noise::{band_noise, white_noise};
 use crate::data::signal::{Kernel, outputs};
+use crate::data::statistics::median;
 use crate::thresholds::{
     CUTOFF, CUTOFF_PERIODS, HIGHEST_CUTOFF, LARGEST_CUTOFF, LEAST_CUTOFF, LEAST_CUTOFF_PERIODS, MOST_NOISE, STILL,
     WORTH_RAISING,
@@ -152,9 +153,7 @@ impl Motions {
         if cutoff.is_some() {
             return motions;
         }
-        let mut moving: Vec<f64> = motions.tempo.iter().copied().filter(|&tempo| tempo > 0.0).collect();
-        moving.sort_by(f64::total_cmp);
-        let tempo = moving.get(moving.len() / 2).copied().unwrap_or(0.0);
+        let tempo = median(motions.tempo.iter().copied().filter(|&tempo| tempo > 0.0).collect());
         let quick = (CUTOFF_PERIODS * tempo).min(HIGHEST_CUTOFF);
         if quick > WORTH_RAISING * motions.cutoff {
             motions = Self::at(inputs, quick);

@@ -10,6 +10,7 @@ use rustfft::num_complex::Complex;
 
 use crate::data::measure;
 use crate::data::motion::{Chunk, Motions, SourceRecording};
+use crate::data::statistics::median;
 use crate::thresholds::NOISE_BAND;
 
 /// The least number of bins of a spectrum in a band.
@@ -124,10 +125,9 @@ pub fn band_noise(signal: &[f64], recording: &RegularRecording, cutoff: f64) -> 
             })
             .collect();
         FftPlanner::new().plan_fft_forward(n).process(&mut spectrum);
-        let mut band: Vec<f64> = spectrum[from..to].iter().map(Complex::norm_sqr).collect();
-        band.sort_by(f64::total_cmp);
+        let band = spectrum[from..to].iter().map(Complex::norm_sqr).collect();
         // The median of an exponential distribution is ln 2 of its mean.
-        let variance = band[band.len() / 2] / (std::f64::consts::LN_2 * power);
+        let variance = median(band) / (std::f64::consts::LN_2 * power);
         strongest = strongest.max(variance.sqrt());
     }
     strongest

@@ -1,4 +1,4 @@
-//! Mean, standard deviation and root mean square.
+//! Mean, median, standard deviation and root mean square.
 
 use std::borrow::Borrow;
 
@@ -13,6 +13,12 @@ pub fn mean<T: Borrow<f64>>(values: impl IntoIterator<Item = T>) -> f64 {
         count += 1.0;
     }
     if count > 0.0 { sum / count } else { 0.0 }
+}
+
+/// The median, the upper one of an even number; zero for no values.
+pub fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// The mean and the variance about it; zero for no values.

@@ -5,7 +5,7 @@ use effects::friction::{CoulombFriction, FrictionAsymmetry};
 use effects::sensor::TorqueOffset;
 use rayon::prelude::*;
 
-use crate::search::candidate::Hypothesis;
+use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::problem::{Chosen, Problem};
 use crate::search::study::Study;
 use crate::thresholds::{MARGIN_SCALE, NEARLY, NEARLY_NATS, SUREST};
@@ -128,41 +128,35 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
             break;
         }
     }
-    let mut sets: Vec<(Hypothesis, Option<usize>, Vec<usize>)> = tried
-        .iter()
-        .map(|&c| (study.candidates[c].hypothesis, study.candidates[c].joint, vec![c]))
+    // Every hypothesis alone in the finding's place.
+    let alone: Vec<(usize, Chosen)> = tried
+        .into_par_iter()
+        .map(|c| (c, problem.choose([&set[..], &[c]].concat(), &chosen.fit.weights)))
+        .filter(|(c, next)| problem.is_possible(*c, &next.fit))
         .collect();
+    let result = |c: usize, next: &Chosen| -> (f64, f64, Hypothesis, Option<usize>) {
+        let Candidate { hypothesis, joint, .. } = study.candidates[c];
+        (
+            next.fit.loss - chosen.fit.loss,
+            next.score - chosen.score,
+            hypothesis,
+            joint,
+        )
+    };
+    let mut results: Vec<_> = alone.iter().map(|(c, next)| result(*c, next)).collect();
     if let Some(same) = finding.hypothesis.spec().same_on_all_joints {
         // Without a known load, a common factor of all masses and one of all torques cannot be distinguished.
         let factors: Vec<usize> = (0..study.candidates.len())
             .filter(|&c| study.candidates[c].hypothesis.name() == Some(same))
             .collect();
-        for &c in &factors {
-            sets.push((
-                study.candidates[c].hypothesis,
-                study.candidates[c].joint,
-                factors.clone(),
-            ));
+        let next = problem.choose([&set[..], &factors].concat(), &chosen.fit.weights);
+        if factors.iter().all(|&c| problem.is_possible(c, &next.fit)) {
+            results.extend(factors.iter().map(|&c| result(c, &next)));
         }
     }
     let explained = without.fit.loss - chosen.fit.loss;
     let identical = alias(study, chosen, member, &set).map(|(hypothesis, joint)| (0.0, 0.0, hypothesis, joint));
     let allowance = allowance(explained);
-    let mut results: Vec<(f64, f64, Hypothesis, Option<usize>)> = sets
-        .into_par_iter()
-        .filter_map(|(hypothesis, joint, added)| {
-            let mut next = set.clone();
-            next.extend(&added);
-            let next = problem.choose(next, &chosen.fit.weights);
-            let possible = added.iter().all(|&c| problem.is_possible(c, &next.fit));
-            possible.then_some((
-                next.fit.loss - chosen.fit.loss,
-                next.score - chosen.score,
-                hypothesis,
-                joint,
-            ))
-        })
-        .collect();
     results.extend(identical);
     if finding.hypothesis.spec().may_be_inertial {
         let hypothesis = Hypothesis::of(&InertialParameters);
@@ -184,7 +178,6 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         .filter(|(loss, ..)| *loss <= allowance)
         .map(|&(_, _, hypothesis, joint)| (hypothesis, joint))
         .collect();
-    let others: Vec<usize> = promises.iter().map(|&(_, c)| c).collect();
     let found = Paired {
         study,
         problem,
@@ -196,7 +189,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
     let pairs = if finding.hypothesis.is_baseline() {
         Vec::new()
     } else {
-        found.pairs(&tried, &others)
+        found.pairs(alone, &others)
     };
     // A simpler hypothesis is more probable: the margin includes the costs.
     let scores = results
@@ -225,20 +218,13 @@ struct Paired<'a> {
 }
 
 impl Paired<'_> {
-    /// Loss and score beyond the finding's (nats) and names of each pair. One is of those `tried` that are nearest to an
-    /// alternative alone, the other of `others`.
-    fn pairs(&self, tried: &[usize], others: &[usize]) -> Vec<(f64, f64, [Named; 2])> {
-        let alone = tried.iter().filter(|&&c| !self.rivals.contains(&self.named(c)));
-        let mut alone: Vec<(f64, usize, Chosen)> = alone
-            .map(|&c| {
-                let next = self.with(&[c]);
-                (next.fit.loss, c, next)
-            })
-            .filter(|(_, c, next)| self.problem.is_possible(*c, &next.fit))
-            .collect();
-        alone.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    /// Loss and score beyond the finding's (nats) and names of each pair. One is of those fitted `alone` that are nearest to an
+    /// alternative, the other of `others`.
+    fn pairs(&self, mut alone: Vec<(usize, Chosen)>, others: &[usize]) -> Vec<(f64, f64, [Named; 2])> {
+        alone.retain(|(c, _)| !self.rivals.contains(&self.named(*c)));
+        alone.sort_by(|a, b| a.1.fit.loss.total_cmp(&b.1.fit.loss).then(a.0.cmp(&b.0)));
         let mut pairs: Vec<(f64, f64, [Named; 2])> = Vec::new();
-        for (_, one, next) in alone.into_iter().take(PAIRED) {
+        for (one, next) in alone.into_iter().take(PAIRED) {
             let is_partner = |c: &usize| {
                 let named = self.named(*c);
                 named != self.named(one) && !self.rivals.contains(&named) && !self.problem.exclude(one, *c)
@@ -253,7 +239,8 @@ impl Paired<'_> {
                 }
             }
             for other in partners {
-                let both = self.with(&[one, other]);
+                let set = [self.set, &[one, other]].concat();
+                let both = self.problem.choose(set, &self.chosen.fit.weights);
                 let mut names = [self.named(one), self.named(other)];
                 names.sort();
                 let loss = both.fit.loss - self.chosen.fit.loss;
@@ -269,11 +256,5 @@ impl Paired<'_> {
 
     fn named(&self, c: usize) -> Named {
         (self.study.candidates[c].hypothesis, self.study.candidates[c].joint)
-    }
-
-    /// The fit with candidates in the finding's place.
-    fn with(&self, added: &[usize]) -> Chosen {
-        self.problem
-            .choose([self.set, added].concat(), &self.chosen.fit.weights)
     }
 }

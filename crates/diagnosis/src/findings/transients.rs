@@ -6,7 +6,7 @@ use effects::Effect;
 use effects::arm::ExternalContact;
 use nalgebra::Vector3;
 
-use crate::data::statistics::rms;
+use crate::data::statistics::{median, rms};
 use crate::findings::report::{Finding, Parameter, Place, TimeWindow};
 use crate::regression::small::ForceFit;
 use crate::search::scan;
@@ -136,11 +136,6 @@ fn usual(study: &Study, joint: usize, left: &[Vec<f64>]) -> f64 {
         }
     }
     median(all).max(largest)
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// The moving rows of a window, joint by joint.

@@ -6,6 +6,7 @@ use effects::drive::TorqueSaturation;
 use torque::{Corrected, Motion, Prediction, Reference, TorqueError, Workspace};
 
 use super::report::JointLimits;
+use crate::data::statistics::median;
 use crate::search::study::Study;
 
 /// The part of a joint's range that is kept free at either end.
@@ -55,9 +56,7 @@ impl Limits {
         let scales = &study.scales;
         let typical = {
             let moving = (0..joints.len()).filter(|&j| scales.speed[j] > scales.rest[j]);
-            let mut ranges: Vec<f64> = moving.map(|j| 0.5 * scales.range[j]).collect();
-            ranges.sort_by(f64::total_cmp);
-            ranges.get(ranges.len() / 2).copied().unwrap_or(0.0)
+            median(moving.map(|j| 0.5 * scales.range[j]).collect())
         };
         let mut limits = Self {
             names: joints.iter().map(|joint| joint.name.clone()).collect(),
