@@ -195,7 +195,7 @@ pub fn verdict(report: &Report) -> String {
         Verdict::Explained if is_validated => {
             let up_to = largest_error(report).map_or_else(String::new, |(joint, error)| {
                 format!(
-                    ", up to {} times the torque's standard deviation on {joint}",
+                    " to within {} times the torque's standard deviation ({joint})",
                     numbers::nrmse(error)
                 )
             });

@@ -105,7 +105,7 @@ fn little_explained_and_no_held_out_recording_are_said_first() {
     report.verdict = diagnosis::Verdict::Explained;
     let name = report.fit.keys().next().expect("a joint").clone();
     report.fit.get_mut(&name).expect("it is there").held_out_nrmse_augmented = Some(0.95);
-    let remaining = format!("up to 0.95 times the torque's standard deviation on {name}.").replace(' ', "");
+    let remaining = format!("to within 0.95 times the torque's standard deviation ({name}).").replace(' ', "");
     let text = terminal::diagnosis(&report).replace(char::is_whitespace, "");
     assert!(text.contains(&remaining), "{text}");
     for fit in report.fit.values_mut() {
