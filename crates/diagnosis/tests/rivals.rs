@@ -149,6 +149,35 @@ fn torque_saturation() {
     is_sized(&diagnosis, "torque_saturation", &[("limit", 30.0)], 0.05);
 }
 
+/// The limit is reached for less than a second, and hardly at another time, so that neither the held-out recording nor every other
+/// piece of two seconds tests it.
+#[test]
+fn a_torque_limit_that_is_hardly_reached() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        baseline_friction(motion, tau);
+        let missing = tau[SHOULDER] + 32.0;
+        if missing < 0.0
+            && [10.0, 1006.0]
+                .iter()
+                .any(|from| (0.0..2.0).contains(&(motion.clock - from)))
+        {
+            tau[SHOULDER] = -32.0 + 20.0 * missing;
+        }
+    };
+    let diagnosis = check(&concealed, &[("torque_saturation", "shoulder")]);
+    is_sized(&diagnosis, "torque_saturation", &[("limit", 32.0)], 0.02);
+}
+
+/// A constant in the torque is no friction that depends on the direction, unless it is large beside the friction.
+#[test]
+fn a_small_torque_offset_is_no_asymmetric_friction() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        baseline_friction(motion, tau);
+        tau[TURN] += 3.0 * motion.qd[TURN].signum() + 0.3;
+    };
+    check(&concealed, &[("torque_offset", "turn")]);
+}
+
 /// A torque that is reported too large is so at all sizes: no limit.
 #[test]
 fn a_scale_is_no_torque_saturation() {

@@ -210,6 +210,7 @@ fn reason(message: &str, arm: &Arm) -> String {
             "the line joint = \"…\" is missing; the robot has {}",
             joints(arm).join(", ")
         ),
+        Some("schema`") => format!("the line schema = \"{SCHEMA}\" is missing; add it at the top"),
         Some(field) => format!("the line {} = … is missing; add it", field.trim_end_matches('`')),
         None => toml_reason(message),
     }

@@ -14,7 +14,7 @@ use crate::search::problem::Problem;
 use crate::search::study::Study;
 use crate::selection::judge::{Member, Selection};
 use crate::selection::naming::name;
-use crate::thresholds::{AS_WELL, GAIN_PIECE, LISTED_SHARE};
+use crate::thresholds::{AS_WELL, GAIN_PIECE, LEAST_OF_HALF, LISTED_SHARE, POWER_PIECES};
 
 /// The findings, each with its candidate.
 pub fn findings(
@@ -188,24 +188,41 @@ fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joi
     let columns = &study.candidates[candidate].columns;
     let torque = study.table.torque(joint, columns, &fit.values(columns));
     let left = study.table.residual(joint, &without.columns, &without.coefficients);
-    let times = study.motions.row_times();
     let rows = study.training_rows(joint);
+    let is_odd = odd_pieces(&study.motions.row_times(), study.motions.begins, &rows, &torque);
     let (mut with, mut bare) = (0.0, 0.0);
-    for parity in [0, 1] {
-        let begins = study.motions.begins;
-        let is_fitted = |row: &&usize| (((times[**row] - begins) / GAIN_PIECE).floor() as i64 - parity) % 2 == 0;
+    for fitted in [false, true] {
         let (mut power, mut product) = (0.0, 0.0);
-        for &row in rows.iter().filter(is_fitted) {
+        for (&row, _) in rows.iter().zip(&is_odd).filter(|(_, odd)| **odd == fitted) {
             power += torque[row] * torque[row];
             product += torque[row] * left[row];
         }
         let scale = product / f64::max(power, 1e-300);
-        for &row in rows.iter().filter(|row| !is_fitted(row)) {
+        for (&row, _) in rows.iter().zip(&is_odd).filter(|(_, odd)| **odd != fitted) {
             with += (left[row] - scale * torque[row]).powi(2);
             bare += left[row].powi(2);
         }
     }
     1.0 - (with / f64::max(bare, 1e-300)).sqrt()
+}
+
+/// Whether each of the `rows` is in an odd piece. Pieces are [`GAIN_PIECE`] long; where the effect with this `torque` acts for so
+/// short a time that every other piece would hold hardly any of it, they hold equal parts of its power instead.
+fn odd_pieces(times: &[f64], begins: f64, rows: &[usize], torque: &[f64]) -> Vec<bool> {
+    let power = |row: usize| torque[row] * torque[row];
+    let all: f64 = rows.iter().map(|&row| power(row)).sum();
+    let in_time = |&row: &usize| ((times[row] - begins) / GAIN_PIECE).floor() as i64 % 2 != 0;
+    let odd: f64 = rows.iter().filter(|row| in_time(row)).map(|&row| power(row)).sum();
+    if odd.min(all - odd) >= LEAST_OF_HALF * all {
+        return rows.iter().map(in_time).collect();
+    }
+    let mut before = 0.0;
+    let in_power = |&row: &usize| {
+        let piece = (POWER_PIECES * before / all).floor();
+        before += power(row);
+        piece as i64 % 2 != 0
+    };
+    rows.iter().map(in_power).collect()
 }
 
 fn place(study: &Study, hypothesis: Hypothesis, candidate: usize) -> Place {

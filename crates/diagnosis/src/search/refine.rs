@@ -110,6 +110,22 @@ fn variants(terms: &[Term], round: usize, mass: f64) -> Vec<Vec<Term>> {
     list
 }
 
+/// The sizes with which the effect of `member` was tried first. It was taken beside other effects than those of now, beside which
+/// the best size may be far from its own: a torque limit far below the true one explains a part of a friction not yet found.
+fn first_sizes(study: &Study, member: usize) -> Vec<Vec<Term>> {
+    let this = &study.candidates[member];
+    if sizes(&study.terms(member)).is_empty() {
+        return Vec::new();
+    }
+    let is_like = |c: &usize| {
+        let other = &study.candidates[*c];
+        *c != member && !other.is_trial && other.hypothesis == this.hypothesis && other.joint == this.joint
+    };
+    let terms = (0..study.candidates.len()).filter(is_like).map(|c| study.terms(c));
+    let is_allowed = |terms: &Vec<Term>| terms.iter().all(|term| term.onset().is_none());
+    terms.filter(is_allowed).collect()
+}
+
 /// The largest number of kinds of finer steps of a law.
 const NUDGES: usize = 3;
 
@@ -148,6 +164,9 @@ pub fn resize(study: &mut Study, mut chosen: Chosen, again: bool) -> Chosen {
                 mean(study.rigid.iter().flat_map(|rigid| &rigid.mass[joint][joint]))
             });
             let mut list = variants(&terms, round, mass);
+            if round == 0 {
+                list.extend(first_sizes(study, member));
+            }
             list.retain(|terms| study.is_brief(terms));
             for &term in list.iter().flatten() {
                 if !study.table.terms.contains(&term) && !missing.contains(&term) {

@@ -7,6 +7,7 @@ use torque::Corrected;
 
 use crate::findings::found::useless;
 use crate::findings::report::{JointFit, Parameter};
+use crate::findings::rivals::standing;
 use crate::findings::verdict::structured;
 use crate::regression::background::Strengths;
 use crate::regression::bootstrap::{Resampled, resample};
@@ -15,7 +16,9 @@ use crate::search::study::Study;
 use crate::selection::judge::{self, Selection};
 use crate::selection::naming::{Named, name};
 use crate::selection::predict::{augmented, errors};
-use crate::thresholds::{HOPELESS, PARTLY};
+use crate::thresholds::{
+    BESIDE_WORTHLESS_URDF, HOPELESS, LEAST_FINAL_SHARE, LEAST_UNDECIDED, PARTLY, UNDECIDED_NATS, WORTHLESS_URDF,
+};
 
 /// Fits the named effects about the arm with them, with the rows near reversals. Removes effects that increase a joint's
 /// held-out error, that do not reduce it, or whose size may be zero.
@@ -31,6 +34,10 @@ pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
         give_up(study, judged);
         // The remaining effects are linearised about another arm, and may harm without the removed ones.
         if judged.named.set.len() < before {
+            continue;
+        }
+        if let Some(undecided) = undecided(study, judged) {
+            drop_name(study, judged, undecided, "too small, or as likely another effect");
             continue;
         }
         let resampled = resample(study, &judged.named);
@@ -173,6 +180,27 @@ fn unclear(study: &Study, judged: &Selection, resampled: &Resampled) -> Option<(
     let unclear = judged.members.iter().filter(is_unclear);
     let weakest = unclear.min_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
     Some((weakest.candidate, contradicted(weakest)))
+}
+
+/// The weakest effect whose name is as likely wrong as right: a small one in whose place another explains nearly as much, or one
+/// that wrong inertials resemble, found with little evidence where the inertials are so wrong that their prior says little. Or one
+/// that is nothing in the final fit.
+fn undecided(study: &Study, judged: &Selection) -> Option<usize> {
+    let products = study.training_products();
+    let problem = study.problem(&products);
+    let is_worthless = study.strengths.common() > WORTHLESS_URDF;
+    let is_undecided = |member: &&judge::Member| {
+        let hypothesis = study.candidates[member.candidate].hypothesis;
+        let is_doubtful = is_worthless && hypothesis.is_certain_in_form() && member.evidence < BESIDE_WORTHLESS_URDF;
+        let is_tiny = !hypothesis.is_baseline() && !hypothesis.is_passing() && member.share() < LEAST_FINAL_SHARE;
+        let is_small = !hypothesis.is_friction() && member.share() < LEAST_UNDECIDED;
+        let margin = || standing(study, &problem, &judged.named, member.candidate).margin;
+        is_doubtful || is_tiny || is_small && margin() < UNDECIDED_NATS
+    };
+    let mut members: Vec<&judge::Member> = judged.members.iter().collect();
+    members.sort_by(|a, b| a.evidence.total_cmp(&b.evidence));
+    let undecided = members.into_iter().find(is_undecided)?;
+    Some(undecided.candidate)
 }
 
 /// Whether the intervals of all main parameters contain the value without effect. One clear parameter is sufficient.

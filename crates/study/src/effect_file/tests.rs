@@ -168,7 +168,7 @@ fn what_is_wrong_has_its_line_and_a_remedy() {
     }
     for (text, expected) in [
         ("schema = \"testbed.model/9\"\n", "known.toml:1: the schema is"),
-        ("[[effects]]\n", "the line schema = … is missing"),
+        ("[[effects]]\n", "the line schema = \"testbed.model/1\" is missing"),
         (
             "schema = \"testbed.model/1\"\nrobot = \"other\"\n",
             "known.toml:2: the effects are of robot \"other\"",
