@@ -33,6 +33,10 @@ pub trait Estimate {
     /// The index in a draw of the coefficient of the candidate's k-th column.
     fn place(&self, k: usize) -> Option<usize>;
 
+    /// The index in a draw of the coefficient of a law's column, without onset, on the candidate's joint, of whatever effect it is;
+    /// `None` if the fit has no such column.
+    fn on_joint(&self, law: &'static Law) -> Option<usize>;
+
     /// The index in a draw of the relative correction of a size.
     fn size_place(&self, size: Size) -> Option<usize>;
 
@@ -61,6 +65,16 @@ impl dyn Estimate + '_ {
     /// The name of the candidate's joint.
     pub fn joint_name(&self) -> String {
         self.arm_joint().name.clone()
+    }
+
+    /// Whether another effect on the candidate's joint has a column of one of these laws.
+    ///
+    /// Dry frictions that act together on a joint share the column of its Coulomb level, and their torques add up, so that one of
+    /// them states the level: warming friction, which is relative to it, then asymmetric, load-dependent and Stribeck friction. A
+    /// friction that sets in later has a column of its own.
+    pub fn is_beside(&self, laws: &[&'static Law]) -> bool {
+        let is_there = |law: &&'static Law| self.on_joint(law).is_some();
+        self.terms().iter().all(|term| term.onset().is_none()) && laws.iter().any(is_there)
     }
 
     /// The index in a draw of the coefficient of the first column of a law, with or without an onset.

@@ -159,7 +159,7 @@ impl Request {
             recorded: recorded.to_vec(),
             ..self.chain.clone()
         };
-        let arm = robot.arm(&options).with_context(|| format!("--robot {}", self.robot))?;
+        let arm = robot.arm(&options).context("--robot")?;
         for warning in arm.warnings() {
             listener.note(&format!("{}: {warning}", robot.path.display()));
         }

@@ -58,7 +58,7 @@ pub fn robots(names: &[String], chain: &ChainArgs) -> anyhow::Result<Vec<Robot>>
 fn robot(name: &str, chain: &ChainArgs) -> anyhow::Result<Robot> {
     let doing = || format!("--robot {name}");
     let file = robot::named_robot(name)?;
-    let arm = file.arm(&chain.options(&[])).with_context(doing)?;
+    let arm = file.arm(&chain.options(&[])).context("--robot")?;
     // The cases are diagnosed without flags, as their recordings are of the arm alone.
     let text = library::serial_urdf(&file.text, &arm).with_context(doing)?;
     let robot = Robot::new(text, &file.path).with_context(doing)?;

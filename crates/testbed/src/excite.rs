@@ -39,9 +39,7 @@ pub fn run(args: &ExciteArgs) -> anyhow::Result<()> {
         );
     }
     let robot = named_robot(&args.robot)?;
-    let arm = robot
-        .arm(&args.chain.options(&[]))
-        .with_context(|| format!("--robot {}", args.robot))?;
+    let arm = robot.arm(&args.chain.options(&[])).context("--robot")?;
     for warning in arm.warnings() {
         eprintln!("note: {}: {warning}", robot.path.display());
     }

@@ -5,7 +5,7 @@ mod onset;
 use std::collections::BTreeMap;
 
 use arm::Arm;
-use effects::{Effect, Estimate, Kind, Size, Systematic, Term};
+use effects::{Effect, Estimate, Kind, Law, Size, Systematic, Term};
 
 use crate::data::statistics::NORMAL_95;
 use crate::findings::report::Parameter;
@@ -67,6 +67,12 @@ impl Estimate for Reader<'_> {
     fn place(&self, k: usize) -> Option<usize> {
         let column = self.study.candidates[self.candidate].columns.get(k)?;
         self.resampled.column(*column)
+    }
+
+    fn on_joint(&self, law: &'static Law) -> Option<usize> {
+        let terms = &self.study.table.terms;
+        let is_it = |&column: &usize| terms[column].is(law) && terms[column].joint == Some(self.joint());
+        self.resampled.columns.iter().position(is_it)
     }
 
     fn size_place(&self, size: Size) -> Option<usize> {

@@ -1,5 +1,6 @@
 //! Dry friction that differs between the two directions.
 
+use super::thermal::WARMING;
 use crate::laws::SIGN;
 use crate::{
     Against, Cone, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
@@ -70,8 +71,11 @@ impl EffectKind for FrictionAsymmetry {
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let (a, b) = (estimate.place(0)?, estimate.place(1)?);
         let effect = Effect::of(&Self).on(estimate.joint_name());
-        let positive = estimate.note("positive", |draw| draw[a] + draw[b]);
-        let negative = estimate.note("negative", |draw| draw[a] - draw[b]);
+        // Beside an effect that states the level, it is what one direction has more than the other.
+        let is_beside = estimate.is_beside(&[&WARMING]);
+        let level = |draw: &[f64]| if is_beside { draw[b].abs() } else { draw[a] };
+        let positive = estimate.note("positive", |draw| level(draw) + draw[b]);
+        let negative = estimate.note("negative", |draw| level(draw) - draw[b]);
         Some(effect.with("positive", positive).with("negative", negative))
     }
 

@@ -1,5 +1,7 @@
 //! Gear friction that grows with the load.
 
+use super::asymmetry::ABS_SIGN;
+use super::thermal::WARMING;
 use crate::laws::SIGN;
 use crate::{
     Against, Cone, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
@@ -68,7 +70,12 @@ impl EffectKind for LoadDependentFriction {
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        let coulomb = estimate.coefficient("coulomb", estimate.place(0), 1.0);
+        let level = if estimate.is_beside(&[&WARMING, &ABS_SIGN]) {
+            0.0
+        } else {
+            1.0
+        };
+        let coulomb = estimate.coefficient("coulomb", estimate.place(0), level);
         let place = estimate.place(1)?;
         let gain = estimate.note_within(Systematic::OfArm, "gain", &|draw| draw[place]);
         let effect = Effect::of(&Self).on(estimate.joint_name());

@@ -2,6 +2,9 @@
 
 use ::arm::JointKind;
 
+use super::asymmetry::ABS_SIGN;
+use super::load_dependent::LOAD_SIGN;
+use super::thermal::WARMING;
 use crate::background::FRICTION_CURVE;
 use crate::laws::SIGN;
 use crate::{
@@ -99,8 +102,13 @@ impl EffectKind for StribeckFriction {
         let second = *estimate.terms().get(1)?;
         let [velocity, exponent, ..] = second.sizes;
         let effect = Effect::of(&Self).on(estimate.joint_name());
-        let coulomb = estimate.note("coulomb", |draw| draw[a]);
-        let breakaway = estimate.note_within(Systematic::OfForm, "breakaway", &|draw| draw[a] + draw[b]);
+        let level = if estimate.is_beside(&[&WARMING, &ABS_SIGN, &LOAD_SIGN]) {
+            0.0
+        } else {
+            1.0
+        };
+        let coulomb = estimate.note("coulomb", |draw| level * draw[a]);
+        let breakaway = estimate.note_within(Systematic::OfForm, "breakaway", &|draw| level * draw[a] + draw[b]);
         let velocity = estimate.size(Systematic::OfForm, "velocity", Size::Main, velocity);
         let effect = effect.with("coulomb", coulomb).with("breakaway", breakaway);
         Some(effect.with("velocity", velocity).with("exponent", exponent))

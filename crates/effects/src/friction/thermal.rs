@@ -1,5 +1,6 @@
 //! Dry friction that falls as the drive warms up.
 
+use super::asymmetry::ABS_SIGN;
 use crate::laws::SIGN;
 use crate::{
     Against, Circumstance, Cone, Dry, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine,
@@ -107,8 +108,10 @@ impl EffectKind for ThermalDrift {
         let (a, b) = (estimate.place(0)?, estimate.place(1)?);
         let second = *estimate.terms().get(1)?;
         let effect = Effect::of(&Self).on(estimate.joint_name());
-        let coulomb = estimate.note("coulomb", |draw| draw[a]);
-        let amplitude = estimate.note("amplitude", |draw| draw[b] / draw[a]);
+        let uneven = estimate.on_joint(&ABS_SIGN);
+        let level = |draw: &[f64]| draw[a] - uneven.map_or(0.0, |uneven| draw[uneven].abs());
+        let coulomb = estimate.note("coulomb", level);
+        let amplitude = estimate.note("amplitude", |draw| draw[b] / level(draw));
         let time_constant = estimate.size(Systematic::Usual, "time_constant", Size::Main, second.sizes[0]);
         let start = second.sizes[1];
         if start != 0.0 {
