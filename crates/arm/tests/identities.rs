@@ -1,4 +1,4 @@
-//! Laws of mechanics that hold whatever the arm, on random states of three arms.
+//! Laws of mechanics that hold for every arm, in random states of three arms.
 
 use std::path::Path;
 
@@ -31,7 +31,7 @@ fn for_each_state(mut law: impl FnMut(&Arm, &mut Workspace, &mut Random)) {
     ] {
         let arm = Arm::from_urdf(folder.join(urdf)).expect("the robot loads");
         let rotors: Vec<f64> = (0..arm.dof()).map(|i| 0.1 + 0.05 * i as f64).collect();
-        // Gravity in a general direction, and drives, so that no term can hide.
+        // Gravity in a general direction, and rotors, so that every term contributes.
         let arm = arm
             .with_gravity(Vector3::new(1.2, -0.7, -9.6))
             .with_rotor_inertias(&rotors);
@@ -56,7 +56,7 @@ fn mass_matrix_at(arm: &Arm, workspace: &mut Workspace, q: &[f64]) -> DMatrix<f6
     m
 }
 
-/// Forward dynamics undoes inverse dynamics. Fails if either drops a term the other has.
+/// Forward dynamics is the inverse of inverse dynamics. Fails if either lacks a term.
 #[test]
 fn forward_dynamics_inverts_inverse_dynamics() {
     for_each_state(|arm, workspace, random| {
@@ -157,7 +157,7 @@ fn power_is_the_rate_of_change_of_energy() {
     });
 }
 
-/// Y π = τ (less the rotors). Fails if a column belongs to another parameter.
+/// Y π = τ (without the rotors). Fails if a column belongs to another parameter.
 #[test]
 fn regressor_times_parameters_is_the_torque() {
     for_each_state(|arm, workspace, random| {
@@ -175,7 +175,7 @@ fn regressor_times_parameters_is_the_torque() {
     });
 }
 
-/// The derivatives of inverse dynamics are what central differences give. Fails if a term or a side of a joint is missing.
+/// The derivatives of inverse dynamics equal central differences. Fails if a term is missing.
 #[test]
 fn derivatives_of_inverse_dynamics_are_its_differences() {
     for_each_state(|arm, workspace, random| {
@@ -226,8 +226,8 @@ fn jacobian_is_the_derivative_of_the_pose() {
     });
 }
 
-/// The features of algorithm 1: ω and ω̇ are the link's own motion, τ_{i+1} and f_{i+1} what carries
-/// the rest of the arm: at rest the force is the distal weight, and nothing hangs on the last link.
+/// The features of algorithm 1: ω and ω̇ are the motion of the link itself, τ_{i+1} and f_{i+1} the wrench on the rest
+/// of the arm. At rest, the force is the weight of the distal links, and it is zero at the last link.
 #[test]
 fn newton_euler_features_are_the_loads_between_links() {
     for_each_state(|arm, workspace, random| {
