@@ -5,10 +5,10 @@ use crate::machine::{Begin, Inverse, LinkMotion, Machine, Seen};
 use crate::robot::Robot;
 use crate::truth::{Injected, Truth};
 
-/// The machine that a case's recordings are of.
+/// The machine on which a case's recordings were made.
 ///
-/// Its time is the recordings' clock: effects with an onset before it are present, drives are warm, and a contact acts only in
-/// its window.
+/// Its time is the recordings' clock: effects with an earlier onset are present, drives are warm, and a contact acts
+/// only in its window.
 pub struct CaseMachine<'a> {
     machine: Machine<'a>,
     robot: &'a Robot,
@@ -27,10 +27,11 @@ pub struct Driven {
 }
 
 impl<'a> CaseMachine<'a> {
-    /// The machine of `truth`, which is of a case drawn on `robot`.
+    /// The machine of `truth`, a case that was drawn on `robot`.
     ///
     /// # Errors
-    /// [`FaultError::Setting`] if the truth is of another robot, [`FaultError::Effect`] if an effect is not of this robot.
+    /// [`FaultError::Setting`] if the truth belongs to another robot, [`FaultError::Effect`] if an effect does not fit
+    /// this robot.
     pub fn new(robot: &'a Robot, truth: &Truth) -> Result<Self, FaultError> {
         if truth.robot != robot.name() {
             let (case, its, name) = (&truth.case, &truth.robot, robot.name());
@@ -45,11 +46,12 @@ impl<'a> CaseMachine<'a> {
         })
     }
 
-    /// Drives it for so many ticks of 1 ms from `start` (s) on; it begins at rest with its encoders at `q` (rad or m), under the torque
-    /// that holds the robot as its user believes it. `controller` sees encoders and gives torques (N m or N), once a tick.
+    /// Runs the machine for `ticks` ticks of 1 ms from `start` (s). It begins at rest with its encoders at `q` (rad or
+    /// m), under the torque that would hold the robot of the user's model. Once per tick, `controller` receives the
+    /// encoders and returns torques (N m or N).
     ///
     /// # Errors
-    /// [`FaultError::Plant`] if the motion leaves all bounds.
+    /// [`FaultError::Plant`] if the motion exceeds all bounds.
     ///
     /// # Panics
     /// If `q` is of another size than the arm.
@@ -76,7 +78,7 @@ impl<'a> CaseMachine<'a> {
         })
     }
 
-    /// The torques that a motion of the links needs by the machine's own laws: the exact model.
+    /// The torques that a motion of the links requires by the machine's own laws: the exact model.
     ///
     /// Dry friction has the sign of the velocity and is zero at rest. Contacts, which are events, gaps and torque limits, which
     /// no torque compensates, and the damping of springs are omitted. States with memory start as in a run.
@@ -109,7 +111,8 @@ mod tests {
         }
     }
 
-    /// RMS distance of the links from the reference, with the feed-forward of the user's model and with that of the machine's own laws.
+    /// RMS distance of the links from the reference with the feed-forward of the user's model, and with that of the
+    /// machine's own laws.
     fn errors(robot: &Robot, concealed: Vec<Injected>) -> [f64; 2] {
         let machine = CaseMachine::new(robot, &truth(robot, concealed)).expect("the effects fit");
         let reference = excitation(robot, 60.0, &mut ChaCha8Rng::seed_from_u64(5)).cut(4.0);
@@ -140,8 +143,8 @@ mod tests {
         })
     }
 
-    /// The machine follows its own inverse with every fault: in forms that the catalogue does not have, with memory, with a
-    /// spring.
+    /// The machine follows its own inverse model with every fault: with forms that the catalogue does not have, with
+    /// memory, and with a spring.
     #[test]
     fn the_inverse_is_the_machines_own() {
         let robot = seven_axis();
@@ -166,7 +169,8 @@ mod tests {
         }
     }
 
-    /// The drives' inertias are the robot's, in the truth or not; another robot's truth is refused.
+    /// The drives' inertias are those of the robot, whether the truth lists them or not; a truth of another robot is
+    /// refused.
     #[test]
     fn what_the_robot_has_is_not_concealed_twice() {
         let robot = puma();

@@ -70,8 +70,8 @@ pub const RATES: [u32; 8] = [1000, 500, 250, 200, 125, 100, 50, 40];
 /// Injects given `effects` in recordings of `robot`.
 ///
 /// # Errors
-/// [`FaultError::Effect`] or [`FaultError::Setting`], with the remedy, if something cannot be; [`FaultError::Lost`] if the position
-/// loop cannot hold the machine.
+/// [`FaultError::Effect`] or [`FaultError::Setting`], with the remedy, if an effect or a setting is impossible;
+/// [`FaultError::Lost`] if the position loop cannot hold the machine.
 pub fn conceal_effects(
     robot: &Robot,
     name: &str,
@@ -129,7 +129,7 @@ pub fn conceal_effects(
 /// Draws the faults of `plan` until they are detectable and the position loop is stable, and records the machine.
 ///
 /// # Errors
-/// [`FaultError::NotExpressed`] if no draw comes out; [`FaultError::Plant`] if the robot cannot be simulated.
+/// [`FaultError::NotExpressed`] if no draw is accepted; [`FaultError::Plant`] if the robot cannot be simulated.
 pub fn conceal_case(robot: &Robot, plan: &CasePlan) -> Result<Concealment, FaultError> {
     let kind = Kind {
         seed: plan.seed,

@@ -1,13 +1,13 @@
-//! The part of the torque that is due to an effect: the runs with and without it, compared below 20 Hz.
+//! The share of the torque that is due to an effect: runs with and without it, compared below 20 Hz.
 
-/// Half-power frequency of the comparison, both passes together taken as one (Hz).
+/// Half-power frequency of the filter of the comparison, for both passes together (Hz).
 const CUTOFF: f64 = 20.0;
 
 /// The torques of training runs (N m or N), filtered: `[joint][tick]`, run after run.
 pub(crate) type Torques = Vec<Vec<f64>>;
 
-/// Of torques `tau[tick × dof + joint]` at ticks of `period` (s), those below 20 Hz, without the first `skip` ticks; and the
-/// largest part, over the joints, that lies above.
+/// The torques `tau[tick × dof + joint]` at ticks of `period` (s), filtered to below 20 Hz, without the first `skip`
+/// ticks; and the largest share, over the joints, of the torque above that frequency.
 pub(crate) fn smooth(tau: &[f64], dof: usize, period: f64, skip: usize) -> (Torques, f64) {
     let mut above: f64 = 0.0;
     let joints = (0..dof).map(|j| {
@@ -22,8 +22,8 @@ pub(crate) fn smooth(tau: &[f64], dof: usize, period: f64, skip: usize) -> (Torq
     (joints.collect(), above)
 }
 
-/// The largest part of a joint's torque that vanishes without the effect: standard deviations, or the mean square of the
-/// difference where it is the `constant` that counts.
+/// The largest share of a joint's torque that vanishes without the effect: the standard deviation of the difference (its
+/// root mean square for a `constant` torque) over the standard deviation of the torque with the effect.
 pub(crate) fn share(with: &[Torques], without: &[Torques], constant: bool) -> f64 {
     let dof = with.first().map_or(0, Vec::len);
     let of = |j: usize| {
@@ -68,7 +68,8 @@ impl Biquad {
         }
     }
 
-    /// Forwards and backwards, from rest at the value at either end: no phase.
+    /// Filters forwards and backwards, so that there is no phase shift; it starts at rest at the first and at the last
+    /// value.
     fn both_ways(&self, values: &mut [f64]) {
         self.pass(values.iter_mut());
         self.pass(values.iter_mut().rev());
@@ -89,7 +90,7 @@ impl Biquad {
 mod tests {
     use super::*;
 
-    /// Slow waves pass without delay, fast ones do not.
+    /// Low frequencies pass without delay, high ones are removed.
     #[test]
     fn what_is_slow_passes() {
         let wave = |hertz: f64| -> Vec<f64> {

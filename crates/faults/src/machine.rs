@@ -25,21 +25,21 @@ use friction::Friction;
 pub use inverse::{Inverse, LinkMotion};
 use parts::Parts;
 
-/// The loop's period, and the plant's step (s).
+/// The period of the position loop, and the step of the plant (s).
 pub(crate) const TICK: f64 = 1e-3;
-/// rapier's plain step: another than the diagnosis' own simulation takes.
+/// rapier's plain step, which the diagnosis' own simulation does not use.
 const ORDER: usize = 1;
-/// The furthest a joint may be from its reference (rad or m).
+/// The largest allowed distance of a joint from its reference (rad or m).
 pub(crate) const FURTHEST: f64 = 0.35;
-/// Time constant of the drive load that friction feels (s).
+/// Time constant of the low-pass filter of the drive torque on which friction depends (s).
 const LOAD_FILTER: f64 = 0.02;
 
-/// What the drives saw at every tick of a run; `[tick × dof + joint]`.
+/// Signals of the drives at every tick of a run; `[tick × dof + joint]`.
 #[derive(Clone, Debug)]
 pub(crate) struct Run {
     /// Encoder positions (rad or m).
     pub q: Vec<f64>,
-    /// Filtered velocities.
+    /// Filtered velocities (rad/s or m/s).
     pub qd: Vec<f64>,
     /// Torques as the drives report them: commanded (N m or N).
     pub tau: Vec<f64>,
@@ -52,7 +52,8 @@ pub(crate) struct Machine<'a> {
 }
 
 impl<'a> Machine<'a> {
-    /// `robot`, its drives' inertias, and `effects`; of effect `without` only what stays when it is taken away.
+    /// The machine of `robot` with its drives' inertias and `effects`; of the effect with index `without`, only the
+    /// part that remains when it is removed.
     pub(crate) fn new(robot: &'a Robot, effects: &[&Injected], without: Option<usize>) -> Result<Self, FaultError> {
         let arm = robot.driven();
         let mut parts = Vec::new();
@@ -65,7 +66,7 @@ impl<'a> Machine<'a> {
         })
     }
 
-    /// Drives the machine along `reference`; the encoders count steps of `quantum` (rad or m; 0: none).
+    /// Runs the machine along `reference`; the encoders count steps of `quantum` (rad or m; 0 for none).
     ///
     /// # Errors
     /// [`FaultError::Lost`] if it cannot follow; [`FaultError::Plant`] if it cannot be simulated.
@@ -94,10 +95,11 @@ impl<'a> Machine<'a> {
         Ok(run)
     }
 
-    /// Drives the machine by `law` for so many ticks; what the drives saw, and where the links were at every tick.
+    /// Runs the machine under the control law `law` for `ticks` ticks; returns the signals of the drives, and the
+    /// positions of the links at every tick.
     ///
     /// # Errors
-    /// [`FaultError::Plant`] if it cannot be simulated, or leaves all bounds.
+    /// [`FaultError::Plant`] if it cannot be simulated, or exceeds all bounds.
     pub(crate) fn drive(
         &self,
         begin: &Begin<'_>,
@@ -115,32 +117,32 @@ impl<'a> Machine<'a> {
     }
 }
 
-/// A run under way.
+/// A run in progress.
 struct Simulation<'a> {
     parts: &'a Parts,
     holding: Vec<f64>,
     robot: &'a Robot,
     quantum: f64,
-    /// The arm as it is now, without the rotors that move by themselves.
+    /// The present arm, without the rotors that are integrated separately.
     arm: Arm,
     plant: Plant,
     workspace: Workspace,
     drives: Vec<Drive>,
     rotors: Vec<Option<Rotor>>,
-    /// When the arm changes next (s, on the recordings' clock).
+    /// The time of the arm's next change (s, on the recordings' clock).
     next_change: f64,
     states: Vec<f64>,
-    /// Accelerations and velocities of the last tick.
+    /// Accelerations and velocities at the last tick.
     qdd: Vec<f64>,
     qd_before: Vec<f64>,
     loads: Vec<[f64; 2]>,
-    /// Torque on each link's side.
+    /// The torque on the link's side of each joint.
     net: Vec<f64>,
     levels: Vec<f64>,
     friction: Friction,
     rigid: Vec<f64>,
     contact: Matrix6xX<f64>,
-    /// Positions and velocities as the drives see them.
+    /// Positions and velocities as the drives measure them.
     sensed: [Vec<f64>; 2],
     commands: Vec<f64>,
     run: Run,
@@ -194,7 +196,7 @@ impl<'a> Simulation<'a> {
         Ok(simulation)
     }
 
-    /// The arm, its plant and its rotors as they are from `time` on.
+    /// The arm, its plant and its rotors from `time` (s) on.
     fn change(&mut self, time: f64, first: bool) -> Result<(), FaultError> {
         let n = self.drives.len();
         let mut arm = self.parts.arm_at(self.robot.driven(), time);
@@ -222,7 +224,7 @@ impl<'a> Simulation<'a> {
             }
             let rotor = Rotor::new(connection, inertia, self.robot.link_inertia(j), q[j], qd[j]);
             if first {
-                // The encoder's side starts on its reference, the spring already under its load.
+                // The encoder starts on its reference, with the spring already deflected by its load.
                 q[j] -= rotor.deflection(self.holding[j]);
             }
             self.rotors[j] = Some(rotor);
@@ -271,7 +273,7 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    /// The rigid torques that load-dependent friction feels.
+    /// The rigid torques on which load-dependent friction depends.
     fn feel_loads(&mut self) {
         if !self.parts.feels_rigid_load() {
             return;
@@ -288,7 +290,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// What the drive of joint `j` puts on its link; its dry friction, where it is the plant's, goes to the levels.
+    /// The torque of the drive of joint `j` on its link; dry friction that the plant handles is added to the levels.
     fn joint_torque(&mut self, j: usize, time: f64) -> f64 {
         let applied = self.drives[j].applied(&self.parts.drive_at(j, time));
         let (parts, loads) = (self.parts, self.loads[j]);
@@ -343,7 +345,8 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Drives that two joints turn: their inertia acts through accelerations, found by iteration from those of the last tick.
+    /// Drives that are moved by two joints. Their inertia acts through the accelerations, which are found by iteration
+    /// from those of the last tick.
     fn couple(&mut self, time: f64) -> Result<(), FaultError> {
         let parts = self.parts;
         if !parts.couplings(time).any(|(_, _, inertia)| inertia != 0.0) {
@@ -358,7 +361,7 @@ impl<'a> Simulation<'a> {
             coupled
         };
         let first = couple(&self.net, &self.qdd);
-        // With the dry friction of the last tick, that of this one is not known yet.
+        // With the dry friction of the last tick, because that of this tick is not known yet.
         let rubbed: Vec<f64> = first
             .iter()
             .zip(&self.friction.torques)
@@ -372,7 +375,7 @@ impl<'a> Simulation<'a> {
 }
 
 impl Simulation<'_> {
-    /// Adds the dry friction of joints whose rotor turns with their link.
+    /// Adds the dry friction of joints whose rotor is rigidly connected to the link.
     fn rub(&mut self) {
         if self.levels.iter().all(|&level| level == 0.0) {
             return;

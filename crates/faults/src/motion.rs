@@ -1,4 +1,4 @@
-//! The motions that are asked of a machine: excitation for training, pick and place to hold out.
+//! The reference motions: excitation for training, pick and place for the held-out recording.
 
 use std::f64::consts::TAU;
 
@@ -9,32 +9,32 @@ use rand_distr::{Distribution, StandardNormal};
 use crate::machine::TICK;
 use crate::robot::Robot;
 
-/// How long a recording is, and how long passes between two (s).
+/// The duration of a recording, and the pause between two recordings (s).
 pub const DURATION: f64 = 25.0;
 /// See [`DURATION`].
 pub const PAUSE: f64 = 5.0;
-/// How many ticks the loop runs before a recording begins.
+/// The number of ticks that the loop runs before a recording begins.
 pub(crate) const LEAD: usize = 500;
-/// Parts of a joint's velocity and effort limits that a motion may take.
+/// The largest shares of a joint's velocity and effort limits that a motion may use.
 const WITHIN: f64 = 0.8;
-/// The fastest excitation where a joint has no limit (rad/s or m/s).
+/// The highest velocity of an excitation where a joint has no limit (rad/s or m/s).
 const FASTEST: f64 = 2.2;
 
-/// A motion at every tick, and the nominal torque for it; `[tick × dof + joint]`.
+/// A motion with the nominal torque at every tick; `[tick × dof + joint]`.
 #[derive(Clone, Debug)]
 pub(crate) struct Reference {
     dof: usize,
-    /// s, on the recordings' clock, of the first row recorded.
+    /// The time of the first recorded row (s, on the recordings' clock).
     pub start: f64,
     pub q: Vec<f64>,
     pub qd: Vec<f64>,
     pub qdd: Vec<f64>,
-    /// Feed-forward of the user's model (N m or N).
+    /// Feed-forward torque of the user's model (N m or N).
     pub ff: Vec<f64>,
 }
 
 impl Reference {
-    /// How many ticks it has, those before the recording too.
+    /// The number of ticks, including those before the recording.
     pub(crate) fn ticks(&self) -> usize {
         self.q.len() / self.dof
     }
@@ -63,7 +63,7 @@ impl Reference {
         }
     }
 
-    /// The first `seconds` of it.
+    /// Its first `seconds` seconds.
     pub(crate) fn cut(mut self, seconds: f64) -> Self {
         let length = (LEAD + (seconds / TICK) as usize) * self.dof;
         for values in [&mut self.q, &mut self.qd, &mut self.qdd, &mut self.ff] {
@@ -72,7 +72,7 @@ impl Reference {
         self
     }
 
-    /// Whether no drive would have to give more than a part of its limit.
+    /// Whether no drive needs more than the allowed share of its effort limit.
     fn is_feasible(&self, robot: &Robot) -> bool {
         let joints = robot.arm().joints();
         let torques = self.ff.iter().zip(&self.qdd).enumerate();
@@ -83,12 +83,12 @@ impl Reference {
     }
 }
 
-/// When recording `number` of a case begins (s).
+/// The time at which recording `number` of a case begins (s).
 pub(crate) fn start(number: usize) -> f64 {
     number as f64 * (DURATION + PAUSE)
 }
 
-/// Central differences over ticks.
+/// Velocities and accelerations by central differences.
 fn rates(values: &[f64], n: usize) -> Vec<f64> {
     let last = values.len() / n - 1;
     let mut rates = vec![0.0; values.len()];
@@ -101,13 +101,14 @@ fn rates(values: &[f64], n: usize) -> Vec<f64> {
     rates
 }
 
-/// x³ (10 − 15 x + 6 x²): from 0 to 1 at rest on both sides.
+/// x³ (10 − 15 x + 6 x²): it rises from 0 to 1, with zero derivatives on both sides.
 fn ease(x: f64) -> f64 {
     let x = x.clamp(0.0, 1.0);
     x * x * x * (10.0 + x * (6.0 * x - 15.0))
 }
 
-/// The range that a joint's motion may fill, about its home (rad or m): half of what its limits leave, within `most`.
+/// The range of a joint's motion about its home position (rad or m): half of the room within its limits, at most
+/// `most`.
 fn reach(robot: &Robot, j: usize, most: f64) -> f64 {
     let joint = &robot.arm().joints()[j];
     let room = (joint.limits.upper - robot.home()[j]).min(robot.home()[j] - joint.limits.lower);
@@ -122,7 +123,7 @@ fn ticks() -> usize {
     LEAD + (DURATION / TICK).round() as usize + 1
 }
 
-/// Five harmonics of .08 to .13 Hz on every joint at once, faded in, within the joints' limits.
+/// Five harmonics of 0.08 to 0.13 Hz on every joint at the same time, faded in, within the joints' limits.
 pub(crate) fn excitation(robot: &Robot, start: f64, random: &mut impl Rng) -> Reference {
     let n = robot.arm().dof();
     let base: f64 = random.random_range(0.08..0.13);
@@ -146,7 +147,7 @@ pub(crate) fn excitation(robot: &Robot, start: f64, random: &mut impl Rng) -> Re
                 (least.min(value), most.max(value))
             });
         let reach = reach(robot, j, 1.075);
-        // Peak to peak .85 to 1.45 and a centre within ± .35 where there is room.
+        // A peak-to-peak range of 0.85 to 1.45 and a centre within ±0.35, where the limits allow it.
         let span = random.random_range(0.79..1.35) * reach / (most - least);
         centers[j] = robot.home()[j] + random.random_range(-0.32..0.32) * reach;
         let speed = wave
@@ -163,7 +164,8 @@ pub(crate) fn excitation(robot: &Robot, start: f64, random: &mut impl Rng) -> Re
     shrunk(robot, start, &centers, &waves)
 }
 
-/// The motion `waves` about `centers`, made smaller until the drives can follow it (what they cannot even hold stays).
+/// The motion `waves` about `centers`, reduced until the drives can follow it; a load that they cannot hold at rest is
+/// not reduced.
 fn shrunk(robot: &Robot, start: f64, centers: &[f64], waves: &[f64]) -> Reference {
     let mut size = 1.0;
     loop {
@@ -177,7 +179,7 @@ fn shrunk(robot: &Robot, start: f64, centers: &[f64], waves: &[f64]) -> Referenc
     }
 }
 
-/// Moves of 1.1 to 2.3 s between random poses, with rests of .3 to 1 s.
+/// Motions of 1.1 to 2.3 s between random poses, with rests of 0.3 to 1 s.
 pub(crate) fn pick_and_place(robot: &Robot, start: f64, random: &mut impl Rng) -> Reference {
     let n = robot.arm().dof();
     let reaches: Vec<f64> = (0..n).map(|j| reach(robot, j, 0.8)).collect();
@@ -199,7 +201,7 @@ pub(crate) fn pick_and_place(robot: &Robot, start: f64, random: &mut impl Rng) -
             .collect();
         let mut time: f64 = random.random_range(1.1..2.3);
         for j in 0..n {
-            // The peak of either profile is below twice the mean.
+            // The peak velocity of either profile is below twice its mean.
             let fastest = WITHIN * robot.arm().joints()[j].limits.velocity;
             time = time.max(2.0 * (next[j] - at[j]).abs() / fastest);
         }
@@ -218,9 +220,10 @@ pub(crate) fn pick_and_place(robot: &Robot, start: f64, random: &mut impl Rng) -
     shrunk(robot, start, robot.home(), &waves)
 }
 
-/// From 0 to 1 with a constant speed in the middle; it takes `edge` of the time to speed up, and as much to slow down.
+/// A profile from 0 to 1 with constant velocity in the middle; acceleration and deceleration each take the share
+/// `edge` of the time.
 fn rounded_trapezoid(x: f64, edge: f64) -> f64 {
-    // The integral of an eased ramp of speed: ∫ ease = x⁴ (2.5 − 3 x + x²).
+    // The integral of a smooth velocity ramp: ∫ ease = x⁴ (2.5 − 3 x + x²).
     let rise = |x: f64| edge * x.powi(4) * (2.5 + x * (x - 3.0));
     let total = 1.0 - edge;
     let at = if x < edge {

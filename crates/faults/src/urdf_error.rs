@@ -1,4 +1,4 @@
-//! URDFs that are not what the machine is: wrong everywhere, as every real one is, or with a tool drawn that is not mounted.
+//! URDFs with errors: in all inertial parameters, as in every real one, or with a tool drawn that is not mounted.
 
 use std::ops::Range;
 
@@ -12,15 +12,16 @@ use rand_distr::{Distribution, StandardNormal};
 use crate::error::FaultError;
 use crate::pseudo_inertia::PseudoInertia;
 
-/// How wrong URDFs are whose cases take turns, from exact on.
+/// The relative errors of URDFs, which cases take in turns; the first is exact.
 pub(crate) const SIGMAS: [f64; 4] = [0.0, 0.03, 0.1, 0.3];
 
-/// `urdf` with the inertial of each link that has mass moved: the pseudo-inertia P becomes A P Aᵀ, A = D e^(σ G) D⁻¹, G of 4 × 4 standard
-/// normals, D = diag(l, l, l, 1), l the link's radius of gyration; always a body's. `sigma` is about the relative error of masses, and
-/// of lengths. All else stays as it was, to the byte.
+/// `urdf` with errors in the inertial of each link that has a mass: the pseudo-inertia P becomes A P Aᵀ with A = D
+/// e^(σ G) D⁻¹, where G is a 4 × 4 matrix of standard normal numbers, D = diag(l, l, l, 1), and l is the link's radius
+/// of gyration. The result is always physical. `sigma` is the approximate relative error of masses and lengths.
+/// Everything else keeps its bytes.
 ///
 /// # Errors
-/// [`FaultError::Setting`] if `sigma` is no error that a URDF could have, or the text cannot be read.
+/// [`FaultError::Setting`] if `sigma` is outside its range, or the text cannot be read.
 pub(crate) fn perturbed(urdf: &str, sigma: f64, random: &mut ChaCha8Rng) -> Result<String, FaultError> {
     if !(0.0..=1.0).contains(&sigma) {
         return Err(FaultError::Setting(format!(
@@ -43,7 +44,7 @@ pub(crate) fn perturbed(urdf: &str, sigma: f64, random: &mut ChaCha8Rng) -> Resu
     Ok(text)
 }
 
-/// A body like `body`, off by about `sigma` in all that it has.
+/// A body like `body` with errors of about `sigma` in all parameters.
 fn disturbed(body: &Inertia, sigma: f64, random: &mut ChaCha8Rng) -> Inertia {
     let pseudo = PseudoInertia::of(body);
     let normals = Matrix4::from_fn(|_, _| -> f64 { StandardNormal.sample(random) });
@@ -53,10 +54,10 @@ fn disturbed(body: &Inertia, sigma: f64, random: &mut ChaCha8Rng) -> Inertia {
     pseudo.mapped(&map).body()
 }
 
-/// `urdf` with `tool` (in the frame of link `on`) drawn as a link welded to `on`.
+/// `urdf` with `tool` (in the frame of link `on`) as an additional link that is fixed to `on`.
 ///
 /// # Errors
-/// [`FaultError::Setting`] if the text has no end.
+/// [`FaultError::Setting`] if the text has no closing tag.
 pub(crate) fn with_tool(urdf: &str, on: &str, tool: &Inertia) -> Result<String, FaultError> {
     let end = urdf
         .rfind("</robot>")
@@ -99,11 +100,11 @@ struct Open {
     xyz: [f64; 3],
     rpy: [f64; 3],
     mass: f64,
-    /// ixx ixy ixz iyy iyz izz.
+    /// ixx, ixy, ixz, iyy, iyz, izz (kg m²).
     tensor: [f64; 6],
 }
 
-/// Where the links' inertials stand in the text, and what each says, in its link's frame.
+/// The places of the links' inertials in the text, each with its body in the link's frame.
 fn inertials(urdf: &str) -> Result<Vec<(Range<usize>, Inertia)>, FaultError> {
     let mut reader = Reader::from_str(urdf);
     let mut found = Vec::new();
@@ -201,7 +202,8 @@ mod tests {
         Arm::from_urdf_text(&urdf, "moved.urdf").expect("it is an arm")
     }
 
-    /// However wrong, every link is a body: its pseudo-inertia is positive definite; and nothing but inertials has moved.
+    /// Links remain physical for every error: their pseudo-inertia is positive definite; and only inertials are
+    /// changed.
     #[test]
     fn a_wrong_urdf_is_always_physical() {
         let mut random = ChaCha8Rng::seed_from_u64(3);
@@ -226,7 +228,7 @@ mod tests {
         }
     }
 
-    /// Errors are of the size that was asked for: the mass of a point at the origin of its frame is e^(2 σ N) of what it was.
+    /// Errors have the requested size: the mass of a point at the origin of its frame is multiplied by e^(2 σ N).
     #[test]
     fn sigma_is_the_size_of_the_error() {
         let mut random = ChaCha8Rng::seed_from_u64(4);

@@ -13,12 +13,12 @@ use crate::machine::Run;
 use crate::motion::{DURATION, LEAD, Reference, start};
 use crate::truth::Injected;
 
-/// The number of cases, and of draws of one effect, that are tried.
+/// The largest number of attempts for a case, and for one effect.
 const CASES: usize = 10;
 const DRAWS: usize = 8;
-/// The ratio to the quantisation noise above which the torque oscillates; with a gap, it always does.
+/// The ratio to the quantisation noise above which the torque counts as oscillating; with a gap, it always oscillates.
 const OSCILLATION: (f64, f64) = (0.2, 0.5);
-/// The expressed shares that a case may have.
+/// The allowed expressed shares of a case.
 const SHARES: (f64, f64) = (0.01, 1.2);
 
 /// The duration of a recording that determines sizes (s); shares are those of whole recordings.
@@ -26,10 +26,10 @@ const TRIAL: f64 = 12.0;
 
 /// The reference for effects: the machine with its baseline friction.
 struct Base {
-    /// The beginning of the first recording.
+    /// The reference at the beginning of the first recording.
     trial: Reference,
     torques: Torques,
-    /// All of the first recording.
+    /// The whole first recording.
     whole: Torques,
     above: f64,
     sorted: Vec<Vec<f64>>,
@@ -45,7 +45,7 @@ pub(super) fn search(
     let mut names = plan.effects.clone();
     for attempt in 0..CASES {
         if attempt >= CASES / 2 {
-            // Effects that this robot cannot show are replaced by others.
+            // Effects that are not detectable on this robot are replaced by others.
             for name in &mut names {
                 let is_outside = Fault::named(name).is_some_and(|fault| fault.is_outside);
                 let known = if is_outside { outside() } else { families() };
@@ -53,7 +53,7 @@ pub(super) fn search(
             }
             names.sort_unstable();
             names.dedup();
-            // Five at once may be more than the loop holds.
+            // The loop may not be able to hold five effects at the same time.
             names.truncate(3);
         }
         let Some(mut effects) = draw_all(stage, plan, &names, &base, random)? else {
@@ -115,7 +115,7 @@ fn base(stage: &Stage<'_>) -> Result<Base, FaultError> {
     })
 }
 
-/// One of each effect, on different joints; `None` if one of them is not detectable alone.
+/// One of each effect, on different joints; `None` if one of them is not detectable by itself.
 fn draw_all(
     stage: &Stage<'_>,
     plan: &CasePlan,
@@ -165,14 +165,14 @@ fn draw_all(
     Ok(Some(effects))
 }
 
-/// The share that an effect is to have where its size is free.
+/// The target share of an effect whose size is free.
 fn target(hard: bool, random: &mut ChaCha8Rng) -> f64 {
     log_uniform(SHARES.0, if hard { 0.35 } else { 0.5 }, random)
 }
 
-/// Scales `effect` to its target share, on one recording and alone; returns whether it is detectable there.
+/// Scales `effect` to its target share, on one recording and by itself; returns whether it is detectable there.
 fn fit(stage: &Stage<'_>, fault: &Fault, effect: &mut Injected, target: f64, base: &Base) -> Result<bool, FaultError> {
-    // Its own time is not what its size is about.
+    // Its onset does not influence its size.
     let onset = effect.onset.take();
     let reference = match effect.number("start") {
         Some(time) => stage.training.iter().rfind(|reference| reference.start <= time),
@@ -209,14 +209,14 @@ fn fit(stage: &Stage<'_>, fault: &Fault, effect: &mut Injected, target: f64, bas
         if !free || off.ln().abs() < 0.7 {
             break;
         }
-        // The share is not proportional to the size: it is in its own denominator.
+        // The share is not proportional to the size, because the effect is also in the denominator.
         fault.resize(effect, off.powf(0.9));
     }
     effect.onset = onset;
     Ok(shows)
 }
 
-/// Whether the machine without the effect is not the one with baseline friction alone.
+/// Whether the machine without the effect differs from the one with baseline friction alone.
 fn leaves_more_than_the_base(effect: &Injected) -> bool {
     effect.leaves() != Leaves::Nothing
 }

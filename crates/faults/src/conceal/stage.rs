@@ -1,4 +1,4 @@
-//! A case in preparation: motions, baseline friction and sensors, drawn before any effect.
+//! A case in preparation: motions, baseline friction and sensors, which are drawn before the effects.
 
 use arm::{Inertia, Matrix3, Vector3};
 use rand::seq::IndexedRandom;
@@ -19,29 +19,29 @@ use crate::sensor::Sensors;
 use crate::truth::{Injected, Truth};
 use crate::urdf_error::{perturbed, with_tool};
 
-/// Rows lie so many ticks apart in hard cases: mostly 100 to 500 Hz.
+/// The number of ticks between rows in hard cases: mostly 100 to 500 Hz.
 const HARD_TICKS: [usize; 9] = [1, 2, 2, 4, 4, 5, 5, 8, 10];
 
-/// Standard deviations of the torque's noise, of the torque's.
+/// Standard deviations of the torque noise, relative to the torque.
 const NOISE: (f64, f64) = (0.003, 0.036);
-/// How much of a recording tells whether gearboxes are held (s).
+/// The duration of the run that tests whether the loop can hold the gearboxes (s).
 const TRIAL: f64 = 8.0;
-/// How much more of the torque may lie above 20 Hz with them.
+/// The largest increase of the torque above 20 Hz due to the gearboxes.
 const RESTLESS: f64 = 0.05;
 
-/// How many training recordings an easy and a hard case have.
+/// The number of training recordings of an easy and of a hard case.
 pub(crate) const TRAINING: [usize; 2] = [3, 2];
 
-/// A case under way: what is drawn first, and what does not change with the effects.
+/// A case in preparation: everything that does not depend on the effects.
 pub(crate) struct Stage<'a> {
     pub robot: &'a Robot,
     pub training: Vec<Reference>,
     pub held_out: Reference,
-    /// Baseline friction: Coulomb level and viscous coefficient of every joint, and the exponent of the latter.
+    /// Baseline friction: Coulomb level and viscous coefficient of every joint, and the exponent of the viscous law.
     pub friction: Option<(Vec<(f64, f64)>, f64)>,
-    /// Standard deviation of the torque that the training motions cost nominally (N m or N).
+    /// Standard deviation of the torque that the training motions require nominally (N m or N).
     pub spreads: Vec<f64>,
-    /// The part of it that the URDF's bodies cost, without drives (N m or N).
+    /// The standard deviation of the torque of the URDF's bodies, without drives (N m or N).
     pub loads: Vec<f64>,
     pub sensors: Sensors,
     /// The properties of a real robot; none in a plain case.
@@ -50,7 +50,7 @@ pub(crate) struct Stage<'a> {
     urdf_error: f64,
 }
 
-/// What a case is to be, beside its effects.
+/// The settings of a case except its effects.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Kind {
     pub seed: u64,
@@ -65,7 +65,7 @@ pub(crate) struct Kind {
     pub urdf_error: f64,
 }
 
-/// Streams of randomness, so that a change in one leaves the others.
+/// Random streams, one per purpose, so that changes in one do not affect the others.
 #[derive(Clone, Copy)]
 pub(super) enum Stream {
     Motion,
@@ -77,7 +77,7 @@ pub(super) enum Stream {
     Urdf,
 }
 
-/// The stream of the noise on what is recorded of a case later.
+/// The random stream of the noise in recordings that are made later.
 pub(crate) const AGAIN: u64 = 8;
 
 pub(super) fn random(seed: u64, stream: Stream) -> ChaCha8Rng {
@@ -137,7 +137,7 @@ impl<'a> Stage<'a> {
         Ok(stage)
     }
 
-    /// Gearboxes that the position loop cannot hold are none.
+    /// Gearboxes with which the position loop is unstable are removed.
     fn leave_out_what_swings(&mut self) -> Result<(), FaultError> {
         let Some(real) = self.real.as_mut().filter(|real| !real.gearboxes.is_empty()) else {
             return Ok(());
@@ -163,7 +163,8 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// Baseline friction as effects, of joints where `effects` bring no dry friction of their own; and the small things of real joints.
+    /// Baseline friction as effects, on joints where `effects` have no dry friction of their own; and the small
+    /// effects of real joints.
     pub(crate) fn background(&self, effects: &[Injected]) -> Vec<Injected> {
         let mut background = self.baseline(effects);
         background.extend(self.real.iter().flat_map(|real| real.beside(effects)));
@@ -179,7 +180,7 @@ impl<'a> Stage<'a> {
             let own = |effect: &Injected| {
                 effect.joint.as_deref() == Some(&joint.name) && effect.leaves() == Leaves::DryFriction
             };
-            // A drifting or loaded friction stays what it is; the plain one is in it.
+            // A friction curve, drift or load dependence includes the plain friction.
             if !effects.iter().any(own) {
                 background.push(Injected::new("coulomb_friction", Some(&joint.name)).with("level", *coulomb));
             }
@@ -193,7 +194,8 @@ impl<'a> Stage<'a> {
         background
     }
 
-    /// Runs the machine with the background and `effects`, or with what stays of effect `without`.
+    /// Runs the machine with the background and `effects`; of the effect with index `without`, only the part that
+    /// remains.
     pub(crate) fn run(
         &self,
         effects: &[Injected],
@@ -223,12 +225,12 @@ impl<'a> Stage<'a> {
         machine.run(reference, self.sensors.quantum)
     }
 
-    /// The torques of a run below 20 Hz, and the largest part of a joint's above.
+    /// The torques of a run below 20 Hz, and the largest share of a joint's torque above.
     pub(crate) fn torques(&self, run: &Run) -> (Torques, f64) {
         smooth(&run.tau, self.robot.arm().dof(), TICK, LEAD)
     }
 
-    /// Runs of all recordings, the last one held out; the torques of those for training.
+    /// Runs of all recordings, the last one held out; and the torques of the training recordings.
     pub(crate) fn run_all(&self, effects: &[Injected]) -> Result<(Vec<Run>, Vec<Torques>), FaultError> {
         let references = self.training.iter().chain([&self.held_out]);
         let runs: Vec<Run> = references
@@ -239,8 +241,8 @@ impl<'a> Stage<'a> {
         Ok((runs, torques))
     }
 
-    /// The expressed share of effect `which`: all training recordings, with and without it; `first` is the first without it, where it
-    /// is known.
+    /// The expressed share of the effect with index `which`: all training recordings, with and without it. `first` is
+    /// the first one without it, if it is known.
     pub(crate) fn share(
         &self,
         effects: &[Injected],
@@ -256,10 +258,10 @@ impl<'a> Stage<'a> {
         Ok(share(with, &without, is_constant))
     }
 
-    /// The case: recordings of `runs`, and what is concealed in them.
+    /// The case: the recordings of `runs`, and the ground truth.
     ///
     /// # Errors
-    /// [`FaultError::Setting`] if the URDF cannot be made as wrong as it is to be.
+    /// [`FaultError::Setting`] if the URDF cannot be given the requested error.
     pub(super) fn finish(&self, name: &str, effects: Vec<Injected>, runs: &[Run]) -> Result<Concealment, FaultError> {
         let seed = self.seed;
         let mut noise = random(seed, Stream::Noise);
@@ -304,7 +306,7 @@ impl<'a> Stage<'a> {
     }
 }
 
-/// Whether an effect depends on the time, which files with clocks of their own do not give.
+/// Whether an effect depends on the time, which is not known with separate clocks of the files.
 fn tells_time(effect: &Injected) -> bool {
     effect.onset.is_some() || effect.effect == "thermal_drift" || effect.number("start").is_some()
 }
@@ -327,7 +329,7 @@ fn drawn(tool: &Injected) -> Inertia {
     }
 }
 
-/// The standard deviation of the torque of joint `j` along motions, nominally, with its drive or without.
+/// The nominal standard deviation of the torque of joint `j` along motions, with or without its drive.
 fn spread(robot: &Robot, motions: &[Reference], j: usize, with_drive: bool) -> f64 {
     let (n, rotor) = (
         robot.arm().dof(),

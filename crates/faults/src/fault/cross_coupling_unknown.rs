@@ -60,7 +60,7 @@ impl LinkLaw for Wave {
     }
 }
 
-/// A step along another joint's position, felt where this one is near zero.
+/// A step along another joint's position, which acts where this joint is near zero.
 struct Step {
     amplitude: f64,
     other: usize,

@@ -1,4 +1,4 @@
-//! An encoder whose zero is not the joint's.
+//! An encoder whose zero differs from that of the joint.
 
 use super::prelude::*;
 

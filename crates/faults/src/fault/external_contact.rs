@@ -1,4 +1,4 @@
-//! A push at the tool that comes and goes.
+//! A force on the tool that begins and ends.
 
 use super::prelude::*;
 
@@ -11,7 +11,7 @@ pub(super) const FAULT: Fault = Fault {
         let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
         let size = at.load() * random.random_range(8.0..27.0);
         direction = direction.map(|x| x / length * size);
-        // A recording is 25 s of every 30; the contact is within one.
+        // A recording takes 25 s of every 30 s; the contact is within one recording.
         let (first, last) = at.span;
         let recordings = ((last - first) / 30.0).round().max(1.0) as usize;
         let start = first + 30.0 * random.random_range(0..recordings) as f64;
@@ -55,7 +55,7 @@ pub(crate) struct Contact {
     shape: Shape,
 }
 
-/// How a force comes and goes.
+/// The time course of a force.
 #[derive(Clone, Copy)]
 enum Shape {
     Step,
@@ -64,7 +64,7 @@ enum Shape {
 }
 
 impl Contact {
-    /// The force's part at `time` (s, on the recordings' clock).
+    /// The share of the force at `time` (s, on the recordings' clock).
     pub(crate) fn at(&self, time: f64) -> f64 {
         let x = (time - self.start) / self.duration;
         if !(0.0..1.0).contains(&x) {

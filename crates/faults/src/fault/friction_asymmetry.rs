@@ -33,7 +33,7 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::ON_A_JOINT
 };
 
-/// More forwards and as much less backwards (N m or N).
+/// The level is larger by this in the positive direction and smaller in the negative one (N m or N).
 struct Tilt(f64);
 
 impl DryLaw for Tilt {

@@ -1,8 +1,8 @@
-//! All masses and inertias times a factor.
+//! A factor of all masses and inertias.
 
 use super::prelude::*;
 
-/// Of an arm's links, about that many carry its torque.
+/// The approximate number of links that carry most of an arm's torque.
 const BODIES: f64 = 3.0;
 
 pub(super) const FAULT: Fault = Fault {

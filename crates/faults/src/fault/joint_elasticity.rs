@@ -15,7 +15,7 @@ pub(super) const FAULT: Fault = Fault {
         } else {
             link * random.random_range(0.5..1.2)
         };
-        // Gearboxes are stiffer than what shows easily: what does not show is drawn again.
+        // Gearboxes are stiffer than is easily detectable; a draw that is not detectable is repeated.
         let frequency: f64 = if at.lifelike {
             TAU * log_uniform(5.0, 40.0, random)
         } else {
@@ -60,8 +60,8 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::ON_A_JOINT
 };
 
-/// What lies between rotor and link, and the rotor, which turns with its link until there is something between them; the connection is
-/// told what the rotor has beyond the drive's known inertia (kg m²).
+/// The connection between rotor and link, and the rotor, which moves with its link before the onset of the spring. The
+/// connection receives the inertia that the rotor has in addition to the drive's known inertia (kg m²).
 pub(super) fn elastic(
     reader: &Reader<'_>,
     connection: impl FnOnce(f64) -> Result<Connection, FaultError>,

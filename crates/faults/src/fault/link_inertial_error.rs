@@ -1,4 +1,5 @@
-//! A link whose mass and inertia are another part of what the URDF says; or whose centre of mass and extent are elsewhere, too.
+//! A link whose mass and inertia differ from the URDF's by a factor; or whose centre of mass and extent differ as
+//! well.
 
 use super::prelude::*;
 

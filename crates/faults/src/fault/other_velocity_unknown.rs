@@ -40,14 +40,14 @@ struct OtherVelocity {
     of: Of,
 }
 
-/// What of the other joint's velocity is felt.
+/// The function of the other joint's velocity.
 #[derive(Clone, Copy)]
 enum Of {
     /// v |v|.
     Signed,
     /// v².
     Square,
-    /// tanh(v / this).
+    /// tanh(v / width), with this width (rad/s or m/s).
     Saturating(f64),
 }
 

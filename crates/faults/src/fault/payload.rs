@@ -1,4 +1,4 @@
-//! A mass at the tool that the URDF does not know; or, negative, one that the URDF has and the machine has not.
+//! A mass at the tool that the URDF does not have; or, if negative, one that only the URDF has.
 
 use super::prelude::*;
 
@@ -10,7 +10,7 @@ pub(super) const FAULT: Fault = Fault {
         let mut across = || random.random_range(-0.03..0.03);
         let com = [across(), across(), random.random_range(0.03..0.16)];
         let moment = 0.4 * mass * 0.04 * 0.04;
-        // A tool that is drawn and not mounted is a negative payload.
+        // A tool that is drawn in the URDF and not mounted is a negative payload.
         let sign = if at.lifelike && random.random_bool(0.5) {
             -1.0
         } else {

@@ -1,4 +1,4 @@
-//! The inertia of a drive, seen at its joint, which the URDF leaves out.
+//! The inertia of a drive, reflected to its joint, which the URDF omits.
 
 use super::prelude::*;
 

@@ -42,7 +42,11 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::ON_A_JOINT
 };
 
-/// More at low speed: extra e^(−|v/velocity|^exponent).
+/// The additional friction at low speed: extra e^(−
+///
+/// v/velocity
+///
+/// ^exponent).
 struct Fading {
     extra: f64,
     velocity: f64,

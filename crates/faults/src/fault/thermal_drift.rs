@@ -1,4 +1,4 @@
-//! Dry friction of a cold drive, which falls while it warms up.
+//! Dry friction of a cold drive, which decreases while the drive warms up.
 
 use super::coulomb_friction::Level;
 use super::prelude::*;
@@ -44,16 +44,16 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::ON_A_JOINT
 };
 
-/// All the rest times (1 + amplitude × cooling).
+/// Multiplies the other parts by (1 + amplitude × cooling).
 struct Warming {
     amplitude: f64,
     time_constant: f64,
-    /// When it began to warm up (s).
+    /// The time at which it began to warm up (s).
     start: f64,
     cooling: Cooling,
 }
 
-/// How something warms up, from 1 at the start to 0.
+/// The decrease from 1 at the start to 0.
 #[derive(Clone, Copy)]
 enum Cooling {
     /// e^(−t/T).

@@ -25,7 +25,7 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::OUTSIDE_THE_CATALOGUE
 };
 
-/// A periodic torque; squarer with a larger `edge` (0: a sine).
+/// A periodic torque; a sine for `edge` 0, and closer to a square wave for larger values.
 struct Periodic {
     amplitude: f64,
     hertz: f64,

@@ -1,4 +1,4 @@
-//! A constant torque on a joint, as a sensor's zero or a brake's spring makes it.
+//! A constant torque on a joint, such as a sensor's zero offset or the spring of a brake.
 
 use super::prelude::*;
 
@@ -14,7 +14,7 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::ON_A_JOINT
 };
 
-/// A constant (N m or N).
+/// A constant torque (N m or N).
 struct Offset(f64);
 
 impl DriveLaw for Offset {

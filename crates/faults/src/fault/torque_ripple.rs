@@ -1,4 +1,4 @@
-//! A wave along the joint's position, as cogging and gears make it.
+//! A periodic function of the joint's position, such as cogging and gear errors.
 
 use super::prelude::*;
 

@@ -1,4 +1,4 @@
-//! The most that a drive applies, below what it is commanded.
+//! The largest torque that a drive applies, below the commanded one.
 
 use super::prelude::*;
 

@@ -1,4 +1,4 @@
-//! A drive that reports its torque times a factor.
+//! A factor between the torque that a drive reports and the true one.
 
 use super::prelude::*;
 

@@ -1,17 +1,18 @@
-//! Dry friction of all joints at once, implicitly: what it takes to stop a joint within a tick, and no more than there is.
+//! Dry friction of all joints at once, by an implicit method: the torque that stops a joint within a tick, bounded by
+//! its level.
 
 use arm::{Arm, DMatrix, Workspace};
 
 use super::{Machine, TICK};
 
-/// The mass matrix is looked at every so many ticks.
+/// The number of ticks between evaluations of the mass matrix.
 const REFRESH: usize = 4;
-/// Sweeps at most, and the change of a velocity (rad/s or m/s) that ends them.
+/// The largest number of sweeps, and the change of velocity (rad/s or m/s) below which they end.
 const SWEEPS: usize = 50;
 const SETTLED: f64 = 1e-10;
 
 impl Machine<'_> {
-    /// The friction with each joint's dry friction multiplied by a factor, which differs between recordings.
+    /// The friction with each joint's dry friction multiplied by a factor, which may differ between recordings.
     pub(crate) fn with_friction(mut self, factors: &[f64]) -> Self {
         self.parts.friction = factors.to_vec();
         self
@@ -20,13 +21,13 @@ impl Machine<'_> {
 
 /// Friction torques found by projected Gauss-Seidel sweeps (Jourdan, Alart and Jean 1998) on the velocities at the tick's end.
 ///
-/// The plant can locate stops and breakaways within its steps; at a plain step that doubles the cost and changes nothing that a sensor
-/// sees.
+/// The plant can locate stops and breakaways within its steps. With plain steps, this would double the computing time,
+/// and the difference would be below the sensors' resolution.
 pub(super) struct Friction {
     /// M⁻¹ (rad/s² per N m, and so on).
     response: DMatrix<f64>,
     age: usize,
-    /// What friction adds to the torques (N m or N).
+    /// The friction torques (N m or N).
     pub(super) torques: Vec<f64>,
     bias: Vec<f64>,
 }
@@ -41,12 +42,12 @@ impl Friction {
         }
     }
 
-    /// The arm has changed.
+    /// Resets the mass matrix after a change of the arm.
     pub(super) fn forget(&mut self) {
         self.age = REFRESH;
     }
 
-    /// Finds [`Self::torques`] for a tick from `q`, `qd` under the torques `net`, at most `levels` each.
+    /// Computes [`Self::torques`] for a tick from `q`, `qd` under the torques `net`, each bounded by `levels`.
     pub(super) fn find(
         &mut self,
         arm: &Arm,
@@ -102,7 +103,7 @@ mod tests {
     use super::*;
     use crate::test_robots::seven_axis;
 
-    /// Joints under less than their friction stop and stay; those under more slide against all of it.
+    /// Joints under a torque below their friction stop and remain at rest; others slide against their full friction.
     #[test]
     fn friction_stops_what_it_can() {
         let robot = seven_axis();

@@ -16,11 +16,11 @@ pub(super) struct Parts {
     pub(super) friction: Vec<f64>,
 }
 
-/// A law on the link's side of a joint.
+/// A law that acts on the link's side of a joint.
 pub(super) struct OnLink {
     pub joint: usize,
     pub law: Box<dyn LinkLaw>,
-    /// When it sets in (s).
+    /// Its onset (s).
     pub onset: f64,
 }
 
@@ -31,15 +31,15 @@ struct Joint {
     drive: Vec<(What, f64)>,
 }
 
-/// What a drive does to its command at a moment.
+/// The properties of a drive at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DriveNow {
-    /// Reported over true torque.
+    /// The ratio of the reported to the true torque.
     pub factor: f64,
-    /// N m or N, as reported.
+    /// The torque limit (N m or N), as it is reported.
     pub limit: f64,
     pub soft: bool,
-    /// s.
+    /// The time constant (s).
     pub delay: f64,
     pub lags: bool,
 }
@@ -74,13 +74,13 @@ impl Parts {
         sorted
     }
 
-    /// `arm` with the bodies that are there at `time`.
+    /// `arm` with the changed bodies that are present at `time` (s).
     pub(super) fn arm_at(&self, arm: Arm, time: f64) -> Arm {
         let there = self.bodies.iter().filter(|(_, onset)| time >= *onset);
         there.fold(arm, |arm, (body, _)| body.put_into(arm))
     }
 
-    /// The inertia that the rotor of joint `j` has, from the start, beyond what is known of its drive (kg m²).
+    /// The inertia of the rotor of joint `j`, from the start, in addition to the known inertia of its drive (kg m²).
     pub(super) fn more_rotor(&self, j: usize) -> f64 {
         let of = |(body, onset): &(Body, f64)| match body {
             Body::Rotor(joint, inertia) if *joint == j && *onset == f64::NEG_INFINITY => *inertia,
@@ -89,7 +89,7 @@ impl Parts {
         self.bodies.iter().map(of).sum()
     }
 
-    /// When the arm changes after `time` (s); infinite if never.
+    /// The time of the arm's next change after `time` (s); infinite if there is none.
     pub(super) fn next_change(&self, time: f64) -> f64 {
         let bodies = self.bodies.iter().map(|(_, onset)| *onset);
         let elastic = self.joints.iter().flat_map(|joint| &joint.drive);
@@ -100,7 +100,7 @@ impl Parts {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// What is between rotor and link of joint `j`: springs and gaps in one.
+    /// The connection between rotor and link of joint `j`: springs and gaps combined.
     pub(super) fn connection_at(&self, j: usize, time: f64) -> Option<Connection> {
         self.drive(j, time)
             .fold(None, |found: Option<Connection>, what| match what {
@@ -149,7 +149,7 @@ impl Parts {
         now
     }
 
-    /// How much more than where it stands the encoder of joint `j` says.
+    /// The error of the encoder of joint `j` (rad or m).
     pub(super) fn encoder(&self, j: usize, time: f64) -> f64 {
         let offset = |what: &What| {
             if let What::Encoder(_, offset) = what {
@@ -179,7 +179,7 @@ impl Parts {
         dry.any(|(law, _)| law.feels_rigid_load())
     }
 
-    /// Joint, other joint and inertia of the drives that two joints turn.
+    /// Joint, other joint and inertia of the drives that two joints move.
     pub(super) fn couplings(&self, time: f64) -> impl Iterator<Item = (usize, usize, f64)> {
         let there = self.couplings.iter().filter(move |coupling| time >= coupling.3);
         there.map(|&(j, o, inertia, _)| (j, o, inertia))

@@ -1,4 +1,4 @@
-//! The machine against inverse dynamics, and what each part does to it.
+//! The machine against inverse dynamics, and the influence of each part on it.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -21,8 +21,8 @@ fn run(robot: &Robot, effects: &[Injected], reference: &Reference) -> Run {
     run.unwrap_or_else(|error| panic!("{effects:?}: {error}"))
 }
 
-/// The drives report the torque of the motion by inverse dynamics, to 0.2 % of its standard deviation below 20 Hz: step, hold
-/// and loop cause no larger error.
+/// The drives report the torque of the motion by inverse dynamics, to 0.2 % of its standard deviation below 20 Hz:
+/// step, hold and loop cause no larger error.
 #[test]
 fn an_empty_machine_costs_the_rigid_torque() {
     for robot in [puma(), seven_axis()] {
@@ -36,14 +36,14 @@ fn an_empty_machine_costs_the_rigid_torque() {
     }
 }
 
-/// A fault at a robust size, on axis 4 of the arm with seven axes or on all of it.
+/// A fault of a clearly detectable size, on axis 4 of the arm with seven axes or on the whole arm.
 fn robust(name: &str) -> Injected {
     let fault = Fault::named(name).expect("there is such a fault");
     let joint = (fault.place != Place::WholeArm).then_some("axis4");
     (fault.example)(Injected::new(name, joint))
 }
 
-/// Every effect, in every form, adds a part of the torque, which differs from that of any other form.
+/// Every effect, in every form, changes the torque, and differently from any other form.
 #[test]
 fn every_effect_in_every_form_changes_the_torque() {
     let robot = seven_axis();
@@ -91,7 +91,7 @@ fn an_onset_parts_two_machines() {
         let time = reference.time(first.expect("they part") / robot.arm().dof());
         assert!((0.999..1.05).contains(&time), "{name}: {time}");
     }
-    // The rotor of a drive that tears loose turned with its link before.
+    // The rotor of a drive whose connection fails moved with its link before.
     let mut gap = robust("backlash");
     gap.onset = Some(1.0);
     let without = Machine::new(&robot, &[&gap], Some(0)).expect("it fits");
@@ -102,7 +102,7 @@ fn an_onset_parts_two_machines() {
     assert!((0.999..1.05).contains(&time), "{time}");
 }
 
-/// Signs and sizes of what is reported: an offset and a scale as such, a contact as −Jᵀ F, held at rest.
+/// Signs and sizes of reported torques at rest: an offset and a scale directly, a contact as −Jᵀ F.
 #[test]
 fn what_is_reported_is_what_the_catalogue_says() {
     let robot = seven_axis();
@@ -112,7 +112,7 @@ fn what_is_reported_is_what_the_catalogue_says() {
         *q = [0.1, 0.4, -0.2, 0.5, 0.3, -0.4, 0.2][k % n];
     }
     let reference = Reference::new(robot.arm(), 0.0, reference.q);
-    // It sags in its position loop: the torque at rest is that of where it stands.
+    // The arm deflects in its position loop: the torque at rest is that of its actual pose.
     let at_rest = |effect: &Injected| -> (Vec<f64>, Vec<f64>, Vec<f64>) {
         let run = run(&robot, std::slice::from_ref(effect), &reference);
         let mut plain = vec![0.0; n];
@@ -146,7 +146,7 @@ fn what_is_reported_is_what_the_catalogue_says() {
     }
 }
 
-/// Dry friction that differs by direction is an offset beside dry friction, in motion and at rest: one machine.
+/// Dry friction that differs by direction is equivalent to an offset and dry friction, in motion and at rest.
 #[test]
 fn asymmetry_and_offset_give_one_recording() {
     let robot = seven_axis();
@@ -156,7 +156,7 @@ fn asymmetry_and_offset_give_one_recording() {
         .with("negative", 1.0);
     let level = Injected::new("coulomb_friction", joint).with("level", 1.5);
     let offset = Injected::new("torque_offset", joint).with("offset", 0.5);
-    // Moving, and then held.
+    // In motion, and then at rest.
     let mut reference = reference(&robot).cut(4.0);
     let (n, half) = (robot.arm().dof(), reference.q.len() / 2);
     let held: Vec<f64> = reference.q[half - n..half].to_vec();
@@ -165,7 +165,7 @@ fn asymmetry_and_offset_give_one_recording() {
         .enumerate()
         .for_each(|(k, q)| *q = held[k % n]);
     let reference = Reference::new(robot.arm(), 0.0, reference.q);
-    // Always, and from halfway of the motion on.
+    // From the start, and from the middle of the motion on.
     for onset in [None, Some(1.0)] {
         let [mut uneven, mut offset] = [uneven.clone(), offset.clone()];
         (uneven.onset, offset.onset) = (onset, onset);
