@@ -42,11 +42,7 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::ON_A_JOINT
 };
 
-/// The additional friction at low speed: extra e^(−
-///
-/// v/velocity
-///
-/// ^exponent).
+/// The additional friction at low speed: extra e^(−|v/velocity|^exponent).
 struct Fading {
     extra: f64,
     velocity: f64,

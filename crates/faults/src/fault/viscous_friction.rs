@@ -23,11 +23,7 @@ pub(crate) fn coefficient(spread: f64, random: &mut ChaCha8Rng) -> f64 {
     spread * log_uniform(0.1, 0.5, random)
 }
 
-/// The torque coefficient sgn(v)
-///
-/// v
-///
-/// ^exponent.
+/// The torque coefficient sgn(v) |v|^exponent.
 pub(super) struct Power {
     pub coefficient: f64,
     pub exponent: f64,
