@@ -67,10 +67,10 @@ impl Format for Rosbag2 {
     }
 }
 
-/// The remedy for a folder that is not a bag: bags and files below it.
+/// The remedy for a folder that is not a bag; it names a recording below the folder if there is one.
 fn no_bag(folder: &Path) -> String {
     const DEPTH: usize = 4;
-    /// If a level has several folders, those of a data set are not the last level.
+    /// The largest number of folders that are searched on each level.
     const FOLDERS: usize = 64;
     let mut level = vec![folder.to_owned()];
     for _ in 0..DEPTH {
