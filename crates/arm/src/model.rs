@@ -105,6 +105,25 @@ impl Inertia {
             i[(2, 2)],
         ]
     }
+
+    /// The `<inertial>` element of this body in a URDF. The numbers read back to the same bits.
+    pub fn to_urdf(&self) -> String {
+        let (c, i) = (self.com, self.tensor);
+        format!(
+            "<inertial><origin xyz=\"{} {} {}\" rpy=\"0 0 0\"/><mass value=\"{}\"/><inertia ixx=\"{}\" ixy=\"{}\" \
+             ixz=\"{}\" iyy=\"{}\" iyz=\"{}\" izz=\"{}\"/></inertial>",
+            c.x,
+            c.y,
+            c.z,
+            self.mass,
+            i[(0, 0)],
+            i[(0, 1)],
+            i[(0, 2)],
+            i[(1, 1)],
+            i[(1, 2)],
+            i[(2, 2)]
+        )
+    }
 }
 
 /// A body as the algorithms use it: the moments of its mass about its link frame's origin.

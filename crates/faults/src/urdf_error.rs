@@ -36,7 +36,7 @@ pub(crate) fn perturbed(urdf: &str, sigma: f64, random: &mut ChaCha8Rng) -> Resu
     for (place, body) in inertials(urdf)? {
         if body.mass > 0.0 {
             text.push_str(&urdf[at..place.start]);
-            text.push_str(&element(&disturbed(&body, sigma, random)));
+            text.push_str(&disturbed(&body, sigma, random).to_urdf());
             at = place.end;
         }
     }
@@ -67,31 +67,12 @@ pub(crate) fn with_tool(urdf: &str, on: &str, tool: &Inertia) -> Result<String, 
         .find(|name| !urdf.contains(&format!("\"{name}\"")))
         .unwrap_or_default();
     let (before, after) = urdf.split_at(end);
-    let inertial = element(tool);
+    let inertial = tool.to_urdf();
     let weld =
         format!("<joint name=\"{name}_weld\" type=\"fixed\"><parent link=\"{on}\"/><child link=\"{name}\"/></joint>");
     Ok(format!(
         "{before}  <link name=\"{name}\">{inertial}</link>\n  {weld}\n{after}"
     ))
-}
-
-/// The `<inertial>` of a body in its link's frame.
-fn element(body: &Inertia) -> String {
-    let (c, i) = (body.com, body.tensor);
-    format!(
-        "<inertial><origin xyz=\"{} {} {}\" rpy=\"0 0 0\"/><mass value=\"{}\"/><inertia ixx=\"{}\" ixy=\"{}\" ixz=\"{}\" iyy=\"{}\" \
-         iyz=\"{}\" izz=\"{}\"/></inertial>",
-        c.x,
-        c.y,
-        c.z,
-        body.mass,
-        i[(0, 0)],
-        i[(0, 1)],
-        i[(0, 2)],
-        i[(1, 1)],
-        i[(1, 2)],
-        i[(2, 2)]
-    )
 }
 
 /// An inertial being read.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use arm::{Arm, Vector3};
+use arm::{Arm, Inertia, Vector3};
 use nalgebra::{Matrix3, Rotation3};
 use proptest::prelude::*;
 
@@ -109,20 +109,8 @@ fn inertial(body: &Body, cut: Option<Origin>) -> String {
         com = inverse * (com - Vector3::from(xyz));
         tensor = inverse * tensor * inverse.transpose();
     }
-    format!(
-        "<inertial><origin xyz=\"{} {} {}\"/><mass value=\"{}\"/><inertia ixx=\"{}\" ixy=\"{}\" ixz=\"{}\" iyy=\"{}\" \
-         iyz=\"{}\" izz=\"{}\"/></inertial>",
-        com.x,
-        com.y,
-        com.z,
-        body.mass,
-        tensor[(0, 0)],
-        tensor[(0, 1)],
-        tensor[(0, 2)],
-        tensor[(1, 1)],
-        tensor[(1, 2)],
-        tensor[(2, 2)]
-    )
+    let mass = body.mass;
+    Inertia { mass, com, tensor }.to_urdf()
 }
 
 /// The arm as URDF.
