@@ -70,7 +70,7 @@ impl Campaign {
                 _ => {
                     let sizes: &[usize] = if lifelike { &[1, 2, 2, 3, 3, 5] } else { &[1, 2, 2, 3] };
                     let size = sizes.choose(&mut random).copied().unwrap_or(1);
-                    families.hand(size, &mut random)
+                    families.next_names(size, &mut random)
                 }
             };
             effects.push((names, lifelike));
@@ -147,13 +147,13 @@ impl Deck {
     }
 
     /// The next `size` names that may occur together; names that may not are kept for later.
-    fn hand(&mut self, size: usize, random: &mut impl Rng) -> Vec<String> {
+    fn next_names(&mut self, size: usize, random: &mut impl Rng) -> Vec<String> {
         self.fill(3 * self.names.len(), random);
         let mut hand: Vec<&str> = Vec::new();
         let mut place = 0;
         while hand.len() < size {
             let next = self.left[place];
-            let alike = |name: &str| Fault::named(name).and_then(|fault| fault.alone_among);
+            let alike = |name: &str| Fault::named(name).and_then(|fault| fault.similar_faults);
             let clashes = |held: &&str| *held == next || (alike(next).is_some() && alike(held) == alike(next));
             if hand.iter().any(clashes) {
                 place += 1;

@@ -1,7 +1,7 @@
 //! The true machine of a case under an external controller.
 
 use crate::error::FaultError;
-use crate::machine::{Begin, Inverse, LinkMotion, Machine, Seen};
+use crate::machine::{Begin, Inverse, LinkMotion, Machine, Measured};
 use crate::robot::Robot;
 use crate::truth::{Injected, Truth};
 
@@ -38,7 +38,11 @@ impl<'a> CaseMachine<'a> {
             let reason = format!("{case} is of the robot \"{its}\", not of \"{name}\"; give the robot it was drawn on");
             return Err(FaultError::Setting(reason));
         }
-        let effects: Vec<&Injected> = truth.concealed.iter().filter(|effect| !robot.brings(effect)).collect();
+        let effects: Vec<&Injected> = truth
+            .concealed
+            .iter()
+            .filter(|effect| !robot.has_by_itself(effect))
+            .collect();
         Ok(Self {
             machine: Machine::new(robot, &effects, None)?,
             robot,
@@ -60,7 +64,7 @@ impl<'a> CaseMachine<'a> {
         start: f64,
         q: &[f64],
         ticks: usize,
-        mut controller: impl FnMut(&Seen<'_>, &mut [f64]),
+        mut controller: impl FnMut(&Measured<'_>, &mut [f64]),
     ) -> Result<Driven, FaultError> {
         let arm = self.robot.arm();
         let mut holding = vec![0.0; arm.dof()];
@@ -93,7 +97,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::motion::{LEAD, excitation};
+    use crate::motion::{LEAD_TICKS, excitation};
     use crate::test_robots::{puma, seven_axis};
 
     fn truth(robot: &Robot, concealed: Vec<Injected>) -> Truth {
@@ -115,7 +119,7 @@ mod tests {
     /// machine's own laws.
     fn errors(robot: &Robot, concealed: Vec<Injected>) -> [f64; 2] {
         let machine = CaseMachine::new(robot, &truth(robot, concealed)).expect("the effects fit");
-        let reference = excitation(robot, 60.0, &mut ChaCha8Rng::seed_from_u64(5)).cut(4.0);
+        let reference = excitation(robot, 60.0, &mut ChaCha8Rng::seed_from_u64(5)).first_seconds(4.0);
         let n = robot.arm().dof();
         let start = reference.time(0);
         let inverse = machine.inverse(&LinkMotion {
@@ -138,8 +142,9 @@ mod tests {
                     }
                 })
                 .expect("it can be driven");
-            let squares = driven.links.iter().zip(&reference.q).skip(n * LEAD);
-            (squares.map(|(q, wanted)| (wanted - q).powi(2)).sum::<f64>() / (reference.ticks() - LEAD) as f64).sqrt()
+            let squares = driven.links.iter().zip(&reference.q).skip(n * LEAD_TICKS);
+            (squares.map(|(q, wanted)| (wanted - q).powi(2)).sum::<f64>() / (reference.ticks() - LEAD_TICKS) as f64)
+                .sqrt()
         })
     }
 

@@ -11,8 +11,8 @@ mod real_life;
 mod search;
 mod stage;
 
-pub(crate) use stage::{AGAIN, TRAINING};
 use stage::{Kind, Stage, Stream, random};
+pub(crate) use stage::{RECORD_AGAIN, TRAINING};
 
 /// Recordings of a machine with injected faults, and the ground truth.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,7 +115,7 @@ pub fn conceal_effects(
                 "its onset is {onset} s; the recordings are from 0 to {last:.0} s: give a time in them, or none"
             ));
         }
-        if effects[..k].iter().any(|other| other.is_again(effect)) {
+        if effects[..k].iter().any(|other| other.is_same_effect(effect)) {
             return fail("is given twice on one joint; one is one effect".into());
         }
     }

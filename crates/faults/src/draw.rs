@@ -17,7 +17,7 @@ const LOADED: f64 = 0.5;
 const TORQUE_CONSTANT: f64 = 0.05;
 /// The smallest drawn factor, in standard deviations of torque constants and of the URDF's errors combined, so that it
 /// can be distinguished from these.
-const BEYOND: f64 = 2.0;
+const LEAST_DEVIATIONS: f64 = 2.0;
 
 /// The probability of an onset for faults that may have one.
 const ONSET: f64 = 0.12;
@@ -94,8 +94,8 @@ impl Scales<'_> {
             joint,
         };
         let mut drawn = (fault.draw)(bare, &site, random);
-        let sets_in = random.random_bool(ONSET);
-        if sets_in && fault.sets_in && drawn.leaves() != Leaves::Tool {
+        let may_have_onset = random.random_bool(ONSET);
+        if may_have_onset && fault.may_have_onset && drawn.leaves() != Leaves::Tool {
             let (from, to) = self.span;
             drawn.onset = Some(from + (to - from) * random.random_range(0.3..0.7));
         }
@@ -134,7 +134,7 @@ impl<'a> Site<'a> {
     /// be distinguished from these errors.
     pub(crate) fn factor(&self, parts: Range<f64>, bodies: f64, random: &mut ChaCha8Rng) -> f64 {
         let constant = if self.lifelike { TORQUE_CONSTANT } else { 0.0 };
-        let least = BEYOND * constant.hypot(self.scales.urdf_error / bodies.sqrt());
+        let least = LEAST_DEVIATIONS * constant.hypot(self.scales.urdf_error / bodies.sqrt());
         let parts = parts.start.max(least)..parts.end.max(1.5 * least);
         let (part, sign) = (random.random_range(parts), sign(random));
         if sign > 0.0 { 1.0 + part } else { 1.0 / (1.0 + part) }
@@ -164,7 +164,7 @@ impl<'a> Site<'a> {
 }
 
 /// `bare` in another form than the first, with a probability of one half.
-pub(crate) fn sometimes(bare: Injected, form: &str, random: &mut ChaCha8Rng) -> Injected {
+pub(crate) fn perhaps_in_form(bare: Injected, form: &str, random: &mut ChaCha8Rng) -> Injected {
     if random.random_bool(0.5) {
         bare.formed(form)
     } else {

@@ -8,12 +8,12 @@ pub(crate) type Torques = Vec<Vec<f64>>;
 
 /// The torques `tau[tick × dof + joint]` at ticks of `period` (s), filtered to below 20 Hz, without the first `skip`
 /// ticks; and the largest share, over the joints, of the torque above that frequency.
-pub(crate) fn smooth(tau: &[f64], dof: usize, period: f64, skip: usize) -> (Torques, f64) {
+pub(crate) fn low_passed(tau: &[f64], dof: usize, period: f64, skip: usize) -> (Torques, f64) {
     let mut above: f64 = 0.0;
     let joints = (0..dof).map(|j| {
         let raw: Vec<f64> = tau.iter().skip(j).step_by(dof).copied().collect();
         let mut low = raw.clone();
-        Biquad::low_pass(CUTOFF * period).both_ways(&mut low);
+        Biquad::low_pass(CUTOFF * period).filter_both_ways(&mut low);
         let rest: Vec<f64> = raw.iter().zip(&low).map(|(raw, low)| raw - low).skip(skip).collect();
         low.drain(..skip);
         above = above.max(deviation(&rest) / deviation(&low).max(f64::MIN_POSITIVE));
@@ -70,7 +70,7 @@ impl Biquad {
 
     /// Filters forwards and backwards, so that there is no phase shift; it starts at rest at the first and at the last
     /// value.
-    fn both_ways(&self, values: &mut [f64]) {
+    fn filter_both_ways(&self, values: &mut [f64]) {
         self.pass(values.iter_mut());
         self.pass(values.iter_mut().rev());
     }
@@ -99,10 +99,10 @@ mod tests {
                 .collect()
         };
         let (slow, fast) = (wave(1.0), wave(200.0));
-        let (low, above) = smooth(&slow, 1, 1e-3, 0);
+        let (low, above) = low_passed(&slow, 1, 1e-3, 0);
         let middle = 1000..3000;
         assert!(middle.clone().all(|k| (low[0][k] - slow[k]).abs() < 1e-3) && above < 0.01);
-        assert!(smooth(&fast, 1, 1e-3, 0).1 > 10.0);
+        assert!(low_passed(&fast, 1, 1e-3, 0).1 > 10.0);
     }
 
     #[test]

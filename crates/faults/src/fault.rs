@@ -101,17 +101,17 @@ pub(crate) struct Fault {
     /// Whether a robot can have it.
     pub can_be_on: fn(&Robot) -> bool,
     /// Whether it may begin at an onset when it is drawn.
-    pub sets_in: bool,
+    pub may_have_onset: bool,
     /// Its group: faults of one group are not drawn together, because they cannot be distinguished.
-    pub alone_among: Option<Alike>,
+    pub similar_faults: Option<SimilarFaults>,
     /// The part of it that remains when it is removed.
     pub leaves: Leaves,
     /// Whether it is a constant torque, so that the mean of the torque counts in its share.
     pub is_constant: bool,
     /// Whether there may be several on one joint.
-    pub may_be_several: bool,
+    pub may_repeat: bool,
     /// Whether it may make the position loop oscillate.
-    pub rattles: bool,
+    pub may_oscillate: bool,
     /// How it is scaled.
     pub size: Size,
     /// Draws a form and parameters that a robot could have.
@@ -139,7 +139,7 @@ pub(crate) enum Place {
 
 /// Groups of similar faults.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Alike {
+pub(crate) enum SimilarFaults {
     BetweenCommandAndLink,
     Scales,
 }
@@ -176,12 +176,12 @@ impl Fault {
         forms: &[],
         form_parameters: &[],
         can_be_on: |_| true,
-        sets_in: false,
-        alone_among: None,
+        may_have_onset: false,
+        similar_faults: None,
         leaves: Leaves::Nothing,
         is_constant: false,
-        may_be_several: false,
-        rattles: false,
+        may_repeat: false,
+        may_oscillate: false,
         size: Size::AsDrawn,
         draw: |bare, _, _| bare,
         read: |_| Ok(Vec::new()),
@@ -196,7 +196,7 @@ impl Fault {
 
     const OUTSIDE_THE_CATALOGUE: Self = Self {
         is_outside: true,
-        may_be_several: true,
+        may_repeat: true,
         size: Size::Times(&["amplitude"]),
         ..Self::ON_A_JOINT
     };
@@ -261,10 +261,10 @@ mod prelude {
     pub(super) use rand_distr::{Distribution, StandardNormal};
     pub(super) use serde_json::{Value, json};
 
-    pub(super) use super::{Alike, Fault, Leaves, Place, Reader, Size};
-    pub(super) use crate::draw::{log_uniform, sign, sometimes};
+    pub(super) use super::{Fault, Leaves, Place, Reader, SimilarFaults, Size};
+    pub(super) use crate::draw::{log_uniform, perhaps_in_form, sign};
     pub(super) use crate::error::FaultError;
-    pub(super) use crate::part::{At, Body, Connection, DriveLaw, DryAt, DryLaw, DrySum, LinkLaw, Piece, What};
+    pub(super) use crate::part::{At, Body, Connection, DriveLaw, DryAt, DryLaw, DrySum, LinkLaw, Piece, Property};
     pub(super) use crate::pseudo_inertia::moved;
     pub(super) use crate::robot::has_another_joint;
 }

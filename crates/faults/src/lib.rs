@@ -33,7 +33,7 @@ pub use case_machine::{CaseMachine, Driven};
 pub use conceal::{Concealment, RATES, Settings, conceal_case, conceal_effects};
 pub use error::FaultError;
 pub use fault::{catalogue, families, form_parameters, outside};
-pub use machine::{Inverse, LinkMotion, Seen, VelocityFilter};
+pub use machine::{Inverse, LinkMotion, Measured, VelocityFilter};
 pub use motion::{DURATION, PAUSE};
 pub use record_again::record_again;
 pub use robot::Robot;

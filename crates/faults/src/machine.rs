@@ -16,7 +16,7 @@ mod inverse;
 mod parts;
 
 pub(crate) use control_law::Begin;
-pub use control_law::Seen;
+pub use control_law::Measured;
 use control_law::{ControlLaw, PositionLoop};
 pub(crate) use drive::LONGEST_DELAY;
 pub use drive::VelocityFilter;
@@ -30,7 +30,7 @@ pub(crate) const TICK: f64 = 1e-3;
 /// rapier's plain step, which the diagnosis' own simulation does not use.
 const ORDER: usize = 1;
 /// The largest allowed distance of a joint from its reference (rad or m).
-pub(crate) const FURTHEST: f64 = 0.35;
+pub(crate) const LARGEST_ERROR: f64 = 0.35;
 /// Time constant of the low-pass filter of the drive torque on which friction depends (s).
 const LOAD_FILTER: f64 = 0.02;
 
@@ -86,9 +86,9 @@ impl<'a> Machine<'a> {
         let names = self.robot.arm().joints();
         for (k, (q, wanted)) in run.q.iter().zip(&reference.q).enumerate() {
             let by = (q - wanted).abs();
-            if by.is_nan() || by > FURTHEST {
+            if by.is_nan() || by > LARGEST_ERROR {
                 let joint = names[k % names.len()].name.clone();
-                let most = FURTHEST;
+                let most = LARGEST_ERROR;
                 return Err(FaultError::Lost { joint, by, most });
             }
         }
@@ -233,7 +233,7 @@ impl<'a> Simulation<'a> {
         self.plant = Plant::new(&arm, &options())?;
         self.plant.set_state(&q, &qd)?;
         self.arm = arm;
-        self.friction.forget();
+        self.friction.reset();
         self.next_change = self.parts.next_change(time);
         Ok(())
     }
@@ -244,27 +244,29 @@ impl<'a> Simulation<'a> {
             self.change(time, false)?;
         }
         for j in 0..n {
-            let position = self.rotors[j].as_ref().map_or(self.plant.q()[j], Rotor::seen);
+            let position = self.rotors[j]
+                .as_ref()
+                .map_or(self.plant.q()[j], Rotor::encoder_position);
             let drive = &mut self.drives[j];
-            drive.sense(position + self.parts.encoder(j, time), self.quantum);
+            drive.read_encoder(position + self.parts.encoder(j, time), self.quantum);
             (self.sensed[0][j], self.sensed[1][j]) = (drive.sensed.position, drive.sensed.velocity);
         }
         let [q, qd] = &self.sensed;
-        law.command(&Seen { tick, q, qd }, &mut self.commands);
+        law.command(&Measured { tick, q, qd }, &mut self.commands);
         for (drive, command) in self.drives.iter_mut().zip(&self.commands) {
             drive.take(*command);
         }
         self.run.q.extend_from_slice(q);
         self.run.qd.extend_from_slice(qd);
         self.run.tau.extend_from_slice(&self.commands);
-        self.feel_loads();
+        self.update_rigid_loads();
         for j in 0..n {
             self.net[j] = self.joint_torque(j, time);
         }
         self.add_link_side(time);
         self.add_contacts(time);
-        self.couple(time)?;
-        self.rub();
+        self.add_coupled_inertia(time)?;
+        self.add_dry_friction();
         self.plant.step(&self.net)?;
         for j in 0..n {
             self.qdd[j] = (self.plant.qd()[j] - self.qd_before[j]) / TICK;
@@ -274,8 +276,8 @@ impl<'a> Simulation<'a> {
     }
 
     /// The rigid torques on which load-dependent friction depends.
-    fn feel_loads(&mut self) {
-        if !self.parts.feels_rigid_load() {
+    fn update_rigid_loads(&mut self) {
+        if !self.parts.depends_on_rigid_load() {
             return;
         }
         self.arm.inverse_dynamics(
@@ -301,7 +303,7 @@ impl<'a> Simulation<'a> {
             Some(rotor) => {
                 let friction = dry(rotor.velocity);
                 self.levels[j] = 0.0;
-                let net = applied - smooth(rotor.seen(), rotor.velocity) - friction.bias;
+                let net = applied - smooth(rotor.encoder_position(), rotor.velocity) - friction.bias;
                 rotor.advance(net, friction.level, q, v)
             }
             None => {
@@ -347,12 +349,12 @@ impl<'a> Simulation<'a> {
 
     /// Drives that are moved by two joints. Their inertia acts through the accelerations, which are found by iteration
     /// from those of the last tick.
-    fn couple(&mut self, time: f64) -> Result<(), FaultError> {
+    fn add_coupled_inertia(&mut self, time: f64) -> Result<(), FaultError> {
         let parts = self.parts;
         if !parts.couplings(time).any(|(_, _, inertia)| inertia != 0.0) {
             return Ok(());
         }
-        let couple = |net: &[f64], qdd: &[f64]| {
+        let add_coupled_inertia = |net: &[f64], qdd: &[f64]| {
             let mut coupled = net.to_vec();
             for (j, o, inertia) in parts.couplings(time) {
                 coupled[j] -= inertia * qdd[o];
@@ -360,7 +362,7 @@ impl<'a> Simulation<'a> {
             }
             coupled
         };
-        let first = couple(&self.net, &self.qdd);
+        let first = add_coupled_inertia(&self.net, &self.qdd);
         // With the dry friction of the last tick, because that of this tick is not known yet.
         let rubbed: Vec<f64> = first
             .iter()
@@ -369,20 +371,20 @@ impl<'a> Simulation<'a> {
             .collect();
         let mut qdd = self.qdd.clone();
         self.plant.accelerations(&rubbed, &mut qdd)?;
-        self.net = couple(&self.net, &qdd);
+        self.net = add_coupled_inertia(&self.net, &qdd);
         Ok(())
     }
 }
 
 impl Simulation<'_> {
     /// Adds the dry friction of joints whose rotor is rigidly connected to the link.
-    fn rub(&mut self) {
+    fn add_dry_friction(&mut self) {
         if self.levels.iter().all(|&level| level == 0.0) {
             return;
         }
         let state = [self.plant.q(), self.plant.qd()];
         self.friction
-            .find(&self.arm, &mut self.workspace, state, &self.net, &self.levels);
+            .solve(&self.arm, &mut self.workspace, state, &self.net, &self.levels);
         for (net, torque) in self.net.iter_mut().zip(&self.friction.torques) {
             *net += torque;
         }

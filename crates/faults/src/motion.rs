@@ -14,9 +14,9 @@ pub const DURATION: f64 = 25.0;
 /// See [`DURATION`].
 pub const PAUSE: f64 = 5.0;
 /// The number of ticks that the loop runs before a recording begins.
-pub(crate) const LEAD: usize = 500;
+pub(crate) const LEAD_TICKS: usize = 500;
 /// The largest shares of a joint's velocity and effort limits that a motion may use.
-const WITHIN: f64 = 0.8;
+const LIMIT_SHARE: f64 = 0.8;
 /// The highest velocity of an excitation where a joint has no limit (rad/s or m/s).
 const FASTEST: f64 = 2.2;
 
@@ -41,7 +41,7 @@ impl Reference {
 
     /// The time of a tick (s, on the recordings' clock).
     pub(crate) fn time(&self, tick: usize) -> f64 {
-        self.start + (tick as f64 - LEAD as f64) * TICK
+        self.start + (tick as f64 - LEAD_TICKS as f64) * TICK
     }
 
     pub(crate) fn new(arm: &Arm, start: f64, q: Vec<f64>) -> Self {
@@ -64,8 +64,8 @@ impl Reference {
     }
 
     /// Its first `seconds` seconds.
-    pub(crate) fn cut(mut self, seconds: f64) -> Self {
-        let length = (LEAD + (seconds / TICK) as usize) * self.dof;
+    pub(crate) fn first_seconds(mut self, seconds: f64) -> Self {
+        let length = (LEAD_TICKS + (seconds / TICK) as usize) * self.dof;
         for values in [&mut self.q, &mut self.qd, &mut self.qdd, &mut self.ff] {
             values.truncate(length);
         }
@@ -78,7 +78,7 @@ impl Reference {
         let torques = self.ff.iter().zip(&self.qdd).enumerate();
         torques.into_iter().all(|(k, (ff, qdd))| {
             let j = k % self.dof;
-            (ff + robot.rotor_inertias()[j] * qdd).abs() <= WITHIN * joints[j].limits.effort
+            (ff + robot.rotor_inertias()[j] * qdd).abs() <= LIMIT_SHARE * joints[j].limits.effort
         })
     }
 }
@@ -120,7 +120,7 @@ fn reach(robot: &Robot, j: usize, most: f64) -> f64 {
 }
 
 fn ticks() -> usize {
-    LEAD + (DURATION / TICK).round() as usize + 1
+    LEAD_TICKS + (DURATION / TICK).round() as usize + 1
 }
 
 /// Five harmonics of 0.08 to 0.13 Hz on every joint at the same time, faded in, within the joints' limits.
@@ -137,7 +137,7 @@ pub(crate) fn excitation(robot: &Robot, start: f64, random: &mut impl Rng) -> Re
             let amplitude = normal / h.powf(random.random_range(0.1..0.6));
             let phase = random.random_range(0.0..TAU);
             for (tick, value) in wave.iter_mut().enumerate() {
-                let time = (tick as f64 - LEAD as f64) * TICK;
+                let time = (tick as f64 - LEAD_TICKS as f64) * TICK;
                 *value += amplitude * (TAU * base * h * time + phase).sin();
             }
         }
@@ -154,19 +154,19 @@ pub(crate) fn excitation(robot: &Robot, start: f64, random: &mut impl Rng) -> Re
             .windows(2)
             .map(|pair| (pair[1] - pair[0]).abs() / TICK)
             .fold(0.0, f64::max);
-        let fastest = FASTEST.min(WITHIN * robot.arm().joints()[j].limits.velocity);
+        let fastest = FASTEST.min(LIMIT_SHARE * robot.arm().joints()[j].limits.velocity);
         let scale = span.min(fastest / speed);
         for (tick, value) in wave.iter().enumerate() {
-            let ramp = ease((tick as f64 - LEAD as f64) * TICK / 2.0);
+            let ramp = ease((tick as f64 - LEAD_TICKS as f64) * TICK / 2.0);
             waves[tick * n + j] = ramp * scale * (value - 0.5 * (least + most));
         }
     }
-    shrunk(robot, start, &centers, &waves)
+    reduced_to_limits(robot, start, &centers, &waves)
 }
 
 /// The motion `waves` about `centers`, reduced until the drives can follow it; a load that they cannot hold at rest is
 /// not reduced.
-fn shrunk(robot: &Robot, start: f64, centers: &[f64], waves: &[f64]) -> Reference {
+fn reduced_to_limits(robot: &Robot, start: f64, centers: &[f64], waves: &[f64]) -> Reference {
     let mut size = 1.0;
     loop {
         let place = |(k, wave): (usize, &f64)| centers[k % centers.len()] + size * wave;
@@ -193,7 +193,7 @@ pub(crate) fn pick_and_place(robot: &Robot, start: f64, random: &mut impl Rng) -
             waves.extend_from_slice(at);
         }
     };
-    rest(&mut waves, &at, LEAD + random.random_range(0..200));
+    rest(&mut waves, &at, LEAD_TICKS + random.random_range(0..200));
     while waves.len() < ticks() * n {
         let next: Vec<f64> = reaches
             .iter()
@@ -202,7 +202,7 @@ pub(crate) fn pick_and_place(robot: &Robot, start: f64, random: &mut impl Rng) -
         let mut time: f64 = random.random_range(1.1..2.3);
         for j in 0..n {
             // The peak velocity of either profile is below twice its mean.
-            let fastest = WITHIN * robot.arm().joints()[j].limits.velocity;
+            let fastest = LIMIT_SHARE * robot.arm().joints()[j].limits.velocity;
             time = time.max(2.0 * (next[j] - at[j]).abs() / fastest);
         }
         let length = (time / TICK).round() as usize;
@@ -217,7 +217,7 @@ pub(crate) fn pick_and_place(robot: &Robot, start: f64, random: &mut impl Rng) -
         rest(&mut waves, &at, random.random_range(300..1000));
     }
     waves.truncate(ticks() * n);
-    shrunk(robot, start, robot.home(), &waves)
+    reduced_to_limits(robot, start, robot.home(), &waves)
 }
 
 /// A profile from 0 to 1 with constant velocity in the middle; acceleration and deceleration each take the share

@@ -12,19 +12,19 @@ use crate::fault::external_contact::Contact;
 pub(crate) struct Part {
     /// Time on the recordings' clock (s); minus infinity if it is present from the start.
     pub onset: f64,
-    pub what: What,
+    pub what: Property,
 }
 
 /// One property that a fault adds to the machine.
 pub(crate) struct Piece {
-    pub what: What,
+    pub what: Property,
     /// In which of the two machines it is.
-    pub there: There,
+    pub there: Presence,
 }
 
 /// Where a piece is present: in the machine with the fault, in the one without it, or in both.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum There {
+pub(crate) enum Presence {
     /// In the machine with the fault, from its onset on.
     With,
     /// In both machines, from the start.
@@ -35,7 +35,7 @@ pub(crate) enum There {
 }
 
 /// The property itself, with its joint.
-pub(crate) enum What {
+pub(crate) enum Property {
     Dry(usize, Box<dyn DryLaw>),
     Drive(usize, Box<dyn DriveLaw>),
     Link(usize, Box<dyn LinkLaw>),
@@ -54,29 +54,29 @@ pub(crate) enum What {
     Contact(Contact),
 }
 
-impl What {
+impl Property {
     /// A piece that remains when its fault is removed.
-    pub(crate) fn stays(self) -> Piece {
+    pub(crate) fn in_both_machines(self) -> Piece {
         Piece {
             what: self,
-            there: There::Always,
+            there: Presence::Always,
         }
     }
 
     /// A piece that is added when its fault is removed.
-    pub(crate) fn comes_without(self) -> Piece {
+    pub(crate) fn only_without_fault(self) -> Piece {
         Piece {
             what: self,
-            there: There::Without,
+            there: Presence::Without,
         }
     }
 }
 
-impl From<What> for Piece {
-    fn from(what: What) -> Self {
+impl From<Property> for Piece {
+    fn from(what: Property) -> Self {
         Self {
             what,
-            there: There::With,
+            there: Presence::With,
         }
     }
 }
@@ -111,11 +111,11 @@ pub(crate) enum Body {
 impl Body {
     /// The piece that replaces the arm by another one.
     pub(crate) fn changed(change: impl Fn(Arm) -> Arm + Send + Sync + 'static) -> Piece {
-        What::Body(Self::Changed(Box::new(change))).into()
+        Property::Body(Self::Changed(Box::new(change))).into()
     }
 
     /// `arm` with this change. Payloads must come last, because they are not scaled with the links.
-    pub(crate) fn put_into(&self, arm: Arm) -> Arm {
+    pub(crate) fn applied_to(&self, arm: Arm) -> Arm {
         match self {
             Self::Rotor(joint, inertia) => {
                 let mut rotors: Vec<f64> = arm.joints().iter().map(|joint| joint.rotor_inertia).collect();
@@ -134,7 +134,7 @@ pub(crate) trait DryLaw: Send + Sync {
     fn add_to(&self, sum: &mut DrySum, at: &DryAt);
 
     /// Whether it depends on [`DryAt::rigid_load`].
-    fn feels_rigid_load(&self) -> bool {
+    fn depends_on_rigid_load(&self) -> bool {
         false
     }
 }

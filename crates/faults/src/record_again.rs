@@ -5,10 +5,10 @@ use rand_chacha::ChaCha8Rng;
 use recording::Recording;
 
 use crate::campaign::CasePlan;
-use crate::conceal::{AGAIN, TRAINING};
+use crate::conceal::{RECORD_AGAIN, TRAINING};
 use crate::error::FaultError;
 use crate::machine::{Machine, TICK};
-use crate::motion::{LEAD, Reference, start};
+use crate::motion::{LEAD_TICKS, Reference, start};
 use crate::robot::Robot;
 use crate::sensor::Sensors;
 use crate::truth::{Injected, Truth};
@@ -26,15 +26,19 @@ pub fn record_again(
     motion: &mut dyn FnMut(f64, &mut [f64]),
 ) -> Result<Recording, FaultError> {
     let n = robot.arm().dof();
-    let ticks = LEAD + (duration / TICK).round() as usize + 1;
+    let ticks = LEAD_TICKS + (duration / TICK).round() as usize + 1;
     let mut q = vec![0.0; ticks * n];
     for (tick, q) in q.chunks_mut(n).enumerate() {
         // Before the recording, the loop settles at the beginning of the motion.
-        motion((tick as f64 - LEAD as f64).max(0.0) * TICK, q);
+        motion((tick as f64 - LEAD_TICKS as f64).max(0.0) * TICK, q);
     }
     // After the training and held-out recordings.
     let reference = Reference::new(robot.arm(), start(TRAINING[usize::from(plan.hard)] + 1), q);
-    let effects: Vec<&Injected> = truth.concealed.iter().filter(|effect| !robot.brings(effect)).collect();
+    let effects: Vec<&Injected> = truth
+        .concealed
+        .iter()
+        .filter(|effect| !robot.has_by_itself(effect))
+        .collect();
     let run = Machine::new(robot, &effects, None)?.run(&reference, truth.encoder_quantum)?;
     // The factor of friction in that recording is the mean one.
     let real = truth.lifelike.clone().unwrap_or_default();
@@ -49,7 +53,7 @@ pub fn record_again(
         own_clocks: real.own_clocks,
     };
     let mut noise = ChaCha8Rng::seed_from_u64(truth.seed);
-    noise.set_stream(AGAIN);
+    noise.set_stream(RECORD_AGAIN);
     Ok(sensors.record(robot, &reference, &run, &mut noise))
 }
 

@@ -43,7 +43,7 @@ impl Robot {
             home,
             arm,
         };
-        robot.weigh();
+        robot.sample_poses();
         Ok(robot)
     }
 
@@ -86,7 +86,7 @@ impl Robot {
     }
 
     /// Whether an effect of a truth is one of the baseline drive inertias, which are a property of the robot itself.
-    pub(crate) fn brings(&self, effect: &Injected) -> bool {
+    pub(crate) fn has_by_itself(&self, effect: &Injected) -> bool {
         let joints = self.arm.joints().iter().zip(&self.rotors);
         effect.effect == "rotor_inertia"
             && effect.expressed_share.is_none()
@@ -127,7 +127,7 @@ impl Robot {
         self.arm.joints().iter().map(|joint| joint.inertia.mass).sum()
     }
 
-    fn weigh(&mut self) {
+    fn sample_poses(&mut self) {
         let n = self.arm.dof();
         let mut workspace = Workspace::new(&self.arm);
         let mut random = ChaCha8Rng::seed_from_u64(0);

@@ -5,7 +5,7 @@ use rand_distr::{Distribution, StandardNormal};
 use recording::Recording;
 
 use crate::machine::{Run, TICK};
-use crate::motion::{LEAD, Reference};
+use crate::motion::{LEAD_TICKS, Reference};
 use crate::robot::Robot;
 
 /// The largest deviation of a stamp, in standard deviations.
@@ -43,7 +43,7 @@ impl Sensors {
     }
 
     /// A torque rounded to the steps that joint `j` reports.
-    fn counted(&self, j: usize, tau: f64) -> f64 {
+    fn quantised(&self, j: usize, tau: f64) -> f64 {
         match self.torque_quantum.get(j) {
             Some(&step) if step > 0.0 => (tau / step).round() * step,
             _ => tau,
@@ -73,7 +73,7 @@ impl Sensors {
         let mut is_first = true;
         let zero = if self.own_clocks { reference.start } else { 0.0 };
         // The last tick ends the last interval and is not a row.
-        for tick in (LEAD..reference.ticks() - 1).step_by(self.ticks) {
+        for tick in (LEAD_TICKS..reference.ticks() - 1).step_by(self.ticks) {
             let mut normal = || -> f64 { StandardNormal.sample(random) };
             let late = normal().clamp(-MOST_JITTER, MOST_JITTER) * JITTER * self.period();
             for (noise, size) in noise.iter_mut().zip(&self.noise) {
@@ -91,7 +91,7 @@ impl Sensors {
                 let at = tick * n + j;
                 recording.q[j].push(rounded(run.q[at], 5));
                 qd[j].push(rounded(run.qd[at], 4));
-                recording.tau[j].push(significant(self.counted(j, run.tau[at] + noise[j]), 5));
+                recording.tau[j].push(significant(self.quantised(j, run.tau[at] + noise[j]), 5));
             }
         }
         recording.qd = Some(qd);
@@ -155,10 +155,10 @@ mod tests {
         assert_eq!(recording.len(), 6250);
         assert_eq!((recording.time[0], recording.time[6249]), (30.0, 54.996));
         let noise: Vec<f64> = (0..6250)
-            .map(|row| recording.tau[2][row] - run.tau[(LEAD + 4 * row) * n + 2])
+            .map(|row| recording.tau[2][row] - run.tau[(LEAD_TICKS + 4 * row) * n + 2])
             .collect();
         assert!((deviation(&noise) - 0.5).abs() < 0.02, "{}", deviation(&noise));
-        assert!((recording.q[1][100] - run.q[(LEAD + 400) * n + 1]).abs() <= 0.51e-5);
+        assert!((recording.q[1][100] - run.q[(LEAD_TICKS + 400) * n + 1]).abs() <= 0.51e-5);
 
         // Coloured noise has the same size and correlated rows; torques are rounded to steps; a file's own clock
         // begins at zero.
@@ -170,7 +170,7 @@ mod tests {
         });
         assert_eq!((real.time[0], real.time[6249]), (0.0, 24.996));
         let noise: Vec<f64> = (0..6250)
-            .map(|row| real.tau[2][row] - run.tau[(LEAD + 4 * row) * n + 2])
+            .map(|row| real.tau[2][row] - run.tau[(LEAD_TICKS + 4 * row) * n + 2])
             .collect();
         let lagged: f64 = noise.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / 6249.0;
         assert!((deviation(&noise) - 0.5).abs() < 0.06, "{}", deviation(&noise));

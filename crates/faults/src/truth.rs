@@ -149,12 +149,10 @@ impl Injected {
 
     /// Whether `other` is the same effect on the same joint (with the same other joint), and both begin at an onset or
     /// neither does.
-    pub(crate) fn is_again(&self, other: &Self) -> bool {
+    pub(crate) fn is_same_effect(&self, other: &Self) -> bool {
         let with = |injected: &Self| injected.parameters.get("other").cloned();
         let is_same = self.effect == other.effect && self.joint == other.joint && with(self) == with(other);
-        is_same
-            && self.onset.is_some() == other.onset.is_some()
-            && self.fault().is_some_and(|fault| !fault.may_be_several)
+        is_same && self.onset.is_some() == other.onset.is_some() && self.fault().is_some_and(|fault| !fault.may_repeat)
     }
 
     /// Whether it is outside the catalogue.

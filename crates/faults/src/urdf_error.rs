@@ -22,7 +22,7 @@ pub(crate) const SIGMAS: [f64; 4] = [0.0, 0.03, 0.1, 0.3];
 ///
 /// # Errors
 /// [`FaultError::Setting`] if `sigma` is outside its range, or the text cannot be read.
-pub(crate) fn perturbed(urdf: &str, sigma: f64, random: &mut ChaCha8Rng) -> Result<String, FaultError> {
+pub(crate) fn with_inertial_errors(urdf: &str, sigma: f64, random: &mut ChaCha8Rng) -> Result<String, FaultError> {
     if !(0.0..=1.0).contains(&sigma) {
         return Err(FaultError::Setting(format!(
             "the URDF's error is {sigma}; give a number from 0 (exact) to 1"
@@ -36,7 +36,7 @@ pub(crate) fn perturbed(urdf: &str, sigma: f64, random: &mut ChaCha8Rng) -> Resu
     for (place, body) in inertials(urdf)? {
         if body.mass > 0.0 {
             text.push_str(&urdf[at..place.start]);
-            text.push_str(&disturbed(&body, sigma, random).to_urdf());
+            text.push_str(&with_errors(&body, sigma, random).to_urdf());
             at = place.end;
         }
     }
@@ -45,7 +45,7 @@ pub(crate) fn perturbed(urdf: &str, sigma: f64, random: &mut ChaCha8Rng) -> Resu
 }
 
 /// A body like `body` with errors of about `sigma` in all parameters.
-fn disturbed(body: &Inertia, sigma: f64, random: &mut ChaCha8Rng) -> Inertia {
+fn with_errors(body: &Inertia, sigma: f64, random: &mut ChaCha8Rng) -> Inertia {
     let pseudo = PseudoInertia::of(body);
     let normals = Matrix4::from_fn(|_, _| -> f64 { StandardNormal.sample(random) });
     let l = pseudo.radius();
@@ -191,7 +191,7 @@ mod tests {
         for robot in [puma(), seven_axis()] {
             for sigma in [0.03, 0.1, 0.3, 1.0] {
                 for _ in 0..20 {
-                    let text = perturbed(robot.urdf(), sigma, &mut random).expect("it can be");
+                    let text = with_inertial_errors(robot.urdf(), sigma, &mut random).expect("it can be");
                     for (_, body) in inertials(&text).expect("it can be read") {
                         let least = PseudoInertia::of(&body).0.symmetric_eigenvalues().min();
                         let moments = Matrix3::identity() * (0.5 * body.tensor.trace()) - body.tensor;
@@ -219,16 +219,20 @@ mod tests {
             tensor: Matrix3::identity() * 0.02,
         };
         let logs: Vec<f64> = (0..2000)
-            .map(|_| (disturbed(&body, 0.03, &mut random).mass / 3.0).ln())
+            .map(|_| (with_errors(&body, 0.03, &mut random).mass / 3.0).ln())
             .collect();
         let spread = (logs.iter().map(|log| log * log).sum::<f64>() / 2000.0).sqrt();
         assert!((0.05..0.1).contains(&spread), "{spread}");
         let (mut one, mut other) = (ChaCha8Rng::seed_from_u64(1), ChaCha8Rng::seed_from_u64(1));
         let urdf = puma().urdf().to_owned();
-        assert_eq!(perturbed(&urdf, 0.0, &mut one).expect("it can be"), urdf);
-        let [first, second] = [&mut one, &mut other].map(|random| perturbed(&urdf, 0.1, random).expect("it can be"));
+        assert_eq!(with_inertial_errors(&urdf, 0.0, &mut one).expect("it can be"), urdf);
+        let [first, second] =
+            [&mut one, &mut other].map(|random| with_inertial_errors(&urdf, 0.1, random).expect("it can be"));
         assert_eq!(first, second);
-        assert!(perturbed(&urdf, -0.1, &mut one).is_err() && perturbed(&urdf, f64::NAN, &mut one).is_err());
+        assert!(
+            with_inertial_errors(&urdf, -0.1, &mut one).is_err()
+                && with_inertial_errors(&urdf, f64::NAN, &mut one).is_err()
+        );
     }
 
     #[test]

@@ -15,13 +15,13 @@ use crate::robot::Robot;
 use crate::truth::{Injected, Lifelike};
 
 /// The largest deviation of a recording's friction from the mean, relative.
-const DAYS: f64 = 0.1;
+const FRICTION_SPREAD: f64 = 0.1;
 /// Relative standard deviations of the torque constants of one robot.
 const CONSTANTS: (f64, f64) = (0.03, 0.10);
 /// The sizes of the small effects of every joint, relative to its torque; together with their level, they remain below
 /// the required share.
 /// share.
-const LITTLE: (f64, f64) = (0.002, 0.010);
+const SMALL_SHARES: (f64, f64) = (0.002, 0.010);
 /// The natural frequency of a link on its elastic gearbox while the drive is held (Hz): from within the bandwidth to
 /// beyond it.
 const GEARBOX: (f64, f64) = (10.0, 80.0);
@@ -53,7 +53,7 @@ impl RealLife {
         let mut small = Vec::new();
         for (j, name) in names.iter().enumerate() {
             let load = load(training, names.len(), j).max(spreads[j]);
-            small.extend(little(name, spreads[j], load, random));
+            small.extend(small_effects(name, spreads[j], load, random));
             let normal: f64 = StandardNormal.sample(random);
             let factor = 1.0 + constants * normal.clamp(-3.0, 3.0);
             small.push(Injected::new("torque_scale", Some(name)).with("factor", factor).minor());
@@ -68,7 +68,7 @@ impl RealLife {
         let gearboxes = joints.into_iter().map(|j| gearbox(robot, j, random)).collect();
         let mut days = || {
             (0..names.len())
-                .map(|_| random.random_range(1.0 - DAYS..1.0 + DAYS))
+                .map(|_| random.random_range(1.0 - FRICTION_SPREAD..1.0 + FRICTION_SPREAD))
                 .collect()
         };
         let friction = (0..=training.len()).map(|_| days()).collect();
@@ -95,7 +95,7 @@ impl RealLife {
     /// The small effects of all joints, except where one of `effects` is the same on that joint.
     pub(super) fn beside<'a>(&'a self, effects: &'a [Injected]) -> impl Iterator<Item = Injected> + 'a {
         let all = self.small.iter().chain(&self.gearboxes);
-        all.filter(|small| !effects.iter().any(|effect| overrules(effect, small)))
+        all.filter(|small| !effects.iter().any(|effect| replaces(effect, small)))
             .cloned()
     }
 
@@ -111,7 +111,7 @@ impl RealLife {
 }
 
 /// Whether a joint with `effect` has no `small` effect, because both are the same effect or parts of one drive train.
-fn overrules(effect: &Injected, small: &Injected) -> bool {
+fn replaces(effect: &Injected, small: &Injected) -> bool {
     let is_drive_train =
         |of: &Injected| matches!(of.effect.as_str(), "joint_elasticity" | "backlash" | "rotor_inertia");
     effect.joint == small.joint && (effect.effect == small.effect || is_drive_train(effect) && is_drive_train(small))
@@ -125,8 +125,8 @@ fn load(training: &[Reference], dof: usize, j: usize) -> f64 {
 }
 
 /// The small effects of a joint.
-fn little(joint: &str, spread: f64, load: f64, random: &mut ChaCha8Rng) -> [Injected; 4] {
-    let mut size = || log_uniform(LITTLE.0, LITTLE.1, random);
+fn small_effects(joint: &str, spread: f64, load: f64, random: &mut ChaCha8Rng) -> [Injected; 4] {
+    let mut size = || log_uniform(SMALL_SHARES.0, SMALL_SHARES.1, random);
     let [fading, half, gain, ripple] = [
         size() * spread,
         0.7 * size() * spread,

@@ -10,14 +10,14 @@ use super::Concealment;
 use super::real_life::RealLife;
 use crate::draw::{baseline_friction, log_uniform};
 use crate::error::FaultError;
-use crate::expressed_share::{Torques, deviation, share, smooth};
+use crate::expressed_share::{Torques, deviation, low_passed, share};
 use crate::fault::Leaves;
 use crate::machine::{Machine, Run, TICK};
-use crate::motion::{DURATION, LEAD, PAUSE, Reference, excitation, pick_and_place, start};
+use crate::motion::{DURATION, LEAD_TICKS, PAUSE, Reference, excitation, pick_and_place, start};
 use crate::robot::Robot;
 use crate::sensor::Sensors;
 use crate::truth::{Injected, Truth};
-use crate::urdf_error::{perturbed, with_tool};
+use crate::urdf_error::{with_inertial_errors, with_tool};
 
 /// The number of ticks between rows in hard cases: mostly 100 to 500 Hz.
 const HARD_TICKS: [usize; 9] = [1, 2, 2, 4, 4, 5, 5, 8, 10];
@@ -27,7 +27,7 @@ const NOISE: (f64, f64) = (0.003, 0.036);
 /// The duration of the run that tests whether the loop can hold the gearboxes (s).
 const TRIAL: f64 = 8.0;
 /// The largest increase of the torque above 20 Hz due to the gearboxes.
-const RESTLESS: f64 = 0.05;
+const MOST_ADDED_ABOVE: f64 = 0.05;
 
 /// The number of training recordings of an easy and of a hard case.
 pub(crate) const TRAINING: [usize; 2] = [3, 2];
@@ -78,7 +78,7 @@ pub(super) enum Stream {
 }
 
 /// The random stream of the noise in recordings that are made later.
-pub(crate) const AGAIN: u64 = 8;
+pub(crate) const RECORD_AGAIN: u64 = 8;
 
 pub(super) fn random(seed: u64, stream: Stream) -> ChaCha8Rng {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
@@ -133,31 +133,31 @@ impl<'a> Stage<'a> {
             seed,
             urdf_error: kind.urdf_error,
         };
-        stage.leave_out_what_swings()?;
+        stage.remove_unstable_gearboxes()?;
         Ok(stage)
     }
 
     /// Gearboxes with which the position loop is unstable are removed.
-    fn leave_out_what_swings(&mut self) -> Result<(), FaultError> {
+    fn remove_unstable_gearboxes(&mut self) -> Result<(), FaultError> {
         let Some(real) = self.real.as_mut().filter(|real| !real.gearboxes.is_empty()) else {
             return Ok(());
         };
         let gearboxes = std::mem::take(&mut real.gearboxes);
-        let trial = self.training[0].clone().cut(TRIAL);
+        let trial = self.training[0].clone().first_seconds(TRIAL);
         let (_, rigid) = self.torques(&self.run(&[], None, &trial)?);
-        self.put(gearboxes);
+        self.set_gearboxes(gearboxes);
         let holds = match self.run(&[], None, &trial) {
-            Ok(run) => self.torques(&run).1 < rigid + RESTLESS,
+            Ok(run) => self.torques(&run).1 < rigid + MOST_ADDED_ABOVE,
             Err(FaultError::Lost { .. } | FaultError::Plant(_)) => false,
             Err(error) => return Err(error),
         };
         if !holds {
-            self.put(Vec::new());
+            self.set_gearboxes(Vec::new());
         }
         Ok(())
     }
 
-    fn put(&mut self, gearboxes: Vec<Injected>) {
+    fn set_gearboxes(&mut self, gearboxes: Vec<Injected>) {
         if let Some(real) = &mut self.real {
             real.gearboxes = gearboxes;
         }
@@ -227,7 +227,7 @@ impl<'a> Stage<'a> {
 
     /// The torques of a run below 20 Hz, and the largest share of a joint's torque above.
     pub(crate) fn torques(&self, run: &Run) -> (Torques, f64) {
-        smooth(&run.tau, self.robot.arm().dof(), TICK, LEAD)
+        low_passed(&run.tau, self.robot.arm().dof(), TICK, LEAD_TICKS)
     }
 
     /// Runs of all recordings, the last one held out; and the torques of the training recordings.
@@ -266,12 +266,12 @@ impl<'a> Stage<'a> {
         let seed = self.seed;
         let mut noise = random(seed, Stream::Noise);
         let sensors = Sensors {
-            own_clocks: self.sensors.own_clocks && !effects.iter().any(tells_time),
+            own_clocks: self.sensors.own_clocks && !effects.iter().any(depends_on_time),
             ..self.sensors.clone()
         };
-        let mut urdf = perturbed(self.robot.urdf(), self.urdf_error, &mut random(seed, Stream::Urdf))?;
+        let mut urdf = with_inertial_errors(self.robot.urdf(), self.urdf_error, &mut random(seed, Stream::Urdf))?;
         for tool in effects.iter().filter(|effect| effect.is_not_mounted()) {
-            urdf = with_tool(&urdf, &self.robot.arm().tool_frame().name, &drawn(tool))?;
+            urdf = with_tool(&urdf, &self.robot.arm().tool_frame().name, &body_of(tool))?;
         }
         let references = self.training.iter().chain([&self.held_out]);
         let mut train: Vec<Recording> = references
@@ -307,12 +307,12 @@ impl<'a> Stage<'a> {
 }
 
 /// Whether an effect depends on the time, which is not known with separate clocks of the files.
-fn tells_time(effect: &Injected) -> bool {
+fn depends_on_time(effect: &Injected) -> bool {
     effect.onset.is_some() || effect.effect == "thermal_drift" || effect.number("start").is_some()
 }
 
 /// The body that is drawn in the URDF for a tool that is not mounted.
-fn drawn(tool: &Injected) -> Inertia {
+fn body_of(tool: &Injected) -> Inertia {
     let list = |name: &str| -> Vec<f64> {
         let values = tool.parameters.get(name).and_then(serde_json::Value::as_array);
         values.map_or_else(Vec::new, |values| {

@@ -28,7 +28,7 @@ impl DryLaw for Level {
 
 impl Level {
     /// The plain friction of a joint, which remains when a fault that changes its curve is removed.
-    pub(super) fn beneath(self, joint: usize) -> Piece {
-        What::Dry(joint, Box::new(self)).stays()
+    pub(super) fn below_a_curve(self, joint: usize) -> Piece {
+        Property::Dry(joint, Box::new(self)).in_both_machines()
     }
 }

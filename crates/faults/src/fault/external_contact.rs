@@ -5,7 +5,7 @@ use super::prelude::*;
 pub(super) const FAULT: Fault = Fault {
     name: "external_contact",
     forms: &["half-sine", "decaying"],
-    may_be_several: true,
+    may_repeat: true,
     draw: |bare, at, random| {
         let mut direction: [f64; 3] = [0.0; 3].map(|_: f64| StandardNormal.sample(random));
         let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -32,11 +32,11 @@ pub(super) const FAULT: Fault = Fault {
     read: |reader| {
         let contact = Contact {
             start: reader.number("start")?,
-            duration: reader.above("duration", 0.0)?,
+            duration: reader.number_above("duration", 0.0)?,
             force: Vector3::from(reader.numbers("force")?),
             shape: [Shape::Step, Shape::HalfSine, Shape::Decaying][reader.form()?],
         };
-        Ok(vec![What::Contact(contact).into()])
+        Ok(vec![Property::Contact(contact).into()])
     },
     #[cfg(test)]
     example: |bare| {

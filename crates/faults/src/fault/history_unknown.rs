@@ -18,7 +18,7 @@ pub(super) const FAULT: Fault = Fault {
     read: |reader| {
         reader.on_link(History {
             amplitude: reader.number("amplitude")?,
-            time_constant: reader.above("time_constant", 0.0)?,
+            time_constant: reader.number_above("time_constant", 0.0)?,
             of: [Past::Speed, Past::SignedSquare, Past::Position][reader.form()?],
         })
     },

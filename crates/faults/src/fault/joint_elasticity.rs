@@ -7,7 +7,7 @@ pub(super) const FAULT: Fault = Fault {
     forms: &["hardening"],
     form_parameters: &["rotor", "hardening_torque"],
     leaves: Leaves::Rotor,
-    alone_among: Some(Alike::BetweenCommandAndLink),
+    similar_faults: Some(SimilarFaults::BetweenCommandAndLink),
     draw: |bare, at, random| {
         let (link, own) = (at.link_inertia(), at.rotor_inertia());
         let rotor = if own > 0.0 {
@@ -37,12 +37,12 @@ pub(super) const FAULT: Fault = Fault {
         let hardens = reader.form()? == 1;
         elastic(reader, |more_rotor| {
             Ok(Connection {
-                stiffness: Some(reader.above("stiffness", 0.0)?),
+                stiffness: Some(reader.number_above("stiffness", 0.0)?),
                 damping: Some(reader.at_least_zero("damping")?),
                 halfgap: 0.0,
                 more_rotor,
                 hardening: if hardens {
-                    reader.above("hardening_torque", 0.0)?
+                    reader.number_above("hardening_torque", 0.0)?
                 } else {
                     f64::INFINITY
                 },
@@ -74,7 +74,7 @@ pub(super) fn elastic(
     }
     let more_rotor = rotor - own;
     Ok(vec![
-        What::Body(Body::Rotor(joint, more_rotor)).stays(),
-        What::Elastic(joint, connection(more_rotor)?).into(),
+        Property::Body(Body::Rotor(joint, more_rotor)).in_both_machines(),
+        Property::Elastic(joint, connection(more_rotor)?).into(),
     ])
 }

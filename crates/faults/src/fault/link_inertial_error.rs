@@ -23,7 +23,7 @@ pub(super) const FAULT: Fault = Fault {
             .with("stretch", json!(stretch))
     },
     read: |reader| {
-        let (joint, factor) = (reader.joint()?, 1.0 + reader.above("relative", -1.0)?);
+        let (joint, factor) = (reader.joint()?, 1.0 + reader.number_above("relative", -1.0)?);
         if reader.form()? == 0 {
             return Ok(vec![Body::changed(move |arm| arm.with_scaled_link(joint, factor))]);
         }

@@ -26,8 +26,8 @@ pub(super) const FAULT: Fault = Fault {
             gain: reader.at_least_zero("gain")?,
         };
         Ok(vec![
-            Level(reader.at_least_zero("coulomb")?).beneath(joint),
-            What::Dry(joint, Box::new(loaded)).into(),
+            Level(reader.at_least_zero("coulomb")?).below_a_curve(joint),
+            Property::Dry(joint, Box::new(loaded)).into(),
         ])
     },
     #[cfg(test)]
@@ -59,7 +59,7 @@ impl DryLaw for Loaded {
         sum.level += self.gain * load.abs();
     }
 
-    fn feels_rigid_load(&self) -> bool {
+    fn depends_on_rigid_load(&self) -> bool {
         self.of == Load::Rigid
     }
 }

@@ -25,7 +25,7 @@ pub(super) const FAULT: Fault = Fault {
             of: match reader.form()? {
                 0 => Of::Signed,
                 1 => Of::Square,
-                _ => Of::Saturating(reader.above("velocity", 0.0)?),
+                _ => Of::Saturating(reader.number_above("velocity", 0.0)?),
             },
         })
     },

@@ -13,7 +13,10 @@ pub(super) const FAULT: Fault = Fault {
     read: |reader| {
         reader.on_link(Walk {
             amplitude: reader.number("amplitude")?,
-            values: walk(reader.above("time_constant", 0.0)?, reader.number("seed")? as u64),
+            values: walk(
+                reader.number_above("time_constant", 0.0)?,
+                reader.number("seed")? as u64,
+            ),
         })
     },
     #[cfg(test)]

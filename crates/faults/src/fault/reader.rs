@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::{FAULTS, Fault, Place};
 use crate::error::FaultError;
-use crate::part::{DriveLaw, DryLaw, LinkLaw, Part, Piece, There, What};
+use crate::part::{DriveLaw, DryLaw, LinkLaw, Part, Piece, Presence, Property};
 use crate::truth::Injected;
 
 /// The parts that `injected` adds to a machine of `arm` (with the drives' rotor inertias). If `whole` is false, only
@@ -22,12 +22,16 @@ pub(crate) fn parts(injected: &Injected, arm: &Arm, whole: bool) -> Result<Vec<P
     }
     let pieces = (reader.fault()?.read)(&reader)?.into_iter();
     let is_there = |piece: &Piece| match piece.there {
-        There::With => whole,
-        There::Always => true,
-        There::Without => !whole,
+        Presence::With => whole,
+        Presence::Always => true,
+        Presence::Without => !whole,
     };
     let part = |Piece { what, there }| Part {
-        onset: if there == There::With { onset } else { f64::NEG_INFINITY },
+        onset: if there == Presence::With {
+            onset
+        } else {
+            f64::NEG_INFINITY
+        },
         what,
     };
     Ok(pieces.filter(is_there).map(part).collect())
@@ -57,17 +61,17 @@ impl Reader<'_> {
 
     /// A piece with dry friction on its joint.
     pub(super) fn on_dry(&self, law: impl DryLaw + 'static) -> Result<Vec<Piece>, FaultError> {
-        Ok(vec![What::Dry(self.joint()?, Box::new(law)).into()])
+        Ok(vec![Property::Dry(self.joint()?, Box::new(law)).into()])
     }
 
     /// A piece with a torque on the drive's side of its joint.
     pub(super) fn on_drive(&self, law: impl DriveLaw + 'static) -> Result<Vec<Piece>, FaultError> {
-        Ok(vec![What::Drive(self.joint()?, Box::new(law)).into()])
+        Ok(vec![Property::Drive(self.joint()?, Box::new(law)).into()])
     }
 
     /// A piece with a torque on the link's side of its joint.
     pub(super) fn on_link(&self, law: impl LinkLaw + 'static) -> Result<Vec<Piece>, FaultError> {
-        Ok(vec![What::Link(self.joint()?, Box::new(law)).into()])
+        Ok(vec![Property::Link(self.joint()?, Box::new(law)).into()])
     }
 
     pub(super) fn fail(&self, reason: String) -> FaultError {
@@ -115,19 +119,15 @@ impl Reader<'_> {
         }
     }
 
-    pub(super) fn given(&self, name: &str) -> bool {
+    pub(super) fn has(&self, name: &str) -> bool {
         self.injected.parameters.contains_key(name)
     }
 
     pub(super) fn number_or(&self, name: &str, default: f64) -> Result<f64, FaultError> {
-        if self.given(name) {
-            self.number(name)
-        } else {
-            Ok(default)
-        }
+        if self.has(name) { self.number(name) } else { Ok(default) }
     }
 
-    pub(super) fn above(&self, name: &str, least: f64) -> Result<f64, FaultError> {
+    pub(super) fn number_above(&self, name: &str, least: f64) -> Result<f64, FaultError> {
         let value = self.number(name)?;
         if value > least {
             return Ok(value);

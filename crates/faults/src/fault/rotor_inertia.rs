@@ -9,7 +9,7 @@ pub(super) const FAULT: Fault = Fault {
     size: Size::Times(&["inertia"]),
     read: |reader| {
         let body = Body::Rotor(reader.joint()?, reader.at_least_zero("inertia")?);
-        Ok(vec![What::Body(body).into()])
+        Ok(vec![Property::Body(body).into()])
     },
     #[cfg(test)]
     example: |bare| bare.with("inertia", 0.2),

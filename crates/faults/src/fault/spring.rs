@@ -5,7 +5,7 @@ use super::prelude::*;
 pub(super) const FAULT: Fault = Fault {
     name: "spring",
     forms: &["gas spring", "hardening", "knee"],
-    sets_in: true,
+    may_have_onset: true,
     draw: |bare, at, random| {
         let bend = *["gas spring", "hardening", "knee"].choose(random).unwrap_or(&"knee");
         let spring = bare

@@ -26,13 +26,13 @@ pub(super) const FAULT: Fault = Fault {
         let joint = reader.joint()?;
         let warming = Warming {
             amplitude: reader.number("amplitude")?,
-            time_constant: reader.above("time_constant", 0.0)?,
+            time_constant: reader.number_above("time_constant", 0.0)?,
             start: reader.number_or("start", 0.0)?,
             cooling: [Cooling::Exponential, Cooling::Hyperbolic, Cooling::Stretched][reader.form()?],
         };
         Ok(vec![
-            Level(reader.at_least_zero("coulomb")?).beneath(joint),
-            What::Dry(joint, Box::new(warming)).into(),
+            Level(reader.at_least_zero("coulomb")?).below_a_curve(joint),
+            Property::Dry(joint, Box::new(warming)).into(),
         ])
     },
     #[cfg(test)]

@@ -7,7 +7,7 @@ pub(super) const FAULT: Fault = Fault {
     forms: &["rounded square"],
     draw: |bare, at, random| {
         let (_, phase) = at.other_and_phase(random);
-        sometimes(bare, "rounded square", random)
+        perhaps_in_form(bare, "rounded square", random)
             .with("amplitude", at.spread() * random.random_range(0.15..0.5))
             .with("hz", random.random_range(0.6..3.5))
             .with("phase", phase)

@@ -5,7 +5,7 @@ use super::prelude::*;
 pub(super) const FAULT: Fault = Fault {
     name: "torque_offset",
     is_constant: true,
-    sets_in: true,
+    may_have_onset: true,
     draw: |bare, at, random| bare.with("offset", at.spread() * random.random_range(0.1..0.5) * sign(random)),
     size: Size::Times(&["offset"]),
     read: |reader| reader.on_drive(Offset(reader.number("offset")?)),

@@ -31,9 +31,9 @@ pub(super) const FAULT: Fault = Fault {
                 coulomb,
                 sense,
             };
-            What::Link(joint, Box::new(law)).into()
+            Property::Link(joint, Box::new(law)).into()
         };
-        let inertia = What::CouplingInertia(joint, other, reader.number_or("inertia", 0.0)?);
+        let inertia = Property::CouplingInertia(joint, other, reader.number_or("inertia", 0.0)?);
         Ok(vec![half(joint, other), half(other, joint), inertia.into()])
     },
     #[cfg(test)]

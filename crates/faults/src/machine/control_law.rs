@@ -8,7 +8,7 @@ use crate::robot::Robot;
 const DAMPING: f64 = 0.8;
 const FREQUENCIES: (f64, f64) = (20.7, 30.0);
 /// The steady-state position error under a torque as large as the joint's own gravity torque (rad or m).
-const SAG: f64 = 0.05;
+const STEADY_STATE_ERROR: f64 = 0.05;
 
 /// The initial state of a machine at rest.
 pub(crate) struct Begin<'a> {
@@ -22,7 +22,7 @@ pub(crate) struct Begin<'a> {
 
 /// The inputs of a controller at a tick of 1 ms; one entry per joint.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen<'a> {
+pub struct Measured<'a> {
     /// The number of the tick, from 0.
     pub tick: usize,
     /// Encoder positions (rad or m).
@@ -34,11 +34,11 @@ pub struct Seen<'a> {
 /// Computes the drives' torques once per tick.
 pub(crate) trait ControlLaw {
     /// Writes the commanded torques for the coming tick to `torque` (N m or N).
-    fn command(&mut self, seen: &Seen<'_>, torque: &mut [f64]);
+    fn command(&mut self, seen: &Measured<'_>, torque: &mut [f64]);
 }
 
-impl<F: FnMut(&Seen<'_>, &mut [f64])> ControlLaw for F {
-    fn command(&mut self, seen: &Seen<'_>, torque: &mut [f64]) {
+impl<F: FnMut(&Measured<'_>, &mut [f64])> ControlLaw for F {
+    fn command(&mut self, seen: &Measured<'_>, torque: &mut [f64]) {
         self(seen, torque);
     }
 }
@@ -60,7 +60,7 @@ impl<'a> PositionLoop<'a> {
 }
 
 impl ControlLaw for PositionLoop<'_> {
-    fn command(&mut self, seen: &Seen<'_>, torque: &mut [f64]) {
+    fn command(&mut self, seen: &Measured<'_>, torque: &mut [f64]) {
         for (j, torque) in torque.iter_mut().enumerate() {
             let at = seen.tick * self.gains.len() + j;
             let (q, qd, ff) = (self.reference.q[at], self.reference.qd[at], self.reference.ff[at]);
@@ -74,7 +74,7 @@ impl ControlLaw for PositionLoop<'_> {
 fn gains(robot: &Robot, j: usize, more: f64) -> (f64, f64) {
     let inertia = robot.inertia(j) + more;
     // A light wrist without rotors needs a higher gain, or the load would deflect it too far.
-    let holds = (robot.holding(j) / SAG / inertia).sqrt();
+    let holds = (robot.holding(j) / STEADY_STATE_ERROR / inertia).sqrt();
     let frequency = holds.clamp(FREQUENCIES.0, FREQUENCIES.1);
     (inertia * frequency * frequency, 2.0 * DAMPING * frequency * inertia)
 }

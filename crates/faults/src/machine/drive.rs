@@ -65,7 +65,7 @@ impl Drive {
         }
     }
 
-    pub(super) fn sense(&mut self, position: f64, quantum: f64) {
+    pub(super) fn read_encoder(&mut self, position: f64, quantum: f64) {
         let read = if quantum > 0.0 {
             (position / quantum).round() * quantum
         } else {
@@ -135,7 +135,7 @@ impl Rotor {
     }
 
     /// The position of the encoder at the time of the link's position.
-    pub(super) fn seen(&self) -> f64 {
+    pub(super) fn encoder_position(&self) -> f64 {
         self.position + 0.5 * TICK * self.velocity
     }
 
@@ -248,7 +248,11 @@ mod tests {
         let (speed, mut q) = (1.0, 0.3);
         let mut rotor = Rotor::new(connection, 0.8, 2.0, q, speed);
         for _ in 0..1000 {
-            assert!((rotor.seen() - q).abs() < 1e-9, "{} {q}", rotor.seen());
+            assert!(
+                (rotor.encoder_position() - q).abs() < 1e-9,
+                "{} {q}",
+                rotor.encoder_position()
+            );
             assert!(rotor.advance(0.0, 0.0, q, speed).abs() < 1e-6);
             q += TICK * speed;
         }

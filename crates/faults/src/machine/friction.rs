@@ -9,7 +9,7 @@ use super::{Machine, TICK};
 const REFRESH: usize = 4;
 /// The largest number of sweeps, and the change of velocity (rad/s or m/s) below which they end.
 const SWEEPS: usize = 50;
-const SETTLED: f64 = 1e-10;
+const TOLERANCE: f64 = 1e-10;
 
 impl Machine<'_> {
     /// The friction with each joint's dry friction multiplied by a factor, which may differ between recordings.
@@ -43,12 +43,12 @@ impl Friction {
     }
 
     /// Resets the mass matrix after a change of the arm.
-    pub(super) fn forget(&mut self) {
+    pub(super) fn reset(&mut self) {
         self.age = REFRESH;
     }
 
     /// Computes [`Self::torques`] for a tick from `q`, `qd` under the torques `net`, each bounded by `levels`.
-    pub(super) fn find(
+    pub(super) fn solve(
         &mut self,
         arm: &Arm,
         scratch: &mut Workspace,
@@ -91,7 +91,7 @@ impl Friction {
                 }
                 largest = largest.max(TICK * self.response[(i, i)] * change.abs());
             }
-            if largest < SETTLED {
+            if largest < TOLERANCE {
                 break;
             }
         }
@@ -117,7 +117,7 @@ mod tests {
         let levels = vec![1.0; n];
         let pushes = [0.5, -0.9, 0.2, 1.5, -2.0, 0.1, 0.0];
         let net: Vec<f64> = gravity.iter().zip(pushes).map(|(g, push)| g + push).collect();
-        friction.find(arm, &mut scratch, [&q, &vec![0.0; n]], &net, &levels);
+        friction.solve(arm, &mut scratch, [&q, &vec![0.0; n]], &net, &levels);
         let total: Vec<f64> = net.iter().zip(&friction.torques).map(|(net, f)| net + f).collect();
         let mut qdd = vec![0.0; n];
         arm.forward_dynamics(&mut scratch, &q, &vec![0.0; n], &total, &mut qdd);

@@ -3,7 +3,7 @@
 use arm::Arm;
 
 use crate::fault::external_contact::Contact;
-use crate::part::{Body, Connection, DriveLaw, DryLaw, LinkLaw, Part, What};
+use crate::part::{Body, Connection, DriveLaw, DryLaw, LinkLaw, Part, Property};
 
 /// The parts on each joint's drive, and the parts on the whole machine.
 pub(super) struct Parts {
@@ -28,7 +28,7 @@ pub(super) struct OnLink {
 struct Joint {
     dry: Vec<(Box<dyn DryLaw>, f64)>,
     smooth: Vec<(Box<dyn DriveLaw>, f64)>,
-    drive: Vec<(What, f64)>,
+    drive: Vec<(Property, f64)>,
 }
 
 /// The properties of a drive at one time.
@@ -56,17 +56,17 @@ impl Parts {
         };
         for Part { onset, what } in parts {
             match what {
-                What::Dry(j, law) => sorted.joints[j].dry.push((law, onset)),
-                What::Drive(j, law) => sorted.joints[j].smooth.push((law, onset)),
-                What::Link(joint, law) => sorted.links.push(OnLink { joint, law, onset }),
-                What::CouplingInertia(j, o, inertia) => sorted.couplings.push((j, o, inertia, onset)),
-                What::Body(body) => sorted.bodies.push((body, onset)),
-                What::Contact(contact) => sorted.contacts.push(contact),
-                What::Scale(j, _)
-                | What::Limit(j, ..)
-                | What::Delay(j, ..)
-                | What::Encoder(j, _)
-                | What::Elastic(j, _) => sorted.joints[j].drive.push((what, onset)),
+                Property::Dry(j, law) => sorted.joints[j].dry.push((law, onset)),
+                Property::Drive(j, law) => sorted.joints[j].smooth.push((law, onset)),
+                Property::Link(joint, law) => sorted.links.push(OnLink { joint, law, onset }),
+                Property::CouplingInertia(j, o, inertia) => sorted.couplings.push((j, o, inertia, onset)),
+                Property::Body(body) => sorted.bodies.push((body, onset)),
+                Property::Contact(contact) => sorted.contacts.push(contact),
+                Property::Scale(j, _)
+                | Property::Limit(j, ..)
+                | Property::Delay(j, ..)
+                | Property::Encoder(j, _)
+                | Property::Elastic(j, _) => sorted.joints[j].drive.push((what, onset)),
             }
         }
         // Payloads are not scaled with the links.
@@ -77,7 +77,7 @@ impl Parts {
     /// `arm` with the changed bodies that are present at `time` (s).
     pub(super) fn arm_at(&self, arm: Arm, time: f64) -> Arm {
         let there = self.bodies.iter().filter(|(_, onset)| time >= *onset);
-        there.fold(arm, |arm, (body, _)| body.put_into(arm))
+        there.fold(arm, |arm, (body, _)| body.applied_to(arm))
     }
 
     /// The inertia of the rotor of joint `j`, from the start, in addition to the known inertia of its drive (kg m²).
@@ -93,7 +93,7 @@ impl Parts {
     pub(super) fn next_change(&self, time: f64) -> f64 {
         let bodies = self.bodies.iter().map(|(_, onset)| *onset);
         let elastic = self.joints.iter().flat_map(|joint| &joint.drive);
-        let elastic = elastic.filter(|(what, _)| matches!(what, What::Elastic(..)));
+        let elastic = elastic.filter(|(what, _)| matches!(what, Property::Elastic(..)));
         bodies
             .chain(elastic.map(|(_, onset)| *onset))
             .filter(|onset| *onset > time)
@@ -104,7 +104,7 @@ impl Parts {
     pub(super) fn connection_at(&self, j: usize, time: f64) -> Option<Connection> {
         self.drive(j, time)
             .fold(None, |found: Option<Connection>, what| match what {
-                What::Elastic(_, connection) => Some(match found {
+                Property::Elastic(_, connection) => Some(match found {
                     None => *connection,
                     Some(found) => Connection {
                         stiffness: found.stiffness.or(connection.stiffness),
@@ -119,7 +119,7 @@ impl Parts {
             })
     }
 
-    fn drive(&self, j: usize, time: f64) -> impl Iterator<Item = &What> {
+    fn drive(&self, j: usize, time: f64) -> impl Iterator<Item = &Property> {
         let drive = self.joints[j].drive.iter();
         drive.filter(move |(_, onset)| time >= *onset).map(|(what, _)| what)
     }
@@ -134,12 +134,12 @@ impl Parts {
         };
         for what in self.drive(j, time) {
             match *what {
-                What::Scale(_, factor) => now.factor *= factor,
-                What::Limit(_, limit, soft) => {
+                Property::Scale(_, factor) => now.factor *= factor,
+                Property::Limit(_, limit, soft) => {
                     now.limit = now.limit.min(limit);
                     now.soft = soft;
                 }
-                What::Delay(_, delay, lags) => {
+                Property::Delay(_, delay, lags) => {
                     now.delay += delay;
                     now.lags = lags;
                 }
@@ -151,8 +151,8 @@ impl Parts {
 
     /// The error of the encoder of joint `j` (rad or m).
     pub(super) fn encoder(&self, j: usize, time: f64) -> f64 {
-        let offset = |what: &What| {
-            if let What::Encoder(_, offset) = what {
+        let offset = |what: &Property| {
+            if let Property::Encoder(_, offset) = what {
                 *offset
             } else {
                 0.0
@@ -174,9 +174,9 @@ impl Parts {
             .map(|(law, _)| law.as_ref())
     }
 
-    pub(super) fn feels_rigid_load(&self) -> bool {
+    pub(super) fn depends_on_rigid_load(&self) -> bool {
         let mut dry = self.joints.iter().flat_map(|joint| &joint.dry);
-        dry.any(|(law, _)| law.feels_rigid_load())
+        dry.any(|(law, _)| law.depends_on_rigid_load())
     }
 
     /// Joint, other joint and inertia of the drives that two joints move.

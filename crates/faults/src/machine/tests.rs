@@ -5,9 +5,9 @@ use rand_chacha::ChaCha8Rng;
 use serde_json::json;
 
 use super::*;
-use crate::expressed_share::{share, smooth};
+use crate::expressed_share::{low_passed, share};
 use crate::fault::{FAULTS, Fault, Place};
-use crate::motion::{LEAD, excitation};
+use crate::motion::{LEAD_TICKS, excitation};
 use crate::test_robots::{puma, seven_axis};
 
 fn reference(robot: &Robot) -> Reference {
@@ -30,14 +30,14 @@ fn an_empty_machine_costs_the_rigid_torque() {
         let reference = reference(&robot);
         let run = run(&robot, &[], &reference);
         let rigid = Reference::along(&robot.driven(), &run.q);
-        let below = |tau: &[f64]| vec![smooth(tau, n, TICK, LEAD).0];
+        let below = |tau: &[f64]| vec![low_passed(tau, n, TICK, LEAD_TICKS).0];
         let error = share(&below(&run.tau), &below(&rigid), false);
         assert!(error < 2e-3, "{}: {error}", robot.name());
     }
 }
 
 /// A fault of a clearly detectable size, on axis 4 of the arm with seven axes or on the whole arm.
-fn robust(name: &str) -> Injected {
+fn detectable(name: &str) -> Injected {
     let fault = Fault::named(name).expect("there is such a fault");
     let joint = (fault.place != Place::WholeArm).then_some("axis4");
     (fault.example)(Injected::new(name, joint))
@@ -48,11 +48,11 @@ fn robust(name: &str) -> Injected {
 fn every_effect_in_every_form_changes_the_torque() {
     let robot = seven_axis();
     let n = robot.arm().dof();
-    let reference = reference(&robot).cut(4.0);
-    let below = |run: &Run| vec![smooth(&run.tau, n, TICK, LEAD).0];
+    let reference = reference(&robot).first_seconds(4.0);
+    let below = |run: &Run| vec![low_passed(&run.tau, n, TICK, LEAD_TICKS).0];
     for fault in &FAULTS {
         let name = fault.name;
-        let effect = robust(name);
+        let effect = detectable(name);
         let without = Machine::new(&robot, &[&effect], Some(0)).expect("it fits");
         let without = below(&without.run(&reference, 0.0).expect("it follows"));
         let plain = below(&run(&robot, std::slice::from_ref(&effect), &reference));
@@ -74,7 +74,7 @@ fn every_effect_in_every_form_changes_the_torque() {
 #[test]
 fn an_onset_parts_two_machines() {
     let robot = seven_axis();
-    let reference = reference(&robot).cut(2.0);
+    let reference = reference(&robot).first_seconds(2.0);
     let plain = run(&robot, &[], &reference);
     for name in [
         "payload",
@@ -84,7 +84,7 @@ fn an_onset_parts_two_machines() {
         "encoder_offset",
         "spring",
     ] {
-        let mut effect = robust(name);
+        let mut effect = detectable(name);
         effect.onset = Some(1.0);
         let with = run(&robot, &[effect], &reference);
         let first = plain.tau.iter().zip(&with.tau).position(|(a, b)| a != b);
@@ -92,7 +92,7 @@ fn an_onset_parts_two_machines() {
         assert!((0.999..1.05).contains(&time), "{name}: {time}");
     }
     // The rotor of a drive whose connection fails moved with its link before.
-    let mut gap = robust("backlash");
+    let mut gap = detectable("backlash");
     gap.onset = Some(1.0);
     let without = Machine::new(&robot, &[&gap], Some(0)).expect("it fits");
     let without = without.run(&reference, 0.0).expect("it follows");
@@ -107,7 +107,7 @@ fn an_onset_parts_two_machines() {
 fn what_is_reported_is_what_the_catalogue_says() {
     let robot = seven_axis();
     let n = robot.arm().dof();
-    let mut reference = reference(&robot).cut(2.0);
+    let mut reference = reference(&robot).first_seconds(2.0);
     for (k, q) in reference.q.iter_mut().enumerate() {
         *q = [0.1, 0.4, -0.2, 0.5, 0.3, -0.4, 0.2][k % n];
     }
@@ -121,9 +121,9 @@ fn what_is_reported_is_what_the_catalogue_says() {
         arm.gravity_torque(&mut Workspace::new(arm), &run.q[last..], &mut plain);
         (run.tau[last..].to_vec(), plain, run.q[last..].to_vec())
     };
-    let (found, plain, _) = at_rest(&robust("torque_offset"));
+    let (found, plain, _) = at_rest(&detectable("torque_offset"));
     assert!((found[3] - plain[3] - 2.0).abs() < 1e-3, "{} {}", found[3], plain[3]);
-    let (found, plain, _) = at_rest(&robust("torque_scale"));
+    let (found, plain, _) = at_rest(&detectable("torque_scale"));
     assert!((found[3] / plain[3] - 1.2).abs() < 1e-3, "{} {}", found[3], plain[3]);
     let contact = Injected::new("external_contact", None)
         .with("start", 0.0)
@@ -157,7 +157,7 @@ fn asymmetry_and_offset_give_one_recording() {
     let level = Injected::new("coulomb_friction", joint).with("level", 1.5);
     let offset = Injected::new("torque_offset", joint).with("offset", 0.5);
     // In motion, and then at rest.
-    let mut reference = reference(&robot).cut(4.0);
+    let mut reference = reference(&robot).first_seconds(4.0);
     let (n, half) = (robot.arm().dof(), reference.q.len() / 2);
     let held: Vec<f64> = reference.q[half - n..half].to_vec();
     reference.q[half..]
@@ -183,14 +183,14 @@ fn what_cannot_follow_is_refused() {
     let weak = Injected::new("torque_saturation", Some("axis2")).with("limit", 1.0);
     let machine = Machine::new(&robot, &[&weak], None).expect("it fits");
     let error = machine
-        .run(&reference(&robot).cut(4.0), 0.0)
+        .run(&reference(&robot).first_seconds(4.0), 0.0)
         .map(|_| ())
         .expect_err("it is refused");
     assert!(error.to_string().contains("axis"), "{error}");
     let gap = Injected::new("backlash", Some("axis2")).with("halfgap", 0.01);
     let machine = Machine::new(&robot, &[&gap], None).expect("it fits");
     let error = machine
-        .run(&reference(&robot).cut(1.0), 0.0)
+        .run(&reference(&robot).first_seconds(1.0), 0.0)
         .map(|_| ())
         .expect_err("it is refused");
     assert!(error.to_string().contains("rotor"), "{error}");
