@@ -23,7 +23,7 @@ pub struct Input {
     /// The contents without compression, with the position at the end of `head`; none for a folder.
     file: Option<File>,
     /// Whether the contents are the unchanged bytes of the file at `path`.
-    as_it_was: bool,
+    unchanged: bool,
 }
 
 /// The number of bytes to which a file of `size` bytes may expand.
@@ -47,21 +47,21 @@ impl Input {
                 path: path.to_owned(),
                 head: Vec::new(),
                 file: None,
-                as_it_was: true,
+                unchanged: true,
             });
         }
-        let mut as_it_was = file.metadata().map_err(unreadable)?.is_file();
+        let mut unchanged = file.metadata().map_err(unreadable)?.is_file();
         let mut head = read_head(&mut file).map_err(unreadable)?;
         if let Some(name) = compression(&head) {
             file = expand(path, name, head, file)?;
             head = read_head(&mut file).map_err(unreadable)?;
-            as_it_was = false;
+            unchanged = false;
         }
         Ok(Self {
             path: path.to_owned(),
             head,
             file: Some(file),
-            as_it_was,
+            unchanged,
         })
     }
 
@@ -71,8 +71,8 @@ impl Input {
     }
 
     /// Whether the contents are the bytes of the file at the path: neither expanded nor from a pipe.
-    pub fn is_as_it_was(&self) -> bool {
-        self.as_it_was
+    pub fn is_unchanged(&self) -> bool {
+        self.unchanged
     }
 
     /// An error that a format's reader has with this file.

@@ -118,7 +118,7 @@ fn refuse_outside(input: &Input, path: &Path) -> Result<(), RecordingError> {
 /// Reads the joint states of a database.
 fn database(input: &Input, options: &Options<'_>, states: &mut JointStates) -> Result<(), RecordingError> {
     // An expanded file, or a pipe, has no path.
-    let copy = if input.is_as_it_was() {
+    let copy = if input.is_unchanged() {
         None
     } else {
         let failed = |reason| RecordingError::Read {
