@@ -12,6 +12,7 @@ use crate::options::{PlantOptions, check_count, extrapolation_weights};
 const FASTEST: f64 = 1e6;
 
 /// The true arm, a rapier multibody on a fixed base, driven by joint torques.
+///
 /// Joint vectors have one entry per joint, base to tip: rad, rad/s, rad/s² and N m, or m, m/s, m/s² and N for a
 /// prismatic joint. Positions are not wrapped, and limits are not enforced.
 pub struct Plant {

@@ -24,9 +24,9 @@ pub struct Segment {
 }
 
 /// A recording whose samples lie on a regular clock, in segments parted by long gaps.
+///
 /// Filter and differentiate each segment separately: the time between the last tick of one and the first of the next
 /// is longer than one period.
-/// is more than one period.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RegularRecording {
     /// The names of the joints, in the order of every [`Signal`].

@@ -20,7 +20,6 @@ const FRICTION_SPREAD: f64 = 0.1;
 const CONSTANTS: (f64, f64) = (0.03, 0.10);
 /// The sizes of the small effects of every joint, relative to its torque; together with their level, they remain below
 /// the required share.
-/// share.
 const SMALL_SHARES: (f64, f64) = (0.002, 0.010);
 /// The natural frequency of a link on its elastic gearbox while the drive is held (Hz): from within the bandwidth to
 /// beyond it.
