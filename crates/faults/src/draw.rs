@@ -94,8 +94,8 @@ impl Scales<'_> {
             joint,
         };
         let mut drawn = (fault.draw)(bare, &site, random);
-        let may_have_onset = random.random_bool(ONSET);
-        if may_have_onset && fault.may_have_onset && drawn.leaves() != Leaves::Tool {
+        let begins_late = random.random_bool(ONSET);
+        if begins_late && fault.may_have_onset && drawn.leaves() != Leaves::Tool {
             let (from, to) = self.span;
             drawn.onset = Some(from + (to - from) * random.random_range(0.3..0.7));
         }

@@ -11,9 +11,9 @@ use crate::wide::{Wide, on_widest};
 const MOST: usize = 64;
 
 /// Points are added until the mean share of the prior variance at the training data is at most this.
-const LEFT: f64 = 0.01;
+const LARGEST_SHARE: f64 = 0.01;
 
-/// The relative noise above which it is taken into account: below, it adds less to the share than [`LEFT`].
+/// The relative noise above which it is taken into account: below, it adds less to the share than [`LARGEST_SHARE`].
 const NOISY: f64 = 1e-4;
 
 /// An upper bound of the remaining share of the prior variance at a point: 0 at the data, 1 far from them.
@@ -22,7 +22,7 @@ const NOISY: f64 = 1e-4;
 /// factorisation takes first. With fewer points the variance is larger, so that the share is never below the exact
 /// one, except for noise, which the approximation by inducing points underestimates where the points leave a large
 /// variance. Points are added until they leave 0.01 at the training data, up to 64 points: short length scales need
-/// more, and [`Range::left`] is the remaining share. The cost is that number of kernel values and half its square of
+/// more, and [`Range::mean_variance_share`] is the remaining share. The cost is that number of kernel values and half its square of
 /// multiplications; nothing is allocated.
 #[derive(Clone, Debug)]
 pub struct Range {
@@ -32,7 +32,7 @@ pub struct Range {
     inner: Columns,
     /// √ρ G⁻¹ L⁻¹, with G Gᵀ = Fᵀ F + ρ I; `None` if the noise is negligible.
     outer: Option<Columns>,
-    left: f64,
+    mean_variance_share: f64,
 }
 
 /// A lower triangular matrix by columns, each padded to whole blocks.
@@ -97,7 +97,7 @@ impl Range {
         let posterior = &gp.posterior;
         let stopping = Stopping {
             trace: 0.0,
-            pivot: LEFT,
+            pivot: LARGEST_SHARE,
             max_rank: MOST.min(posterior.points.len()),
             truncates: true,
         };
@@ -113,7 +113,7 @@ impl Range {
             lengths: posterior.lengths.clone(),
             inner: Columns::new(inverse.as_ref(), 1.0),
             outer,
-            left: pivoted.neglected / posterior.points.len().max(1) as f64,
+            mean_variance_share: pivoted.neglected / posterior.points.len().max(1) as f64,
         }
     }
 
@@ -123,8 +123,8 @@ impl Range {
     }
 
     /// The mean remaining share at the training data (at those that carry the posterior).
-    pub fn left(&self) -> f64 {
-        self.left
+    pub fn mean_variance_share(&self) -> f64 {
+        self.mean_variance_share
     }
 
     /// The remaining share of the prior variance at `x`, from 0 to 1; NaN if an input is NaN, and 0 for a function
@@ -132,7 +132,7 @@ impl Range {
     ///
     /// # Panics
     /// If `x` does not have one value per input.
-    pub fn unexplained(&self, x: &[f64]) -> f64 {
+    pub fn variance_share(&self, x: &[f64]) -> f64 {
         assert_eq!(x.len(), self.lengths.len(), "inputs given and expected");
         if self.points.len() == 0 {
             return 0.0;
@@ -181,7 +181,7 @@ mod tests {
                 let far = 0.1 * f64::from(step) * length;
                 let x = [0.3 + far, 0.4 - 0.5 * far, 0.2 + far];
                 let exact = gp.mean_and_variance(&x, &mut workspace).1 / 4.0;
-                let share = range.unexplained(&x);
+                let share = range.variance_share(&x);
                 let tolerance = if noise > 0.0 { 0.01 * exact } else { 1e-9 };
                 assert!(
                     share > exact - tolerance,
@@ -189,24 +189,30 @@ mod tests {
                 );
                 assert!((0.0..=1.0).contains(&share));
             }
-            assert_eq!(range.unexplained(&[1e6; 3]), 1.0);
-            assert!(range.unexplained(&[f64::NAN, 0.0, 0.0]).is_nan());
+            assert_eq!(range.variance_share(&[1e6; 3]), 1.0);
+            assert!(range.variance_share(&[f64::NAN, 0.0, 0.0]).is_nan());
         }
         let range = gp(2.0, 0.0).range();
-        assert!(range.points() < MOST && range.left() < LEFT, "{range:?}");
+        assert!(
+            range.points() < MOST && range.mean_variance_share() < LARGEST_SHARE,
+            "{range:?}"
+        );
         // On the path itself, between samples.
         let at = |time: f64| [time.sin(), (1.4 * time).sin(), (1.8 * time).sin()];
         for step in 0..90 {
-            let share = range.unexplained(&at(0.1 * f64::from(step)));
+            let share = range.variance_share(&at(0.1 * f64::from(step)));
             assert!(share < 0.05, "{step}: {share}");
         }
-        assert!(gp(0.03, 0.0).range().left() > LEFT, "too many points would be needed");
+        assert!(
+            gp(0.03, 0.0).range().mean_variance_share() > LARGEST_SHARE,
+            "too many points would be needed"
+        );
     }
 
     #[test]
     fn a_function_known_to_be_zero_has_no_variance() {
         let training = TrainingSet::new(2, &[0.0, 1.0, 2.0, 3.0], &[0.0, 0.0]).expect("valid");
         let gp = Gp::fit(&training, &crate::FitOptions::default()).expect("fits");
-        assert_eq!(gp.range().unexplained(&[9.0, 9.0]), 0.0);
+        assert_eq!(gp.range().variance_share(&[9.0, 9.0]), 0.0);
     }
 }

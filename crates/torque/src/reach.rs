@@ -20,7 +20,7 @@ impl Reach {
     /// Of `gp`.
     pub(crate) fn of(gp: &Gp) -> Self {
         let range = gp.range();
-        let from = range.left().clamp(KNOWN, 1.0 - KNOWN);
+        let from = range.mean_variance_share().clamp(KNOWN, 1.0 - KNOWN);
         Self { range, from }
     }
 
@@ -28,7 +28,7 @@ impl Reach {
     /// − from), it is 1 for s ≤ 0, and otherwise 1 − (1 + c) s² / (s + c) with c = 0.05, which decreases linearly
     /// after a smooth beginning.
     pub(crate) fn weight(&self, x: &[f64]) -> f64 {
-        let share = (self.range.unexplained(x) - self.from) / (1.0 - self.from);
+        let share = (self.range.variance_share(x) - self.from) / (1.0 - self.from);
         // A comparison instead of `max`, which would replace NaN by a number.
         if share <= 0.0 {
             return 1.0;
