@@ -27,7 +27,7 @@ pub struct Concealment {
     pub held_out: Recording,
 }
 
-/// How given effects are recorded.
+/// Settings of the recordings of given effects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// The seed of motions and noise.

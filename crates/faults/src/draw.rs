@@ -114,7 +114,7 @@ impl<'a> Site<'a> {
         &self.scales.torques[self.joint]
     }
 
-    /// Where the joint's motions are centred (rad or m).
+    /// The centre of the joint's motions (rad or m).
     pub(crate) fn home(&self) -> f64 {
         self.robot.home()[self.joint]
     }

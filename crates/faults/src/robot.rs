@@ -100,7 +100,7 @@ impl Robot {
         self.arm.clone().with_rotor_inertias(&self.rotors)
     }
 
-    /// Where its motions are centred (rad or m).
+    /// The centres of its motions (rad or m).
     pub(crate) fn home(&self) -> &[f64] {
         &self.home
     }

@@ -22,7 +22,7 @@ pub enum LengthScales {
     PerInput,
 }
 
-/// How to fit.
+/// Options of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitOptions {
     /// One length scale, or one an input.
@@ -231,7 +231,7 @@ impl Gp {
         self.log_marginal_likelihood
     }
 
-    /// What stands on the kernel matrix's diagonal, and why.
+    /// How the kernel matrix was conditioned: the addition to its diagonal, and the reason.
     pub fn conditioning(&self) -> &Conditioning {
         &self.conditioning
     }

@@ -27,7 +27,7 @@ const RESOLVED: f64 = 0.03;
 /// Steps L-BFGS remembers.
 const MEMORY: usize = 10;
 
-/// What the search found: length scales (one, or one an input) and relative noise ρ.
+/// The result of the search: length scales (one, or one per input) and relative noise ρ.
 pub(crate) struct Found {
     pub(crate) lengths: Vec<f64>,
     pub(crate) rho: f64,

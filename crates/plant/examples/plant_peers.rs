@@ -40,7 +40,7 @@ fn main() {
 
 /// The reference q, q̇, its torque, and the exact positions at the end of each millisecond.
 struct Track {
-    /// Of position and velocity, for each joint.
+    /// The gains of position and velocity for each joint.
     gains: [Vec<f64>; 2],
     start: [Vec<f64>; 2],
     rows: Vec<[Vec<f64>; 4]>,

@@ -149,7 +149,7 @@ mod tests {
     fn drafted(names: &str) -> Option<String> {
         let headers: Vec<String> = names.split(',').map(str::to_owned).collect();
         let map = draft(&headers)?;
-        // What is proposed can be used.
+        // The proposal is a valid column map.
         let parsed = ColumnMap::parse(&map, Path::new("map.toml")).unwrap_or_else(|error| panic!("{error}: {map}"));
         parsed
             .plan(&headers, &[], Path::new("r"))

@@ -62,9 +62,9 @@ pub enum RecordingError {
         place: Place,
         /// The column's header.
         column: String,
-        /// What the cell holds.
+        /// The content of the cell.
         found: String,
-        /// What that is.
+        /// The description of that content.
         what: &'static str,
         /// The remedy.
         remedy: &'static str,

@@ -16,7 +16,7 @@ const EXPANSION: u64 = 100;
 
 /// A recording's file, or folder, before its format is known.
 pub struct Input {
-    /// Where it is.
+    /// Its path.
     pub path: PathBuf,
     /// Its first bytes, without compression; none of a folder.
     pub head: Vec<u8>,

@@ -17,7 +17,7 @@ pub(crate) struct Reach {
 }
 
 impl Reach {
-    /// Of `gp`.
+    /// The weight of the mean of `gp`.
     pub(crate) fn of(gp: &Gp) -> Self {
         let range = gp.range();
         let from = range.mean_variance_share().clamp(KNOWN, 1.0 - KNOWN);

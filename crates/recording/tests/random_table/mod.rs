@@ -17,7 +17,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// As CSV.
+    /// The table as CSV.
     pub fn csv(&self) -> Vec<u8> {
         let mut headers = vec!["t".to_owned()];
         headers.extend(self.joints.iter().map(|name| format!("q_{name}")));
