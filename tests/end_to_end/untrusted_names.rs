@@ -64,10 +64,7 @@ fn names_are_no_part_of_the_page() {
     // What was written is read again.
     let found = sandbox.json("d.json").to_string();
     assert!(found.contains("onerror"), "{found}");
-    sandbox.succeed(&words(&format!(
-        "diagnose --robot u.urdf --train {train} --held-out b.csv --torques-only -q"
-    )));
-    sandbox.succeed(&words(&format!(
-        "diagnose --robot arm.urdf --known m.toml --train {train} --held-out b.csv --torques-only -q"
-    )));
+    let again = |arguments: &str| sandbox.succeed(&[&words(arguments)[..], &["--train", &train]].concat());
+    again("diagnose --robot u.urdf --held-out b.csv --torques-only -q");
+    again("diagnose --robot arm.urdf --known m.toml --held-out b.csv --torques-only -q");
 }

@@ -52,8 +52,7 @@ pub(crate) struct Machine<'a> {
 }
 
 impl<'a> Machine<'a> {
-    /// The machine of `robot` with its drives' inertias and `effects`; of the effect with index `without`, only the
-    /// part that remains when it is removed.
+    /// `robot` with its drives' inertias and `effects`; of effect `without`, only the part that remains without it.
     pub(crate) fn new(robot: &'a Robot, effects: &[&Injected], without: Option<usize>) -> Result<Self, FaultError> {
         let arm = robot.driven();
         let mut parts = Vec::new();
@@ -95,8 +94,7 @@ impl<'a> Machine<'a> {
         Ok(run)
     }
 
-    /// Runs the machine under the control law `law` for `ticks` ticks; returns the signals of the drives, and the
-    /// positions of the links at every tick.
+    /// Runs the machine under `law` for `ticks` ticks; returns the drives' signals and the links' positions at each.
     ///
     /// # Errors
     /// [`FaultError::Plant`] if it cannot be simulated, or exceeds all bounds.
@@ -347,8 +345,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Drives that are moved by two joints. Their inertia acts through the accelerations, which are found by iteration
-    /// from those of the last tick.
+    /// Drives that are moved by two joints: their inertia, with accelerations by iteration from those of the last tick.
     fn add_coupled_inertia(&mut self, time: f64) -> Result<(), FaultError> {
         let parts = self.parts;
         if !parts.couplings(time).any(|(_, _, inertia)| inertia != 0.0) {

@@ -241,7 +241,7 @@ pub fn by_order(time: &[f64], breaks: &[usize], period: f64) -> Option<Clock> {
     Some(clock)
 }
 
-/// The mean distance of the stamps from the ticks, for known ticks (see [`phases`]).
+/// The mean distance of the stamps from the ticks, for known ticks (see [`super::phases`]).
 fn levels(stamps: &[f64], ticks: &[i64], period: f64) -> Vec<(f64, f64)> {
     let blocks = (stamps.len() / BLOCK).max(1);
     let level = |block: usize| {
