@@ -1,6 +1,6 @@
 //! `testbed conceal` through the program: cases that a diagnosis reads, and what is refused.
 
-use crate::support::Sandbox;
+use crate::support::{Sandbox, words};
 
 /// A spring that is no straight line, on an arm that the user brings.
 const EFFECTS: &str = r#"schema = "testbed.model/1"
@@ -49,15 +49,7 @@ fn what_is_concealed_is_found() {
         .next()
         .unwrap_or(EFFECTS);
     sandbox.write("spring.toml", text);
-    let arguments = [
-        "conceal",
-        "--robot",
-        "trio.urdf",
-        "--effects",
-        "spring.toml",
-        "--out",
-        "cases",
-    ];
+    let arguments = words("conceal --robot trio.urdf --effects spring.toml --out cases");
     let printed = sandbox.succeed(&arguments);
     assert!(printed.contains("cases/truth/case_000.json"), "{printed}");
     assert_eq!(
@@ -99,19 +91,9 @@ fn the_same_seed_makes_the_same_bytes() {
     let sandbox = Sandbox::new();
     sandbox.write("trio.urdf", crate::diagnose_made::URDF);
     for (out, jobs) in [("one", "1"), ("two", "2")] {
-        sandbox.succeed(&[
-            "conceal",
-            "--robot",
-            "trio.urdf",
-            "--seed",
-            "2",
-            "--cases",
-            "2",
-            "--jobs",
-            jobs,
-            "--out",
-            out,
-        ]);
+        sandbox.succeed(&words(&format!(
+            "conceal --robot trio.urdf --seed 2 --cases 2 --jobs {jobs} --out {out}"
+        )));
     }
     let read = |path: &str| std::fs::read(sandbox.path(path)).expect("the file is there");
     for case in sandbox.list("one/truth") {
@@ -133,15 +115,7 @@ fn what_cannot_be_concealed_is_refused_with_its_line() {
     let sandbox = Sandbox::new();
     let refuse = |text: &str, part: &str| {
         sandbox.write("effects.toml", text);
-        let error = sandbox.refuse(&[
-            "conceal",
-            "--robot",
-            "seven_axis",
-            "--effects",
-            "effects.toml",
-            "--out",
-            "cases",
-        ]);
+        let error = sandbox.refuse(&words("conceal --robot seven_axis --effects effects.toml --out cases"));
         assert!(error.contains(part), "{error}");
     };
     refuse(&EFFECTS.replace("elbow", "axis9"), "effects.toml:5");
@@ -180,20 +154,9 @@ fn a_wrong_link_before_the_wrist_is_no_payload() {
     let sandbox = Sandbox::new();
     let friction = "schema = \"testbed.model/1\"\n\n[[effects]]\neffect = \"viscous_friction\"\njoint = \"joint4\"\ncoefficient = 0.05\n";
     sandbox.write("friction.toml", friction);
-    sandbox.succeed(&[
-        "conceal",
-        "--robot",
-        "puma560",
-        "--effects",
-        "friction.toml",
-        "--urdf-error",
-        "0.3",
-        "--friction",
-        "--seed",
-        "3",
-        "--out",
-        "cases",
-    ]);
+    sandbox.succeed(&words(
+        "conceal --robot puma560 --effects friction.toml --urdf-error 0.3 --friction --seed 3 --out cases",
+    ));
     let diagnosis = diagnosed(&sandbox);
     let findings = diagnosis["findings"].as_array().expect("there are findings");
     let names: Vec<&str> = findings

@@ -2,6 +2,7 @@
 //! there, or has no name, is not named.
 
 use crate::diagnose_made::{Case, ELBOW, Motion, SHOULDER, TURN, finding, is_found, names, trio};
+use crate::support::words;
 use serde_json::Value;
 
 /// Coulomb and viscous friction on the shoulder.
@@ -92,14 +93,7 @@ fn the_json_has_the_fields_that_others_read() {
 #[test]
 fn the_corrected_model_is_written_read_back_and_leaves_nothing_to_find() {
     let case = Case::new(&trio(), &friction);
-    let found = case.json(&[
-        "--model",
-        "model.toml",
-        "--urdf",
-        "corrected.urdf",
-        "--report",
-        "page.html",
-    ]);
+    let found = case.json(&words("--model model.toml --urdf corrected.urdf --report page.html"));
     let model: toml::Table = case.text("model.toml").parse().expect("it is TOML");
     assert_eq!(model["schema"].as_str(), Some("testbed.model/1"));
     assert_eq!(model["robot"].as_str(), Some("trio"));
@@ -233,15 +227,7 @@ fn a_few_seconds_are_not_enough() {
     let text = case.text("a.csv");
     let start: Vec<&str> = text.lines().take(500).collect();
     case.sandbox.write("short.csv", &(start.join("\n") + "\n"));
-    let arguments = [
-        "diagnose",
-        "--robot",
-        "robot.urdf",
-        "--train",
-        "short.csv",
-        "--json",
-        "d.json",
-    ];
+    let arguments = words("diagnose --robot robot.urdf --train short.csv --json d.json");
     let printed = case.sandbox.succeed(&arguments);
     assert!(printed.contains("not enough data: "), "{printed}");
     assert_eq!(case.sandbox.json("d.json")["verdict"], "not_enough_data");

@@ -1,6 +1,5 @@
 //! Recordings that the tests of the diagnosis make themselves: a known motion, the rigid torque, and what is concealed.
 
-use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -12,53 +11,9 @@ use serde_json::Value;
 
 use crate::support::Sandbox;
 
-/// Three joints: a turning column, a shoulder and an elbow.
-pub const URDF: &str = include_str!("../../crates/diagnosis/tests/support/trio.urdf");
-
-/// The joints of [`URDF`].
-pub const TURN: usize = 0;
-/// The second.
-pub const SHOULDER: usize = 1;
-/// The third.
-pub const ELBOW: usize = 2;
-
-/// The motion at one time.
-pub struct Motion {
-    /// rad.
-    pub q: [f64; 3],
-    /// rad/s.
-    pub qd: [f64; 3],
-    /// rad/s².
-    pub qdd: [f64; 3],
-}
-
-impl Motion {
-    /// Four sines a joint; `variant` chooses frequencies and phases.
-    fn at(time: f64, variant: usize) -> Self {
-        let mut motion = Self {
-            q: [0.0, -0.5, 0.7],
-            qd: [0.0; 3],
-            qdd: [0.0; 3],
-        };
-        for joint in 0..3 {
-            for (k, hertz) in [0.11, 0.23, 0.41, 0.67].into_iter().enumerate() {
-                let turn = (7 * joint + 3 * k + 5 * variant) as f64;
-                let omega = TAU * hertz * (1.0 + 0.08 * (2.4 * turn).sin());
-                let amplitude = 0.34 / (1.0 + 0.6 * k as f64);
-                let (sin, cos) = (omega * time + 1.9 * turn).sin_cos();
-                motion.q[joint] += amplitude * sin;
-                motion.qd[joint] += amplitude * omega * cos;
-                motion.qdd[joint] -= amplitude * omega * omega * sin;
-            }
-        }
-        motion
-    }
-}
-
-/// The arm of [`URDF`].
-pub fn trio() -> Arm {
-    Arm::from_urdf_text(URDF, "trio.urdf").expect("it is an arm")
-}
+#[path = "../../crates/diagnosis/tests/support/mod.rs"]
+mod made;
+pub use made::{ELBOW, Motion, SHOULDER, TRIO as URDF, TURN, trio};
 
 /// A recording of `seconds` at 250 Hz of the robot that is `arm` and `concealed`: what is added to its torques.
 pub fn recording(arm: &Arm, variant: usize, seconds: f64, concealed: &dyn Fn(&Motion, &mut [f64])) -> String {
@@ -69,11 +24,11 @@ pub fn recording(arm: &Arm, variant: usize, seconds: f64, concealed: &dyn Fn(&Mo
     let mut tau = [0.0; 3];
     for k in 0..(250.0 * seconds) as usize {
         let time = k as f64 / 250.0;
-        let motion = Motion::at(time, variant);
+        let motion = made::motion(3, time, variant);
         arm.inverse_dynamics(&mut workspace, &motion.q, &motion.qd, &motion.qdd, &mut tau);
         concealed(&motion, &mut tau);
         let _ = write!(text, "{:.4}", time + 40.0 * variant as f64);
-        for q in motion.q {
+        for q in &motion.q {
             let _ = write!(text, ",{q:.6}");
         }
         for tau in tau {

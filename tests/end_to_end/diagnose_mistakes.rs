@@ -6,6 +6,7 @@ use arm::Vector3;
 
 use crate::diagnose_made::{Case, ELBOW, SHOULDER, arguments, recording, trio};
 use crate::diagnose_refusals::{case, changed, refused, refused_command, refused_with, says};
+use crate::support::words;
 
 /// One recording with a column map, by its torques.
 const ALONE: [&str; 7] = [
@@ -21,14 +22,9 @@ const ALONE: [&str; 7] = [
 /// What a diagnosis with `text` as `a.csv` says: no effect, and units first, in every form.
 fn doubted(case: &Case, text: &str) -> String {
     case.sandbox.write("a.csv", text);
-    let said = case.sandbox.succeed(&arguments(&[
-        "--json",
-        "o.json",
-        "--report",
-        "o.html",
-        "--markdown",
-        "o.md",
-    ]));
+    let said = case
+        .sandbox
+        .succeed(&arguments(&words("--json o.json --report o.html --markdown o.md")));
     let json = case.sandbox.json("o.json");
     assert_eq!(json["verdict"], "units_first", "{said}");
     assert_eq!(json["findings"].as_array().map(Vec::len), Some(0));

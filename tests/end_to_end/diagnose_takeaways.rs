@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::diagnose_made::{Case, Motion, SHOULDER, arguments, trio};
-use crate::diagnose_refusals::{case, refused, says};
+use crate::diagnose_refusals::{case, says};
 
 /// Coulomb and viscous friction on the shoulder.
 fn friction(motion: &Motion, tau: &mut [f64]) {
@@ -96,9 +96,44 @@ fn residuals_are_those_of_the_errors() {
 }
 
 #[test]
-fn residuals_of_another_ending_are_refused() {
-    let message = refused(&case(), &["--residuals", "r.xlsx"]);
-    says(&message, &["--residuals r.xlsx", ".csv or .parquet"]);
+fn outputs_with_the_ending_of_another_format_are_refused() {
+    let case = case();
+    let before = case.sandbox.list("");
+    let refused = |command: &[&str], parts: &[&str]| {
+        says(&case.sandbox.refuse(command), parts);
+        assert_eq!(case.sandbox.list(""), before, "something was left behind");
+    };
+    for (option, name, possible) in [
+        ("--json", "o.xml", ".json"),
+        ("--report", "o.pdf", ".html or .htm"),
+        ("--markdown", "o.html", ".md or .markdown"),
+        ("--residuals", "o.xlsx", ".csv or .parquet"),
+        ("--model", "o.yaml", ".toml"),
+        ("--urdf", "o.sdf", ".urdf or .xml"),
+        ("--trace", "o.json", ".csv"),
+        ("--mjcf", "o.urdf", ".xml or .mjcf"),
+        ("--next", "o.csv", ".toml"),
+    ] {
+        let found = &name[1..];
+        refused(&arguments(&[option, name]), &[option, name, found, possible]);
+    }
+    for (command, possible) in [
+        (
+            &["excite", "--robot", "robot.urdf", "--scenario", "o.yaml"][..],
+            ".toml",
+        ),
+        (&["excite", "--robot", "robot.urdf", "--csv", "o.txt"], ".csv"),
+        (&["inspect", "a.csv", "--json", "o.txt"], ".json"),
+        (&["tables", "--json", "o.txt"], ".json"),
+        (&["transfer", "--json", "o.txt"], ".json"),
+        (&["prove", "--markdown", "o.txt"], ".md or .markdown"),
+        (&["--scenario", "taskA", "--rerun", "off", "--json", "o.txt"], ".json"),
+    ] {
+        refused(command, &["this option does not write", possible]);
+    }
+    // A name without an ending, and a device.
+    case.sandbox.succeed(&["inspect", "a.csv", "--json", "o"]);
+    assert!(case.text("o").starts_with('{'));
 }
 
 #[test]

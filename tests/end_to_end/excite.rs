@@ -7,7 +7,7 @@ use arm::{Arm, Workspace};
 
 use crate::diagnose_made::{URDF, recording, trio};
 use crate::diagnose_refusals::says;
-use crate::support::Sandbox;
+use crate::support::{Sandbox, words};
 
 const JOINTS: [&str; 3] = ["turn", "shoulder", "elbow"];
 
@@ -50,22 +50,9 @@ fn numbers(printed: &str, motion: &str) -> Vec<f64> {
 fn a_motion_is_within_all_limits_and_rests_at_its_ends() {
     let sandbox = sandbox(URDF);
     // Narrower than the URDF's in each kind, so that each of them matters.
-    let limits = [
-        "--position-limit",
-        "elbow=-0.4:1.6",
-        "--velocity-limit",
-        "2",
-        "--velocity-limit",
-        "turn=1.2",
-        "--acceleration-limit",
-        "shoulder=3",
-        "--effort-limit",
-        "shoulder=60",
-        "--csv",
-        "m.csv",
-        "--rate",
-        "400",
-    ];
+    let limits = words(
+        "--position-limit elbow=-0.4:1.6 --velocity-limit 2 --velocity-limit turn=1.2 --acceleration-limit shoulder=3 --effort-limit shoulder=60 --csv m.csv --rate 400",
+    );
     let printed = run(&sandbox, &limits);
     assert!(printed.ends_with("written: m.csv\n"), "{printed}");
     assert!(printed.lines().all(|line| line.chars().count() <= 80), "{printed}");

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-use crate::support::{Sandbox, root};
+use crate::support::{Sandbox, root, words};
 
 /// A short run.
 pub const SCENARIO: &str =
@@ -41,16 +41,9 @@ pub fn diagnose(folder: &str) -> Vec<String> {
 
 /// A run of the scenario file `scenario` into the folder `out`.
 pub fn run_of(scenario: &str, out: &str) -> Vec<String> {
-    strings(&[
-        "--scenario",
-        scenario,
-        "--model",
-        "true",
-        "--rerun",
-        "off",
-        "--out",
-        out,
-    ])
+    strings(&words(&format!(
+        "--scenario {scenario} --model true --rerun off --out {out}"
+    )))
 }
 
 /// Starts the program, whose words nobody hears.

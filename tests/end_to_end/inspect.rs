@@ -1,6 +1,6 @@
 //! `testbed inspect`: what it says of good recordings, of flawed ones, and what it refuses.
 
-use crate::support::{Sandbox, root};
+use crate::support::{Sandbox, root, words};
 
 /// Two joints at 250 Hz for 12 s, each row as the closures say.
 fn recording(row: impl Fn(usize, f64) -> Option<String>) -> String {
@@ -181,16 +181,7 @@ fn a_column_map_reads_anybodys_file() {
 
 /// A recording of the PUMA 560 in the simulation, as CSV.
 fn simulated(sandbox: &Sandbox) -> String {
-    sandbox.succeed(&[
-        "--scenario",
-        "taskA",
-        "--model",
-        "true",
-        "--rerun",
-        "off",
-        "--out",
-        "run",
-    ]);
+    sandbox.succeed(&words("--scenario taskA --model true --rerun off --out run"));
     std::fs::read_to_string(sandbox.path("run/recording.csv")).expect("the run wrote it")
 }
 

@@ -2,7 +2,7 @@
 //! changed under seal.
 
 use crate::diagnose_made::{Motion, SHOULDER, URDF, recording, trio};
-use crate::support::Sandbox;
+use crate::support::{Sandbox, words};
 use serde_json::{Value, json};
 
 /// The folders `given/case_a` (friction and drag on the shoulder), `given/case_b` (nothing), and their truths.
@@ -127,15 +127,7 @@ fn a_case_that_cannot_be_diagnosed_is_an_answer_that_is_missing() {
 #[test]
 fn cases_without_truths_are_refused() {
     let sandbox = cases();
-    let refused = sandbox.refuse(&[
-        "prove",
-        "--cases-from",
-        "given",
-        "--truth",
-        "given/case_a",
-        "--out",
-        "proof",
-    ]);
+    let refused = sandbox.refuse(&words("prove --cases-from given --truth given/case_a --out proof"));
     assert!(refused.contains("--truth"), "{refused}");
 }
 

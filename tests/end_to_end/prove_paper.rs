@@ -1,22 +1,12 @@
 //! The paper's own disturbance as a case of `testbed prove`: one cause, its aliases, and a torque error that is rounding.
 
-use crate::support::Sandbox;
+use crate::support::{Sandbox, words};
 use serde_json::{Value, json};
 
 #[test]
 fn a_heavy_model_is_one_cause_and_its_correction_errs_by_rounding() {
     let sandbox = Sandbox::new();
-    let command = [
-        "prove",
-        "--cases",
-        "0",
-        "--out",
-        "proof",
-        "--markdown",
-        "proof.md",
-        "--jobs",
-        "2",
-    ];
+    let command = words("prove --cases 0 --out proof --markdown proof.md --jobs 2");
     let printed = sandbox.succeed(&command);
     assert!(printed.contains("inertial_scale × 0.8333"), "{printed}");
     let proof = sandbox.json("proof/score.json");

@@ -2,6 +2,7 @@
 
 use crate::diagnose_made::{Case, SHOULDER, URDF, arguments, recording, trio};
 use crate::diagnose_refusals::says;
+use crate::support::words;
 
 /// The robot of [`URDF`] with a hand of two weightless fingers, one of which mimics the other.
 fn with_gripper() -> String {
@@ -106,17 +107,7 @@ fn the_arm_of_a_branching_robot_is_the_recorded_one_or_chosen() {
     let effects =
         "schema = \"testbed.model/1\"\n[[effects]]\neffect = \"coulomb_friction\"\njoint = \"elbow\"\nlevel = 3.0\n";
     case.sandbox.write("e.toml", effects);
-    let conceal = [
-        "conceal",
-        "--robot",
-        "robot.urdf",
-        "--effects",
-        "e.toml",
-        "--out",
-        "made",
-        "--training",
-        "1",
-    ];
+    let conceal = words("conceal --robot robot.urdf --effects e.toml --out made --training 1");
     let flags =
         "--base column --tip fore (2 joints: shoulder … elbow) or --base floor --tip fore (3 joints: turn … elbow)";
     says(
@@ -159,13 +150,9 @@ fn a_corrected_urdf_diagnosed_again_leaves_nothing_to_find() {
     assert!(placeholder.contains(axis));
     let placeholder = placeholder.replace(axis, &axis.replace("</joint>", "<dynamics damping=\"10\"/></joint>"));
     let case = case(&placeholder, 2.0);
-    let output = case.sandbox.run(&arguments(&[
-        "--torques-only",
-        "--json",
-        "o.json",
-        "--urdf",
-        "corrected.urdf",
-    ]));
+    let output = case
+        .sandbox
+        .run(&arguments(&words("--torques-only --json o.json --urdf corrected.urdf")));
     let said = String::from_utf8_lossy(&output.stderr);
     says(
         &said,

@@ -1,6 +1,6 @@
 //! Runs of scenarios, through the built program: what they print, leave behind and repeat.
 
-use crate::support::Sandbox;
+use crate::support::{Sandbox, words};
 
 /// A short run of the PUMA 560 with `extra` lines.
 fn short_scenario(extra: &str) -> String {
@@ -110,14 +110,9 @@ fn the_same_seed_gives_the_same_bytes_whatever_the_threads() {
     sandbox.write("noisy.toml", &noisy);
     let record = |seed: &str, out: &str, threads: &str| {
         let output = std::process::Command::new(env!("CARGO_BIN_EXE_testbed"))
-            .args([
-                "--scenario",
-                "noisy.toml",
-                "--model",
-                "independent-joint-13",
-                "--train",
-                "noisy.toml",
-            ])
+            .args(words(
+                "--scenario noisy.toml --model independent-joint-13 --train noisy.toml",
+            ))
             .args(["--rerun", "off", "--seed", seed, "--out", out])
             .env("RAYON_NUM_THREADS", threads)
             .current_dir(sandbox.path(""))
@@ -135,27 +130,11 @@ fn the_same_seed_gives_the_same_bytes_whatever_the_threads() {
 fn a_model_learns_from_the_recording_of_a_run() {
     let sandbox = Sandbox::new();
     sandbox.write("short.toml", &short_scenario(""));
-    sandbox.succeed(&[
-        "--scenario",
-        "short.toml",
-        "--model",
-        "rigid-body",
-        "--rerun",
-        "off",
-        "--out",
-        "first",
-    ]);
+    sandbox.succeed(&words(
+        "--scenario short.toml --model rigid-body --rerun off --out first",
+    ));
     let train = ["--train", "first/recording.csv"];
-    let learn = [
-        "--scenario",
-        "short.toml",
-        "--model",
-        "independent-joint-13",
-        "--rerun",
-        "off",
-        "--json",
-        "s.json",
-    ];
+    let learn = words("--scenario short.toml --model independent-joint-13 --rerun off --json s.json");
     sandbox.succeed(&[&learn[..], &train].concat());
     let before = sandbox.json("first/summary.json");
     let after = sandbox.json("s.json");
@@ -176,16 +155,7 @@ fn any_arm_runs_with_drives_and_friction() {
                 frequency = 0.5\nphase = 1.0\n[controller]\nfeedback = \"gains\"\nkp = 20000\nkd = 2000\n\
                 [plant]\nrotor_inertia = 5\nviscous_friction = 203.5\ncoulomb_friction = 20.39\n";
     sandbox.write("slider.toml", text);
-    let printed = sandbox.succeed(&[
-        "--scenario",
-        "slider.toml",
-        "--model",
-        "true",
-        "--rerun",
-        "off",
-        "--json",
-        "s.json",
-    ]);
+    let printed = sandbox.succeed(&words("--scenario slider.toml --model true --rerun off --json s.json"));
     assert!(printed.contains("mm"), "{printed}");
     // Friction is all that the exact rigid-body model leaves to the feedback: about (20.4 + 203.5 × .22) / 20000 m.
     let error = sandbox.json("s.json")["tracking"][0]["rms_error_rad"][0]
@@ -213,18 +183,9 @@ fn every_model_runs_on_arms_of_one_and_of_four_joints() {
             "independent-joint",
             "independent-joint-13",
         ] {
-            sandbox.succeed(&[
-                "--scenario",
-                "r.toml",
-                "--model",
-                model,
-                "--train",
-                "r.toml",
-                "--rerun",
-                "off",
-                "--json",
-                "s.json",
-            ]);
+            sandbox.succeed(&words(&format!(
+                "--scenario r.toml --model {model} --train r.toml --rerun off --json s.json"
+            )));
             let error = sandbox.json("s.json")["torque_mse"][0].as_f64().expect("a number");
             // The twelve inputs do not tell a carriage's acceleration: on a slider they are all zero.
             let limit = if matches!(model, "rigid-body" | "independent-joint") {
@@ -249,18 +210,9 @@ fn a_gap_in_a_recording_does_not_multiply_its_samples() {
         csv += &format!("{t},{},{},{},{}\n", t.sin(), t.cos(), -t.sin(), -95.0 * t.sin());
     }
     sandbox.write("r.csv", &csv);
-    sandbox.succeed(&[
-        "--scenario",
-        "r.toml",
-        "--model",
-        "gp",
-        "--train",
-        "r.csv",
-        "--rerun",
-        "off",
-        "--json",
-        "s.json",
-    ]);
+    sandbox.succeed(&words(
+        "--scenario r.toml --model gp --train r.csv --rerun off --json s.json",
+    ));
     let summary = sandbox.json("s.json");
     let text = summary["regressions"][0]["conditioning"].as_str().expect("a text");
     // 80 Hz of half a second: 20 samples before the gap and 20 after it.
@@ -290,16 +242,9 @@ fn the_run_is_saved_for_the_viewer() {
     sandbox.write("short.toml", &short_scenario(""));
     sandbox.succeed(&["--scenario", "short.toml", "--model", "true", "--out", "a"]);
     assert_eq!(sandbox.list("a"), ["recording.csv", "run.rrd", "summary.json"]);
-    sandbox.succeed(&[
-        "--scenario",
-        "short.toml",
-        "--model",
-        "true",
-        "--out",
-        "b",
-        "--rerun",
-        "save=here.rrd",
-    ]);
+    sandbox.succeed(&words(
+        "--scenario short.toml --model true --out b --rerun save=here.rrd",
+    ));
     assert_eq!(sandbox.list("b"), ["recording.csv", "summary.json"]);
     let bytes = std::fs::read(sandbox.path("here.rrd")).expect("it is there");
     assert!(bytes.starts_with(b"RRF") && bytes.len() > 10_000);
@@ -308,14 +253,7 @@ fn the_run_is_saved_for_the_viewer() {
     assert!(message.contains("is a folder"), "{message}");
     // Nothing listens at this port: the run goes on without a viewer.
     let url = "connect=rerun+http://127.0.0.1:9/proxy";
-    sandbox.succeed(&[
-        "--scenario",
-        "short.toml",
-        "--model",
-        "true",
-        "--out",
-        "c",
-        "--rerun",
-        url,
-    ]);
+    sandbox.succeed(&words(&format!(
+        "--scenario short.toml --model true --out c --rerun {url}"
+    )));
 }

@@ -73,6 +73,11 @@ impl Sandbox {
     }
 }
 
+/// The arguments in a command line without quotation marks.
+pub fn words(line: &str) -> Vec<&str> {
+    line.split_whitespace().collect()
+}
+
 /// The root of the repository.
 pub fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))

@@ -1,21 +1,11 @@
 //! `testbed transfer` through the built program: every training set, errors with their predictions, and refusals.
 
-use crate::support::Sandbox;
+use crate::support::{Sandbox, words};
 
 #[test]
 fn every_training_set_is_tested_on_every_other_task() {
     let sandbox = Sandbox::new();
-    let asked = [
-        "transfer",
-        "--train",
-        "taskA,taskC",
-        "--model",
-        "hybrid",
-        "--json",
-        "t.json",
-        "--samples",
-        "samples",
-    ];
+    let asked = words("transfer --train taskA,taskC --model hybrid --json t.json --samples samples");
     let printed = sandbox.succeed(&asked);
     let report = sandbox.json("t.json");
     let rows = report["rows"].as_array().expect("rows");

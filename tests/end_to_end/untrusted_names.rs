@@ -1,6 +1,6 @@
 //! Names from files are text wherever they are shown: in the page, its figures and in Markdown.
 
-use crate::support::{Sandbox, root};
+use crate::support::{Sandbox, root, words};
 
 /// Ends a script, a comment, an attribute and an element.
 const EVIL: &str = "`</script>--><script>alert(1)</script>\"'><img src=x onerror=alert(2)>";
@@ -40,19 +40,7 @@ fn names_are_no_part_of_the_page() {
     sandbox.succeed(
         &[
             &arguments[..],
-            &[
-                "--torques-only",
-                "--markdown",
-                "p.md",
-                "--json",
-                "d.json",
-                "--model",
-                "m.toml",
-                "--urdf",
-                "u.urdf",
-                "--mjcf",
-                "m.xml",
-            ],
+            &words("--torques-only --markdown p.md --json d.json --model m.toml --urdf u.urdf --mjcf m.xml"),
         ]
         .concat(),
     );
@@ -76,28 +64,7 @@ fn names_are_no_part_of_the_page() {
     // What was written is read again.
     let found = sandbox.json("d.json").to_string();
     assert!(found.contains("onerror"), "{found}");
-    sandbox.succeed(&[
-        "diagnose",
-        "--robot",
-        "u.urdf",
-        "--train",
-        &train,
-        "--held-out",
-        "b.csv",
-        "--torques-only",
-        "-q",
-    ]);
-    sandbox.succeed(&[
-        "diagnose",
-        "--robot",
-        "arm.urdf",
-        "--known",
-        "m.toml",
-        "--train",
-        &train,
-        "--held-out",
-        "b.csv",
-        "--torques-only",
-        "-q",
-    ]);
+    let again = |arguments: &str| sandbox.succeed(&[&words(arguments)[..], &["--train", &train]].concat());
+    again("diagnose --robot u.urdf --held-out b.csv --torques-only -q");
+    again("diagnose --robot arm.urdf --known m.toml --held-out b.csv --torques-only -q");
 }

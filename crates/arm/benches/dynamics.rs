@@ -1,4 +1,4 @@
-//! Time a call of each algorithm, on the PUMA 560 or on the URDF that `TESTBED_BENCH_URDF` names.
+//! The time of one call of each algorithm, on the PUMA 560 or on the URDF in `TESTBED_BENCH_URDF`.
 
 use arm::{Arm, DMatrix, Workspace};
 use divan::Bencher;
@@ -9,7 +9,7 @@ fn arm() -> Arm {
     Arm::from_urdf(path).expect("the robot loads")
 }
 
-/// 256 states to walk through, so that no branch or cache learns one by heart.
+/// 256 different states, so that branch prediction and caches cannot adapt to one.
 fn states(n: usize) -> Vec<[Vec<f64>; 3]> {
     let vector = |k: usize, phase: f64| (0..n).map(|i| ((k * 7 + i) as f64 * 0.37 + phase).sin()).collect();
     (0..256)

@@ -1,6 +1,6 @@
-//! Nanoseconds a state of the arm's algorithms, as JSON, for `benches/peers.sh`: alone, and many at a time.
+//! Nanoseconds per state of the arm's algorithms, as JSON, for `benches/peers.sh`: for single states and for batches.
 //!
-//! The states and the check sums are those of `benches/peers/pinocchio.cpp`.
+//! The states and the checksums are those of `benches/peers/pinocchio.cpp`.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -10,13 +10,13 @@ use arm::{Arm, DMatrix, FEATURES, PARAMETERS_PER_LINK, Workspace};
 /// States of the recording.
 const STATES: usize = 10_000;
 
-/// States of one batch, and of one batch of regressors, which are large.
+/// The number of states of a batch, and of a batch of regressors, which are large.
 const BATCHES: [usize; 2] = [1000, 100];
 
-/// Times a row is measured; the fastest counts, which other programs disturbed least.
+/// The number of times a row is measured; the fastest time counts, because other programs disturbed it least.
 const REPEATS: usize = 40;
 
-/// Nanoseconds a state of `pass`, which goes over `states` of them.
+/// Nanoseconds per state of `pass`, which computes `states` of them.
 fn fastest(states: usize, mut pass: impl FnMut()) -> f64 {
     pass();
     let times = (0..REPEATS).map(|_| {

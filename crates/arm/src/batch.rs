@@ -1,8 +1,8 @@
 //! The algorithms over many states, several at a time: one in each lane of the processor's vectors.
 //!
-//! A signal of many states stands joint after joint: with `samples` states, joint `i` of state `k` is at `i * samples + k`.
-//! Matrices stand likewise, entry after entry. What a state gets has the bits that it gets alone, whatever the processor
-//! (`real`). A call allocates scratch once, whatever the number of states.
+//! Signals are stored joint after joint: with `samples` states, joint `i` of state `k` is at index `i * samples + k`.
+//! Matrices are stored in the same way, entry after entry. The results have the same bits as those of one state at a
+//! time, on every processor (see `real`). A call allocates its scratch once, whatever the number of states.
 
 use pulp::{Arch, Simd, WithSimd};
 
@@ -13,55 +13,58 @@ use crate::regressor::PARAMETERS_PER_LINK;
 use crate::workspace::Scratch;
 
 impl Arm {
-    /// [`Arm::inverse_dynamics`] of many states, all slices joint after joint.
+    /// [`Arm::inverse_dynamics`] for many states; all slices are stored joint after joint.
     ///
     /// # Panics
-    /// If a slice does not have as many entries as the others, a number of states for each joint.
+    /// If the slices differ in length, or the length is not a multiple of the number of joints.
     pub fn inverse_dynamics_batch(&self, q: &[f64], qd: &[f64], qdd: &[f64], tau: &mut [f64]) {
         self.evaluate(InverseDynamics, [q, qd, qdd], [(tau, 1)]);
     }
 
-    /// [`Arm::newton_euler_features`] of many states: feature `f` of joint `i` of state `k` at
-    /// `(i * FEATURES + f) * samples + k`. The torque is the last feature.
+    /// [`Arm::newton_euler_features`] for many states: feature `f` of joint `i` of state `k` is at index `(i *
+    /// FEATURES + f) * samples + k`. The last feature is the torque.
     ///
     /// # Panics
-    /// If a slice has another size than `q` gives it.
+    /// If the size of a slice does not match that of `q`.
     pub fn newton_euler_features_batch(&self, q: &[f64], qd: &[f64], qdd: &[f64], features: &mut [f64]) {
         self.evaluate(Features, [q, qd, qdd], [(features, FEATURES)]);
     }
 
-    /// [`Arm::forward_dynamics`] of many states, all slices joint after joint.
+    /// [`Arm::forward_dynamics`] for many states; all slices are stored joint after joint.
     ///
     /// # Panics
-    /// If a slice does not have as many entries as the others, a number of states for each joint.
+    /// If the slices differ in length, or the length is not a multiple of the number of joints.
     pub fn forward_dynamics_batch(&self, q: &[f64], qd: &[f64], tau: &[f64], qdd: &mut [f64]) {
         self.evaluate(ForwardDynamics, [q, qd, tau], [(qdd, 1)]);
     }
 
-    /// [`Arm::mass_matrix`] of many states: entry (i, j) of state `k` at `(j * dof + i) * samples + k`.
+    /// [`Arm::mass_matrix`] for many states: entry (i, j) of state `k` is at index `(j * dof + i) * samples + k`.
     ///
     /// # Panics
-    /// If a slice has another size than `q` gives it.
+    /// If the size of a slice does not match that of `q`.
     pub fn mass_matrix_batch(&self, q: &[f64], mass_matrix: &mut [f64]) {
         self.evaluate(MassMatrix, [q], [(mass_matrix, self.dof())]);
     }
 
-    /// [`Arm::torque_regressor`] of many states: row `i`, column `c` of state `k` at `(c * dof + i) * samples + k`.
+    /// [`Arm::torque_regressor`] for many states: row `i`, column `c` of state `k` is at index `(c * dof + i) *
+    /// samples + k`.
     ///
-    /// The rows of joints beyond a column's link are zero in every state: they are not written, so `regressor` starts as
-    /// zeros. It is large, 10 dof² numbers a state: about a hundred states at a time stay in the processor's caches.
+    /// The rows of joints beyond a column's link are zero in every state and are not written: pass a `regressor`
+    /// filled with zeros. A state has 10 dof² numbers; about a hundred states at a time stay in the processor's
+    /// caches.
     ///
     /// # Panics
-    /// If a slice has another size than `q` gives it.
+    /// If the size of a slice does not match that of `q`.
     pub fn torque_regressor_batch(&self, q: &[f64], qd: &[f64], qdd: &[f64], regressor: &mut [f64]) {
         let width = PARAMETERS_PER_LINK * self.dof();
         self.evaluate(Regressor, [q, qd, qdd], [(regressor, width)]);
     }
 
-    /// [`Arm::inverse_dynamics_derivatives`] of many states: entry (i, j) of state `k` at `(j * dof + i) * samples + k`.
+    /// [`Arm::inverse_dynamics_derivatives`] for many states: entry (i, j) of state `k` is at index `(j * dof + i) *
+    /// samples + k`.
     ///
     /// # Panics
-    /// If a slice has another size than `q` gives it.
+    /// If the size of a slice does not match that of `q`.
     pub fn inverse_dynamics_derivatives_batch(
         &self,
         q: &[f64],
@@ -74,7 +77,7 @@ impl Arm {
         self.evaluate(Derivatives, [q, qd, qdd], [(by_position, n), (by_velocity, n)]);
     }
 
-    /// Runs `recursion`; an output comes with how many numbers a joint has in it.
+    /// Runs `recursion` over all states. Each output is given with its number of values per joint.
     fn evaluate<R: Recursion, const I: usize, const O: usize>(
         &self,
         recursion: R,
@@ -102,14 +105,15 @@ impl Arm {
     }
 }
 
-/// One of the arm's recursions, on any kind of number.
+/// One of the arm's recursions, for any type of number.
 trait Recursion {
-    /// Whether this entry of the output is zero in every state: it is not written.
+    /// Whether this entry of the output is zero in every state, so that it is not written.
     fn is_zero(&self, _dof: usize, _entry: usize) -> bool {
         false
     }
 
-    /// From `inputs`, one after the other, to `output`, likewise; `output` is zero at first.
+    /// Computes one state, or one vector of states. The signals in `inputs` follow each other, as do those in
+    /// `output`, which holds zeros at first.
     fn run<T: Real>(&self, arm: &Arm, context: T::Context, scratch: &mut Scratch<T>, inputs: &[T], output: &mut [T]);
 }
 
@@ -131,7 +135,8 @@ impl Recursion for Features {
         let [q, qd, qdd] = thirds(inputs);
         let n = arm.dof();
         arm.newton_euler(context, scratch, q, qd, qdd, &mut output[..n]);
-        // The torques stand where the features of the first joints come: from the last joint on none is overwritten.
+        // The torques are stored where the features of the first joints will be written. From the last joint to the
+        // first, each torque is read before it is overwritten.
         for i in (0..n).rev() {
             let features = scratch.features(context, i, output[i]);
             output[i * FEATURES..(i + 1) * FEATURES].copy_from_slice(&features);
@@ -223,7 +228,7 @@ impl<R: Recursion, const I: usize, const O: usize> WithSimd for Evaluation<'_, R
         outputs.retain(|(entry, _)| !recursion.is_zero(arm.dof(), *entry));
         let mut input = vec![zero; inputs.len()];
         for start in (0..samples).step_by(S::F64_LANES) {
-            // What is left of the vector after the last state is zero: states of no account.
+            // The lanes after the last state hold zeros; their results are not used.
             let states = start..samples.min(start + S::F64_LANES);
             for (lanes, column) in input.iter_mut().zip(&inputs) {
                 let column = &column[states.clone()];

@@ -1,38 +1,38 @@
-//! How an arm is chosen among the joints of a robot, and what is known of the joints that are fixed for it.
+//! How an arm is chosen among the joints of a robot, and which joints are fixed for it.
 
 use std::fmt;
 
 use crate::model::JointKind;
 use crate::pose::Pose;
 
-/// How an arm is chosen among the joints of a robot. By default it is the robot's only chain of moving joints, where
+/// How an arm is chosen among the joints of a robot. By default it is the robot's only chain of moving joints;
 /// grippers and mimicking joints are fixed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChainOptions {
-    /// The link that stands still; `None` is the root link.
+    /// The link that does not move; `None` is the root link.
     pub base: Option<String>,
     /// The last link of the arm: the joints between the base and it move, and all others are fixed.
     pub tip: Option<String>,
     /// Joints that are fixed, each with its position (rad or m).
     pub locks: Vec<(String, f64)>,
-    /// The joints that recordings at hand hold; without a tip, the arm has no other joints. Empty without a recording.
+    /// The joints in the recordings. Without a tip, the arm has no other joints. Empty without recordings.
     pub recorded: Vec<String>,
 }
 
-/// A joint that could move and is fixed in the arm.
+/// A joint of the robot that could move and is fixed in the arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FixedJoint {
     /// The URDF joint's name.
     pub name: String,
-    /// How it would move.
+    /// How it would move if it were not fixed.
     pub kind: JointKind,
     /// Where it is fixed (rad or m).
     pub position: f64,
     /// The pose of its child link in its parent link.
     pub parent_from_child: Pose,
-    /// Why.
+    /// Why it is fixed.
     pub reason: FixedBecause,
-    /// Whether the arm carries it, so that its position matters to the arm's dynamics.
+    /// Whether the arm carries it, so that its position affects the arm's dynamics.
     pub is_carried: bool,
 }
 
@@ -41,11 +41,11 @@ pub struct FixedJoint {
 pub enum FixedBecause {
     /// [`ChainOptions::locks`] asks for it.
     Locked,
-    /// Its position follows that of this joint.
+    /// It mimics this joint.
     Mimics(String),
-    /// Its name says that it is a joint of a gripper, and nothing but the gripper is beyond it.
+    /// Its name is that of a gripper's joint, and there is nothing but the gripper beyond it.
     Gripper,
-    /// The recordings at hand do not hold it.
+    /// The recordings do not contain it.
     NotRecorded,
     /// It is not between base and tip.
     OffChain,
@@ -63,10 +63,10 @@ impl fmt::Display for FixedBecause {
     }
 }
 
-/// More joints than this are counted in a note, and not listed.
+/// A note counts the joints instead of listing them if there are more than this.
 const MOST_NAMED: usize = 4;
 
-/// One line about the joints that were fixed unasked and that the arm carries.
+/// One line about the joints that were fixed without an option and that the arm carries.
 pub(crate) fn note(fixed: &[FixedJoint]) -> Option<String> {
     let unasked = |joint: &&FixedJoint| joint.is_carried && joint.reason != FixedBecause::Locked;
     let fixed: Vec<&FixedJoint> = fixed.iter().filter(unasked).collect();

@@ -1,4 +1,4 @@
-//! The derivatives of inverse dynamics by the positions and the velocities.
+//! The derivatives of inverse dynamics with respect to positions and velocities.
 
 use nalgebra::DMatrix;
 
@@ -10,7 +10,8 @@ use crate::small::{
 };
 use crate::workspace::{Scratch, Workspace};
 
-/// A twist, a spatial acceleration or a wrench along the base's axes about its origin: the angular part (or moment) first.
+/// A twist, a spatial acceleration or a wrench in the base's axes about its origin: the angular part (or moment)
+/// first.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spatial<T>(pub Vec3<T>, pub Vec3<T>);
 
@@ -35,7 +36,7 @@ impl<T: Real> Spatial<T> {
         self.0.dot(&other.0) + self.1.dot(&other.1)
     }
 
-    /// How a motion that a body with this twist carries changes.
+    /// Motion cross product v × m: the rate of change of the motion `m` that is fixed to a body with this twist.
     #[inline(always)]
     fn cross(&self, motion: &Self) -> Self {
         Self(
@@ -44,7 +45,7 @@ impl<T: Real> Spatial<T> {
         )
     }
 
-    /// How a wrench that a body with this twist carries changes.
+    /// Force cross product v ×* f: the rate of change of the wrench `f` that is fixed to a body with this twist.
     #[inline(always)]
     fn cross_wrench(&self, wrench: &Self) -> Self {
         Self(
@@ -54,7 +55,7 @@ impl<T: Real> Spatial<T> {
     }
 }
 
-/// What one link, or all links from one on, contribute; along the base's axes about its origin.
+/// Inertia, momentum and wrench of one link, or of all links from one on, in the base's axes about its origin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Body<T> {
     mass: T,
@@ -116,15 +117,15 @@ impl<T: Real> Body<T> {
     }
 }
 
-/// Scratch of one joint; along the base's axes about its origin.
+/// Scratch of one joint, in the base's axes about its origin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tangent<T> {
     /// The joint's unit motion s.
     unit: Spatial<T>,
-    /// How the motion of all that it carries changes by q, seen from there: velocity and acceleration.
+    /// The change of velocity and acceleration by q, as seen from what the joint carries.
     velocity: Spatial<T>,
     acceleration: Spatial<T>,
-    /// How the acceleration changes by q̇, less a part that belongs to the Coriolis term.
+    /// The change of the acceleration by q̇, without a part that belongs to the Coriolis term.
     by_speed: Spatial<T>,
     body: Body<T>,
 }
@@ -144,13 +145,15 @@ impl<T: Real> Tangent<T> {
 }
 
 impl Arm {
-    /// ∂τ/∂q and ∂τ/∂q̇ of [`Self::inverse_dynamics`], dof × dof each: row joint, column by. N m or N per rad or m, and
-    /// per rad/s or m/s. (∂τ/∂q̈ is the mass matrix.)
+    /// The derivatives ∂τ/∂q and ∂τ/∂q̇ of [`Self::inverse_dynamics`], each dof × dof: row i, column j is the
+    /// derivative of τ_i with respect to joint j (N m or N per rad or m, and per rad/s or m/s). ∂τ/∂q̈ is the mass
+    /// matrix.
     ///
-    /// If joint j moves by dq, all that it carries moves rigidly. Seen from there, the velocity of the base side changes by
-    /// v_{j−1} × s_j dq, its acceleration accordingly, and with them the wrenches beyond; towards the base the wrench turns
-    /// along. In the base's axes all links change alike, and what they need adds up from the tip. Source: Carpentier and
-    /// Mansard 2018; the Coriolis terms of the links as in Singh, Russo and Wensing 2022.
+    /// If joint j moves by dq, everything that it carries moves rigidly. Relative to that, the velocity of the base
+    /// side changes by v_{j−1} × s_j dq, its acceleration accordingly, and with them the wrenches beyond joint j;
+    /// towards the base, the wrench turns with the carried links. In the base's axes these changes are the same for
+    /// all links, so that sums from the tip suffice. Source: Carpentier and Mansard 2018; the Coriolis terms of the
+    /// links as in Singh, Russo and Wensing 2022.
     ///
     /// # Panics
     /// If a slice, the workspace or a matrix is of another size than the arm.
@@ -171,7 +174,7 @@ impl Arm {
         self.tangents((), &mut workspace.scratch, q, qd, qdd, by_position, by_velocity);
     }
 
-    /// The recursion of [`Self::inverse_dynamics_derivatives`]; the matrices are column after column.
+    /// The recursion of [`Self::inverse_dynamics_derivatives`]; the matrices are stored column after column.
     #[inline(always)]
     #[expect(
         clippy::too_many_arguments,
@@ -195,14 +198,14 @@ impl Arm {
         for (i, at) in tangents.iter().enumerate().rev() {
             body.add(&at.body);
             let s = &at.unit;
-            // By the joints before this one, and by itself.
+            // The derivatives of this joint's torque with respect to itself and the joints before it.
             let inertial = body.inertia_times(s);
             let coriolis = body.coriolis_along(context, s);
             for (j, by) in tangents[..=i].iter().enumerate() {
                 by_position[j * n + i] = inertial.dot(&by.acceleration) + coriolis.dot(&by.velocity.0);
                 by_velocity[j * n + i] = inertial.dot(&by.by_speed) + coriolis.dot(&by.unit.0);
             }
-            // The joints before this one, by it.
+            // The derivatives of the earlier joints' torques with respect to this joint.
             let moved = body
                 .inertia_times(&at.acceleration)
                 .plus(&body.coriolis_times(context, &at.velocity.0))
@@ -217,7 +220,7 @@ impl Arm {
         }
     }
 
-    /// Base to tip: the motions of the joints and links, and the links' moments and wrenches, in the base's axes.
+    /// Base to tip: the motions of joints and links, and the moments and wrenches of the links, in the base's axes.
     #[inline(always)]
     fn propagate_tangents<T: Real>(&self, context: T::Context, scratch: &mut Scratch<T>, qd: &[T], qdd: &[T]) {
         let zero = Vec3::zeros(context);
@@ -240,7 +243,7 @@ impl Arm {
             tangent.unit = s;
             tangent.velocity = velocity;
             tangent.acceleration = a.cross(&s).plus(&v.cross(&velocity));
-            // v_j × s_j = v_{j−1} × s_j: the own share drops out.
+            // v_j × s_j = v_{j−1} × s_j, because s_j × s_j = 0.
             tangent.by_speed = velocity.times(T::constant(context, 2.0));
             a = a.plus(&s.times(qdd[i])).plus(&velocity.times(qd[i]));
             v = v.plus(&s.times(qd[i]));

@@ -6,7 +6,8 @@ use crate::model::Arm;
 use crate::workspace::Workspace;
 
 impl Arm {
-    /// ½ q̇ᵀ M(q) q̇ (J), rotors included, from the links' own velocities (not from the mass matrix).
+    /// The kinetic energy ½ q̇ᵀ M(q) q̇ (J), rotors included, computed from the links' velocities and not from the
+    /// mass matrix.
     ///
     /// # Panics
     /// If a slice or the workspace is of another size than the arm.
@@ -31,7 +32,7 @@ impl Arm {
         energy
     }
 
-    /// −Σ m gᵀ c (J), zero for masses at the height of the base's origin.
+    /// The potential energy −Σ m gᵀ c (J); it is zero for masses at the height of the base's origin.
     ///
     /// # Panics
     /// If a slice or the workspace is of another size than the arm.

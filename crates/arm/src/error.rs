@@ -13,14 +13,14 @@ pub enum ArmError {
         /// The system's reason.
         source: std::io::Error,
     },
-    /// The text is not URDF.
+    /// The text is not a URDF.
     #[error("{path}{place}: {reason}")]
     Syntax {
         /// The file.
         path: PathBuf,
         /// `:line`, or nothing where the line is not known.
         place: String,
-        /// What the parser met, and the remedy.
+        /// What the parser found, and the remedy.
         reason: String,
     },
     /// The URDF is well formed but does not describe a serial arm with physical inertias.
@@ -34,7 +34,7 @@ pub enum ArmError {
         element: String,
         /// What was found.
         reason: String,
-        /// How to mend it.
+        /// How to correct it.
         remedy: String,
     },
 }

@@ -9,17 +9,17 @@ use crate::small::{
 };
 use crate::workspace::{Scratch, Workspace};
 
-/// An articulated body: a link and all that it carries, in the link's frame.
+/// The articulated-body inertia and bias of a link and all that it carries, in the link's frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Articulated<T> {
-    /// Its inertia in blocks, [n; f] = [I H; Hᵀ M] [ω̇; v̇].
+    /// The articulated-body inertia in blocks, [n; f] = [I H; Hᵀ M] [ω̇; v̇].
     rotational: Mat3<T>,
     coupling: Mat3<T>,
     translational: Mat3<T>,
     /// The bias wrench p^A (N m, N).
     moment: Vec3<T>,
     force: Vec3<T>,
-    /// Featherstone's U = I^A S, D = Sᵀ U, u = τ − Sᵀ p^A, and the velocity product c.
+    /// U = I^A S, D = Sᵀ U, u = τ − Sᵀ p^A and the velocity product c, in Featherstone's notation.
     u_moment: Vec3<T>,
     u_force: Vec3<T>,
     d: T,
@@ -29,7 +29,7 @@ pub(crate) struct Articulated<T> {
 }
 
 impl<T: Real> Articulated<T> {
-    /// Without mass, at rest.
+    /// A body without mass at rest.
     pub fn zeros(context: T::Context) -> Self {
         let (vector, matrix) = (Vec3::zeros(context), Mat3::zeros(context));
         Self {
@@ -51,7 +51,7 @@ impl<T: Real> Articulated<T> {
 impl Arm {
     /// The accelerations `qdd` (rad/s² or m/s²) under the torques `tau` at `q`, `qd`: q̈ = M⁻¹ (τ − C q̇ − g).
     ///
-    /// Linear in the number of joints. Source: Featherstone 2008, table 7.1, in link coordinates.
+    /// The cost is linear in the number of joints. Source: Featherstone 2008, table 7.1, in link coordinates.
     ///
     /// # Panics
     /// If a slice or the workspace is of another size than the arm.
@@ -76,18 +76,19 @@ impl Arm {
         self.accelerate(context, scratch, qdd);
     }
 
-    /// The last joint, if any, that can move without moving mass or a rotor; forward dynamics is not defined then.
+    /// The last joint, if any, that can move without moving a mass or a rotor. Forward dynamics is not defined for
+    /// such an arm.
     pub fn massless_joint(&self) -> Option<usize> {
         let mut workspace = Workspace::new(self);
         let zeros = vec![0.0; self.dof()];
         let mut qdd = zeros.clone();
-        // Any posture will do that is not a special one.
+        // An arbitrary posture that is not singular.
         let q: Vec<f64> = (0..self.dof()).map(|i| 0.3 + 0.1 * i as f64).collect();
         self.forward_dynamics(&mut workspace, &q, &zeros, &zeros, &mut qdd);
         let links = &workspace.scratch.articulated;
         let inertias = links.iter().map(|link| link.d);
         let largest = inertias.clone().fold(0.0, f64::max);
-        // Beyond the first such joint from the tip, towards the base, the recursion has divided by nothing.
+        // The recursion goes from the tip to the base: beyond the last such joint, it has not yet divided by zero.
         (0..self.dof())
             .rev()
             .find(|&i| links[i].d.is_nan() || links[i].d <= 1e-12 * largest)
@@ -108,7 +109,7 @@ impl Arm {
             let velocity = Vec3::constant(context, &joint.axis) * qd;
             match joint.kind {
                 JointKind::Revolute => {
-                    // v × S q̇ for S = (a, 0): (ω × a q̇, v × a q̇); the own share drops out.
+                    // v × S q̇ for S = (a, 0) is (ω × a q̇, v × a q̇); the joint's own velocity contributes nothing.
                     link.c_angular = cross(&w, &velocity);
                     link.c_linear = cross(&v, &velocity);
                     w += velocity;

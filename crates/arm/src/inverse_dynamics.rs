@@ -1,18 +1,18 @@
-//! Recursive Newton-Euler inverse dynamics, and the features Independent Joint Learning takes from it.
+//! Recursive Newton-Euler inverse dynamics, and the Newton-Euler features of Independent Joint Learning.
 
 use crate::model::{Arm, JointKind};
 use crate::real::Real;
 use crate::small::{Mat3, Vec3, acceleration_tensor, cross, field_moment, mul, tr_mul};
 use crate::workspace::{Scratch, Workspace};
 
-/// How many Newton-Euler features a joint has: the paper's twelve, and its own torque as the thirteenth.
+/// The number of Newton-Euler features of a joint: the paper's twelve, and the joint's own torque.
 pub const FEATURES: usize = 13;
 
-/// What joint i feels, in the order ω_i, ω̇_i (link i's frame), τ_{i+1}, f_{i+1} (link i+1's frame,
-/// about joint i+1's origin; zero at the tip), τ_i: rad/s, rad/s², N m, N, N m (or N, if prismatic).
+/// The features of joint i in the order ω_i, ω̇_i (in link i's frame), τ_{i+1}, f_{i+1} (in link i+1's frame, about
+/// joint i+1's origin; zero at the tip), τ_i: rad/s, rad/s², N m, N, N m (or N, if prismatic).
 ///
-/// The first twelve are the inputs of equation 19 and Table I of the paper, all thirteen those of
-/// its algorithms 1 to 3.
+/// The first twelve are the inputs of equation 19 and Table I of the paper, all thirteen are the inputs of its
+/// algorithms 1 to 3.
 pub type NewtonEulerFeatures = [f64; FEATURES];
 
 /// A link's motion and the wrench on it, in its own frame.
@@ -21,9 +21,9 @@ pub(crate) struct LinkMotion<T> {
     /// ω, ω̇ (rad/s, rad/s²).
     pub angular_velocity: Vec3<T>,
     pub angular_acceleration: Vec3<T>,
-    /// [ω̇]× + [ω]×²: the acceleration of a point beyond that of the origin, per metre (1/s²).
+    /// [ω̇]× + [ω]×²: times the position r of a point, this is its acceleration relative to the origin (1/s²).
     pub field: Mat3<T>,
-    /// v̇ of the frame's origin less gravity (m/s²).
+    /// v̇ of the frame's origin minus gravity (m/s²).
     pub linear_acceleration: Vec3<T>,
     /// f, τ that the parent exerts on the link, about the frame's origin (N, N m).
     pub force: Vec3<T>,
@@ -31,7 +31,7 @@ pub(crate) struct LinkMotion<T> {
 }
 
 impl<T: Real> LinkMotion<T> {
-    /// At rest, without a load.
+    /// At rest and without load.
     pub fn zeros(context: T::Context) -> Self {
         let zero = Vec3::zeros(context);
         Self {
@@ -78,7 +78,7 @@ impl Arm {
         }
     }
 
-    /// C(q, q̇) q̇ + g(q), the torque at no acceleration (N m or N).
+    /// The bias torque C(q, q̇) q̇ + g(q), which is the torque at zero acceleration (N m or N).
     ///
     /// # Panics
     /// If a slice or the workspace is of another size than the arm.
@@ -88,7 +88,7 @@ impl Arm {
         workspace.zeros = zeros;
     }
 
-    /// g(q), the torque that holds the arm at rest (N m or N).
+    /// The gravity torque g(q), which holds the arm at rest (N m or N).
     ///
     /// # Panics
     /// If a slice or the workspace is of another size than the arm.
@@ -113,7 +113,7 @@ impl Arm {
         self.propagate_wrenches(context, scratch, qdd, tau);
     }
 
-    /// Base to tip: each link's pose in its parent, ω, ω̇, and v̇ less gravity, in its own frame.
+    /// Base to tip: for each link its pose in its parent, and ω, ω̇ and v̇ minus gravity in its own frame.
     #[inline(always)]
     pub(crate) fn propagate_motion<T: Real>(
         &self,
@@ -152,7 +152,7 @@ impl Arm {
         }
     }
 
-    /// Tip to base: the wrench each joint transmits, and its component along the axis.
+    /// Tip to base: the wrench that each joint transmits, and its component along the joint's axis.
     ///
     /// A point r of a link accelerates by v̇ + W r, W = [ω̇]× + [ω]×²: its inertial force is m v̇ + W ∫ r dm, its moment
     /// ∫ r × (v̇ + W r) dm, linear in the moments of its mass (Balafoutis and Patel 1991).
@@ -186,7 +186,7 @@ impl Arm {
 }
 
 impl<T: Real> Scratch<T> {
-    /// The features of joint `i`, whose torque is `tau`, as the recursion left them.
+    /// The features of joint `i` with the torque `tau`, after the recursion.
     #[inline(always)]
     pub(crate) fn features(&self, context: T::Context, i: usize, tau: T) -> [T; FEATURES] {
         let LinkMotion {

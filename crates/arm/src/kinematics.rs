@@ -7,7 +7,7 @@ use crate::pose::Pose;
 use crate::workspace::Workspace;
 
 impl Arm {
-    /// The pose of every link in the base frame at `q`, to be read with [`Workspace::base_from_link`].
+    /// Computes the pose of every link in the base frame at `q`; [`Workspace::base_from_link`] returns them.
     ///
     /// # Panics
     /// If a slice or the workspace is of another size than the arm.
@@ -20,10 +20,10 @@ impl Arm {
         }
     }
 
-    /// The geometric Jacobian of `frame` at `q`: 6 × dof, angular rows first (rad/s, then m/s per
-    /// unit of q̇), of the frame's origin, along the base's axes. The workspace keeps the poses.
+    /// The geometric Jacobian of the origin of `frame` at `q`, in the base's axes: 6 × dof, angular rows first (rad/s,
+    /// then m/s, per unit of q̇). The poses of the links are in the workspace afterwards.
     ///
-    /// Pinocchio's `LOCAL_WORLD_ALIGNED` is the same with the two halves swapped.
+    /// In Pinocchio it is the `LOCAL_WORLD_ALIGNED` Jacobian with the two halves exchanged.
     ///
     /// # Panics
     /// If a slice, the workspace or `jacobian` is of another size than the arm.
@@ -50,13 +50,12 @@ impl Arm {
 }
 
 impl Workspace {
-    /// The pose of moving link `link` in the base frame, as [`Arm::forward_kinematics`] or
-    /// [`Arm::jacobian`] left it.
+    /// The pose of moving link `link` in the base frame, after [`Arm::forward_kinematics`] or [`Arm::jacobian`].
     pub fn base_from_link(&self, link: usize) -> &Pose {
         &self.base_from_link[link]
     }
 
-    /// The pose of `frame` in the base frame, likewise.
+    /// The pose of `frame` in the base frame, after [`Arm::forward_kinematics`] or [`Arm::jacobian`].
     pub fn base_from_frame(&self, frame: &Frame) -> Pose {
         frame.link.map_or(frame.link_from_frame, |link| {
             self.base_from_link[link].compose(&frame.link_from_frame)

@@ -1,11 +1,11 @@
 //! The rigid arm: URDF to [`Arm`], kinematics, inverse and forward dynamics, mass matrix, torque regressor.
 //!
-//! An [`Arm`] is immutable; every algorithm writes into a [`Workspace`] that the caller keeps, so
-//! that no call allocates. Joint space is `q`, `qd`, `qdd`, `tau`: positions (rad or m), velocities,
-//! accelerations, and joint torques (N m) or forces (N), one entry a moving joint, base to tip.
+//! An [`Arm`] is immutable; every algorithm writes into a [`Workspace`] that the caller keeps, so that no call
+//! allocates. Joint space is `q`, `qd`, `qdd`, `tau`: positions (rad or m), velocities, accelerations, and joint
+//! torques (N m) or forces (N), with one entry per moving joint from base to tip.
 //!
-//! A link's frame is its URDF frame, at its joint. Poses are written `a_from_b`. Spatial
-//! quantities put the angular part first.
+//! A link's frame is its URDF frame, at its joint. Poses are written `a_from_b`. In spatial vectors the angular part
+//! comes first.
 
 mod batch;
 mod chain;

@@ -8,7 +8,8 @@ use crate::small::{Mat3, Vec3, cross, mul, rotate_symmetric, symmetric};
 use crate::workspace::{Scratch, Workspace};
 
 impl Arm {
-    /// M(q), dof × dof, symmetric positive definite (kg m², kg m, kg); rotor inertias on its diagonal.
+    /// The mass matrix M(q), dof × dof, symmetric positive definite (kg m², kg m, kg), with the rotor inertias on its
+    /// diagonal.
     ///
     /// Source: Walker and Orin 1982, method 3; Featherstone 2008, table 6.2.
     ///
@@ -21,7 +22,7 @@ impl Arm {
         self.composite_bodies((), &mut workspace.scratch, q, mass_matrix.as_mut_slice());
     }
 
-    /// The recursion of [`Self::mass_matrix`]; `mass_matrix` is column after column.
+    /// The recursion of [`Self::mass_matrix`]; `mass_matrix` is stored column after column.
     #[inline(always)]
     pub(crate) fn composite_bodies<T: Real>(
         &self,
@@ -31,12 +32,12 @@ impl Arm {
         mass_matrix: &mut [T],
     ) {
         let n = self.dof();
-        // The composite body beyond joint i: mass, first moment m c and inertia about link i's
-        // origin. `distal` is the part beyond link i, already in link i's frame.
+        // The composite body beyond joint i: mass, first moment m c and inertia about link i's origin. `distal` is the
+        // part beyond link i, in link i's frame.
         let mut distal_mass = 0.0;
         let mut distal_moment = Vec3::zeros(context);
         let mut distal_tensor = Mat3::zeros(context);
-        // The joints' inertia does not depend on where the first one stands: its place is not needed.
+        // The mass matrix does not depend on the pose of the first link in the base, which is therefore not computed.
         self.place(context, scratch, q, 1);
         let places = &scratch.places;
         for i in (0..n).rev() {

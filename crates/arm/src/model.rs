@@ -6,19 +6,19 @@ use crate::chain::FixedJoint;
 use crate::pose::{Pose, cross_matrix};
 use crate::visual::Visual;
 
-/// The gravitational acceleration of the paper and of most engines, 9.81 m/s².
+/// The gravitational acceleration in the paper and in most physics engines, 9.81 m/s².
 pub const STANDARD_GRAVITY: f64 = 9.81;
 
 /// How a joint moves its link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
-    /// Turns about its axis; q in rad, tau in N m.
+    /// Rotates about its axis; q in rad, tau in N m.
     Revolute,
-    /// Slides along its axis; q in m, tau in N.
+    /// Translates along its axis; q in m, tau in N.
     Prismatic,
 }
 
-/// What a joint may do; an absent limit is infinite.
+/// The limits of a joint; an absent limit is infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Smallest position (rad or m).
@@ -43,7 +43,7 @@ pub struct Inertia {
 }
 
 impl Inertia {
-    /// No mass at all.
+    /// A body without mass.
     pub fn zero() -> Self {
         Self {
             mass: 0.0,
@@ -68,7 +68,7 @@ impl Inertia {
         }
     }
 
-    /// Two bodies of one frame, welded.
+    /// The combination of two bodies that are fixed to each other, in their common frame.
     pub fn merged(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
         let com = if mass > 0.0 {
@@ -87,8 +87,8 @@ impl Inertia {
         }
     }
 
-    /// The ten parameters the torque is linear in: m, m c (3), and Ixx, Ixy, Iyy, Ixz, Iyz, Izz
-    /// about the link frame's origin (the order of Pinocchio's `Inertia::toDynamicParameters`).
+    /// The ten inertial parameters in which the torque is linear: m, m c (3), and Ixx, Ixy, Iyy, Ixz, Iyz, Izz about
+    /// the link frame's origin (the order of Pinocchio's `Inertia::toDynamicParameters`).
     pub fn parameters(&self) -> [f64; 10] {
         let h = self.mass * self.com;
         let i = self.tensor_about_origin();
@@ -104,6 +104,25 @@ impl Inertia {
             i[(1, 2)],
             i[(2, 2)],
         ]
+    }
+
+    /// The `<inertial>` element of this body in a URDF. The numbers read back to the same bits.
+    pub fn to_urdf(&self) -> String {
+        let (c, i) = (self.com, self.tensor);
+        format!(
+            "<inertial><origin xyz=\"{} {} {}\" rpy=\"0 0 0\"/><mass value=\"{}\"/><inertia ixx=\"{}\" ixy=\"{}\" \
+             ixz=\"{}\" iyy=\"{}\" iyz=\"{}\" izz=\"{}\"/></inertial>",
+            c.x,
+            c.y,
+            c.z,
+            self.mass,
+            i[(0, 0)],
+            i[(0, 1)],
+            i[(0, 2)],
+            i[(1, 1)],
+            i[(1, 2)],
+            i[(2, 2)]
+        )
     }
 }
 
@@ -129,7 +148,7 @@ impl Moments {
     }
 }
 
-/// One moving joint and the link it carries (fixed joints beyond it merged in).
+/// One moving joint and the link that it carries, with which the links beyond fixed joints are merged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
     /// The URDF joint's name.
@@ -152,7 +171,7 @@ pub struct Joint {
     pub friction: f64,
     /// The link's inertia.
     pub inertia: Inertia,
-    /// The moments of that inertia, kept in step with it by [`Self::set_inertia`].
+    /// The moments of that inertia; [`Self::set_inertia`] updates them.
     pub(crate) moments: Moments,
     /// R₀, R₀[a]×, R₀[a]×²: the rotation is R₀ + sin q R₀[a]× + (1 − cos q) R₀[a]×² (Rodrigues).
     pub(crate) rotation_terms: [Matrix3<f64>; 3],
@@ -187,12 +206,12 @@ impl Joint {
     }
 }
 
-/// A named frame fixed to a link: what a merged fixed joint carried (a flange, a tool).
+/// A named frame that is fixed to a link, such as a flange or a tool behind a fixed joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// The URDF link's name.
     pub name: String,
-    /// The moving link it rides on, as an index into [`Arm::joints`]; `None` is the base.
+    /// The moving link that it is fixed to, as an index into [`Arm::joints`]; `None` is the base.
     pub link: Option<usize>,
     /// Its pose in that link's frame.
     pub link_from_frame: Pose,
@@ -205,7 +224,7 @@ pub struct Arm {
     pub(crate) base_link: String,
     pub(crate) joints: Vec<Joint>,
     pub(crate) frames: Vec<Frame>,
-    /// Which of the frames is the tool; `None` is the last link itself.
+    /// The index of the tool's frame; `None` is the last link itself.
     pub(crate) tool: Option<usize>,
     pub(crate) fixed_joints: Vec<FixedJoint>,
     pub(crate) visuals: Vec<Visual>,
@@ -219,7 +238,7 @@ impl Arm {
         &self.name
     }
 
-    /// The link that stands still: the URDF's root link, or the base that was chosen.
+    /// The link that does not move: the URDF's root link, or the base that was chosen.
     pub fn base_link(&self) -> &str {
         &self.base_link
     }
@@ -234,18 +253,18 @@ impl Arm {
         self.joints.len()
     }
 
-    /// The frames of links that fixed joints carry.
+    /// The frames of the links that are merged because their joints are fixed.
     pub fn frames(&self) -> &[Frame] {
         &self.frames
     }
 
-    /// The joints of the robot that could move, and are fixed in this arm or no part of it.
+    /// The joints of the robot that could move and are fixed in this arm, or are not part of it.
     pub fn fixed_joints(&self) -> &[FixedJoint] {
         &self.fixed_joints
     }
 
-    /// The frame at the end of the arm: the tip, if one was asked for, else the last one that the URDF fixes to the last
-    /// link, or that link itself.
+    /// The frame at the end of the arm: the tip if one was chosen, otherwise the last frame that the URDF fixes to the
+    /// last link, or that link itself.
     pub fn tool_frame(&self) -> Frame {
         let last = self.dof() - 1;
         self.tool
@@ -257,23 +276,22 @@ impl Arm {
             })
     }
 
-    /// What the URDF shows of the arm.
+    /// The visual shapes of the URDF.
     pub fn visuals(&self) -> &[Visual] {
         &self.visuals
     }
 
-    /// Gravitational acceleration in the base frame (m/s²), by default 9.81 down its z axis.
+    /// Gravitational acceleration in the base frame (m/s²), by default 9.81 along −z.
     pub fn gravity(&self) -> &Vector3<f64> {
         &self.gravity
     }
 
-    /// What in the URDF is doubtful, though it was taken as it is.
+    /// Doubtful values in the URDF that were accepted.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
 
-    /// The ten inertial parameters of every link, base to tip: what the columns of the torque
-    /// regressor multiply.
+    /// The ten inertial parameters of every link, base to tip: the vector that the torque regressor multiplies.
     pub fn inertial_parameters(&self) -> Vec<f64> {
         self.joints
             .iter()

@@ -1,4 +1,4 @@
-//! Where each link stands in its parent, for the recursions.
+//! The pose of each link in its parent, for the recursions.
 
 use crate::model::{Arm, Joint, JointKind};
 use crate::real::Real;
@@ -13,7 +13,7 @@ pub(crate) struct Place<T> {
 }
 
 impl<T: Real> Place<T> {
-    /// Not moved.
+    /// The identity.
     pub fn zeros(context: T::Context) -> Self {
         Self {
             rotation: Mat3::zeros(context),
@@ -21,7 +21,7 @@ impl<T: Real> Place<T> {
         }
     }
 
-    /// [`Joint::parent_from_link`], by q and, of a revolute joint, its sine and cosine.
+    /// [`Joint::parent_from_link`] at q, from the sine and cosine of q for a revolute joint.
     #[inline(always)]
     fn of(context: T::Context, joint: &Joint, (q, sin, cos): (T, T, T)) -> Self {
         let at = Vec3::constant(context, &joint.parent_from_joint.translation);
@@ -44,11 +44,11 @@ impl<T: Real> Place<T> {
 }
 
 impl Arm {
-    /// The place in its parent of each link from `first` on, into `scratch`.
+    /// Writes the pose in its parent of each link from `first` on into `scratch`.
     #[inline(always)]
     pub(crate) fn place<T: Real>(&self, context: T::Context, scratch: &mut Scratch<T>, q: &[T], first: usize) {
         let Scratch { places, turns, .. } = scratch;
-        // All sines first: lanes are written one by one, and it takes a while until they can be read as a vector.
+        // All sines first: lanes are written one by one, and reading them as a vector directly afterwards would stall.
         for ((joint, turn), &q) in self.joints.iter().zip(turns.iter_mut()).zip(q).skip(first) {
             *turn = match joint.kind {
                 JointKind::Revolute => {

@@ -12,7 +12,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The pose of a frame in itself.
+    /// The identity.
     pub fn identity() -> Self {
         Self {
             rotation: Matrix3::identity(),
@@ -28,7 +28,7 @@ impl Pose {
         }
     }
 
-    /// The xyz (m) and the fixed-axis roll, pitch, yaw (rad) of which [`Self::from_xyz_rpy`] makes this pose.
+    /// The xyz (m) and the fixed-axis roll, pitch, yaw (rad) with which [`Self::from_xyz_rpy`] makes this pose.
     pub fn xyz_rpy(&self) -> ([f64; 3], [f64; 3]) {
         let (roll, pitch, yaw) = Rotation3::from_matrix_unchecked(self.rotation).euler_angles();
         (self.translation.into(), [roll, pitch, yaw])
@@ -49,7 +49,7 @@ impl Pose {
         }
     }
 
-    /// A point given in b, in a.
+    /// The coordinates in a of a point that is given in b.
     pub fn transform_point(&self, point: &Vector3<f64>) -> Vector3<f64> {
         self.rotation * point + self.translation
     }

@@ -1,7 +1,7 @@
-//! The numbers that the recursions run on: one state, or several states side by side.
+//! The numbers that the recursions compute with: one state, or several states side by side.
 //!
-//! Every operation is a single one of IEEE 754, without fused multiply-add, and the recursions are written once. So a lane
-//! has the bits that the same state has alone, whatever the width of the processor's vectors.
+//! Every operation is a single operation of IEEE 754, without fused multiply-add, and each recursion is written once.
+//! Therefore a lane has the same bits as the same state computed alone, whatever the width of the processor's vectors.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 use std::slice::from_mut;
@@ -19,13 +19,13 @@ pub(crate) trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// What it takes to make a constant.
+    /// A context for making constants, such as the processor's instruction set.
     type Context: Copy;
 
-    /// A number that is equal in every state.
+    /// A number that is the same in every state.
     fn constant(context: Self::Context, value: f64) -> Self;
 
-    /// Sine and cosine, of each state as `f64::sin_cos` gives them.
+    /// Sine and cosine; for each state as `f64::sin_cos` gives them.
     fn sin_cos(self) -> (Self, Self);
 }
 

@@ -8,13 +8,14 @@ use crate::real::Real;
 use crate::small::{Vec3, cross, tr_mul};
 use crate::workspace::{Scratch, Workspace};
 
-/// m, m c (3), Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the link frame's origin.
+/// The inertial parameters m, m c (3), Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the link frame's origin.
 pub const PARAMETERS_PER_LINK: usize = 10;
 
 impl Arm {
-    /// Y(q, q̇, q̈), dof × 10 dof, with τ = Y π for π = [`Arm::inertial_parameters`] (rotor inertias apart).
+    /// Y(q, q̇, q̈), dof × 10 dof, with τ = Y π for π = [`Arm::inertial_parameters`]; the torque of the rotor inertias
+    /// is not part of it.
     ///
-    /// Columns come link by link, base to tip, in the order of [`crate::Inertia::parameters`].
+    /// The columns are ordered by link, base to tip, and within a link as in [`crate::Inertia::parameters`].
     /// Source: Atkeson, An and Hollerbach 1986, equations 15 to 21.
     ///
     /// # Panics
@@ -38,8 +39,8 @@ impl Arm {
         self.link_powers((), &mut workspace.scratch, q, qd, qdd, regressor.as_mut_slice());
     }
 
-    /// The recursion of [`Self::torque_regressor`]; `regressor` is column after column, and keeps its entries for the joints
-    /// beyond each link, which are zero.
+    /// The recursion of [`Self::torque_regressor`]; `regressor` is stored column after column. Its entries for the
+    /// joints beyond each link are zero and are not written.
     #[inline(always)]
     pub(crate) fn link_powers<T: Real>(
         &self,
@@ -52,8 +53,8 @@ impl Arm {
     ) {
         let n = self.dof();
         self.propagate_motion(context, scratch, q, qd, qdd);
-        // For link j, the unit motions of joints 0 … j as twists in link j's frame: their power against the wrench that
-        // the link needs is the joints' torque (virtual work).
+        // For link j, the unit motions of joints 0 … j as twists in link j's frame. The power of such a twist with the
+        // wrench that accelerates the link is the joint's torque (virtual work).
         let Scratch {
             places,
             motions,
@@ -85,9 +86,9 @@ impl Arm {
     }
 }
 
-/// The power of the twist (`angular`, `linear`) against the inertial wrench of one link, per unit of
-/// each of its ten parameters. With a = v̇ of the origin less gravity and W = [ω̇]× + [ω]×²:
-/// f = m a + W mc, n = mc × a + I ω̇ + ω × I ω.
+/// The power of the twist (`angular`, `linear`) with the inertial wrench of one link, per unit of each of its ten
+/// parameters. With a = v̇ of the origin minus gravity and W = [ω̇]× + [ω]×²: f = m a + W mc, n = mc × a + I ω̇ + ω ×
+/// I ω.
 #[inline(always)]
 fn wrench_row<T: Real>(link: &LinkMotion<T>, angular: &Vec3<T>, linear: &Vec3<T>) -> [T; PARAMETERS_PER_LINK] {
     let (w, wd, a) = (

@@ -40,7 +40,7 @@ impl<T: Real> Vec3<T> {
         Self::new(zero, zero, zero)
     }
 
-    /// A vector that is equal in every state.
+    /// A vector that is the same in every state.
     #[inline(always)]
     pub fn constant(context: T::Context, v: &Vector3<f64>) -> Self {
         let of = |value| T::constant(context, value);
@@ -54,7 +54,7 @@ impl<T: Real> Vec3<T> {
 }
 
 impl<T: Real> Mat3<T> {
-    /// By rows.
+    /// From its rows.
     #[inline(always)]
     pub fn new(rows: [[T; 3]; 3]) -> Self {
         let [[m11, m12, m13], [m21, m22, m23], [m31, m32, m33]] = rows;
@@ -81,7 +81,7 @@ impl<T: Real> Mat3<T> {
         Self::new([[T::constant(context, 0.0); 3]; 3])
     }
 
-    /// A matrix that is equal in every state.
+    /// A matrix that is the same in every state.
     #[inline(always)]
     pub fn constant(context: T::Context, m: &Matrix3<f64>) -> Self {
         let of = |value| T::constant(context, value);
@@ -300,7 +300,7 @@ pub(crate) fn cross_columns<T: Real>(v: &Vec3<T>, m: &Mat3<T>) -> Mat3<T> {
     )
 }
 
-/// [ω̇]× + [ω]× [ω]×: the acceleration of a point r of a body beyond that of its origin is this matrix times r.
+/// [ω̇]× + [ω]× [ω]×: times r, this is the acceleration of point r of a body relative to that of its origin.
 #[inline(always)]
 pub(crate) fn acceleration_tensor<T: Real>(w: &Vec3<T>, wd: &Vec3<T>) -> Mat3<T> {
     let (xx, yy, zz) = (w.x * w.x, w.y * w.y, w.z * w.z);
@@ -312,7 +312,7 @@ pub(crate) fn acceleration_tensor<T: Real>(w: &Vec3<T>, wd: &Vec3<T>) -> Mat3<T>
     ])
 }
 
-/// ∫ r × (W r) dm of a body with the second moments ∫ r rᵀ dm.
+/// ∫ r × (W r) dm of a body with the second moments `second` = ∫ r rᵀ dm.
 #[inline(always)]
 pub(crate) fn field_moment<T: Real>(w: &Mat3<T>, second: &Mat3<T>) -> Vec3<T> {
     let s = second;

@@ -19,12 +19,13 @@ impl Arm {
     /// Reads a serial arm of revolute and prismatic joints from the URDF file at `path`, with the default
     /// [`ChainOptions`].
     ///
-    /// Links behind fixed joints are merged into the link that carries them. Gravity is 9.81 m/s²
-    /// down the root link's z axis.
+    /// Links beyond fixed joints are merged into the link that carries them. Gravity is 9.81 m/s² along −z of the root
+    /// link.
     ///
     /// # Errors
-    /// [`ArmError`] with the line and the element, if the file cannot be read, is not a URDF, has more than one chain of
-    /// moving joints, floating or planar joints in it, or loops, or has inertias no body can have.
+    /// [`ArmError`] with the line and the element, if the file cannot be read, is not a URDF, has more than one chain
+    /// of moving joints, contains loops, or floating or planar joints in the chain, or has inertias that are
+    /// physically impossible.
     pub fn from_urdf(path: impl AsRef<Path>) -> Result<Self, ArmError> {
         let path = path.as_ref();
         let text = std::fs::read_to_string(path).map_err(|source| ArmError::Read {
@@ -42,9 +43,9 @@ impl Arm {
         Self::from_urdf_chain(text, path, &ChainOptions::default())
     }
 
-    /// As [`Self::from_urdf_text`], with the joints that `options` choose. Links behind joints that are fixed for that are
-    /// merged like those behind the URDF's fixed joints; a note in [`Self::warnings`] says which they are. With a base of
-    /// its own, gravity has the direction that it has at that link.
+    /// [`Self::from_urdf_text`] with the joints that `options` choose. Links beyond joints that are fixed for that
+    /// reason are merged like those beyond the URDF's fixed joints; a note in [`Self::warnings`] names the joints. If
+    /// a base is chosen, gravity has its direction in that link's frame.
     ///
     /// # Errors
     /// Those of [`Self::from_urdf`], or if the URDF does not have what `options` name.
@@ -67,20 +68,20 @@ struct Reader<'a> {
     robot: &'a urdf_rs::Robot,
 }
 
-/// A link behind fixed joints.
+/// A link beyond fixed joints.
 struct WeldedFrame {
     name: String,
     pose: Pose,
-    /// Whether all joints to it are fixed in the URDF itself.
+    /// Whether all joints up to it are fixed in the URDF itself.
     is_rigid: bool,
 }
 
-/// Links welded together, as one body in the frame of the link that was met first.
+/// Links that are fixed to each other, as one body in the frame of the first one.
 struct Body<'a> {
     inertia: Inertia,
     frames: Vec<WeldedFrame>,
     visuals: Vec<(Pose, &'a urdf_rs::Visual)>,
-    /// The moving joints that start here, with the pose of their parent link.
+    /// The moving joints that begin at these links, with the pose of their parent link.
     moving: Vec<(Pose, &'a urdf_rs::Joint)>,
 }
 
@@ -136,7 +137,7 @@ impl<'a> Reader<'a> {
         Ok(arm)
     }
 
-    /// Gravity in the frame of the chain's base: 9.81 m/s² down the root's z axis.
+    /// Gravity in the frame of the chain's base: 9.81 m/s² along −z of the root.
     fn gravity(&self, root: &str, chain: &Chain<'_>) -> Result<Vector3<f64>, ArmError> {
         let mut root_from_base = Pose::identity();
         for joint in self.path(chain.base, root).unwrap_or_default() {
@@ -147,7 +148,7 @@ impl<'a> Reader<'a> {
         Ok(root_from_base.rotation.transpose() * down)
     }
 
-    /// The body that `first` and everything behind its fixed joints form, in `first`'s frame.
+    /// The body that `first` and all links beyond its fixed joints form, in `first`'s frame.
     fn weld(&self, first: &'a str, chain: &Chain<'_>) -> Result<Body<'a>, ArmError> {
         let mut body = Body {
             inertia: Inertia::zero(),
@@ -183,7 +184,7 @@ impl<'a> Reader<'a> {
         Ok(body)
     }
 
-    /// The pose of a joint's child in its parent, where the joint stands at `position` (rad or m).
+    /// The pose of a joint's child link in its parent with the joint at `position` (rad or m).
     fn fixed_pose(&self, joint: &urdf_rs::Joint, position: f64) -> Result<Pose, ArmError> {
         let origin = self.finite_pose(joint)?;
         if position == 0.0 {
@@ -230,7 +231,7 @@ impl<'a> Reader<'a> {
                 ));
             }
         }
-        // A limit that is left out reads as 0.
+        // The parser returns 0 for a limit that is not given.
         let or_none = |limit: f64| if limit > 0.0 { limit } else { f64::INFINITY };
         let unbounded = urdf.joint_type == urdf_rs::JointType::Continuous || (limit.lower == 0.0 && limit.upper == 0.0);
         if limit.lower > limit.upper && !unbounded {

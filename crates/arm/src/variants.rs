@@ -1,4 +1,4 @@
-//! Arms that differ from the one a URDF describes: another gravity, other masses, drives, a payload.
+//! Arms that differ from the one in the URDF: in gravity, masses, drives, or by a payload.
 
 use nalgebra::{Rotation3, Unit, Vector3};
 
@@ -11,11 +11,11 @@ impl Arm {
         self
     }
 
-    /// This arm on a base turned by `angle` (rad) about `axis` (in the base's frame, of any length but
-    /// zero): seen from the base, gravity is turned the other way, g' = R(axis, angle)ᵀ g.
+    /// This arm on a base that is turned by `angle` (rad) about `axis` (in the base's frame, of any length but zero).
+    /// In the base's frame, gravity turns in the opposite direction: g' = R(axis, angle)ᵀ g.
     ///
     /// # Panics
-    /// If the axis has no length.
+    /// If the axis has zero length.
     pub fn with_turned_base(mut self, axis: Vector3<f64>, angle: f64) -> Self {
         let axis = Unit::try_new(axis, 0.0).expect("an axis has a length");
         let world_from_base = Rotation3::from_axis_angle(&axis, angle);
@@ -35,7 +35,7 @@ impl Arm {
         self
     }
 
-    /// The arm with every link's mass and inertia tensor times `factor`, centres of mass kept: the
+    /// The arm with every link's mass and inertia tensor multiplied by `factor` and unchanged centres of mass: the
     /// model error of the paper (section IV.A) at 1.2.
     pub fn with_scaled_inertias(mut self, factor: f64) -> Self {
         for link in 0..self.dof() {
@@ -44,7 +44,8 @@ impl Arm {
         self
     }
 
-    /// The arm with the mass and inertia tensor of moving link `link` (from 0) times `factor`, its centre of mass kept.
+    /// The arm with the mass and inertia tensor of moving link `link` (from 0) multiplied by `factor` and unchanged
+    /// centre of mass.
     ///
     /// # Panics
     /// If there is no such link.
@@ -56,10 +57,10 @@ impl Arm {
         self
     }
 
-    /// The arm whose moving links are the bodies `inertias`, base to tip.
+    /// The arm with `inertias` as the bodies of its moving links, base to tip.
     ///
     /// # Panics
-    /// If there is not one body a joint.
+    /// If there is not one body per joint.
     pub fn with_inertias(mut self, inertias: &[Inertia]) -> Self {
         assert_eq!(inertias.len(), self.dof(), "one body a joint");
         for (joint, inertia) in self.joints.iter_mut().zip(inertias) {
@@ -68,7 +69,7 @@ impl Arm {
         self
     }
 
-    /// The arm with `body` (in the link's frame) in place of moving link `link` (from 0).
+    /// The arm with `body` (in the link's frame) as moving link `link` (from 0).
     ///
     /// # Panics
     /// If there is no such link.
@@ -77,8 +78,8 @@ impl Arm {
         self
     }
 
-    /// The arm with `payload` welded to its tool: mass (kg), centre of mass (m) and tensor about it (kg m²) in the
-    /// frame of [`Self::tool_frame`].
+    /// The arm with `payload` fixed to its tool: mass (kg), centre of mass (m) and inertia tensor about it (kg m²) in
+    /// the frame of [`Self::tool_frame`].
     pub fn with_payload(mut self, payload: &Inertia) -> Self {
         let tool = self.tool_frame();
         let last = self.dof() - 1;
@@ -96,7 +97,8 @@ mod tests {
     use crate::Workspace;
     use nalgebra::Matrix3;
 
-    /// A vertical axis whose link has its centre of mass .5 m out, and a tool turned by a right angle about z.
+    /// A vertical axis whose link has its centre of mass 0.5 m from the axis, and a tool that is turned by a right
+    /// angle about z.
     const ARM: &str = r#"<robot name="a"><link name="base"/>
 <joint name="j" type="continuous"><parent link="base"/><child link="l"/><axis xyz="0 1 0"/></joint>
 <link name="l"><inertial><origin xyz=".5 0 0"/><mass value="2"/><inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".1"/></inertial></link>
@@ -112,7 +114,7 @@ mod tests {
     #[test]
     fn a_payload_is_given_in_the_tools_frame() {
         let arm = Arm::from_urdf_text(ARM, "a.urdf").expect("it is an arm");
-        // The tool's y axis is the link's −x axis: .2 m along it brings the payload back to .8 m.
+        // The tool's y axis is the link's −x axis: 0.2 m along it puts the payload at 0.8 m.
         let payload = Inertia {
             mass: 3.0,
             com: Vector3::new(0.0, 0.2, 0.0),
@@ -121,7 +123,7 @@ mod tests {
         let loaded = arm.clone().with_payload(&payload);
         assert!((holding(&arm) + 9.81 * 2.0 * 0.5).abs() < 1e-12);
         assert!((holding(&loaded) + 9.81 * (2.0 * 0.5 + 3.0 * 0.8)).abs() < 1e-12);
-        // About the link's y axis turns what is the tool's x axis.
+        // A rotation about the link's y axis is one about the tool's x axis.
         let about_origin = loaded.joints()[0].inertia.tensor_about_origin()[(1, 1)];
         assert!((about_origin - (0.1 + 2.0 * 0.25 + 0.01 + 3.0 * 0.64)).abs() < 1e-12);
     }
@@ -129,7 +131,7 @@ mod tests {
     #[test]
     fn a_turned_base_turns_gravity_the_other_way() {
         let arm = Arm::from_urdf_text(ARM, "a.urdf").expect("it is an arm");
-        // Turned by +30° about x, the base's y axis points up by 30°: gravity has a part against it.
+        // Turned by +30° about x, the base's y axis points upwards by 30°, and gravity has a component along −y.
         let turned = arm.with_turned_base(Vector3::new(2.0, 0.0, 0.0), std::f64::consts::FRAC_PI_6);
         let expected = 9.81 * Vector3::new(0.0, -0.5, -(0.75_f64).sqrt());
         assert!((turned.gravity() - expected).norm() < 1e-12);

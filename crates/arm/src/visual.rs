@@ -1,4 +1,4 @@
-//! What a URDF shows of an arm.
+//! The visual shapes of a URDF.
 
 use crate::pose::Pose;
 
@@ -31,7 +31,7 @@ pub enum Geometry {
 /// One `<visual>` of a URDF.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visual {
-    /// The moving link it rides on, as an index into [`crate::Arm::joints`]; `None` is the base.
+    /// The moving link that it is fixed to, as an index into [`crate::Arm::joints`]; `None` is the base.
     pub link: Option<usize>,
     /// Its pose in that link's frame.
     pub link_from_visual: Pose,

@@ -1,4 +1,4 @@
-//! What the algorithms write while they run, kept by the caller so that no call allocates.
+//! Memory that the algorithms write to, kept by the caller so that no call allocates.
 
 use crate::derivatives::Tangent;
 use crate::forward_dynamics::Articulated;
@@ -9,7 +9,7 @@ use crate::pose::Pose;
 use crate::real::Real;
 use crate::small::Vec3;
 
-/// What the recursions write, an entry per joint.
+/// Intermediate results of the recursions, one entry per joint.
 #[derive(Clone, Debug)]
 pub(crate) struct Scratch<T> {
     /// q and its sine and cosine.
@@ -36,7 +36,7 @@ impl<T: Real> Scratch<T> {
     }
 }
 
-/// Scratch for the algorithms on one [`Arm`]; make it once, pass it to every call.
+/// Scratch for the algorithms on one [`Arm`]; make it once and pass it to every call.
 #[derive(Clone, Debug)]
 pub struct Workspace {
     pub(crate) scratch: Scratch<f64>,
@@ -45,7 +45,7 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// Scratch for `arm` and any other arm with as many joints.
+    /// Scratch for `arm`, or for any other arm with the same number of joints.
     pub fn new(arm: &Arm) -> Self {
         Self {
             scratch: Scratch::new((), arm.dof()),
@@ -54,7 +54,7 @@ impl Workspace {
         }
     }
 
-    /// Checks that this workspace and the joint vectors fit the arm.
+    /// Checks that this workspace and the joint vectors have the arm's number of joints.
     pub(crate) fn check(&self, arm: &Arm, vectors: &[&[f64]]) {
         let n = arm.dof();
         assert_eq!(self.base_from_link.len(), n, "the workspace was made for another arm");

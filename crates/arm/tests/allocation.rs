@@ -1,4 +1,4 @@
-//! No algorithm allocates in a call.
+//! No algorithm allocates when it is called.
 
 use arm::{Arm, DMatrix, Matrix6xX, Workspace};
 

@@ -1,4 +1,4 @@
-//! Many states at a time give what each gives alone, to the last bit.
+//! Batches of states have the same results as single states, to the last bit.
 
 use std::path::{Path, PathBuf};
 
@@ -20,7 +20,7 @@ fn robots() -> Vec<PathBuf> {
     robots
 }
 
-/// Joint after joint, an entry per state: a signal without repetition.
+/// A signal without repeated values, joint after joint, with one entry per state.
 fn signal(dof: usize, samples: usize, phase: f64) -> Vec<f64> {
     let at = |i: usize, k: usize| 1.7 * ((k * 7 + i) as f64 * 0.37 + phase).sin();
     (0..dof * samples)
@@ -48,11 +48,11 @@ fn assert_same(what: &str, many: &[f64], samples: usize, k: usize, alone: &[f64]
 fn compare(arm: &Arm, samples: usize) {
     let n = arm.dof();
     let [q, qd, qdd] = [0.0, 1.0, 2.0].map(|phase| signal(n, samples, phase));
-    // Not zero before the call: every entry has to be written.
+    // Not zero before the call, because every entry must be written.
     let dirty = |entries: usize| vec![f64::NAN; entries * samples];
     let (mut tau, mut features, mut accelerations) = (dirty(n), dirty(n * FEATURES), dirty(n));
     let mut mass = dirty(n * n);
-    // But here, where the zeros are not written.
+    // Zero before this call, because it does not write the zeros.
     let mut regressor = vec![0.0; n * n * PARAMETERS_PER_LINK * samples];
     let (mut by_position, mut by_velocity) = (dirty(n * n), dirty(n * n));
     arm.inverse_dynamics_batch(&q, &qd, &qdd, &mut tau);
@@ -88,7 +88,7 @@ fn compare(arm: &Arm, samples: usize) {
 fn every_state_has_the_bits_it_has_alone() {
     for path in robots() {
         let arm = Arm::from_urdf(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        // Whole vectors, and what is left of one.
+        // Several complete vectors, and one that is not.
         for samples in [1, 2, 3, 4, 5, 8, 67] {
             compare(&arm, samples);
         }

@@ -1,9 +1,9 @@
-//! The arm is the chain of joints that is asked for, or the only one that can be meant; all else is fixed to it.
+//! The arm is the chain that the options choose, or the only possible one; all other links are fixed to it.
 
 use arm::{Arm, ChainOptions, FixedBecause, Workspace};
 
-/// A turned column with a lift, on it two arms of two joints; the left one has a gripper of two fingers, of which one mimics the
-/// other.
+/// A revolute column with a prismatic lift that carries two arms of two joints; the left arm has a gripper of two
+/// fingers, one of which mimics the other.
 fn robot() -> String {
     let mut text = String::from("<robot name=\"two_arms\"><link name=\"root\"/>\n");
     let mut add = |name: &str, kind: &str, parent: &str, child: &str, rest: &str| {
@@ -90,7 +90,7 @@ fn base_and_tip_choose_the_chain() {
     // The column leans by 0.5 rad about y.
     let expected = arm::Vector3::new(9.81 * 0.5_f64.sin(), 0.0, -9.81 * 0.5_f64.cos());
     assert!((arm.gravity() - expected).norm() < 1e-12, "{}", arm.gravity());
-    // The lift is no part of this arm, and yet known.
+    // The lift is not part of this arm, but is listed as fixed.
     let lift = arm
         .fixed_joints()
         .iter()
@@ -102,7 +102,7 @@ fn base_and_tip_choose_the_chain() {
 
 #[test]
 fn an_arm_with_its_lift_fixed_moves_as_the_arm_on_it() {
-    // The same physics: the left arm, once on a base of its own, once on the root with all else locked.
+    // The same physics: the left arm on a base of its own, and on the root with all other joints locked.
     let own = ChainOptions {
         base: Some("carriage".into()),
         ..tip("left_lower")
@@ -135,10 +135,10 @@ fn the_recorded_joints_choose_the_chain() {
     assert_eq!(names(&arm), ["right_shoulder", "right_elbow"]);
     let lift = &arm.fixed_joints()[0];
     assert_eq!((lift.reason.clone(), lift.position), (FixedBecause::NotRecorded, 0.2));
-    // A joint amid the recorded ones is not fixed: its column is missing.
+    // A joint between recorded joints is not fixed: its column is missing.
     let arm = load(&recorded(&["lift", "right_elbow"])).expect("it loads");
     assert_eq!(names(&arm), ["lift", "right_shoulder", "right_elbow"]);
-    // Both arms were recorded, and both could be meant; with a tip, only one can.
+    // Both arms were recorded, so that both are possible; a tip decides.
     let both = ["left_shoulder", "left_elbow", "right_shoulder", "right_elbow"];
     assert!(load(&recorded(&both)).is_err());
     let options = ChainOptions {
@@ -150,7 +150,7 @@ fn the_recorded_joints_choose_the_chain() {
         names(&load(&options).expect("it loads")),
         ["left_shoulder", "left_elbow"]
     );
-    // Joints of another robot choose nothing.
+    // The joints of another robot have no influence.
     assert!(load(&recorded(&["a"])).is_err());
 }
 
@@ -164,7 +164,7 @@ fn grippers_and_mimicking_joints_are_fixed() {
         (found.position, found.reason.clone(), found.is_carried)
     };
     assert_eq!(fixed("finger_1"), (0.0, FixedBecause::Gripper, true));
-    // It stands where the other puts it.
+    // It stands at the position that the mimicked joint gives it.
     assert_eq!(fixed("finger_2"), (0.01, FixedBecause::Mimics("finger_1".into()), true));
     let [note] = arm.warnings() else {
         panic!("{:?}", arm.warnings())
@@ -194,7 +194,7 @@ fn locks_say_where_joints_are_fixed() {
         .inertia
         .com
         .x;
-    // Of four bodies of 2 kg one moves by 0.03 m, the other follows by half of it.
+    // Of four bodies of 2 kg, one moves by 0.03 m and another, which mimics it, by half of that.
     assert!((open - closed - (0.03 + 0.015) / 4.0).abs() < 1e-12, "{open}, {closed}");
     for (locks, reason) in [
         (

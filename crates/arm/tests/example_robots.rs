@@ -35,7 +35,8 @@ const PLAIN: [(&str, usize); 23] = [
     ("z1_description/urdf/z1.urdf", 6),
 ];
 
-/// The robots with an arm among other chains: base and tip of the arm, and its number of joints. The error of each gives these flags.
+/// The robots with an arm among other chains: base and tip of the arm, and its number of joints. The error for each
+/// robot proposes these flags.
 const NAMED: [(&str, &str, &str, usize); 27] = [
     (
         "alex_description/urdf/alex_nub_hands.urdf",
@@ -156,7 +157,7 @@ const NAMED: [(&str, &str, &str, usize); 27] = [
     ),
 ];
 
-/// The robots that have no arm, with a part of what is said of them.
+/// The robots without an arm, with a part of the error.
 const REFUSED: [(&str, &str); 19] = [
     ("a1_description/urdf/a1.urdf", "has 4 chains"),
     (

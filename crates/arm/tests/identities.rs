@@ -1,4 +1,4 @@
-//! Laws of mechanics that hold whatever the arm, on random states of three arms.
+//! Laws of mechanics that hold for every arm, in random states of three arms; `properties.rs` has those of random arms.
 
 use std::path::Path;
 
@@ -31,7 +31,7 @@ fn for_each_state(mut law: impl FnMut(&Arm, &mut Workspace, &mut Random)) {
     ] {
         let arm = Arm::from_urdf(folder.join(urdf)).expect("the robot loads");
         let rotors: Vec<f64> = (0..arm.dof()).map(|i| 0.1 + 0.05 * i as f64).collect();
-        // Gravity in a general direction, and drives, so that no term can hide.
+        // Gravity in a general direction, and rotors, so that every term contributes.
         let arm = arm
             .with_gravity(Vector3::new(1.2, -0.7, -9.6))
             .with_rotor_inertias(&rotors);
@@ -54,19 +54,6 @@ fn mass_matrix_at(arm: &Arm, workspace: &mut Workspace, q: &[f64]) -> DMatrix<f6
     let mut m = DMatrix::zeros(arm.dof(), arm.dof());
     arm.mass_matrix(workspace, q, &mut m);
     m
-}
-
-/// Forward dynamics undoes inverse dynamics. Fails if either drops a term the other has.
-#[test]
-fn forward_dynamics_inverts_inverse_dynamics() {
-    for_each_state(|arm, workspace, random| {
-        let n = arm.dof();
-        let (q, qd, qdd) = (random.vector(n, 3.0), random.vector(n, 3.0), random.vector(n, 3.0));
-        let (mut tau, mut back) = (vec![0.0; n], vec![0.0; n]);
-        arm.inverse_dynamics(workspace, &q, &qd, &qdd, &mut tau);
-        arm.forward_dynamics(workspace, &q, &qd, &tau, &mut back);
-        assert_close("forward of inverse", &back, &qdd, 1e-9);
-    });
 }
 
 /// τ = M q̈ + bias, and the kinetic energy is ½ q̇ᵀ M q̇. Fails if the composite bodies are wrong.
@@ -134,74 +121,6 @@ fn coriolis_forces_do_no_work_beyond_the_change_of_inertia() {
     });
 }
 
-/// Power in equals the rate of change of energy: d/dt (T + V) = q̇ᵀ τ, along forward dynamics.
-#[test]
-fn power_is_the_rate_of_change_of_energy() {
-    for_each_state(|arm, workspace, random| {
-        let n = arm.dof();
-        let (q, qd, tau) = (random.vector(n, 3.0), random.vector(n, 2.0), random.vector(n, 20.0));
-        let mut qdd = vec![0.0; n];
-        arm.forward_dynamics(workspace, &q, &qd, &tau, &mut qdd);
-        let h = 1e-6;
-        let mut energy = |d: f64| {
-            let q: Vec<f64> = (0..n).map(|i| q[i] + d * qd[i] + 0.5 * d * d * qdd[i]).collect();
-            let qd: Vec<f64> = (0..n).map(|i| qd[i] + d * qdd[i]).collect();
-            arm.kinetic_energy(workspace, &q, &qd) + arm.potential_energy(workspace, &q)
-        };
-        let rate = (energy(h) - energy(-h)) / (2.0 * h);
-        let power: f64 = qd.iter().zip(&tau).map(|(v, t)| v * t).sum();
-        assert!(
-            (rate - power).abs() <= 1e-5 * (1.0 + power.abs()),
-            "{rate} is not {power}"
-        );
-    });
-}
-
-/// Y π = τ (less the rotors). Fails if a column belongs to another parameter.
-#[test]
-fn regressor_times_parameters_is_the_torque() {
-    for_each_state(|arm, workspace, random| {
-        let n = arm.dof();
-        let (q, qd, qdd) = (random.vector(n, 3.0), random.vector(n, 3.0), random.vector(n, 3.0));
-        let mut regressor = DMatrix::zeros(n, 10 * n);
-        arm.torque_regressor(workspace, &q, &qd, &qdd, &mut regressor);
-        let mut tau = vec![0.0; n];
-        arm.inverse_dynamics(workspace, &q, &qd, &qdd, &mut tau);
-        let mut ours = regressor * DVector::from_vec(arm.inertial_parameters());
-        for i in 0..n {
-            ours[i] += arm.joints()[i].rotor_inertia * qdd[i];
-        }
-        assert_close("Y pi", ours.as_slice(), &tau, 1e-12);
-    });
-}
-
-/// The derivatives of inverse dynamics are what central differences give. Fails if a term or a side of a joint is missing.
-#[test]
-fn derivatives_of_inverse_dynamics_are_its_differences() {
-    for_each_state(|arm, workspace, random| {
-        let n = arm.dof();
-        let states = [random.vector(n, 3.0), random.vector(n, 3.0), random.vector(n, 3.0)];
-        let mut ours = [DMatrix::zeros(n, n), DMatrix::zeros(n, n)];
-        let [by_position, by_velocity] = &mut ours;
-        arm.inverse_dynamics_derivatives(workspace, &states[0], &states[1], &states[2], by_position, by_velocity);
-        for (which, ours) in ours.iter().enumerate() {
-            let mut differences = DMatrix::zeros(n, n);
-            let h = 1e-5;
-            for by in 0..n {
-                let mut at = |d: f64| {
-                    let mut states = states.clone();
-                    states[which][by] += d;
-                    let mut tau = vec![0.0; n];
-                    arm.inverse_dynamics(workspace, &states[0], &states[1], &states[2], &mut tau);
-                    DVector::from_vec(tau)
-                };
-                differences.set_column(by, &((at(h) - at(-h)) / (2.0 * h)));
-            }
-            assert_close("derivative", ours.as_slice(), differences.as_slice(), 1e-7);
-        }
-    });
-}
-
 /// The Jacobian is the derivative of the pose. Fails if a column uses the wrong point or frame.
 #[test]
 fn jacobian_is_the_derivative_of_the_pose() {
@@ -226,8 +145,8 @@ fn jacobian_is_the_derivative_of_the_pose() {
     });
 }
 
-/// The features of algorithm 1: ω and ω̇ are the link's own motion, τ_{i+1} and f_{i+1} what carries
-/// the rest of the arm: at rest the force is the distal weight, and nothing hangs on the last link.
+/// The features of algorithm 1: ω and ω̇ are the motion of the link itself, τ_{i+1} and f_{i+1} the wrench on the rest
+/// of the arm. At rest, the force is the weight of the distal links, and it is zero at the last link.
 #[test]
 fn newton_euler_features_are_the_loads_between_links() {
     for_each_state(|arm, workspace, random| {

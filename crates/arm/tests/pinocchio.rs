@@ -7,7 +7,7 @@ use arm::{Arm, DMatrix, FEATURES, Matrix6xX, NewtonEulerFeatures, Workspace};
 /// Largest error allowed, relative to the largest value of the quantity in that state.
 const TOLERANCE: f64 = 1e-10;
 
-/// Reads `count` values off the front of `row`.
+/// Takes `count` values from the beginning of `row`.
 fn take<'a>(row: &mut &'a [f64], count: usize) -> &'a [f64] {
     let (head, tail) = row.split_at(count);
     *row = tail;

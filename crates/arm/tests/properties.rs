@@ -1,6 +1,6 @@
-//! Laws of mechanics on arms that are made at random: 1 to 10 joints, any mix of turning and sliding axes.
+//! Laws of mechanics on random arms: 1 to 10 joints, revolute and prismatic in any order.
 //!
-//! The arms are drawn with a fixed seed; `PROPTEST_RNG_SEED=7 PROPTEST_CASES=10000` draws others, and more.
+//! The arms are drawn with a fixed seed; `PROPTEST_RNG_SEED=7 PROPTEST_CASES=10000` draws other and more arms.
 
 mod random_arm;
 
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 
 use random_arm::{Case, arm, cases, config, urdf};
 
-/// Fails if a value is further from its counterpart than `tolerance` times the largest of them (or one).
+/// Fails if a value differs from its counterpart by more than `tolerance` times the largest of them (or one).
 fn is_close(what: &str, a: &[f64], b: &[f64], tolerance: f64) -> Result<(), TestCaseError> {
     let scale = b.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
     for (x, y) in a.iter().zip(b) {
@@ -52,7 +52,7 @@ proptest! {
         }
     }
 
-    /// Forward dynamics undoes inverse dynamics, as well as the mass matrix's condition lets it.
+    /// Forward dynamics is the inverse of inverse dynamics, up to the condition of the mass matrix.
     #[test]
     fn forward_and_inverse_dynamics_undo_each_other(case in cases()) {
         let (arm, [q, qd, qdd]) = (arm(&case), &case.state());
@@ -93,7 +93,7 @@ proptest! {
         is_close("Y pi", sum.as_slice(), &torque(&arm, q, qd, qdd), 1e-12)?;
     }
 
-    /// The torque is linear in the masses: twice the masses and rotors, twice the torque.
+    /// The torque is linear in the masses: twice the masses and rotors give twice the torque.
     #[test]
     fn masses_and_torques_scale_alike(case in cases(), factor in 0.1..10.0) {
         let (light, [q, qd, qdd]) = (arm(&case), &case.state());
@@ -103,7 +103,7 @@ proptest! {
         is_close("scaled", &torque(&heavy, q, qd, qdd), &scaled, 1e-12)?;
     }
 
-    /// Power in is the rate of change of energy: d/dt (T + V) = q̇ᵀ τ along the motion.
+    /// Power equals the rate of change of energy: d/dt (T + V) = q̇ᵀ τ along the motion.
     #[test]
     fn power_is_the_rate_of_change_of_energy(case in cases()) {
         let (arm, [q, qd, qdd]) = (arm(&case), &case.state());
@@ -144,8 +144,8 @@ proptest! {
         }
     }
 
-    /// An arm that stands on another frame has the same torques, if gravity is given in that frame; and one whose links
-    /// are cut in two by fixed joints is the same arm.
+    /// An arm on another base frame has the same torques if gravity is given in that frame, and so has an arm whose
+    /// links are divided by fixed joints.
     #[test]
     fn frames_do_not_change_the_torque(case in cases(), xyz in prop::array::uniform3(-2.0..2.0), rpy in prop::array::uniform3(-3.0..3.0)) {
         let (here, [q, qd, qdd]) = (arm(&case), &case.state());
@@ -169,7 +169,7 @@ proptest! {
         is_close("the tool's axes", b.rotation.as_slice(), expected.rotation.as_slice(), 1e-12)?;
     }
 
-    /// A turned base is gravity that is turned the other way.
+    /// A rotated base is equivalent to gravity rotated in the opposite direction.
     #[test]
     fn a_turned_base_is_turned_gravity(case in cases(), axis in prop::array::uniform3(-1.0..1.0), angle in -3.0..3.0) {
         let axis = Vector3::from(axis) + Vector3::new(0.0, 0.0, 2.0);
@@ -180,7 +180,7 @@ proptest! {
         is_close("turned", &torque(&arm.with_turned_base(axis, angle), q, qd, qdd), &by_gravity, 1e-12)?;
     }
 
-    /// What an arm says is the same whatever the workspace was used for before.
+    /// The results do not depend on earlier uses of the workspace.
     #[test]
     fn a_used_workspace_is_as_good_as_a_new_one(case in cases()) {
         let (arm, [q, qd, qdd]) = (arm(&case), &case.state());

@@ -1,4 +1,4 @@
-//! What loads, what is merged, and what is refused with which words.
+//! Which URDFs load, which links are merged, and what is refused with which message.
 
 use arm::{Arm, Geometry, JointKind};
 
@@ -39,7 +39,7 @@ fn fixed_joints_are_merged() {
     assert_eq!(joint.kind, JointKind::Revolute);
     assert_eq!(joint.limits.upper, f64::INFINITY);
     assert_eq!(joint.limits.effort, f64::INFINITY);
-    // 2 kg at .1 m and 2 kg at 1 − .1 m.
+    // 2 kg at 0.1 m and 2 kg at 1 − 0.1 m.
     assert!((joint.inertia.mass - 4.0).abs() < 1e-12);
     assert!((joint.inertia.com.z - 0.5).abs() < 1e-12);
     assert!((joint.inertia.tensor[(0, 0)] - (0.2 + 4.0 * 0.16)).abs() < 1e-12);
@@ -70,7 +70,7 @@ fn what_is_no_serial_arm_is_refused_by_name() {
         "{message}"
     );
 
-    // A robot of nothing but joints that mimic others has none that moves.
+    // A robot in which every joint mimics another has no moving joint.
     let mimic = two("revolute").replace("</joint>", "<mimic joint=\"x\"/></joint>");
     assert!(refusal(&mimic).contains("no joint moves"), "{}", refusal(&mimic));
 
@@ -137,7 +137,7 @@ fn comments_and_empty_textures_are_not_read() {
     ]);
     let arm = Arm::from_urdf_text(&text, "robot.urdf").expect("it loads");
     assert_eq!((arm.dof(), arm.visuals().len()), (1, 2));
-    // The lines of what comes later are still right.
+    // The lines of later elements are still right.
     let message = refusal(&text.replace("value=\"2\"", "value=\"-2\""));
     assert!(message.contains("robot.urdf:4: link \"a\""), "{message}");
 }
@@ -209,7 +209,7 @@ fn a_tensor_that_breaks_the_triangle_inequality_is_warned_of() {
     assert_eq!(arm.joints()[1].limits.effort, 186.4);
 }
 
-/// A parser that calls itself for each level has no stack for 20 000.
+/// A parser that recurses at each level would overflow the stack at 20 000 levels.
 #[test]
 fn elements_that_are_nested_without_end_are_refused() {
     let deep = |levels: usize| {
@@ -226,7 +226,7 @@ fn elements_that_are_nested_without_end_are_refused() {
     assert!(deep(20).contains("no links"), "{}", deep(20));
 }
 
-/// Entities of its own, of which each is ten of the one before, or which are a file.
+/// Entities that the file declares: each is ten of the previous one, or the content of another file.
 #[test]
 fn entities_are_not_expanded() {
     let entities = |definitions: &str| {

@@ -8,8 +8,9 @@ use crate::fault::{Fault, families, outside};
 use crate::robot::Robot;
 use crate::urdf_error::SIGMAS;
 
-/// Cases drawn from a seed: a third hold nothing but baseline friction, a tenth something outside the catalogue, the others one to
-/// three effects of it, every family about as often; half are easy, half hard.
+/// Cases drawn from a seed. A third have only baseline friction, a tenth an effect outside the catalogue, and the
+/// others one to three effects of the catalogue, each family about equally often. Half of the cases are easy, half are
+/// hard.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Campaign {
     /// The seed of all random choices.
@@ -22,16 +23,16 @@ pub struct Campaign {
     pub urdf_error: Option<f64>,
 }
 
-/// The plan of a case, before sizes are drawn.
+/// The plan of a case, before the sizes of effects are drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CasePlan {
-    /// The case's place in its campaign, from 0.
+    /// The index of the case in its campaign, from 0.
     pub index: usize,
-    /// Its name, that of its folder.
+    /// Its name, which is also that of its folder.
     pub name: String,
     /// The seed of its sizes, motions and noise.
     pub seed: u64,
-    /// Whether it is of the harder kind: 100 to 500 Hz and sometimes 1 kHz, stamps that jitter, rows lost, functional forms that are not
+    /// Whether it is hard: 100 to 500 Hz and sometimes 1 kHz, jittered stamps, lost rows, functional forms other than
     /// the textbook's, smaller effects, two training recordings instead of three.
     pub hard: bool,
     /// Whether every joint has baseline Coulomb and viscous friction.
@@ -69,12 +70,12 @@ impl Campaign {
                 _ => {
                     let sizes: &[usize] = if lifelike { &[1, 2, 2, 3, 3, 5] } else { &[1, 2, 2, 3] };
                     let size = sizes.choose(&mut random).copied().unwrap_or(1);
-                    families.hand(size, &mut random)
+                    families.next_names(size, &mut random)
                 }
             };
             effects.push((names, lifelike));
         }
-        // Friction and difficulty do not depend on the faults.
+        // Friction and difficulty are independent of the faults.
         let mut quarters: Vec<bool> = (0..self.cases).map(|i| i % 4 != 0).collect();
         let mut halves: Vec<bool> = (0..self.cases).map(|i| i % 2 == 1).collect();
         let mut errors: Vec<f64> = (0..self.cases).map(|i| SIGMAS[i % SIGMAS.len()]).collect();
@@ -88,7 +89,7 @@ impl Campaign {
             .map(|(index, ((((effects, lifelike), friction), hard), error))| CasePlan {
                 index,
                 name: format!("case_{index:0digits$}"),
-                // Fits the integers of any JSON reader.
+                // Small enough for the integers of any JSON reader.
                 seed: random.random::<u64>() >> 11,
                 hard,
                 // Every real joint has friction.
@@ -102,8 +103,8 @@ impl Campaign {
 }
 
 impl CasePlan {
-    /// The robot of this case: they take turns; where the inertia of a drive is concealed, it is one whose drives have none to
-    /// begin with, if there is one.
+    /// The robot of this case; the robots take turns. If the inertia of a drive is injected, it is a robot whose URDF
+    /// lacks no drive inertia, if there is one.
     ///
     /// # Panics
     /// If there are no robots.
@@ -118,7 +119,7 @@ impl CasePlan {
     }
 }
 
-/// Names that come round equally often, in another order every time.
+/// Names that all occur equally often, in a new random order each time.
 struct Deck {
     names: Vec<&'static str>,
     left: Vec<&'static str>,
@@ -145,14 +146,14 @@ impl Deck {
         }
     }
 
-    /// The next `size` names that are allowed together; names that are not allowed wait.
-    fn hand(&mut self, size: usize, random: &mut impl Rng) -> Vec<String> {
+    /// The next `size` names that may occur together; names that may not are kept for later.
+    fn next_names(&mut self, size: usize, random: &mut impl Rng) -> Vec<String> {
         self.fill(3 * self.names.len(), random);
         let mut hand: Vec<&str> = Vec::new();
         let mut place = 0;
         while hand.len() < size {
             let next = self.left[place];
-            let alike = |name: &str| Fault::named(name).and_then(|fault| fault.alone_among);
+            let alike = |name: &str| Fault::named(name).and_then(|fault| fault.similar_faults);
             let clashes = |held: &&str| *held == next || (alike(next).is_some() && alike(held) == alike(next));
             if hand.iter().any(clashes) {
                 place += 1;

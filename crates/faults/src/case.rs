@@ -7,12 +7,12 @@ use recording::write_whole;
 use crate::conceal::Concealment;
 use crate::error::FaultError;
 
-/// Writes `folder/<case>/robot.urdf`, `train_1.csv` …, `held_out.csv` and the truth, apart from them, `truths/<case>.json`; the case's
-/// folder.
+/// Writes `folder/<case>/robot.urdf`, `train_1.csv` …, `held_out.csv`, and the ground truth separately as
+/// `truths/<case>.json`. Returns the case's folder.
 ///
 /// # Errors
-/// [`FaultError::Exists`] if the case or its truth is there already; [`FaultError::Write`] or [`FaultError::Folder`] if something
-/// cannot be written: then nothing stays.
+/// [`FaultError::Exists`] if the case or its truth exists; [`FaultError::Write`] or [`FaultError::Folder`] if
+/// something cannot be written. Nothing remains of a case that fails.
 pub fn write_case(concealment: &Concealment, folder: &Path, truths: &Path) -> Result<PathBuf, FaultError> {
     let name = &concealment.truth.case;
     let case = folder.join(name);
@@ -31,7 +31,7 @@ pub fn write_case(concealment: &Concealment, folder: &Path, truths: &Path) -> Re
     for path in [folder, truths] {
         std::fs::create_dir_all(path).map_err(fails(path))?;
     }
-    // Beside its place, so that it is moved there in one step.
+    // On the same file system, so that it can be moved to its place in one step.
     let partial = tempfile::Builder::new()
         .prefix(".partial-")
         .tempdir_in(folder)
@@ -46,7 +46,7 @@ pub fn write_case(concealment: &Concealment, folder: &Path, truths: &Path) -> Re
         serde_json::to_writer_pretty(&mut *file, &concealment.truth)?;
         file.write_all(b"\n")
     })?;
-    let moved = open_to_all(partial.path()).and_then(|()| {
+    let moved = set_ordinary_permissions(partial.path()).and_then(|()| {
         if case.exists() {
             std::fs::remove_dir(&case)?;
         }
@@ -62,12 +62,12 @@ pub fn write_case(concealment: &Concealment, folder: &Path, truths: &Path) -> Re
 
 /// A temporary folder is private to its owner; the finished one is an ordinary folder.
 #[cfg(unix)]
-fn open_to_all(folder: &Path) -> std::io::Result<()> {
+fn set_ordinary_permissions(folder: &Path) -> std::io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
     std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o755))
 }
 
 #[cfg(not(unix))]
-fn open_to_all(_: &Path) -> std::io::Result<()> {
+fn set_ordinary_permissions(_: &Path) -> std::io::Result<()> {
     Ok(())
 }

@@ -1,14 +1,14 @@
 //! The true machine of a case under an external controller.
 
 use crate::error::FaultError;
-use crate::machine::{Begin, Inverse, LinkMotion, Machine, Seen};
+use crate::machine::{Begin, Inverse, LinkMotion, Machine, Measured};
 use crate::robot::Robot;
 use crate::truth::{Injected, Truth};
 
-/// The machine that a case's recordings are of.
+/// The machine on which a case's recordings were made.
 ///
-/// Its time is the recordings' clock: effects with an onset before it are present, drives are warm, and a contact acts only in
-/// its window.
+/// Its time is the recordings' clock: effects with an earlier onset are present, drives are warm, and a contact acts
+/// only in its window.
 pub struct CaseMachine<'a> {
     machine: Machine<'a>,
     robot: &'a Robot,
@@ -27,17 +27,22 @@ pub struct Driven {
 }
 
 impl<'a> CaseMachine<'a> {
-    /// The machine of `truth`, which is of a case drawn on `robot`.
+    /// The machine of `truth`, a case that was drawn on `robot`.
     ///
     /// # Errors
-    /// [`FaultError::Setting`] if the truth is of another robot, [`FaultError::Effect`] if an effect is not of this robot.
+    /// [`FaultError::Setting`] if the truth belongs to another robot, [`FaultError::Effect`] if an effect does not fit
+    /// this robot.
     pub fn new(robot: &'a Robot, truth: &Truth) -> Result<Self, FaultError> {
         if truth.robot != robot.name() {
             let (case, its, name) = (&truth.case, &truth.robot, robot.name());
             let reason = format!("{case} is of the robot \"{its}\", not of \"{name}\"; give the robot it was drawn on");
             return Err(FaultError::Setting(reason));
         }
-        let effects: Vec<&Injected> = truth.concealed.iter().filter(|effect| !robot.brings(effect)).collect();
+        let effects: Vec<&Injected> = truth
+            .concealed
+            .iter()
+            .filter(|effect| !robot.has_by_itself(effect))
+            .collect();
         Ok(Self {
             machine: Machine::new(robot, &effects, None)?,
             robot,
@@ -45,11 +50,12 @@ impl<'a> CaseMachine<'a> {
         })
     }
 
-    /// Drives it for so many ticks of 1 ms from `start` (s) on; it begins at rest with its encoders at `q` (rad or m), under the torque
-    /// that holds the robot as its user believes it. `controller` sees encoders and gives torques (N m or N), once a tick.
+    /// Runs the machine for `ticks` ticks of 1 ms from `start` (s). It begins at rest with its encoders at `q` (rad or
+    /// m), under the torque that would hold the robot of the user's model. Once per tick, `controller` receives the
+    /// encoders and returns torques (N m or N).
     ///
     /// # Errors
-    /// [`FaultError::Plant`] if the motion leaves all bounds.
+    /// [`FaultError::Plant`] if the motion exceeds all bounds.
     ///
     /// # Panics
     /// If `q` is of another size than the arm.
@@ -58,7 +64,7 @@ impl<'a> CaseMachine<'a> {
         start: f64,
         q: &[f64],
         ticks: usize,
-        mut controller: impl FnMut(&Seen<'_>, &mut [f64]),
+        mut controller: impl FnMut(&Measured<'_>, &mut [f64]),
     ) -> Result<Driven, FaultError> {
         let arm = self.robot.arm();
         let mut holding = vec![0.0; arm.dof()];
@@ -76,7 +82,7 @@ impl<'a> CaseMachine<'a> {
         })
     }
 
-    /// The torques that a motion of the links needs by the machine's own laws: the exact model.
+    /// The torques that a motion of the links requires by the machine's own laws: the exact model.
     ///
     /// Dry friction has the sign of the velocity and is zero at rest. Contacts, which are events, gaps and torque limits, which
     /// no torque compensates, and the damping of springs are omitted. States with memory start as in a run.
@@ -91,7 +97,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::motion::{LEAD, excitation};
+    use crate::motion::{LEAD_TICKS, excitation};
     use crate::test_robots::{puma, seven_axis};
 
     fn truth(robot: &Robot, concealed: Vec<Injected>) -> Truth {
@@ -109,10 +115,11 @@ mod tests {
         }
     }
 
-    /// RMS distance of the links from the reference, with the feed-forward of the user's model and with that of the machine's own laws.
+    /// RMS distance of the links from the reference with the feed-forward of the user's model, and with that of the
+    /// machine's own laws.
     fn errors(robot: &Robot, concealed: Vec<Injected>) -> [f64; 2] {
         let machine = CaseMachine::new(robot, &truth(robot, concealed)).expect("the effects fit");
-        let reference = excitation(robot, 60.0, &mut ChaCha8Rng::seed_from_u64(5)).cut(4.0);
+        let reference = excitation(robot, 60.0, &mut ChaCha8Rng::seed_from_u64(5)).first_seconds(4.0);
         let n = robot.arm().dof();
         let start = reference.time(0);
         let inverse = machine.inverse(&LinkMotion {
@@ -135,13 +142,14 @@ mod tests {
                     }
                 })
                 .expect("it can be driven");
-            let squares = driven.links.iter().zip(&reference.q).skip(n * LEAD);
-            (squares.map(|(q, wanted)| (wanted - q).powi(2)).sum::<f64>() / (reference.ticks() - LEAD) as f64).sqrt()
+            let squares = driven.links.iter().zip(&reference.q).skip(n * LEAD_TICKS);
+            (squares.map(|(q, wanted)| (wanted - q).powi(2)).sum::<f64>() / (reference.ticks() - LEAD_TICKS) as f64)
+                .sqrt()
         })
     }
 
-    /// The machine follows its own inverse with every fault: in forms that the catalogue does not have, with memory, with a
-    /// spring.
+    /// The machine follows its own inverse model with every fault: with forms that the catalogue does not have, with
+    /// memory, and with a spring.
     #[test]
     fn the_inverse_is_the_machines_own() {
         let robot = seven_axis();
@@ -166,7 +174,8 @@ mod tests {
         }
     }
 
-    /// The drives' inertias are the robot's, in the truth or not; another robot's truth is refused.
+    /// The drives' inertias are those of the robot, whether the truth lists them or not; a truth of another robot is
+    /// refused.
     #[test]
     fn what_the_robot_has_is_not_concealed_twice() {
         let robot = puma();

@@ -11,8 +11,8 @@ mod real_life;
 mod search;
 mod stage;
 
-pub(crate) use stage::{AGAIN, TRAINING};
 use stage::{Kind, Stage, Stream, random};
+pub(crate) use stage::{RECORD_AGAIN, TRAINING};
 
 /// Recordings of a machine with injected faults, and the ground truth.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +27,7 @@ pub struct Concealment {
     pub held_out: Recording,
 }
 
-/// How given effects are recorded.
+/// Settings of the recordings of given effects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// The seed of motions and noise.
@@ -70,8 +70,8 @@ pub const RATES: [u32; 8] = [1000, 500, 250, 200, 125, 100, 50, 40];
 /// Injects given `effects` in recordings of `robot`.
 ///
 /// # Errors
-/// [`FaultError::Effect`] or [`FaultError::Setting`], with the remedy, if something cannot be; [`FaultError::Lost`] if the position
-/// loop cannot hold the machine.
+/// [`FaultError::Effect`] or [`FaultError::Setting`], with the remedy, if an effect or a setting is impossible;
+/// [`FaultError::Lost`] if the position loop cannot hold the machine.
 pub fn conceal_effects(
     robot: &Robot,
     name: &str,
@@ -115,7 +115,7 @@ pub fn conceal_effects(
                 "its onset is {onset} s; the recordings are from 0 to {last:.0} s: give a time in them, or none"
             ));
         }
-        if effects[..k].iter().any(|other| other.is_again(effect)) {
+        if effects[..k].iter().any(|other| other.is_same_effect(effect)) {
             return fail("is given twice on one joint; one is one effect".into());
         }
     }
@@ -129,7 +129,7 @@ pub fn conceal_effects(
 /// Draws the faults of `plan` until they are detectable and the position loop is stable, and records the machine.
 ///
 /// # Errors
-/// [`FaultError::NotExpressed`] if no draw comes out; [`FaultError::Plant`] if the robot cannot be simulated.
+/// [`FaultError::NotExpressed`] if no draw is accepted; [`FaultError::Plant`] if the robot cannot be simulated.
 pub fn conceal_case(robot: &Robot, plan: &CasePlan) -> Result<Concealment, FaultError> {
     let kind = Kind {
         seed: plan.seed,

@@ -1,4 +1,4 @@
-//! Faults drawn at random: on which joint, and when they set in; a fault's file draws its size and form.
+//! Faults drawn at random: their joint and their onset. The file of each fault draws its size and form.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -11,12 +11,13 @@ use crate::fault::{Fault, Leaves, Place, coulomb_friction, viscous_friction};
 use crate::robot::Robot;
 use crate::truth::Injected;
 
-/// The least part of a joint's torque that its bodies cost where it is loaded.
+/// The smallest ratio of the torque of the bodies to the whole torque on a loaded joint.
 const LOADED: f64 = 0.5;
-/// Standard deviation of a drive's torque constant, where nobody has measured it.
+/// The relative standard deviation of a drive's torque constant that nobody has measured.
 const TORQUE_CONSTANT: f64 = 0.05;
-/// How many of these deviations, and of the URDF's, a factor is off by at least that is to be told from them.
-const BEYOND: f64 = 2.0;
+/// The smallest drawn factor, in standard deviations of torque constants and of the URDF's errors combined, so that it
+/// can be distinguished from these.
+const LEAST_DEVIATIONS: f64 = 2.0;
 
 /// The probability of an onset for faults that may have one.
 const ONSET: f64 = 0.12;
@@ -29,11 +30,11 @@ pub(crate) struct Scales<'a> {
     pub lifelike: bool,
     /// Standard deviation of each joint's torque (N m or N), without faults.
     pub spreads: &'a [f64],
-    /// The part of it that the URDF's bodies cost, without drives (N m or N).
+    /// The standard deviation of the torque of the URDF's bodies, without drives (N m or N).
     pub loads: &'a [f64],
-    /// How wrong the inertials of the URDF are everywhere, about relative.
+    /// The approximate relative error of all inertial parameters of the URDF.
     pub urdf_error: f64,
-    /// Of each joint, the sizes of its torque in increasing order (N m or N).
+    /// The absolute torques of each joint in increasing order (N m or N).
     pub torques: &'a [Vec<f64>],
     /// Baseline dry friction (N m or N), 0 where there is none.
     pub coulomb: &'a [f64],
@@ -41,11 +42,11 @@ pub(crate) struct Scales<'a> {
     pub span: (f64, f64),
 }
 
-/// A joint that a fault is drawn on.
+/// A joint for which a fault is drawn.
 pub(crate) struct Site<'a> {
     scales: &'a Scales<'a>,
     pub robot: &'a Robot,
-    /// Whether the case is of the harder kind.
+    /// Whether the case is hard.
     pub hard: bool,
     /// Whether the case resembles a real robot.
     pub lifelike: bool,
@@ -64,7 +65,7 @@ pub(crate) fn baseline_friction(spreads: &[f64], random: &mut ChaCha8Rng) -> Vec
 }
 
 impl Scales<'_> {
-    /// `fault` on a joint that is not `used`, of a size and form drawn.
+    /// Draws `fault` on a joint that is not `used`, with size and form.
     pub(crate) fn draw(&self, fault: &Fault, used: &[usize], random: &mut ChaCha8Rng) -> Injected {
         let n = self.robot.arm().dof();
         let free = |j: &usize| !used.contains(j);
@@ -93,8 +94,8 @@ impl Scales<'_> {
             joint,
         };
         let mut drawn = (fault.draw)(bare, &site, random);
-        let sets_in = random.random_bool(ONSET);
-        if sets_in && fault.sets_in && drawn.leaves() != Leaves::Tool {
+        let begins_late = random.random_bool(ONSET);
+        if begins_late && fault.may_have_onset && drawn.leaves() != Leaves::Tool {
             let (from, to) = self.span;
             drawn.onset = Some(from + (to - from) * random.random_range(0.3..0.7));
         }
@@ -108,17 +109,17 @@ impl<'a> Site<'a> {
         self.scales.spreads[self.joint]
     }
 
-    /// The sizes of the joint's torque in increasing order (N m or N).
+    /// The absolute torques of the joint in increasing order (N m or N).
     pub(crate) fn torques(&self) -> &'a [f64] {
         &self.scales.torques[self.joint]
     }
 
-    /// Where the joint's motions are centred (rad or m).
+    /// The centre of the joint's motions (rad or m).
     pub(crate) fn home(&self) -> f64 {
         self.robot.home()[self.joint]
     }
 
-    /// What the joint moves with the others held, without its drive (kg m² or kg).
+    /// The inertia that the joint moves while the other joints are held, without its drive (kg m² or kg).
     pub(crate) fn link_inertia(&self) -> f64 {
         self.robot.link_inertia(self.joint)
     }
@@ -128,23 +129,24 @@ impl<'a> Site<'a> {
         self.robot.rotor_inertias()[self.joint]
     }
 
-    /// A factor that differs from 1 by a part of `parts`; or by more, where the URDF's masses, of which `bodies` count alike, and torque
-    /// constants would make up as much by themselves: what is no larger than they are is nobody's to tell.
+    /// A factor that differs from 1 by a relative amount in `parts`, or by more, if errors of the URDF's masses, of
+    /// which `bodies` count equally, and of the torque constants would produce the same factor: a smaller one cannot
+    /// be distinguished from these errors.
     pub(crate) fn factor(&self, parts: Range<f64>, bodies: f64, random: &mut ChaCha8Rng) -> f64 {
         let constant = if self.lifelike { TORQUE_CONSTANT } else { 0.0 };
-        let least = BEYOND * constant.hypot(self.scales.urdf_error / bodies.sqrt());
+        let least = LEAST_DEVIATIONS * constant.hypot(self.scales.urdf_error / bodies.sqrt());
         let parts = parts.start.max(least)..parts.end.max(1.5 * least);
         let (part, sign) = (random.random_range(parts), sign(random));
         if sign > 0.0 { 1.0 + part } else { 1.0 / (1.0 + part) }
     }
 
-    /// The mass (kg) that the arm might carry.
+    /// The payload (kg) that the arm could carry.
     pub(crate) fn load(&self) -> f64 {
         0.07 * self.robot.mass()
     }
 
-    /// The plain dry friction under a friction curve: the joint's own, or one drawn (N m or N); and one of three forms, the first
-    /// where the case is easy.
+    /// The plain dry friction below a friction curve (N m or N), which is that of the joint or a drawn one; and one of
+    /// three forms, the first in easy cases.
     pub(crate) fn dry_friction(&self, random: &mut ChaCha8Rng) -> (f64, usize) {
         let drawn = self.spread() * random.random_range(0.08..0.25);
         let own = self.scales.coulomb[self.joint];
@@ -152,7 +154,7 @@ impl<'a> Site<'a> {
         (if own > 0.0 { own } else { drawn }, form)
     }
 
-    /// Another joint's name, and a phase: drawn for every fault outside the catalogue.
+    /// Another joint's name and a phase; they are drawn for every fault outside the catalogue.
     pub(crate) fn other_and_phase(&self, random: &mut ChaCha8Rng) -> (&'a str, f64) {
         let joints = self.robot.arm().joints();
         let others: Vec<usize> = (0..joints.len()).filter(|&o| o != self.joint).collect();
@@ -161,8 +163,8 @@ impl<'a> Site<'a> {
     }
 }
 
-/// `bare` in another form, with a probability of one half.
-pub(crate) fn sometimes(bare: Injected, form: &str, random: &mut ChaCha8Rng) -> Injected {
+/// `bare` in another form than the first, with a probability of one half.
+pub(crate) fn perhaps_in_form(bare: Injected, form: &str, random: &mut ChaCha8Rng) -> Injected {
     if random.random_bool(0.5) {
         bare.formed(form)
     } else {
@@ -170,7 +172,7 @@ pub(crate) fn sometimes(bare: Injected, form: &str, random: &mut ChaCha8Rng) -> 
     }
 }
 
-/// A number whose logarithm is as likely everywhere between those of `least` and `most`.
+/// A number whose logarithm is distributed uniformly between the logarithms of `least` and `most`.
 pub(crate) fn log_uniform(least: f64, most: f64, random: &mut ChaCha8Rng) -> f64 {
     random.random_range(least.ln()..most.ln()).exp()
 }

@@ -1,19 +1,19 @@
-//! The part of the torque that is due to an effect: the runs with and without it, compared below 20 Hz.
+//! The share of the torque that is due to an effect: runs with and without it, compared below 20 Hz.
 
-/// Half-power frequency of the comparison, both passes together taken as one (Hz).
+/// Half-power frequency of the filter of the comparison, for both passes together (Hz).
 const CUTOFF: f64 = 20.0;
 
 /// The torques of training runs (N m or N), filtered: `[joint][tick]`, run after run.
 pub(crate) type Torques = Vec<Vec<f64>>;
 
-/// Of torques `tau[tick × dof + joint]` at ticks of `period` (s), those below 20 Hz, without the first `skip` ticks; and the
-/// largest part, over the joints, that lies above.
-pub(crate) fn smooth(tau: &[f64], dof: usize, period: f64, skip: usize) -> (Torques, f64) {
+/// The torques `tau[tick × dof + joint]` at ticks of `period` (s), filtered to below 20 Hz, without the first `skip`
+/// ticks; and the largest share, over the joints, of the torque above that frequency.
+pub(crate) fn low_passed(tau: &[f64], dof: usize, period: f64, skip: usize) -> (Torques, f64) {
     let mut above: f64 = 0.0;
     let joints = (0..dof).map(|j| {
         let raw: Vec<f64> = tau.iter().skip(j).step_by(dof).copied().collect();
         let mut low = raw.clone();
-        Biquad::low_pass(CUTOFF * period).both_ways(&mut low);
+        Biquad::low_pass(CUTOFF * period).filter_both_ways(&mut low);
         let rest: Vec<f64> = raw.iter().zip(&low).map(|(raw, low)| raw - low).skip(skip).collect();
         low.drain(..skip);
         above = above.max(deviation(&rest) / deviation(&low).max(f64::MIN_POSITIVE));
@@ -22,8 +22,8 @@ pub(crate) fn smooth(tau: &[f64], dof: usize, period: f64, skip: usize) -> (Torq
     (joints.collect(), above)
 }
 
-/// The largest part of a joint's torque that vanishes without the effect: standard deviations, or the mean square of the
-/// difference where it is the `constant` that counts.
+/// The largest share of a joint's torque that vanishes without the effect: the standard deviation of the difference (its
+/// root mean square for a `constant` torque) over the standard deviation of the torque with the effect.
 pub(crate) fn share(with: &[Torques], without: &[Torques], constant: bool) -> f64 {
     let dof = with.first().map_or(0, Vec::len);
     let of = |j: usize| {
@@ -68,8 +68,9 @@ impl Biquad {
         }
     }
 
-    /// Forwards and backwards, from rest at the value at either end: no phase.
-    fn both_ways(&self, values: &mut [f64]) {
+    /// Filters forwards and backwards, so that there is no phase shift; it starts at rest at the first and at the last
+    /// value.
+    fn filter_both_ways(&self, values: &mut [f64]) {
         self.pass(values.iter_mut());
         self.pass(values.iter_mut().rev());
     }
@@ -89,7 +90,7 @@ impl Biquad {
 mod tests {
     use super::*;
 
-    /// Slow waves pass without delay, fast ones do not.
+    /// Low frequencies pass without delay, high ones are removed.
     #[test]
     fn what_is_slow_passes() {
         let wave = |hertz: f64| -> Vec<f64> {
@@ -98,10 +99,10 @@ mod tests {
                 .collect()
         };
         let (slow, fast) = (wave(1.0), wave(200.0));
-        let (low, above) = smooth(&slow, 1, 1e-3, 0);
+        let (low, above) = low_passed(&slow, 1, 1e-3, 0);
         let middle = 1000..3000;
         assert!(middle.clone().all(|k| (low[0][k] - slow[k]).abs() < 1e-3) && above < 0.01);
-        assert!(smooth(&fast, 1, 1e-3, 0).1 > 10.0);
+        assert!(low_passed(&fast, 1, 1e-3, 0).1 > 10.0);
     }
 
     #[test]

@@ -48,7 +48,7 @@ mod torque_scale;
 mod transmission_coupling;
 pub(crate) mod viscous_friction;
 
-/// All faults. Draws depend on their order: the baseline ones first, then the catalogue's, then those outside it.
+/// All faults. Draws depend on their order: first the baseline effects, then the catalogue's, then those outside it.
 pub(crate) static FAULTS: [Fault; 32] = [
     viscous_friction::FAULT,
     coulomb_friction::FAULT,
@@ -88,7 +88,7 @@ pub(crate) static FAULTS: [Fault; 32] = [
 pub(crate) struct Fault {
     /// The catalogue's name, or one that ends in `_unknown`.
     pub name: &'static str,
-    /// Whether campaigns draw it. A fault that is not drawn leaves the cases of every seed as they were.
+    /// Whether campaigns draw it. Adding a fault that is not drawn does not change the cases of any seed.
     pub is_drawn: bool,
     /// On which joints it is drawn, or on the whole arm.
     pub place: Place,
@@ -96,29 +96,29 @@ pub(crate) struct Fault {
     pub is_outside: bool,
     /// Its forms in addition to the first, which is the textbook form (or the simplest).
     pub forms: &'static [&'static str],
-    /// Its parameters, all with defaults, beyond the catalogue's.
+    /// Its parameters in addition to the catalogue's; all have defaults.
     pub form_parameters: &'static [&'static str],
     /// Whether a robot can have it.
     pub can_be_on: fn(&Robot) -> bool,
-    /// Whether it may set in at an onset when it is drawn.
-    pub sets_in: bool,
+    /// Whether it may begin at an onset when it is drawn.
+    pub may_have_onset: bool,
     /// Its group: faults of one group are not drawn together, because they cannot be distinguished.
-    pub alone_among: Option<Alike>,
+    pub similar_faults: Option<SimilarFaults>,
     /// The part of it that remains when it is removed.
     pub leaves: Leaves,
-    /// Whether it is a constant torque, so that its share is that of the mean, too.
+    /// Whether it is a constant torque, so that the mean of the torque counts in its share.
     pub is_constant: bool,
     /// Whether there may be several on one joint.
-    pub may_be_several: bool,
-    /// Whether the position loop may oscillate with it.
-    pub rattles: bool,
+    pub may_repeat: bool,
+    /// Whether it may make the position loop oscillate.
+    pub may_oscillate: bool,
     /// How it is scaled.
     pub size: Size,
     /// Draws a form and parameters that a robot could have.
     pub draw: fn(Injected, &Site<'_>, &mut ChaCha8Rng) -> Injected,
     /// Its parts of the machine, from its checked parameters.
     pub read: fn(&Reader<'_>) -> Result<Vec<Piece>, FaultError>,
-    /// Sets parameters at which it is detectable, on axis 4 of the arm with seven axes.
+    /// Sets parameters at which it is detectable on axis 4 of the arm with seven axes.
     #[cfg(test)]
     pub example: fn(Injected) -> Injected,
 }
@@ -131,14 +131,15 @@ pub(crate) enum Place {
     OuterJoints,
     /// All but the first and the last: the first may carry no load, and the last link may have almost no mass.
     InnerJoints,
-    /// Those whose torque is mostly what the URDF's bodies cost: the factor of what is all friction and drive is nobody's to tell.
+    /// Those whose torque is mostly that of the URDF's bodies; on other joints, the factor cannot be distinguished
+    /// from those of friction and drive.
     LoadedJoints,
     WholeArm,
 }
 
 /// Groups of similar faults.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Alike {
+pub(crate) enum SimilarFaults {
     BetweenCommandAndLink,
     Scales,
 }
@@ -158,9 +159,9 @@ pub(crate) enum Leaves {
 /// How a fault is scaled by a factor.
 #[derive(Clone, Copy)]
 pub(crate) enum Size {
-    /// Not at all: its sizes are those of machines.
+    /// Not at all: its sizes are those of real machines.
     AsDrawn,
-    /// These parameters times the factor.
+    /// By multiplying these parameters by the factor.
     Times(&'static [&'static str]),
     /// By the new values of some parameters, within physical limits.
     Changed(fn(&Injected, f64) -> Vec<(&'static str, Value)>),
@@ -175,12 +176,12 @@ impl Fault {
         forms: &[],
         form_parameters: &[],
         can_be_on: |_| true,
-        sets_in: false,
-        alone_among: None,
+        may_have_onset: false,
+        similar_faults: None,
         leaves: Leaves::Nothing,
         is_constant: false,
-        may_be_several: false,
-        rattles: false,
+        may_repeat: false,
+        may_oscillate: false,
         size: Size::AsDrawn,
         draw: |bare, _, _| bare,
         read: |_| Ok(Vec::new()),
@@ -195,7 +196,7 @@ impl Fault {
 
     const OUTSIDE_THE_CATALOGUE: Self = Self {
         is_outside: true,
-        may_be_several: true,
+        may_repeat: true,
         size: Size::Times(&["amplitude"]),
         ..Self::ON_A_JOINT
     };
@@ -236,7 +237,7 @@ pub fn families() -> Vec<&'static str> {
     names(|fault| !fault.is_outside && fault.is_drawn).split_off(2)
 }
 
-/// The parameters, all with defaults, that `effect` has beyond the catalogue's.
+/// The parameters of `effect` in addition to the catalogue's; all have defaults.
 pub fn form_parameters(effect: &str) -> &'static [&'static str] {
     Fault::named(effect).map_or(&[], |fault| fault.form_parameters)
 }
@@ -249,7 +250,7 @@ fn names(counts: impl Fn(&Fault) -> bool) -> Vec<&'static str> {
         .collect()
 }
 
-/// What a fault's file is written with.
+/// The names that the file of a fault needs.
 mod prelude {
     pub(super) use std::f64::consts::{PI, TAU};
 
@@ -260,10 +261,10 @@ mod prelude {
     pub(super) use rand_distr::{Distribution, StandardNormal};
     pub(super) use serde_json::{Value, json};
 
-    pub(super) use super::{Alike, Fault, Leaves, Place, Reader, Size};
-    pub(super) use crate::draw::{log_uniform, sign, sometimes};
+    pub(super) use super::{Fault, Leaves, Place, Reader, SimilarFaults, Size};
+    pub(super) use crate::draw::{log_uniform, perhaps_in_form, sign};
     pub(super) use crate::error::FaultError;
-    pub(super) use crate::part::{At, Body, Connection, DriveLaw, DryAt, DryLaw, DrySum, LinkLaw, Piece, What};
+    pub(super) use crate::part::{At, Body, Connection, DriveLaw, DryAt, DryLaw, DrySum, LinkLaw, Piece, Property};
     pub(super) use crate::pseudo_inertia::moved;
     pub(super) use crate::robot::has_another_joint;
 }

@@ -1,9 +1,10 @@
-//! Injected faults: recordings of a simulated arm with faults that its URDF does not have, and the sealed ground truth.
+//! Injected faults: recordings of a simulated arm with faults that its URDF does not have, and the sealed ground
+//! truth.
 //!
-//! A [`Robot`] is the user's model. A [`Campaign`] decides which cases there are; [`conceal_case`] draws one,
-//! [`conceal_effects`] takes given effects. Both drive the plant in a 1 kHz position loop with the faults, record what encoders
-//! and drives report, and return the [`Truth`]. [`write_case`] writes the two to different places, a [`Seal`] contains their
-//! hashes.
+//! A [`Robot`] is the user's model. A [`Campaign`] decides which cases there are; [`conceal_case`] draws the faults of
+//! one, [`conceal_effects`] injects given effects. Both simulate the plant with the faults in a 1 kHz position loop,
+//! record what encoders and drives report, and return the [`Truth`]. [`write_case`] writes recordings and truth to
+//! different places, and a [`Seal`] contains their hashes.
 
 mod campaign;
 mod case;
@@ -32,7 +33,7 @@ pub use case_machine::{CaseMachine, Driven};
 pub use conceal::{Concealment, RATES, Settings, conceal_case, conceal_effects};
 pub use error::FaultError;
 pub use fault::{catalogue, families, form_parameters, outside};
-pub use machine::{Inverse, LinkMotion, Seen, VelocityFilter};
+pub use machine::{Inverse, LinkMotion, Measured, VelocityFilter};
 pub use motion::{DURATION, PAUSE};
 pub use record_again::record_again;
 pub use robot::Robot;

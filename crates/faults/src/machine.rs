@@ -16,7 +16,7 @@ mod inverse;
 mod parts;
 
 pub(crate) use control_law::Begin;
-pub use control_law::Seen;
+pub use control_law::Measured;
 use control_law::{ControlLaw, PositionLoop};
 pub(crate) use drive::LONGEST_DELAY;
 pub use drive::VelocityFilter;
@@ -25,21 +25,21 @@ use friction::Friction;
 pub use inverse::{Inverse, LinkMotion};
 use parts::Parts;
 
-/// The loop's period, and the plant's step (s).
+/// The period of the position loop, and the step of the plant (s).
 pub(crate) const TICK: f64 = 1e-3;
-/// rapier's plain step: another than the diagnosis' own simulation takes.
+/// rapier's plain step, which the diagnosis' own simulation does not use.
 const ORDER: usize = 1;
-/// The furthest a joint may be from its reference (rad or m).
-pub(crate) const FURTHEST: f64 = 0.35;
-/// Time constant of the drive load that friction feels (s).
+/// The largest allowed distance of a joint from its reference (rad or m).
+pub(crate) const LARGEST_ERROR: f64 = 0.35;
+/// Time constant of the low-pass filter of the drive torque on which friction depends (s).
 const LOAD_FILTER: f64 = 0.02;
 
-/// What the drives saw at every tick of a run; `[tick × dof + joint]`.
+/// Signals of the drives at every tick of a run; `[tick × dof + joint]`.
 #[derive(Clone, Debug)]
 pub(crate) struct Run {
     /// Encoder positions (rad or m).
     pub q: Vec<f64>,
-    /// Filtered velocities.
+    /// Filtered velocities (rad/s or m/s).
     pub qd: Vec<f64>,
     /// Torques as the drives report them: commanded (N m or N).
     pub tau: Vec<f64>,
@@ -52,7 +52,7 @@ pub(crate) struct Machine<'a> {
 }
 
 impl<'a> Machine<'a> {
-    /// `robot`, its drives' inertias, and `effects`; of effect `without` only what stays when it is taken away.
+    /// `robot` with its drives' inertias and `effects`; of effect `without`, only the part that remains without it.
     pub(crate) fn new(robot: &'a Robot, effects: &[&Injected], without: Option<usize>) -> Result<Self, FaultError> {
         let arm = robot.driven();
         let mut parts = Vec::new();
@@ -65,7 +65,7 @@ impl<'a> Machine<'a> {
         })
     }
 
-    /// Drives the machine along `reference`; the encoders count steps of `quantum` (rad or m; 0: none).
+    /// Runs the machine along `reference`; the encoders count steps of `quantum` (rad or m; 0 for none).
     ///
     /// # Errors
     /// [`FaultError::Lost`] if it cannot follow; [`FaultError::Plant`] if it cannot be simulated.
@@ -85,19 +85,19 @@ impl<'a> Machine<'a> {
         let names = self.robot.arm().joints();
         for (k, (q, wanted)) in run.q.iter().zip(&reference.q).enumerate() {
             let by = (q - wanted).abs();
-            if by.is_nan() || by > FURTHEST {
+            if by.is_nan() || by > LARGEST_ERROR {
                 let joint = names[k % names.len()].name.clone();
-                let most = FURTHEST;
+                let most = LARGEST_ERROR;
                 return Err(FaultError::Lost { joint, by, most });
             }
         }
         Ok(run)
     }
 
-    /// Drives the machine by `law` for so many ticks; what the drives saw, and where the links were at every tick.
+    /// Runs the machine under `law` for `ticks` ticks; returns the drives' signals and the links' positions at each.
     ///
     /// # Errors
-    /// [`FaultError::Plant`] if it cannot be simulated, or leaves all bounds.
+    /// [`FaultError::Plant`] if it cannot be simulated, or exceeds all bounds.
     pub(crate) fn drive(
         &self,
         begin: &Begin<'_>,
@@ -115,32 +115,32 @@ impl<'a> Machine<'a> {
     }
 }
 
-/// A run under way.
+/// A run in progress.
 struct Simulation<'a> {
     parts: &'a Parts,
     holding: Vec<f64>,
     robot: &'a Robot,
     quantum: f64,
-    /// The arm as it is now, without the rotors that move by themselves.
+    /// The present arm, without the rotors that are integrated separately.
     arm: Arm,
     plant: Plant,
     workspace: Workspace,
     drives: Vec<Drive>,
     rotors: Vec<Option<Rotor>>,
-    /// When the arm changes next (s, on the recordings' clock).
+    /// The time of the arm's next change (s, on the recordings' clock).
     next_change: f64,
     states: Vec<f64>,
-    /// Accelerations and velocities of the last tick.
+    /// Accelerations and velocities at the last tick.
     qdd: Vec<f64>,
     qd_before: Vec<f64>,
     loads: Vec<[f64; 2]>,
-    /// Torque on each link's side.
+    /// The torque on the link's side of each joint.
     net: Vec<f64>,
     levels: Vec<f64>,
     friction: Friction,
     rigid: Vec<f64>,
     contact: Matrix6xX<f64>,
-    /// Positions and velocities as the drives see them.
+    /// Positions and velocities as the drives measure them.
     sensed: [Vec<f64>; 2],
     commands: Vec<f64>,
     run: Run,
@@ -194,7 +194,7 @@ impl<'a> Simulation<'a> {
         Ok(simulation)
     }
 
-    /// The arm, its plant and its rotors as they are from `time` on.
+    /// The arm, its plant and its rotors from `time` (s) on.
     fn change(&mut self, time: f64, first: bool) -> Result<(), FaultError> {
         let n = self.drives.len();
         let mut arm = self.parts.arm_at(self.robot.driven(), time);
@@ -222,7 +222,7 @@ impl<'a> Simulation<'a> {
             }
             let rotor = Rotor::new(connection, inertia, self.robot.link_inertia(j), q[j], qd[j]);
             if first {
-                // The encoder's side starts on its reference, the spring already under its load.
+                // The encoder starts on its reference, with the spring already deflected by its load.
                 q[j] -= rotor.deflection(self.holding[j]);
             }
             self.rotors[j] = Some(rotor);
@@ -231,7 +231,7 @@ impl<'a> Simulation<'a> {
         self.plant = Plant::new(&arm, &options())?;
         self.plant.set_state(&q, &qd)?;
         self.arm = arm;
-        self.friction.forget();
+        self.friction.reset();
         self.next_change = self.parts.next_change(time);
         Ok(())
     }
@@ -242,27 +242,29 @@ impl<'a> Simulation<'a> {
             self.change(time, false)?;
         }
         for j in 0..n {
-            let position = self.rotors[j].as_ref().map_or(self.plant.q()[j], Rotor::seen);
+            let position = self.rotors[j]
+                .as_ref()
+                .map_or(self.plant.q()[j], Rotor::encoder_position);
             let drive = &mut self.drives[j];
-            drive.sense(position + self.parts.encoder(j, time), self.quantum);
+            drive.read_encoder(position + self.parts.encoder(j, time), self.quantum);
             (self.sensed[0][j], self.sensed[1][j]) = (drive.sensed.position, drive.sensed.velocity);
         }
         let [q, qd] = &self.sensed;
-        law.command(&Seen { tick, q, qd }, &mut self.commands);
+        law.command(&Measured { tick, q, qd }, &mut self.commands);
         for (drive, command) in self.drives.iter_mut().zip(&self.commands) {
             drive.take(*command);
         }
         self.run.q.extend_from_slice(q);
         self.run.qd.extend_from_slice(qd);
         self.run.tau.extend_from_slice(&self.commands);
-        self.feel_loads();
+        self.update_rigid_loads();
         for j in 0..n {
             self.net[j] = self.joint_torque(j, time);
         }
         self.add_link_side(time);
         self.add_contacts(time);
-        self.couple(time)?;
-        self.rub();
+        self.add_coupled_inertia(time)?;
+        self.add_dry_friction();
         self.plant.step(&self.net)?;
         for j in 0..n {
             self.qdd[j] = (self.plant.qd()[j] - self.qd_before[j]) / TICK;
@@ -271,9 +273,9 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    /// The rigid torques that load-dependent friction feels.
-    fn feel_loads(&mut self) {
-        if !self.parts.feels_rigid_load() {
+    /// The rigid torques on which load-dependent friction depends.
+    fn update_rigid_loads(&mut self) {
+        if !self.parts.depends_on_rigid_load() {
             return;
         }
         self.arm.inverse_dynamics(
@@ -288,7 +290,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// What the drive of joint `j` puts on its link; its dry friction, where it is the plant's, goes to the levels.
+    /// The torque of the drive of joint `j` on its link; dry friction that the plant handles is added to the levels.
     fn joint_torque(&mut self, j: usize, time: f64) -> f64 {
         let applied = self.drives[j].applied(&self.parts.drive_at(j, time));
         let (parts, loads) = (self.parts, self.loads[j]);
@@ -299,7 +301,7 @@ impl<'a> Simulation<'a> {
             Some(rotor) => {
                 let friction = dry(rotor.velocity);
                 self.levels[j] = 0.0;
-                let net = applied - smooth(rotor.seen(), rotor.velocity) - friction.bias;
+                let net = applied - smooth(rotor.encoder_position(), rotor.velocity) - friction.bias;
                 rotor.advance(net, friction.level, q, v)
             }
             None => {
@@ -343,13 +345,13 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Drives that two joints turn: their inertia acts through accelerations, found by iteration from those of the last tick.
-    fn couple(&mut self, time: f64) -> Result<(), FaultError> {
+    /// Drives that are moved by two joints: their inertia, with accelerations by iteration from those of the last tick.
+    fn add_coupled_inertia(&mut self, time: f64) -> Result<(), FaultError> {
         let parts = self.parts;
         if !parts.couplings(time).any(|(_, _, inertia)| inertia != 0.0) {
             return Ok(());
         }
-        let couple = |net: &[f64], qdd: &[f64]| {
+        let add_coupled_inertia = |net: &[f64], qdd: &[f64]| {
             let mut coupled = net.to_vec();
             for (j, o, inertia) in parts.couplings(time) {
                 coupled[j] -= inertia * qdd[o];
@@ -357,8 +359,8 @@ impl<'a> Simulation<'a> {
             }
             coupled
         };
-        let first = couple(&self.net, &self.qdd);
-        // With the dry friction of the last tick, that of this one is not known yet.
+        let first = add_coupled_inertia(&self.net, &self.qdd);
+        // With the dry friction of the last tick, because that of this tick is not known yet.
         let rubbed: Vec<f64> = first
             .iter()
             .zip(&self.friction.torques)
@@ -366,20 +368,20 @@ impl<'a> Simulation<'a> {
             .collect();
         let mut qdd = self.qdd.clone();
         self.plant.accelerations(&rubbed, &mut qdd)?;
-        self.net = couple(&self.net, &qdd);
+        self.net = add_coupled_inertia(&self.net, &qdd);
         Ok(())
     }
 }
 
 impl Simulation<'_> {
-    /// Adds the dry friction of joints whose rotor turns with their link.
-    fn rub(&mut self) {
+    /// Adds the dry friction of joints whose rotor is rigidly connected to the link.
+    fn add_dry_friction(&mut self) {
         if self.levels.iter().all(|&level| level == 0.0) {
             return;
         }
         let state = [self.plant.q(), self.plant.qd()];
         self.friction
-            .find(&self.arm, &mut self.workspace, state, &self.net, &self.levels);
+            .solve(&self.arm, &mut self.workspace, state, &self.net, &self.levels);
         for (net, torque) in self.net.iter_mut().zip(&self.friction.torques) {
             *net += torque;
         }

@@ -1,4 +1,4 @@
-//! The motions that are asked of a machine: excitation for training, pick and place to hold out.
+//! The reference motions: excitation for training, pick and place for the held-out recording.
 
 use std::f64::consts::TAU;
 
@@ -9,39 +9,39 @@ use rand_distr::{Distribution, StandardNormal};
 use crate::machine::TICK;
 use crate::robot::Robot;
 
-/// How long a recording is, and how long passes between two (s).
+/// The duration of a recording, and the pause between two recordings (s).
 pub const DURATION: f64 = 25.0;
 /// See [`DURATION`].
 pub const PAUSE: f64 = 5.0;
-/// How many ticks the loop runs before a recording begins.
-pub(crate) const LEAD: usize = 500;
-/// Parts of a joint's velocity and effort limits that a motion may take.
-const WITHIN: f64 = 0.8;
-/// The fastest excitation where a joint has no limit (rad/s or m/s).
+/// The number of ticks that the loop runs before a recording begins.
+pub(crate) const LEAD_TICKS: usize = 500;
+/// The largest shares of a joint's velocity and effort limits that a motion may use.
+const LIMIT_SHARE: f64 = 0.8;
+/// The highest velocity of an excitation where a joint has no limit (rad/s or m/s).
 const FASTEST: f64 = 2.2;
 
-/// A motion at every tick, and the nominal torque for it; `[tick × dof + joint]`.
+/// A motion with the nominal torque at every tick; `[tick × dof + joint]`.
 #[derive(Clone, Debug)]
 pub(crate) struct Reference {
     dof: usize,
-    /// s, on the recordings' clock, of the first row recorded.
+    /// The time of the first recorded row (s, on the recordings' clock).
     pub start: f64,
     pub q: Vec<f64>,
     pub qd: Vec<f64>,
     pub qdd: Vec<f64>,
-    /// Feed-forward of the user's model (N m or N).
+    /// Feed-forward torque of the user's model (N m or N).
     pub ff: Vec<f64>,
 }
 
 impl Reference {
-    /// How many ticks it has, those before the recording too.
+    /// The number of ticks, including those before the recording.
     pub(crate) fn ticks(&self) -> usize {
         self.q.len() / self.dof
     }
 
     /// The time of a tick (s, on the recordings' clock).
     pub(crate) fn time(&self, tick: usize) -> f64 {
-        self.start + (tick as f64 - LEAD as f64) * TICK
+        self.start + (tick as f64 - LEAD_TICKS as f64) * TICK
     }
 
     pub(crate) fn new(arm: &Arm, start: f64, q: Vec<f64>) -> Self {
@@ -63,32 +63,32 @@ impl Reference {
         }
     }
 
-    /// The first `seconds` of it.
-    pub(crate) fn cut(mut self, seconds: f64) -> Self {
-        let length = (LEAD + (seconds / TICK) as usize) * self.dof;
+    /// Its first `seconds` seconds.
+    pub(crate) fn first_seconds(mut self, seconds: f64) -> Self {
+        let length = (LEAD_TICKS + (seconds / TICK) as usize) * self.dof;
         for values in [&mut self.q, &mut self.qd, &mut self.qdd, &mut self.ff] {
             values.truncate(length);
         }
         self
     }
 
-    /// Whether no drive would have to give more than a part of its limit.
+    /// Whether no drive needs more than the allowed share of its effort limit.
     fn is_feasible(&self, robot: &Robot) -> bool {
         let joints = robot.arm().joints();
         let torques = self.ff.iter().zip(&self.qdd).enumerate();
         torques.into_iter().all(|(k, (ff, qdd))| {
             let j = k % self.dof;
-            (ff + robot.rotor_inertias()[j] * qdd).abs() <= WITHIN * joints[j].limits.effort
+            (ff + robot.rotor_inertias()[j] * qdd).abs() <= LIMIT_SHARE * joints[j].limits.effort
         })
     }
 }
 
-/// When recording `number` of a case begins (s).
+/// The time at which recording `number` of a case begins (s).
 pub(crate) fn start(number: usize) -> f64 {
     number as f64 * (DURATION + PAUSE)
 }
 
-/// Central differences over ticks.
+/// Velocities and accelerations by central differences.
 fn rates(values: &[f64], n: usize) -> Vec<f64> {
     let last = values.len() / n - 1;
     let mut rates = vec![0.0; values.len()];
@@ -101,13 +101,14 @@ fn rates(values: &[f64], n: usize) -> Vec<f64> {
     rates
 }
 
-/// x³ (10 − 15 x + 6 x²): from 0 to 1 at rest on both sides.
+/// x³ (10 − 15 x + 6 x²): it rises from 0 to 1, with zero derivatives on both sides.
 fn ease(x: f64) -> f64 {
     let x = x.clamp(0.0, 1.0);
     x * x * x * (10.0 + x * (6.0 * x - 15.0))
 }
 
-/// The range that a joint's motion may fill, about its home (rad or m): half of what its limits leave, within `most`.
+/// The range of a joint's motion about its home position (rad or m): half of the room within its limits, at most
+/// `most`.
 fn reach(robot: &Robot, j: usize, most: f64) -> f64 {
     let joint = &robot.arm().joints()[j];
     let room = (joint.limits.upper - robot.home()[j]).min(robot.home()[j] - joint.limits.lower);
@@ -119,10 +120,10 @@ fn reach(robot: &Robot, j: usize, most: f64) -> f64 {
 }
 
 fn ticks() -> usize {
-    LEAD + (DURATION / TICK).round() as usize + 1
+    LEAD_TICKS + (DURATION / TICK).round() as usize + 1
 }
 
-/// Five harmonics of .08 to .13 Hz on every joint at once, faded in, within the joints' limits.
+/// Five harmonics of 0.08 to 0.13 Hz on every joint at the same time, faded in, within the joints' limits.
 pub(crate) fn excitation(robot: &Robot, start: f64, random: &mut impl Rng) -> Reference {
     let n = robot.arm().dof();
     let base: f64 = random.random_range(0.08..0.13);
@@ -136,7 +137,7 @@ pub(crate) fn excitation(robot: &Robot, start: f64, random: &mut impl Rng) -> Re
             let amplitude = normal / h.powf(random.random_range(0.1..0.6));
             let phase = random.random_range(0.0..TAU);
             for (tick, value) in wave.iter_mut().enumerate() {
-                let time = (tick as f64 - LEAD as f64) * TICK;
+                let time = (tick as f64 - LEAD_TICKS as f64) * TICK;
                 *value += amplitude * (TAU * base * h * time + phase).sin();
             }
         }
@@ -146,25 +147,26 @@ pub(crate) fn excitation(robot: &Robot, start: f64, random: &mut impl Rng) -> Re
                 (least.min(value), most.max(value))
             });
         let reach = reach(robot, j, 1.075);
-        // Peak to peak .85 to 1.45 and a centre within ± .35 where there is room.
+        // A peak-to-peak range of 0.85 to 1.45 and a centre within ±0.35, where the limits allow it.
         let span = random.random_range(0.79..1.35) * reach / (most - least);
         centers[j] = robot.home()[j] + random.random_range(-0.32..0.32) * reach;
         let speed = wave
             .windows(2)
             .map(|pair| (pair[1] - pair[0]).abs() / TICK)
             .fold(0.0, f64::max);
-        let fastest = FASTEST.min(WITHIN * robot.arm().joints()[j].limits.velocity);
+        let fastest = FASTEST.min(LIMIT_SHARE * robot.arm().joints()[j].limits.velocity);
         let scale = span.min(fastest / speed);
         for (tick, value) in wave.iter().enumerate() {
-            let ramp = ease((tick as f64 - LEAD as f64) * TICK / 2.0);
+            let ramp = ease((tick as f64 - LEAD_TICKS as f64) * TICK / 2.0);
             waves[tick * n + j] = ramp * scale * (value - 0.5 * (least + most));
         }
     }
-    shrunk(robot, start, &centers, &waves)
+    reduced_to_limits(robot, start, &centers, &waves)
 }
 
-/// The motion `waves` about `centers`, made smaller until the drives can follow it (what they cannot even hold stays).
-fn shrunk(robot: &Robot, start: f64, centers: &[f64], waves: &[f64]) -> Reference {
+/// The motion `waves` about `centers`, reduced until the drives can follow it; a load that they cannot hold at rest is
+/// not reduced.
+fn reduced_to_limits(robot: &Robot, start: f64, centers: &[f64], waves: &[f64]) -> Reference {
     let mut size = 1.0;
     loop {
         let place = |(k, wave): (usize, &f64)| centers[k % centers.len()] + size * wave;
@@ -177,7 +179,7 @@ fn shrunk(robot: &Robot, start: f64, centers: &[f64], waves: &[f64]) -> Referenc
     }
 }
 
-/// Moves of 1.1 to 2.3 s between random poses, with rests of .3 to 1 s.
+/// Motions of 1.1 to 2.3 s between random poses, with rests of 0.3 to 1 s.
 pub(crate) fn pick_and_place(robot: &Robot, start: f64, random: &mut impl Rng) -> Reference {
     let n = robot.arm().dof();
     let reaches: Vec<f64> = (0..n).map(|j| reach(robot, j, 0.8)).collect();
@@ -191,7 +193,7 @@ pub(crate) fn pick_and_place(robot: &Robot, start: f64, random: &mut impl Rng) -
             waves.extend_from_slice(at);
         }
     };
-    rest(&mut waves, &at, LEAD + random.random_range(0..200));
+    rest(&mut waves, &at, LEAD_TICKS + random.random_range(0..200));
     while waves.len() < ticks() * n {
         let next: Vec<f64> = reaches
             .iter()
@@ -199,8 +201,8 @@ pub(crate) fn pick_and_place(robot: &Robot, start: f64, random: &mut impl Rng) -
             .collect();
         let mut time: f64 = random.random_range(1.1..2.3);
         for j in 0..n {
-            // The peak of either profile is below twice the mean.
-            let fastest = WITHIN * robot.arm().joints()[j].limits.velocity;
+            // The peak velocity of either profile is below twice its mean.
+            let fastest = LIMIT_SHARE * robot.arm().joints()[j].limits.velocity;
             time = time.max(2.0 * (next[j] - at[j]).abs() / fastest);
         }
         let length = (time / TICK).round() as usize;
@@ -215,12 +217,13 @@ pub(crate) fn pick_and_place(robot: &Robot, start: f64, random: &mut impl Rng) -
         rest(&mut waves, &at, random.random_range(300..1000));
     }
     waves.truncate(ticks() * n);
-    shrunk(robot, start, robot.home(), &waves)
+    reduced_to_limits(robot, start, robot.home(), &waves)
 }
 
-/// From 0 to 1 with a constant speed in the middle; it takes `edge` of the time to speed up, and as much to slow down.
+/// A profile from 0 to 1 with constant velocity in the middle; acceleration and deceleration each take the share
+/// `edge` of the time.
 fn rounded_trapezoid(x: f64, edge: f64) -> f64 {
-    // The integral of an eased ramp of speed: ∫ ease = x⁴ (2.5 − 3 x + x²).
+    // The integral of a smooth velocity ramp: ∫ ease = x⁴ (2.5 − 3 x + x²).
     let rise = |x: f64| edge * x.powi(4) * (2.5 + x * (x - 3.0));
     let total = 1.0 - edge;
     let at = if x < edge {

@@ -1,119 +1,121 @@
-//! The places of a machine that a fault can change: dry friction, drive, encoder, what lies between rotor and link, what acts on links,
-//! the arm itself. Laws are torques (N m or N) that the motion costs on top of the rigid ones.
+//! The places at which a fault can change a machine: dry friction, drive, encoder, the connection of rotor and link,
+//! torques on links, the arm itself. Laws are torques (N m or N) that the motion requires in addition to the rigid
+//! ones.
 //!
-//! The laws are this crate's own: a diagnosis is to find the effect, not its own formula.
+//! The laws are independent of those of the diagnosis: a diagnosis must find the effect, not its own formula.
 
 use arm::{Arm, Inertia};
 
 use crate::fault::external_contact::Contact;
 
-/// One thing that the machine has, from `onset` on.
+/// One property of the machine, which is present from `onset` on.
 pub(crate) struct Part {
-    /// s, on the recordings' clock; minus infinity if from the start.
+    /// Time on the recordings' clock (s); minus infinity if it is present from the start.
     pub onset: f64,
-    pub what: What,
+    pub what: Property,
 }
 
-/// One thing that a fault brings.
+/// One property that a fault adds to the machine.
 pub(crate) struct Piece {
-    pub what: What,
+    pub what: Property,
     /// In which of the two machines it is.
-    pub there: There,
+    pub there: Presence,
 }
 
-/// In which machine a piece is: in the one with the fault, or in the one without it.
+/// Where a piece is present: in the machine with the fault, in the one without it, or in both.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum There {
+pub(crate) enum Presence {
     /// In the machine with the fault, from its onset on.
     With,
     /// In both machines, from the start.
     Always,
-    /// Only in the machine without the fault, from the start: the user believes it to be there, and it is not.
+    /// Only in the machine without the fault, from the start: the user's model has it, and the machine with the fault
+    /// does not.
     Without,
 }
 
-/// What it is, and the joint it is on.
-pub(crate) enum What {
+/// The property itself, with its joint.
+pub(crate) enum Property {
     Dry(usize, Box<dyn DryLaw>),
     Drive(usize, Box<dyn DriveLaw>),
     Link(usize, Box<dyn LinkLaw>),
-    /// Joint, other joint and the inertia of the drive that both turn (kg m²).
+    /// Joint, other joint and the inertia of the drive that both move (kg m²).
     CouplingInertia(usize, usize, f64),
-    /// Reported over true.
+    /// The ratio of the reported to the true torque.
     Scale(usize, f64),
-    /// The most a drive applies, as it reports torque; softly or sharply.
+    /// The largest torque that a drive applies, as it is reported; with a soft or a sharp limit.
     Limit(usize, f64, bool),
-    /// s; a pure delay or a first-order lag.
+    /// Time (s); a pure delay or a first-order lag.
     Delay(usize, f64, bool),
-    /// What the encoder says too much (rad or m).
+    /// The error of the encoder (rad or m).
     Encoder(usize, f64),
     Elastic(usize, Connection),
     Body(Body),
     Contact(Contact),
 }
 
-impl What {
+impl Property {
     /// A piece that remains when its fault is removed.
-    pub(crate) fn stays(self) -> Piece {
+    pub(crate) fn in_both_machines(self) -> Piece {
         Piece {
             what: self,
-            there: There::Always,
+            there: Presence::Always,
         }
     }
 
     /// A piece that is added when its fault is removed.
-    pub(crate) fn comes_without(self) -> Piece {
+    pub(crate) fn only_without_fault(self) -> Piece {
         Piece {
             what: self,
-            there: There::Without,
+            there: Presence::Without,
         }
     }
 }
 
-impl From<What> for Piece {
-    fn from(what: What) -> Self {
+impl From<Property> for Piece {
+    fn from(what: Property) -> Self {
         Self {
             what,
-            there: There::With,
+            there: Presence::With,
         }
     }
 }
 
-/// What lies between a rotor and its link; the encoder is the rotor's.
+/// The connection between a rotor and its link; the encoder is on the rotor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Connection {
-    /// N m/rad; `None`: stiff, yet resolved by the plant's step.
+    /// Stiffness (N m/rad); `None`: the highest that the plant's step resolves.
     pub stiffness: Option<f64>,
-    /// N m s/rad; `None`: a quarter of the critical damping.
+    /// Damping (N m s/rad); `None`: a quarter of the critical damping.
     pub damping: Option<f64>,
-    /// rad.
+    /// The width of the gap (rad).
     pub halfgap: f64,
-    /// What the rotor has beyond what the drive is known to have (kg m²).
+    /// The rotor's inertia in addition to the known inertia of the drive (kg m²).
     pub more_rotor: f64,
-    /// The torque at which the stiffness is twice what it is at none (N m); infinite: it does not harden.
+    /// The torque at which the stiffness is twice that at zero torque (N m); infinite if the spring does not harden.
     pub hardening: f64,
-    /// Whether the gap's ends are rounded.
+    /// Whether the ends of the gap are rounded.
     pub round: bool,
 }
 
 /// A change of masses, drives or gravity.
 pub(crate) enum Body {
-    /// More inertia of a joint's drive (kg m² or kg).
+    /// Additional inertia of a joint's drive (kg m² or kg).
     Rotor(usize, f64),
-    /// Another arm for the arm.
+    /// Replaces the arm by another one.
     Changed(Box<dyn Fn(Arm) -> Arm + Send + Sync>),
     /// A mass at the tool.
     Payload(Inertia),
 }
 
 impl Body {
-    /// The piece that makes another arm of the arm.
+    /// The piece that replaces the arm by another one.
     pub(crate) fn changed(change: impl Fn(Arm) -> Arm + Send + Sync + 'static) -> Piece {
-        What::Body(Self::Changed(Box::new(change))).into()
+        Property::Body(Self::Changed(Box::new(change))).into()
     }
 
-    /// `arm` with it. Payloads must come last: they are not scaled with the links.
-    pub(crate) fn put_into(&self, arm: Arm) -> Arm {
+    /// `arm` with this change. Payloads must come last, because they are not scaled with the links.
+    pub(crate) fn applied_to(&self, arm: Arm) -> Arm {
         match self {
             Self::Rotor(joint, inertia) => {
                 let mut rotors: Vec<f64> = arm.joints().iter().map(|joint| joint.rotor_inertia).collect();
@@ -128,29 +130,29 @@ impl Body {
 
 /// A part of a joint's dry friction.
 pub(crate) trait DryLaw: Send + Sync {
-    /// Adds what it makes to what the parts before it made.
+    /// Adds its contribution to that of the parts before it.
     fn add_to(&self, sum: &mut DrySum, at: &DryAt);
 
     /// Whether it depends on [`DryAt::rigid_load`].
-    fn feels_rigid_load(&self) -> bool {
+    fn depends_on_rigid_load(&self) -> bool {
         false
     }
 }
 
-/// What dry friction may depend on.
+/// The variables of dry friction.
 #[derive(Clone, Copy)]
 pub(crate) struct DryAt {
     pub velocity: f64,
-    /// s, on the recordings' clock.
+    /// Time on the recordings' clock (s).
     pub time: f64,
     /// The rigid torque (N m or N).
     pub rigid_load: f64,
-    /// What the drive gives, behind a low-pass filter of 20 ms (N m or N).
+    /// The torque of the drive behind a low-pass filter of 20 ms (N m or N).
     pub drive_load: f64,
 }
 
 impl DryAt {
-    /// At a velocity and a time, under the rigid load and the drive's.
+    /// At a velocity and a time, under the rigid load and that of the drive.
     pub(crate) fn new(velocity: f64, time: f64, [rigid_load, drive_load]: [f64; 2]) -> Self {
         Self {
             velocity,
@@ -161,14 +163,15 @@ impl DryAt {
     }
 }
 
-/// What the parts of a joint's dry friction add up to: ± `level`, `bias` in both directions alike (N m or N), both times `factor`.
+/// The sum of the parts of a joint's dry friction: ±`level`, and `bias` in both directions (N m or N), both multiplied
+/// by `factor`.
 pub(crate) struct DrySum {
     pub level: f64,
     pub bias: f64,
     pub factor: f64,
 }
 
-/// Dry friction at a moment: ± `level`, and `bias` in both directions alike (N m or N).
+/// Dry friction at one time: ±`level`, and `bias` in both directions (N m or N).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Resistance {
     pub level: f64,
@@ -176,7 +179,7 @@ pub(crate) struct Resistance {
 }
 
 impl Resistance {
-    /// So many times as much.
+    /// Multiplied by a factor.
     pub(crate) fn times(self, factor: f64) -> Self {
         Self {
             level: factor * self.level,
@@ -185,7 +188,7 @@ impl Resistance {
     }
 }
 
-/// The dry friction that its parts make.
+/// The dry friction of its parts.
 pub(crate) fn resistance<'a>(parts: impl Iterator<Item = &'a dyn DryLaw>, at: &DryAt) -> Resistance {
     let mut sum = DrySum {
         level: 0.0,
@@ -195,7 +198,8 @@ pub(crate) fn resistance<'a>(parts: impl Iterator<Item = &'a dyn DryLaw>, at: &D
     for part in parts {
         part.add_to(&mut sum, at);
     }
-    // Asymmetry beyond the level would push, and a Stribeck dip or a cold drive below nothing too.
+    // With an asymmetry larger than the level, or with a negative Stribeck or thermal factor, friction would drive the
+    // joint.
     let level = (sum.level * sum.factor).max(0.0);
     Resistance {
         level,
@@ -203,38 +207,38 @@ pub(crate) fn resistance<'a>(parts: impl Iterator<Item = &'a dyn DryLaw>, at: &D
     }
 }
 
-/// A torque on the drive's side of a joint, smooth or nearly so.
+/// A smooth, or nearly smooth, torque on the drive's side of a joint.
 pub(crate) trait DriveLaw: Send + Sync {
     /// The torque at the drive's own position and velocity.
     fn torque(&self, q: f64, v: f64) -> f64;
 }
 
-/// A torque on the link's side of a joint; some remember, in one number of state.
+/// A torque on the link's side of a joint; some depend on the past, through one state variable.
 pub(crate) trait LinkLaw: Send + Sync {
-    /// The torque; the state becomes that of a `step` (s) later.
+    /// The torque; the state is advanced by `step` (s).
     fn torque(&self, at: At<'_>, state: &mut f64, step: f64) -> f64;
 }
 
-/// What a law on the link's side may depend on, of the whole arm.
+/// The variables of a law on the link's side, for the whole arm.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct At<'a> {
-    /// s, on the recordings' clock.
+    /// Time on the recordings' clock (s).
     pub time: f64,
-    /// The joint that the law is on.
+    /// The joint of the law.
     pub joint: usize,
     /// Positions of all joints (rad or m).
     pub q: &'a [f64],
-    /// Velocities of all joints.
+    /// Velocities of all joints (rad/s or m/s).
     pub qd: &'a [f64],
 }
 
 impl At<'_> {
-    /// Of the joint that the law is on (rad or m).
+    /// The position of the law's joint (rad or m).
     pub(crate) fn position(&self) -> f64 {
         self.q[self.joint]
     }
 
-    /// Of the joint that the law is on.
+    /// The velocity of the law's joint (rad/s or m/s).
     pub(crate) fn velocity(&self) -> f64 {
         self.qd[self.joint]
     }

@@ -1,20 +1,22 @@
-//! A body as a 4 × 4 matrix, which stays a body's under every map of space.
+//! A body as a 4 × 4 matrix that remains physical under every linear map of space.
 
 use arm::{Inertia, Matrix3, Vector3};
 use nalgebra::{Matrix4, SymmetricEigen};
 
-/// Second moments below this are none that a body has (kg m²).
+/// Second moments below this do not occur (kg m²).
 const LEAST_MOMENT: f64 = 1e-9;
-/// Radii of gyration below this are none that a link has (m).
+/// Radii of gyration below this do not occur in links (m).
 const LEAST_RADIUS: f64 = 0.02;
 
-/// The pseudo-inertia [Σ, m c; m cᵀ, m] of a body: Σ its second moments of mass about the frame's origin (kg m²), m its mass (kg), c its
-/// centre of mass (m) (Wensing, Kim and Slotine, RA-L 3(1), 2018). It is positive definite for bodies, and for them alone.
+/// The pseudo-inertia [Σ, m c; m cᵀ, m] of a body, with Σ the second moments of mass about the frame's origin (kg m²),
+/// m the mass (kg) and c the centre of mass (m) (Wensing, Kim and Slotine, RA-L 3(1), 2018). It is positive definite
+/// exactly for physical bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PseudoInertia(pub(crate) Matrix4<f64>);
 
 impl PseudoInertia {
-    /// Of a body with mass. Second moments that no body has are raised to the least that one could have.
+    /// The pseudo-inertia of a body with mass. Second moments that are not physical are raised to the smallest that
+    /// are.
     pub(crate) fn of(body: &Inertia) -> Self {
         let central = SymmetricEigen::new(Matrix3::identity() * (0.5 * body.tensor.trace()) - body.tensor);
         let moments = Matrix3::from_diagonal(&central.eigenvalues.map(|moment| moment.max(LEAST_MOMENT)));
@@ -30,8 +32,8 @@ impl PseudoInertia {
         Self(matrix)
     }
 
-    /// A P Aᵀ: the body after space was mapped by `map` (homogeneous coordinates; scaled, it scales the mass). Of a map that can be
-    /// inverted it is a body again.
+    /// A P Aᵀ: the body after space was mapped by `map` (in homogeneous coordinates; the scale of the last one scales
+    /// the mass). An invertible map gives a physical body.
     pub(crate) fn mapped(&self, map: &Matrix4<f64>) -> Self {
         Self(map * self.0 * map.transpose())
     }
@@ -56,8 +58,8 @@ impl PseudoInertia {
     }
 }
 
-/// `body` with its mass `factor` as large, its centre of mass moved by `shift` (m) and its extent along the frame's axes stretched by
-/// `stretch`: a body again, if there was one.
+/// `body` with its mass multiplied by `factor`, its centre of mass moved by `shift` (m) and its extent along the
+/// frame's axes multiplied by `stretch`. The result is physical if `body` is.
 pub(crate) fn moved(body: &Inertia, factor: f64, shift: [f64; 3], stretch: [f64; 3]) -> Inertia {
     if body.mass <= 0.0 {
         return *body;
@@ -89,7 +91,7 @@ mod tests {
         assert!((again.tensor - body().tensor).norm() < 1e-14);
     }
 
-    /// Mass, centre of mass and moments, each as it is asked for.
+    /// Mass, centre of mass and moments change independently of each other.
     #[test]
     fn a_body_is_moved_as_asked() {
         let moved = moved(&body(), 1.2, [0.01, 0.0, -0.02], [1.0, 1.0, 1.3]);

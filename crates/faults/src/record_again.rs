@@ -1,24 +1,23 @@
-//! A case recorded once more, along a motion that somebody asks for.
+//! Another recording of a case, along a given motion.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use recording::Recording;
 
 use crate::campaign::CasePlan;
-use crate::conceal::{AGAIN, TRAINING};
+use crate::conceal::{RECORD_AGAIN, TRAINING};
 use crate::error::FaultError;
 use crate::machine::{Machine, TICK};
-use crate::motion::{LEAD, Reference, start};
+use crate::motion::{LEAD_TICKS, Reference, start};
 use crate::robot::Robot;
 use crate::sensor::Sensors;
 use crate::truth::{Injected, Truth};
 
-/// Drives the machine of a drawn case along `motion`, which writes the positions (rad or m, base to tip) of a time (s, from 0
-/// to `duration`), and records it with the case's own sensors and clock, after all that is recorded of it.
-///
+/// Runs the machine of a drawn case along `motion`, which writes the positions (rad or m, base to tip) at a time (s,
+/// from 0 to `duration`), and records it with the sensors and the clock of the case, after all its other recordings.
 /// # Errors
-/// [`FaultError::Lost`] if the position loop cannot hold the machine on that motion; [`FaultError::Effect`] if the truth is
-/// not of this robot.
+/// [`FaultError::Lost`] if the position loop cannot hold the machine on that motion; [`FaultError::Effect`] if the
+/// truth does not fit this robot.
 pub fn record_again(
     robot: &Robot,
     plan: &CasePlan,
@@ -27,17 +26,21 @@ pub fn record_again(
     motion: &mut dyn FnMut(f64, &mut [f64]),
 ) -> Result<Recording, FaultError> {
     let n = robot.arm().dof();
-    let ticks = LEAD + (duration / TICK).round() as usize + 1;
+    let ticks = LEAD_TICKS + (duration / TICK).round() as usize + 1;
     let mut q = vec![0.0; ticks * n];
     for (tick, q) in q.chunks_mut(n).enumerate() {
-        // Before the recording the loop settles where the motion begins.
-        motion((tick as f64 - LEAD as f64).max(0.0) * TICK, q);
+        // Before the recording, the loop settles at the beginning of the motion.
+        motion((tick as f64 - LEAD_TICKS as f64).max(0.0) * TICK, q);
     }
-    // After the training recordings and the one held out.
+    // After the training and held-out recordings.
     let reference = Reference::new(robot.arm(), start(TRAINING[usize::from(plan.hard)] + 1), q);
-    let effects: Vec<&Injected> = truth.concealed.iter().filter(|effect| !robot.brings(effect)).collect();
+    let effects: Vec<&Injected> = truth
+        .concealed
+        .iter()
+        .filter(|effect| !robot.has_by_itself(effect))
+        .collect();
     let run = Machine::new(robot, &effects, None)?.run(&reference, truth.encoder_quantum)?;
-    // On that day friction is what it is on the average.
+    // The factor of friction in that recording is the mean one.
     let real = truth.lifelike.clone().unwrap_or_default();
     let sensors = Sensors {
         ticks: (truth.period / TICK).round() as usize,
@@ -50,7 +53,7 @@ pub fn record_again(
         own_clocks: real.own_clocks,
     };
     let mut noise = ChaCha8Rng::seed_from_u64(truth.seed);
-    noise.set_stream(AGAIN);
+    noise.set_stream(RECORD_AGAIN);
     Ok(sensors.record(robot, &reference, &run, &mut noise))
 }
 
@@ -62,7 +65,7 @@ mod tests {
     use crate::expressed_share::deviation;
     use crate::test_robots::puma;
 
-    /// The machine is the case's own: along the same motion it needs the torques that were recorded, but for the noise.
+    /// The machine is that of the case: along the same motion it needs the recorded torques, apart from noise.
     #[test]
     fn a_case_is_recorded_again_as_it_was() {
         let robot = puma();
@@ -73,10 +76,10 @@ mod tests {
             urdf_error: None,
         };
         let mut plan = campaign.case(0).expect("there is one");
-        // From the start on, as it is on the day of the second recording.
+        // From the start on, so that it is also present in the second recording.
         plan.effects = vec!["transmission_coupling".into()];
         plan.hard = false;
-        // Steps of the second reference, which encoders counted, would turn dry friction about.
+        // Encoder steps in the second reference would reverse dry friction.
         plan.background_friction = false;
         let concealment = conceal_case(&robot, &plan).expect("it is concealed");
         let first = &concealment.train[0];
@@ -86,7 +89,8 @@ mod tests {
             let row = (x.floor() as usize).clamp(1, first.len() - 3);
             let u = x - row as f64;
             for (j, q) in q.iter_mut().enumerate() {
-                // Catmull and Rom's spline: straight lines would have all their acceleration at the rows, where the torque is looked at.
+                // A Catmull-Rom spline: straight lines would accelerate only at the rows, where the torque is
+                // compared.
                 let [a, b, c, d] = [0, 1, 2, 3].map(|k| first.q[j][row + k - 1]);
                 *q = b + 0.5 * u * (c - a + u * (2.0 * a - 5.0 * b + 4.0 * c - d + u * (3.0 * (b - c) + d - a)));
             }
@@ -95,7 +99,8 @@ mod tests {
         let again = record_again(&robot, &plan, &concealment.truth, 20.0, &mut at).expect("it is recorded");
         assert_eq!(again.joints, first.joints);
         assert!(again.time[0] > concealment.held_out.time[concealment.held_out.len() - 1]);
-        // Slow torques: the reference is what encoders counted, whose steps differentiation makes large.
+        // Torques at low frequency: the reference consists of encoder counts, whose steps are amplified by
+        // differentiation.
         let mean = |tau: &[f64]| tau[1000..4000].iter().sum::<f64>() / 3000.0;
         for j in 0..n {
             let (was, is) = (mean(&first.tau[j]), mean(&again.tau[j]));

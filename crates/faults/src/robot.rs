@@ -1,4 +1,4 @@
-//! The robots that cases are made of, and how large things are on them.
+//! The robots of cases, and typical sizes of their quantities.
 
 use std::path::Path;
 
@@ -9,27 +9,27 @@ use rand_chacha::ChaCha8Rng;
 use crate::error::FaultError;
 use crate::truth::Injected;
 
-/// At how many poses the mass matrix is looked at.
+/// The number of poses at which the mass matrix is evaluated.
 const POSES: usize = 20;
 
-/// A robot: what its user believes, and which baseline drive inertias the URDF leaves out.
+/// A robot: the user's model, and the baseline drive inertias that the URDF omits.
 #[derive(Clone, Debug)]
 pub struct Robot {
     urdf: String,
     arm: Arm,
     rotors: Vec<f64>,
     home: Vec<f64>,
-    /// Of each joint, the mean over poses of M_jj and of 1 / (M⁻¹)_jj, without rotors (kg m² or kg).
+    /// For each joint, the means over poses of M_jj and of 1 / (M⁻¹)_jj, without rotors (kg m² or kg).
     inertias: Vec<(f64, f64)>,
-    /// Of each joint, the root mean square over poses of the torque that holds it (N m or N).
+    /// For each joint, the root mean square over poses of the gravity torque (N m or N).
     holding: Vec<f64>,
 }
 
 impl Robot {
-    /// The robot of a URDF; `path` is what errors call it.
+    /// The robot of a URDF; `path` is its name in errors.
     ///
     /// # Errors
-    /// [`FaultError::Arm`] if it is no serial arm, [`FaultError::Plant`] if it cannot be simulated.
+    /// [`FaultError::Arm`] if it is not a serial arm, [`FaultError::Plant`] if it cannot be simulated.
     pub fn new(urdf: impl Into<String>, path: impl AsRef<Path>) -> Result<Self, FaultError> {
         let urdf = urdf.into();
         let arm = Arm::from_urdf_text(&urdf, path)?;
@@ -43,14 +43,14 @@ impl Robot {
             home,
             arm,
         };
-        robot.weigh();
+        robot.sample_poses();
         Ok(robot)
     }
 
-    /// The robot with the baseline inertias of its drives, reflected to the joints (kg m² or kg), which its URDF omits.
+    /// The robot with the baseline inertias of its drives at the joints (kg m² or kg), which its URDF omits.
     ///
     /// # Errors
-    /// [`FaultError::Setting`] if there is not one number per joint that is not negative.
+    /// [`FaultError::Setting`] if there is not one non-negative number per joint.
     pub fn with_rotor_inertias(mut self, rotors: &[f64]) -> Result<Self, FaultError> {
         if rotors.len() != self.arm.dof() || rotors.iter().any(|&rotor| rotor.is_nan() || rotor < 0.0) {
             let reason = format!("give {} rotor inertias, none of them negative", self.arm.dof());
@@ -65,7 +65,7 @@ impl Robot {
         self.arm.name()
     }
 
-    /// The URDF that its user believes.
+    /// The text of the user's URDF.
     pub fn urdf(&self) -> &str {
         &self.urdf
     }
@@ -80,13 +80,13 @@ impl Robot {
         &self.rotors
     }
 
-    /// Whether its drives have inertias that the URDF leaves out.
+    /// Whether its drives have inertias that the URDF omits.
     pub fn has_rotors(&self) -> bool {
         self.rotors.iter().any(|&rotor| rotor > 0.0)
     }
 
-    /// Whether what a truth has is one of its drives' baseline inertias, which the robot brings itself.
-    pub(crate) fn brings(&self, effect: &Injected) -> bool {
+    /// Whether an effect of a truth is one of the baseline drive inertias, which are a property of the robot itself.
+    pub(crate) fn has_by_itself(&self, effect: &Injected) -> bool {
         let joints = self.arm.joints().iter().zip(&self.rotors);
         effect.effect == "rotor_inertia"
             && effect.expressed_share.is_none()
@@ -100,33 +100,34 @@ impl Robot {
         self.arm.clone().with_rotor_inertias(&self.rotors)
     }
 
-    /// Where its motions are centred (rad or m).
+    /// The centres of its motions (rad or m).
     pub(crate) fn home(&self) -> &[f64] {
         &self.home
     }
 
-    /// What joint `j` moves, with its drive: between what it moves with the others held and with the others free.
+    /// The inertia that joint `j` moves, with its drive: the geometric mean of those with the other joints held and
+    /// free.
     pub(crate) fn inertia(&self, j: usize) -> f64 {
         let (held, free) = self.inertias[j];
         (held * free).sqrt() + self.rotors[j]
     }
 
-    /// What joint `j` moves with the others held, without its drive (kg m² or kg).
+    /// The inertia that joint `j` moves while the other joints are held, without its drive (kg m² or kg).
     pub(crate) fn link_inertia(&self, j: usize) -> f64 {
         self.inertias[j].0
     }
 
-    /// The torque that holds joint `j` (N m or N, root mean square over poses).
+    /// The gravity torque of joint `j` (N m or N, root mean square over poses).
     pub(crate) fn holding(&self, j: usize) -> f64 {
         self.holding[j]
     }
 
-    /// The mass of all that moves (kg).
+    /// The mass of all moving links (kg).
     pub(crate) fn mass(&self) -> f64 {
         self.arm.joints().iter().map(|joint| joint.inertia.mass).sum()
     }
 
-    fn weigh(&mut self) {
+    fn sample_poses(&mut self) {
         let n = self.arm.dof();
         let mut workspace = Workspace::new(&self.arm);
         let mut random = ChaCha8Rng::seed_from_u64(0);
@@ -156,12 +157,12 @@ impl Robot {
     }
 }
 
-/// Whether there are two joints at least.
+/// Whether there are at least two joints.
 pub(crate) fn has_another_joint(robot: &Robot) -> bool {
     robot.arm().dof() > 1
 }
 
-/// Zero, where the joint has room about it; else the middle of its range.
+/// Zero if the joint has enough room on both sides, otherwise the middle of its range.
 fn home(joint: &arm::Joint) -> f64 {
     let (lower, upper) = (joint.limits.lower, joint.limits.upper);
     let room = 0.25 * (upper - lower);

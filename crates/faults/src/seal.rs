@@ -1,4 +1,4 @@
-//! The seal: what was fixed before the first diagnosis, as hashes that anyone can compute again.
+//! The seal: hashes of everything that was fixed before the first diagnosis, which anyone can compute again.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,18 +10,19 @@ use thiserror::Error;
 /// The `schema` line of a seal.
 const SCHEMA: &str = "testbed.seal/1";
 
-/// What is written before the first diagnosis.
+/// The seal of a proof, written before the first diagnosis.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Seal {
     /// `testbed.seal/1`.
     pub schema: String,
-    /// The program that conceals, diagnoses and scores.
+    /// The program that injects faults, diagnoses and scores.
     pub program: Program,
-    /// Where the cases are from: a seed, or a folder.
+    /// The origin of the cases: a seed, or a folder.
     pub source: String,
     /// The cases, in their order.
     pub cases: Vec<SealedCase>,
-    /// The hash of all lines `sha256  name` of the program, the recordings, the URDFs and the truths: the one number to write down.
+    /// The SHA-256 of all lines `sha256  name` of the program, the recordings, the URDFs and the truths: the one
+    /// number to write down.
     pub whole: String,
 }
 
@@ -34,36 +35,36 @@ pub struct Program {
     pub sha256: String,
 }
 
-/// A case under seal.
+/// A sealed case.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SealedCase {
     /// Its name.
     pub case: String,
     /// SHA-256 of its truth.
     pub truth: String,
-    /// SHA-256 of its recordings and its URDF, by name.
+    /// SHA-256 of its recordings and its URDF, by file name.
     pub files: BTreeMap<String, String>,
 }
 
-/// A broken seal.
+/// Errors of checking a seal.
 #[derive(Debug, Error, PartialEq, Eq)]
 pub enum SealError {
-    /// Something was changed after sealing.
+    /// A file was changed after sealing.
     #[error("{what}: its SHA-256 is {found}, but {sealed} was sealed; nothing under seal may change")]
     Changed {
-        /// What.
+        /// Its name.
         what: String,
-        /// Its hash now.
+        /// Its present hash.
         found: String,
-        /// Its hash then.
+        /// Its sealed hash.
         sealed: String,
     },
-    /// A file that cannot be read.
+    /// A file cannot be read.
     #[error("{what}: {reason}")]
     Unreadable {
-        /// Which.
+        /// The file.
         what: String,
-        /// Why.
+        /// The reason.
         reason: String,
     },
 }
@@ -102,7 +103,7 @@ impl Seal {
         seal
     }
 
-    /// All hashes as `sha256sum` writes them: the text that [`Seal::whole`] is the hash of.
+    /// All hashes as `sha256sum` writes them: the text whose hash is [`Seal::whole`].
     pub fn lines(&self) -> String {
         let mut lines = format!("{}  testbed {}\n", self.program.sha256, self.program.version);
         for case in &self.cases {
@@ -114,7 +115,7 @@ impl Seal {
         lines
     }
 
-    /// Whether the seal's own number is that of its lines.
+    /// Checks that the seal's own number is that of its lines.
     ///
     /// # Errors
     /// [`SealError::Changed`], if it was edited.
@@ -122,14 +123,14 @@ impl Seal {
         compare("the seal", sha256(self.lines().as_bytes()), &self.whole)
     }
 
-    /// The sealed case of a name.
+    /// The sealed case with this name.
     pub fn case(&self, name: &str) -> Option<&SealedCase> {
         self.cases.iter().find(|case| case.case == name)
     }
 }
 
 impl SealedCase {
-    /// One number for what a diagnosis is given.
+    /// One hash for all inputs of a diagnosis.
     pub fn inputs(&self) -> String {
         let lines: String = self
             .files
@@ -139,10 +140,10 @@ impl SealedCase {
         sha256(lines.as_bytes())
     }
 
-    /// Whether the recordings and the URDF in `folder` are those sealed.
+    /// Checks that the recordings and the URDF in `folder` are the sealed ones.
     ///
     /// # Errors
-    /// [`SealError`], at the first that is not.
+    /// [`SealError`] for the first file that is not.
     pub fn check_files(&self, folder: &Path) -> Result<(), SealError> {
         for (name, sealed) in &self.files {
             compare(&format!("{}/{name}", self.case), sha256_of(&folder.join(name))?, sealed)?;
@@ -150,7 +151,7 @@ impl SealedCase {
         Ok(())
     }
 
-    /// Whether `truth` is the one sealed.
+    /// Checks that `truth` is the sealed one.
     ///
     /// # Errors
     /// [`SealError::Changed`], if it is not.

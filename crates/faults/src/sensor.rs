@@ -1,28 +1,28 @@
-//! What a logger makes of a run: every so many ticks, with noise, late stamps and lost rows.
+//! The recording that a logger makes of a run: one row every few ticks, with noise, jittered stamps and lost rows.
 
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use recording::Recording;
 
 use crate::machine::{Run, TICK};
-use crate::motion::{LEAD, Reference};
+use crate::motion::{LEAD_TICKS, Reference};
 use crate::robot::Robot;
 
-/// How many standard deviations a stamp is late or early at most.
+/// The largest deviation of a stamp, in standard deviations.
 const MOST_JITTER: f64 = 3.5;
-/// Standard deviation of the stamps, of a period.
+/// Standard deviation of the stamps, relative to the period.
 const JITTER: f64 = 0.1;
-/// The part of the rows that is lost.
+/// The share of rows that are lost.
 const LOST: f64 = 0.01;
 
 /// The sensors and the logger of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Sensors {
-    /// Ticks of 1 ms from row to row.
+    /// The number of ticks of 1 ms from row to row.
     pub ticks: usize,
     /// Whether stamps jitter by a tenth of the period.
     pub jitter: bool,
-    /// Whether a hundredth of the rows is lost.
+    /// Whether 1 % of the rows are lost.
     pub lost: bool,
     /// The encoders' step (rad or m).
     pub quantum: f64,
@@ -30,7 +30,7 @@ pub(crate) struct Sensors {
     pub noise: Vec<f64>,
     /// Time constant of that noise (s); 0: white.
     pub noise_time: f64,
-    /// The steps in which torques are reported (N m or N); 0, or none at all: none.
+    /// The steps in which torques are reported (N m or N); 0 or an empty list for none.
     pub torque_quantum: Vec<f64>,
     /// Whether time begins at each recording's own start.
     pub own_clocks: bool,
@@ -42,8 +42,8 @@ impl Sensors {
         self.ticks as f64 * TICK
     }
 
-    /// A torque in the steps that joint `j` reports.
-    fn counted(&self, j: usize, tau: f64) -> f64 {
+    /// A torque rounded to the steps that joint `j` reports.
+    fn quantised(&self, j: usize, tau: f64) -> f64 {
         match self.torque_quantum.get(j) {
             Some(&step) if step > 0.0 => (tau / step).round() * step,
             _ => tau,
@@ -62,7 +62,7 @@ impl Sensors {
             ..Recording::default()
         };
         let mut qd = vec![Vec::new(); n];
-        // Noise of the first order: as large as white noise, and alike from row to row.
+        // First-order coloured noise, with the same standard deviation as white noise and correlated rows.
         let kept = if self.noise_time > 0.0 {
             (-self.period() / self.noise_time).exp()
         } else {
@@ -72,8 +72,8 @@ impl Sensors {
         let mut noise = vec![0.0; n];
         let mut is_first = true;
         let zero = if self.own_clocks { reference.start } else { 0.0 };
-        // The last tick is the end of the last interval, not a row.
-        for tick in (LEAD..reference.ticks() - 1).step_by(self.ticks) {
+        // The last tick ends the last interval and is not a row.
+        for tick in (LEAD_TICKS..reference.ticks() - 1).step_by(self.ticks) {
             let mut normal = || -> f64 { StandardNormal.sample(random) };
             let late = normal().clamp(-MOST_JITTER, MOST_JITTER) * JITTER * self.period();
             for (noise, size) in noise.iter_mut().zip(&self.noise) {
@@ -91,7 +91,7 @@ impl Sensors {
                 let at = tick * n + j;
                 recording.q[j].push(rounded(run.q[at], 5));
                 qd[j].push(rounded(run.qd[at], 4));
-                recording.tau[j].push(significant(self.counted(j, run.tau[at] + noise[j]), 5));
+                recording.tau[j].push(significant(self.quantised(j, run.tau[at] + noise[j]), 5));
             }
         }
         recording.qd = Some(qd);
@@ -99,13 +99,13 @@ impl Sensors {
     }
 }
 
-/// To so many decimals, as a file would have them.
+/// Rounds to so many decimals, as in a file.
 fn rounded(value: f64, decimals: i32) -> f64 {
     let scale = 10_f64.powi(decimals);
     (value * scale).round() / scale
 }
 
-/// To so many digits.
+/// Rounds to so many significant digits.
 fn significant(value: f64, digits: i32) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
@@ -129,7 +129,7 @@ mod tests {
     use crate::motion::excitation;
     use crate::test_robots::seven_axis;
 
-    /// Rows, stamps and noise are as the settings say; what a logger does not touch is the run.
+    /// Rows, stamps and noise follow the settings; the positions are those of the run.
     #[test]
     fn a_logger_does_what_it_is_told() {
         let robot = seven_axis();
@@ -155,12 +155,13 @@ mod tests {
         assert_eq!(recording.len(), 6250);
         assert_eq!((recording.time[0], recording.time[6249]), (30.0, 54.996));
         let noise: Vec<f64> = (0..6250)
-            .map(|row| recording.tau[2][row] - run.tau[(LEAD + 4 * row) * n + 2])
+            .map(|row| recording.tau[2][row] - run.tau[(LEAD_TICKS + 4 * row) * n + 2])
             .collect();
         assert!((deviation(&noise) - 0.5).abs() < 0.02, "{}", deviation(&noise));
-        assert!((recording.q[1][100] - run.q[(LEAD + 400) * n + 1]).abs() <= 0.51e-5);
+        assert!((recording.q[1][100] - run.q[(LEAD_TICKS + 400) * n + 1]).abs() <= 0.51e-5);
 
-        // Coloured noise is as large, and alike from row to row; torques come in steps; a clock of its own begins at nothing.
+        // Coloured noise has the same size and correlated rows; torques are rounded to steps; a file's own clock
+        // begins at zero.
         let real = record(&Sensors {
             noise_time: 0.02,
             torque_quantum: vec![0.125; n],
@@ -169,7 +170,7 @@ mod tests {
         });
         assert_eq!((real.time[0], real.time[6249]), (0.0, 24.996));
         let noise: Vec<f64> = (0..6250)
-            .map(|row| real.tau[2][row] - run.tau[(LEAD + 4 * row) * n + 2])
+            .map(|row| real.tau[2][row] - run.tau[(LEAD_TICKS + 4 * row) * n + 2])
             .collect();
         let lagged: f64 = noise.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / 6249.0;
         assert!((deviation(&noise) - 0.5).abs() < 0.06, "{}", deviation(&noise));

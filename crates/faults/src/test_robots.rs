@@ -1,4 +1,4 @@
-//! The robots of the tests.
+//! Robots for the tests.
 
 use crate::robot::Robot;
 

@@ -1,4 +1,4 @@
-//! URDFs that are not what the machine is: wrong everywhere, as every real one is, or with a tool drawn that is not mounted.
+//! URDFs with errors: in all inertial parameters, as in every real one, or with a tool drawn that is not mounted.
 
 use std::ops::Range;
 
@@ -12,16 +12,17 @@ use rand_distr::{Distribution, StandardNormal};
 use crate::error::FaultError;
 use crate::pseudo_inertia::PseudoInertia;
 
-/// How wrong URDFs are whose cases take turns, from exact on.
+/// The relative errors of URDFs, which cases take in turns; the first is exact.
 pub(crate) const SIGMAS: [f64; 4] = [0.0, 0.03, 0.1, 0.3];
 
-/// `urdf` with the inertial of each link that has mass moved: the pseudo-inertia P becomes A P Aᵀ, A = D e^(σ G) D⁻¹, G of 4 × 4 standard
-/// normals, D = diag(l, l, l, 1), l the link's radius of gyration; always a body's. `sigma` is about the relative error of masses, and
-/// of lengths. All else stays as it was, to the byte.
+/// `urdf` with errors in the inertial of each link that has a mass: the pseudo-inertia P becomes A P Aᵀ with A = D
+/// e^(σ G) D⁻¹, where G is a 4 × 4 matrix of standard normal numbers, D = diag(l, l, l, 1), and l is the link's radius
+/// of gyration. The result is always physical. `sigma` is the approximate relative error of masses and lengths.
+/// Everything else keeps its bytes.
 ///
 /// # Errors
-/// [`FaultError::Setting`] if `sigma` is no error that a URDF could have, or the text cannot be read.
-pub(crate) fn perturbed(urdf: &str, sigma: f64, random: &mut ChaCha8Rng) -> Result<String, FaultError> {
+/// [`FaultError::Setting`] if `sigma` is outside its range, or the text cannot be read.
+pub(crate) fn with_inertial_errors(urdf: &str, sigma: f64, random: &mut ChaCha8Rng) -> Result<String, FaultError> {
     if !(0.0..=1.0).contains(&sigma) {
         return Err(FaultError::Setting(format!(
             "the URDF's error is {sigma}; give a number from 0 (exact) to 1"
@@ -35,7 +36,7 @@ pub(crate) fn perturbed(urdf: &str, sigma: f64, random: &mut ChaCha8Rng) -> Resu
     for (place, body) in inertials(urdf)? {
         if body.mass > 0.0 {
             text.push_str(&urdf[at..place.start]);
-            text.push_str(&element(&disturbed(&body, sigma, random)));
+            text.push_str(&with_errors(&body, sigma, random).to_urdf());
             at = place.end;
         }
     }
@@ -43,8 +44,8 @@ pub(crate) fn perturbed(urdf: &str, sigma: f64, random: &mut ChaCha8Rng) -> Resu
     Ok(text)
 }
 
-/// A body like `body`, off by about `sigma` in all that it has.
-fn disturbed(body: &Inertia, sigma: f64, random: &mut ChaCha8Rng) -> Inertia {
+/// A body like `body` with errors of about `sigma` in all parameters.
+fn with_errors(body: &Inertia, sigma: f64, random: &mut ChaCha8Rng) -> Inertia {
     let pseudo = PseudoInertia::of(body);
     let normals = Matrix4::from_fn(|_, _| -> f64 { StandardNormal.sample(random) });
     let l = pseudo.radius();
@@ -53,10 +54,10 @@ fn disturbed(body: &Inertia, sigma: f64, random: &mut ChaCha8Rng) -> Inertia {
     pseudo.mapped(&map).body()
 }
 
-/// `urdf` with `tool` (in the frame of link `on`) drawn as a link welded to `on`.
+/// `urdf` with `tool` (in the frame of link `on`) as an additional link that is fixed to `on`.
 ///
 /// # Errors
-/// [`FaultError::Setting`] if the text has no end.
+/// [`FaultError::Setting`] if the text has no closing tag.
 pub(crate) fn with_tool(urdf: &str, on: &str, tool: &Inertia) -> Result<String, FaultError> {
     let end = urdf
         .rfind("</robot>")
@@ -66,31 +67,12 @@ pub(crate) fn with_tool(urdf: &str, on: &str, tool: &Inertia) -> Result<String, 
         .find(|name| !urdf.contains(&format!("\"{name}\"")))
         .unwrap_or_default();
     let (before, after) = urdf.split_at(end);
-    let inertial = element(tool);
+    let inertial = tool.to_urdf();
     let weld =
         format!("<joint name=\"{name}_weld\" type=\"fixed\"><parent link=\"{on}\"/><child link=\"{name}\"/></joint>");
     Ok(format!(
         "{before}  <link name=\"{name}\">{inertial}</link>\n  {weld}\n{after}"
     ))
-}
-
-/// The `<inertial>` of a body in its link's frame.
-fn element(body: &Inertia) -> String {
-    let (c, i) = (body.com, body.tensor);
-    format!(
-        "<inertial><origin xyz=\"{} {} {}\" rpy=\"0 0 0\"/><mass value=\"{}\"/><inertia ixx=\"{}\" ixy=\"{}\" ixz=\"{}\" iyy=\"{}\" \
-         iyz=\"{}\" izz=\"{}\"/></inertial>",
-        c.x,
-        c.y,
-        c.z,
-        body.mass,
-        i[(0, 0)],
-        i[(0, 1)],
-        i[(0, 2)],
-        i[(1, 1)],
-        i[(1, 2)],
-        i[(2, 2)]
-    )
 }
 
 /// An inertial being read.
@@ -99,11 +81,11 @@ struct Open {
     xyz: [f64; 3],
     rpy: [f64; 3],
     mass: f64,
-    /// ixx ixy ixz iyy iyz izz.
+    /// ixx, ixy, ixz, iyy, iyz, izz (kg m²).
     tensor: [f64; 6],
 }
 
-/// Where the links' inertials stand in the text, and what each says, in its link's frame.
+/// The places of the links' inertials in the text, each with its body in the link's frame.
 fn inertials(urdf: &str) -> Result<Vec<(Range<usize>, Inertia)>, FaultError> {
     let mut reader = Reader::from_str(urdf);
     let mut found = Vec::new();
@@ -201,14 +183,15 @@ mod tests {
         Arm::from_urdf_text(&urdf, "moved.urdf").expect("it is an arm")
     }
 
-    /// However wrong, every link is a body: its pseudo-inertia is positive definite; and nothing but inertials has moved.
+    /// Links remain physical for every error: their pseudo-inertia is positive definite; and only inertials are
+    /// changed.
     #[test]
     fn a_wrong_urdf_is_always_physical() {
         let mut random = ChaCha8Rng::seed_from_u64(3);
         for robot in [puma(), seven_axis()] {
             for sigma in [0.03, 0.1, 0.3, 1.0] {
                 for _ in 0..20 {
-                    let text = perturbed(robot.urdf(), sigma, &mut random).expect("it can be");
+                    let text = with_inertial_errors(robot.urdf(), sigma, &mut random).expect("it can be");
                     for (_, body) in inertials(&text).expect("it can be read") {
                         let least = PseudoInertia::of(&body).0.symmetric_eigenvalues().min();
                         let moments = Matrix3::identity() * (0.5 * body.tensor.trace()) - body.tensor;
@@ -226,7 +209,7 @@ mod tests {
         }
     }
 
-    /// Errors are of the size that was asked for: the mass of a point at the origin of its frame is e^(2 σ N) of what it was.
+    /// Errors have the requested size: the mass of a point at the origin of its frame is multiplied by e^(2 σ N).
     #[test]
     fn sigma_is_the_size_of_the_error() {
         let mut random = ChaCha8Rng::seed_from_u64(4);
@@ -236,16 +219,20 @@ mod tests {
             tensor: Matrix3::identity() * 0.02,
         };
         let logs: Vec<f64> = (0..2000)
-            .map(|_| (disturbed(&body, 0.03, &mut random).mass / 3.0).ln())
+            .map(|_| (with_errors(&body, 0.03, &mut random).mass / 3.0).ln())
             .collect();
         let spread = (logs.iter().map(|log| log * log).sum::<f64>() / 2000.0).sqrt();
         assert!((0.05..0.1).contains(&spread), "{spread}");
         let (mut one, mut other) = (ChaCha8Rng::seed_from_u64(1), ChaCha8Rng::seed_from_u64(1));
         let urdf = puma().urdf().to_owned();
-        assert_eq!(perturbed(&urdf, 0.0, &mut one).expect("it can be"), urdf);
-        let [first, second] = [&mut one, &mut other].map(|random| perturbed(&urdf, 0.1, random).expect("it can be"));
+        assert_eq!(with_inertial_errors(&urdf, 0.0, &mut one).expect("it can be"), urdf);
+        let [first, second] =
+            [&mut one, &mut other].map(|random| with_inertial_errors(&urdf, 0.1, random).expect("it can be"));
         assert_eq!(first, second);
-        assert!(perturbed(&urdf, -0.1, &mut one).is_err() && perturbed(&urdf, f64::NAN, &mut one).is_err());
+        assert!(
+            with_inertial_errors(&urdf, -0.1, &mut one).is_err()
+                && with_inertial_errors(&urdf, f64::NAN, &mut one).is_err()
+        );
     }
 
     #[test]

@@ -62,7 +62,7 @@ fn full_rank(bencher: Bencher, n: usize) {
     bencher.bench_local(|| Gp::fit(&training, &FitOptions::default()));
 }
 
-/// One posterior, without the search: by length, from low rank to full.
+/// One posterior without the search, by length scale: from low rank to full rank.
 #[divan::bench(args = [0.3, 0.1, 0.06, 0.04, 0.03, 0.01], sample_count = 3)]
 fn given_hyperparameters(bencher: Bencher, length: f64) {
     let training = scatter(2000);

@@ -25,13 +25,13 @@ pub(crate) fn cholesky(matrix: MatMut<'_, f64>) -> bool {
     factored.is_ok()
 }
 
-/// The product of two matrices times `scale`, into `to` or added to it.
+/// Writes or adds the product of two matrices times `scale` to `to`.
 pub(crate) fn matmul(to: MatMut<'_, f64>, accum: Accum, a: MatRef<'_, f64>, b: MatRef<'_, f64>, scale: f64) {
     faer::linalg::matmul::matmul(to, accum, a, b, scale, Par::Seq);
     release_vectors();
 }
 
-/// The product of two matrices with structure times `scale`, into `to` or added to it.
+/// Writes or adds the product of two matrices with structure (such as triangular ones) times `scale` to `to`.
 pub(crate) fn triangular_matmul(
     (to, shape): (MatMut<'_, f64>, BlockStructure),
     accum: Accum,
@@ -49,7 +49,8 @@ pub(crate) fn solve_lower_all(lower: MatRef<'_, f64>, b: MatMut<'_, f64>) {
     release_vectors();
 }
 
-/// The lower triangular factor G with G Gᵀ = Fᵀ F + ρ I, by Householder QR of F above √ρ I: exact to rounding of F itself, not of its square.
+/// The lower triangular factor G with G Gᵀ = Fᵀ F + ρ I, by Householder QR of F above √ρ I, whose error is that of
+/// rounding F and not of rounding Fᵀ F.
 pub(crate) fn qr_factor(factor: MatRef<'_, f64>, rho: f64) -> Mat<f64> {
     let (n, r) = (factor.nrows(), factor.ncols());
     let mut stacked = Mat::from_fn(n + r, r, |i, j| match i.checked_sub(n) {
@@ -69,7 +70,7 @@ pub(crate) fn qr_factor(factor: MatRef<'_, f64>, rho: f64) -> Mat<f64> {
         Default::default(),
     );
     release_vectors();
-    // Householder's R may have negative diagonal entries; Cholesky's has none.
+    // The R of Householder's method may have negative diagonal entries; the Cholesky factor has none.
     Mat::from_fn(r, r, |i, j| {
         if i >= j {
             stacked[(j, i)] * stacked[(j, j)].signum()
@@ -100,7 +101,7 @@ pub(crate) fn solve_lower_transposed(lower: MatRef<'_, f64>, b: &mut [f64]) {
     release_vectors();
 }
 
-/// b + scale · A x, into b.
+/// Writes b + scale · A x to b.
 pub(crate) fn add_product(b: &mut [f64], scale: f64, a: MatRef<'_, f64>, x: &[f64]) {
     let b = ColMut::from_slice_mut(b);
     let x = faer::ColRef::from_slice(x);

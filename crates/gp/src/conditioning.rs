@@ -1,4 +1,4 @@
-//! What stands on the kernel matrix's diagonal, and why.
+//! The diagonal of the kernel matrix, and the reasons for its value.
 
 use std::fmt;
 
@@ -6,33 +6,35 @@ use serde::{Deserialize, Serialize};
 
 /// The default floor of the relative noise, in units of n ε.
 ///
-/// The kernel values carry rounding of about ε each; as a matrix that is an error of up to n ε in the eigenvalues. A diagonal of ρ ≥ n ε
-/// keeps C positive definite whatever the rounding and the likelihood known to about a nat; below it, the likelihood keeps rising as ρ
-/// falls but measures rounding, not the data.
+/// The kernel values have rounding errors of about ε, which as a matrix change the eigenvalues by up to n ε. A
+/// diagonal of ρ ≥ n ε keeps C positive definite despite rounding, and the likelihood is then accurate to about a nat.
+/// Below it, the likelihood still increases as ρ decreases, but it measures rounding and not the data.
 const FLOOR_PER_SAMPLE: f64 = f64::EPSILON;
 
-/// The least relative noise for `samples` samples.
+/// The smallest relative noise for `samples` samples.
 pub(crate) fn floor(samples: usize) -> f64 {
     FLOOR_PER_SAMPLE * samples as f64
 }
 
-/// How the kernel matrix was conditioned: what was added to its diagonal, and why.
+/// How the kernel matrix was conditioned: the addition to its diagonal, and the reason.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Conditioning {
     /// Number of samples n, the size of the kernel matrix.
     pub samples: usize,
-    /// Numerical rank found: pivots of the factorisation, or n if it was factored in full.
+    /// The numerical rank: the number of pivots of the factorisation, or n if the matrix was factored in full.
     pub rank: usize,
-    /// What stands on the diagonal in all, as a share of amplitude²: the noise and what was added.
+    /// The diagonal in total, as a share of amplitude²: the noise and the addition.
     pub relative_noise: f64,
-    /// The least share allowed: n ε, or more if the options ask for more.
+    /// The smallest allowed share: n ε, or more if the options ask for it.
     pub floor: f64,
-    /// The part of `relative_noise` that neither the caller nor the data asked for; 0 if the noise is above the floor.
+    /// The part of `relative_noise` that neither the options nor the data require; 0 if the noise is above the floor.
     pub added: f64,
-    /// Trace of what the factor of rank `rank` leaves of the kernel matrix, as a share of amplitude²: bounds its largest eigenvalue.
+    /// The trace of the kernel matrix without its factor of rank `rank`, as a share of amplitude²; it bounds the
+    /// largest eigenvalue of the difference.
     pub neglected: f64,
-    /// Of an approximation by inducing points (then `rank` of them): how far the bound that was maximised can be below the
-    /// exact log marginal likelihood at these hyperparameters, nats. Absent if nothing was approximated.
+    /// For an approximation by inducing points (`rank` is then their number): the largest possible distance of the
+    /// maximised bound below the exact log marginal likelihood at these hyperparameters, nats. `None` if nothing was
+    /// approximated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub likelihood_gap: Option<f64>,
 }

@@ -1,11 +1,11 @@
-//! Training data and hyperparameters: validated once, so that the rest need not look.
+//! Training data and hyperparameters, validated once when they are made.
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::GpError;
 use crate::kernel::Points;
 
-/// Samples to learn from: finite, at least one, all of one dimension.
+/// Training samples: at least one, finite, and all of the same dimension.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrainingSet {
     dim: usize,
@@ -43,7 +43,7 @@ impl TrainingSet {
         })
     }
 
-    /// Number of inputs a sample.
+    /// Number of inputs per sample.
     pub fn dim(&self) -> usize {
         self.dim
     }
@@ -61,12 +61,12 @@ impl TrainingSet {
         &self.inputs[i * self.dim..(i + 1) * self.dim]
     }
 
-    /// The inputs divided by `lengths`, one a dimension.
+    /// The inputs divided by `lengths`, which has one entry per input.
     pub(crate) fn scaled(&self, lengths: &[f64]) -> Points {
         Points::new(self.samples(), self.dim, |i, d| self.row(i)[d] / lengths[d])
     }
 
-    /// At most `count` samples, evenly over the set.
+    /// At most `count` samples, evenly distributed over the set.
     pub(crate) fn thinned(&self, count: usize) -> Self {
         let n = self.samples();
         let count = count.min(n);
@@ -91,9 +91,9 @@ impl TrainingSet {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Lengths {
-    /// One for all inputs.
+    /// One length for all inputs.
     Isotropic(f64),
-    /// One an input ("automatic relevance determination").
+    /// One length per input ("automatic relevance determination").
     PerInput(Vec<f64>),
 }
 

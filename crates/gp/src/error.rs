@@ -1,4 +1,4 @@
-//! What can go wrong in this crate.
+//! The errors of this crate.
 
 use std::path::PathBuf;
 
@@ -10,17 +10,17 @@ pub enum GpError {
     Empty {
         /// Number of targets.
         samples: usize,
-        /// Number of inputs a sample.
+        /// Number of inputs per sample.
         dim: usize,
     },
-    /// The inputs' length is not samples × dimension.
+    /// The length of the inputs is not samples × dimension.
     #[error("{values} input values for {samples} targets of {dim} inputs each: expected {}", samples * dim)]
     Shape {
         /// Number of input values.
         values: usize,
         /// Number of targets.
         samples: usize,
-        /// Number of inputs a sample.
+        /// Number of inputs per sample.
         dim: usize,
     },
     /// An input is infinite or not a number.
@@ -44,11 +44,11 @@ pub enum GpError {
     /// A hyperparameter or an option is out of range.
     #[error("{name} is {value}: it must be {requirement}")]
     OutOfRange {
-        /// What.
+        /// Its name.
         name: &'static str,
         /// The value given.
         value: f64,
-        /// What it must be.
+        /// The allowed values.
         requirement: &'static str,
     },
     /// The number of length scales is not the number of inputs.
@@ -62,7 +62,7 @@ pub enum GpError {
     /// The kernel matrix could not be factored, or the likelihood is not finite.
     #[error("the likelihood cannot be computed: {0}")]
     Likelihood(String),
-    /// The search library refused its settings.
+    /// The optimisation library refused its settings.
     #[error("likelihood search: {0}")]
     Search(String),
     /// A file could not be read or written.
@@ -70,7 +70,7 @@ pub enum GpError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the operating system says.
+        /// The reason given by the operating system.
         source: std::io::Error,
     },
     /// A file is not a saved model.

@@ -1,4 +1,4 @@
-//! Saving and loading: one JSON file a model, written completely or not at all.
+//! Saving and loading: one JSON file per model, written completely or not at all.
 
 use std::fs;
 use std::io::{BufWriter, Write};
@@ -16,19 +16,19 @@ use crate::posterior::{Posterior, Triangle, VarianceFactors};
 /// The file's version tag.
 const FORMAT: &str = "testbed.gp/1";
 
-/// What a file holds. Nothing is recomputed on loading, so that predictions are the same bit for bit.
+/// The content of a file. Nothing is recomputed on loading, so that predictions have the same bits.
 #[derive(Clone, Serialize, Deserialize)]
 pub(crate) struct Saved {
     format: String,
     hyperparameters: Hyperparameters,
-    /// Nats; null if unbounded.
+    /// The log marginal likelihood, nats; null if it is unbounded.
     log_marginal_likelihood: Option<f64>,
     conditioning: Conditioning,
     /// Number of inputs.
     dim: usize,
     /// Points of the posterior divided by the length scales, row after row.
     points: Vec<f64>,
-    /// One a point, in the target's unit.
+    /// One weight per point, in the target's unit.
     weights: Vec<f64>,
     variance: VarianceFactors,
 }
@@ -139,7 +139,8 @@ fn check_triangle(name: &str, triangle: &Triangle, rank: usize) -> Result<(), St
 }
 
 impl Gp {
-    /// Writes the model to a JSON file, completely or not at all: to a temporary file in the same folder, which then takes the name.
+    /// Writes the model to a JSON file, completely or not at all: first to a temporary file in the same folder, which
+    /// is then renamed.
     ///
     /// # Errors
     /// [`GpError::File`], naming the file.
@@ -163,7 +164,8 @@ impl Gp {
         Ok(())
     }
 
-    /// Reads a model from a file that [`Gp::save`] wrote; predictions are those of the model saved, bit for bit.
+    /// Reads a model from a file that [`Gp::save`] wrote; its predictions have the same bits as those of the saved
+    /// model.
     ///
     /// # Errors
     /// [`GpError::File`] if it cannot be read, [`GpError::Format`] if it is not a model of this version or is inconsistent, both
@@ -178,7 +180,7 @@ impl Gp {
             path: path.to_owned(),
             reason,
         };
-        // The tag first: a file of another version should be called that, rather than a field missing.
+        // The version is checked first, so that a file of another version is not refused for a missing field.
         let tag: Tag = serde_json::from_str(&text).map_err(|error| malformed(error.to_string()))?;
         if tag.format != FORMAT {
             let given = tag.format;

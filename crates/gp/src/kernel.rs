@@ -5,9 +5,10 @@ use crate::wide::{Wide, on_widest};
 /// Points in one block; the innermost loops run over a block. Sixteen doubles fill four AVX2 registers.
 pub(crate) const LANES: usize = 16;
 
-/// Points scaled by the length lengths, in blocks of [`LANES`], inputs outermost within a block.
+/// Points divided by the length scales, in blocks of [`LANES`], inputs outermost within a block.
 ///
-/// Coordinate `d` of point `i` stands at `((i / LANES) * dim + d) * LANES + i % LANES`. The last block is padded with zeros.
+/// Coordinate `d` of point `i` is at index `((i / LANES) * dim + d) * LANES + i % LANES`. The last block is padded
+/// with zeros.
 #[derive(Clone, Debug)]
 pub(crate) struct Points {
     dim: usize,
@@ -35,7 +36,7 @@ impl Points {
         self.dim
     }
 
-    /// Number of points and padding together.
+    /// Number of points including the padding.
     pub(crate) fn padded_len(&self) -> usize {
         self.len.div_ceil(LANES) * LANES
     }
@@ -44,7 +45,7 @@ impl Points {
         self.values[((i / LANES) * self.dim + d) * LANES + i % LANES]
     }
 
-    /// The points of these indices.
+    /// The points with these indices.
     pub(crate) fn subset(&self, indices: &[usize]) -> Self {
         Self::new(indices.len(), self.dim, |t, d| self.coordinate(indices[t], d))
     }
@@ -165,11 +166,11 @@ impl Wide for Squares<'_> {
     }
 }
 
-/// Inputs divided together.
+/// The number of inputs that are divided together.
 const CHUNK: usize = 32;
 
-/// A point divided by the length scales, [`CHUNK`] inputs at a time, so that nothing is allocated. With no more inputs than
-/// that, they are divided once.
+/// A point divided by the length scales, [`CHUNK`] inputs at a time, so that nothing is allocated. Up to that number
+/// of inputs, they are divided only once.
 struct Scaled<'a> {
     x: &'a [f64],
     lengths: &'a [f64],
@@ -188,8 +189,8 @@ impl<'a> Scaled<'a> {
         this
     }
 
-    /// Divides the inputs from `first` on. As the points were: at the smallest noise one rounding more already shows in the
-    /// mean.
+    /// Divides the inputs from `first` on in the same way as the points were divided: at the smallest noise, a
+    /// difference in rounding changes the mean noticeably.
     #[inline(always)]
     fn divide(&mut self, first: usize) {
         let inputs = self.x[first..].iter().zip(&self.lengths[first..]);
@@ -228,7 +229,8 @@ fn add_squares<const FUSED: bool>(rows: &[f64], x: &[f64; CHUNK], squares: &mut 
     }
 }
 
-/// `a * b + c`, in one rounding where the processor has the instruction: without it, `mul_add` is a slow library call.
+/// `a * b + c`, with a single rounding where the processor has the instruction; `mul_add` would otherwise be a slow
+/// library call.
 #[inline(always)]
 pub(crate) fn multiply_add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
     if FUSED { a.mul_add(b, c) } else { a * b + c }
@@ -262,7 +264,7 @@ fn exp_of_negative<const FUSED: bool, const N: usize>(mut x: [f64; N]) -> [f64; 
     ];
     let mut powers = [0.0; N];
     for (x, power) in x.iter_mut().zip(&mut powers) {
-        // A comparison rather than `max`, which would turn NaN into a number.
+        // A comparison instead of `max`, which would replace NaN by a number.
         let bounded = if *x < -708.0 { -708.0 } else { *x };
         let shifted = multiply_add::<FUSED>(bounded, std::f64::consts::LOG2_E, ROUNDER);
         let k = shifted - ROUNDER;
@@ -270,7 +272,7 @@ fn exp_of_negative<const FUSED: bool, const N: usize>(mut x: [f64; N]) -> [f64; 
         *x = multiply_add::<FUSED>(k, -LN_2_LOW, *x);
         *power = f64::from_bits((shifted.to_bits().wrapping_add(1023)) << 52);
     }
-    // Coefficient after coefficient for all numbers, so that none waits for its own product.
+    // One coefficient after the other for all numbers, so that none waits for its own product.
     let mut values = [1.0 / 6_227_020_800.0; N];
     for coefficient in COEFFICIENTS {
         for (value, r) in values.iter_mut().zip(&x) {

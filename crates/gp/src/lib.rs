@@ -14,13 +14,14 @@
 //! # Ok::<(), gp::GpError>(())
 //! ```
 //!
-//! The kernel matrix of smooth, noise-free data has a numerical rank r far below its size n. A pivoted Cholesky factorisation finds that
-//! rank, and everything else then costs n r² rather than n³, and a mean r kernel values rather than n. The answer is the exact one: the
-//! factorisation stops only where what it leaves is negligible against the noise, or is rounding. Where r is not far below n, the matrix is
-//! factored in full.
+//! The kernel matrix of smooth, noise-free data has a numerical rank r far below its size n. A pivoted Cholesky
+//! factorisation finds that rank; everything else then costs n r² operations instead of n³, and a mean r kernel values
+//! instead of n. The result is exact: the factorisation stops only where the remaining part is negligible compared
+//! with the noise, or with rounding. If r is not far below n, the matrix is factored in full.
 //!
-//! With [`FitOptions::inducing`] the same factorisation stops at a given rank, which noisy data do not have: an approximation, whose
-//! likelihood is a bound of the exact one. [`Conditioning`] says how far off it can be.
+//! With [`FitOptions::inducing`], the factorisation stops at a given rank, because noisy data have no low rank. This
+//! is an approximation whose likelihood is a lower bound of the exact one; [`Conditioning`] contains its largest
+//! possible error.
 
 mod algebra;
 mod conditioning;

@@ -12,17 +12,17 @@ use crate::range::Range;
 use crate::search::search;
 use crate::starts::shapes;
 
-/// How many length scales the fit may choose.
+/// The number of length scales that a fit chooses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LengthScales {
-    /// One for all inputs.
+    /// One length for all inputs.
     #[default]
     Isotropic,
-    /// One an input.
+    /// One length per input.
     PerInput,
 }
 
-/// How to fit.
+/// Options of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitOptions {
     /// One length scale, or one an input.
@@ -51,7 +51,7 @@ impl Default for FitOptions {
     }
 }
 
-/// Scratch for [`Gp::mean_and_variance`]; grows on first use, after which nothing is allocated.
+/// Scratch for [`Gp::mean_and_variance`]; it grows on first use, and nothing is allocated afterwards.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     kernel: Vec<f64>,
@@ -231,7 +231,7 @@ impl Gp {
         self.log_marginal_likelihood
     }
 
-    /// What stands on the kernel matrix's diagonal, and why.
+    /// How the kernel matrix was conditioned: the addition to its diagonal, and the reason.
     pub fn conditioning(&self) -> &Conditioning {
         &self.conditioning
     }
@@ -278,7 +278,7 @@ impl Gp {
         (mean, self.hyperparameters.amplitude.powi(2) * unit)
     }
 
-    /// Where it knows something, for calls that cannot afford [`Gp::mean_and_variance`].
+    /// The range of the regression, for calls that cannot afford [`Gp::mean_and_variance`].
     pub fn range(&self) -> Range {
         Range::of(self)
     }

@@ -5,10 +5,11 @@ use faer::{Accum, Mat, MatMut, MatRef};
 use crate::algebra::{matmul, solve_lower_all};
 use crate::kernel::{Points, kernel_column};
 
-/// Pivots taken together, so that the work is in matrix products rather than in passes over memory.
+/// The number of pivots that are processed together, so that the work is in matrix products and not in passes over
+/// memory.
 const BLOCK: usize = 24;
 
-/// Candidates looked at for one block.
+/// The number of candidates for one block.
 const CANDIDATES: usize = 64;
 
 /// A block takes pivots whose residual is at least this share of the largest one: close to the greedy choice, which always takes the largest.
@@ -16,7 +17,7 @@ const ACCEPTED_SHARE: f64 = 0.2;
 
 /// K ≈ F Fᵀ with F of `rank` columns, for the kernel matrix K (n × n, unit diagonal) of a set of points.
 pub(crate) struct PivotedCholesky {
-    /// Indices of the points taken, in order.
+    /// Indices of the chosen points, in order.
     pub(crate) pivots: Vec<usize>,
     /// F, n × rank, column-major; lower triangular in the rows `pivots`.
     factor: Vec<f64>,
@@ -36,9 +37,9 @@ pub(crate) struct Stopping {
     pub(crate) trace: f64,
     /// Stop when no residual is larger: below the rounding of the kernel values there is nothing to find.
     pub(crate) pivot: f64,
-    /// Give up beyond this rank.
+    /// Stop without a result beyond this rank.
     pub(crate) max_rank: usize,
-    /// Rather than giving up, keep the pivots found by then.
+    /// Instead of stopping without a result, keep the pivots found so far.
     pub(crate) truncates: bool,
 }
 
@@ -68,7 +69,7 @@ impl PivotedCholesky {
             let accept = (largest * ACCEPTED_SHARE).max(stopping.pivot);
             let (mut block, triangle) = this.choose_block(points, &residual, accept);
             let rank = this.pivots.len();
-            // Empty only if every residual is rounding.
+            // Empty only if all residuals are rounding errors.
             if block.is_empty() {
                 return Some(this);
             }
@@ -98,7 +99,7 @@ impl PivotedCholesky {
             matmul(new.as_mut(), Accum::Add, old, earlier.transpose(), -1.0);
             solve_lower_all(triangle, new.as_mut().transpose_mut());
             for (t, &i) in block.iter().enumerate() {
-                // Zero but for rounding; exactly zero makes the pivots' rows a triangle.
+                // Zero except for rounding; exact zeros make the rows of the pivots triangular.
                 for later in t + 1..taken {
                     new[(i, later)] = 0.0;
                 }
@@ -123,7 +124,8 @@ impl PivotedCholesky {
         let n = self.rows;
         let mut worthy: Vec<usize> = (0..n).filter(|&i| residual[i] >= accept).collect();
         if worthy.len() > CANDIDATES {
-            // Evenly over the samples, for neighbours tell much the same; the largest residual is always among them.
+            // Candidates are evenly distributed over the samples, because neighbours are similar; the largest residual
+            // is always among them.
             let largest = (0..n).fold(0, |a, i| if residual[i] > residual[a] { i } else { a });
             let count = worthy.len();
             let mut spread: Vec<usize> = (0..CANDIDATES).map(|t| worthy[t * count / CANDIDATES]).collect();

@@ -8,7 +8,7 @@ use crate::algebra::solve_lower_transposed;
 use crate::kernel::{Points, kernel_column, kernel_sum};
 use crate::likelihood::Factored;
 
-/// A lower triangular matrix, row after row without the zeros.
+/// A lower triangular matrix, stored row after row without the zeros.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Triangle(pub(crate) Vec<f64>);
 
@@ -24,7 +24,7 @@ impl Triangle {
         for i in 0..b.len() {
             let (row, below) = rest.split_at(i + 1);
             rest = below;
-            // Four sums, so that the additions need not wait for each other.
+            // Four separate sums, so that no addition waits for the previous one.
             let mut sums = [0.0; 4];
             let (solved, current) = b.split_at_mut(i);
             let (quads, coefficients) = (solved.chunks_exact(4), row[..i].chunks_exact(4));
@@ -45,7 +45,8 @@ impl Triangle {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum VarianceFactors {
-    /// Indices of the pivots among the points; L_S, the Cholesky factor of the kernel there; G with G Gᵀ = Fᵀ F + ρ I; ρ.
+    /// The indices of the pivots among the points; the Cholesky factor L_S of their kernel matrix; G with G Gᵀ = Fᵀ F
+    /// + ρ I; ρ.
     LowRank {
         pivots: Vec<usize>,
         inner: Triangle,
@@ -121,7 +122,7 @@ impl Posterior {
         Self::new(points, lengths, weights, variance)
     }
 
-    /// Of a function known to be zero.
+    /// The posterior of a function that is known to be zero.
     pub(crate) fn empty(lengths: Vec<f64>) -> Self {
         let points = Points::new(0, lengths.len(), |_, _| 0.0);
         let outer = Triangle(Vec::new());
@@ -149,7 +150,7 @@ impl Posterior {
                 inner.solve(kernel);
                 let unexplained = 1.0 - squares(kernel);
                 outer.solve(kernel);
-                // `max` would turn NaN into 0.
+                // `max` would replace NaN by 0.
                 let unexplained = if unexplained < 0.0 { 0.0 } else { unexplained };
                 unexplained + rho * squares(kernel)
             }

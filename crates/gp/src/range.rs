@@ -1,4 +1,5 @@
-//! Where a regression knows something: its variance as a share of the prior's, from a few points, cheap enough for a control step.
+//! The range of a regression: its variance as a share of the prior variance, from a few points, fast enough for a
+//! control step.
 
 use crate::algebra::{inverse_of_lower, qr_factor};
 use crate::kernel::{LANES, Points, kernel_column, multiply_add};
@@ -6,31 +7,32 @@ use crate::model::Gp;
 use crate::pivoted::{PivotedCholesky, Stopping};
 use crate::wide::{Wide, on_widest};
 
-/// Points that carry a [`Range`] at most.
+/// The largest number of points of a [`Range`].
 const MOST: usize = 64;
 
-/// The share of the prior variance that the points leave at the training data at most, if so many suffice.
-const LEFT: f64 = 0.01;
+/// Points are added until the mean share of the prior variance at the training data is at most this.
+const LARGEST_SHARE: f64 = 0.01;
 
-/// Relative noise from which it counts: below, it adds less to the share than [`LEFT`].
+/// The relative noise above which it is taken into account: below, it adds less to the share than [`LARGEST_SHARE`].
 const NOISY: f64 = 1e-4;
 
-/// The share of its prior variance that a regression has left at a point, from above: 0 where the data are, 1 far from them.
+/// An upper bound of the remaining share of the prior variance at a point: 0 at the data, 1 far from them.
 ///
-/// The variance is that of the regression conditioned on a few of its points only, those which the pivoted Cholesky
-/// factorisation takes first. Fewer points leave more variance: the share is never below the exact one, but for noise, of which
-/// the approximation by inducing points takes too little into account at places where they leave much. Points are taken
-/// until they leave 0.01 at the training data, but 64 at most: short length scales need more, and [`Range::left`] says what is
-/// left there. The cost is that of so many kernel values and half their square of multiplications; nothing is allocated.
+/// The variance is that of the regression conditioned on a few of its points, those which the pivoted Cholesky
+/// factorisation takes first. With fewer points the variance is larger, so that the share is never below the exact
+/// one, except for noise, which the approximation by inducing points underestimates where the points leave a large
+/// variance. Points are added until they leave 0.01 at the training data, up to 64 points: short length scales need
+/// more, and [`Range::mean_variance_share`] is the remaining share. The cost is that number of kernel values and half its square of
+/// multiplications; nothing is allocated.
 #[derive(Clone, Debug)]
 pub struct Range {
     points: Points,
     lengths: Vec<f64>,
     /// L⁻¹, with L Lᵀ the kernel matrix of the points.
     inner: Columns,
-    /// √ρ G⁻¹ L⁻¹, with G Gᵀ = Fᵀ F + ρ I; none where the noise is negligible.
+    /// √ρ G⁻¹ L⁻¹, with G Gᵀ = Fᵀ F + ρ I; `None` if the noise is negligible.
     outer: Option<Columns>,
-    left: f64,
+    mean_variance_share: f64,
 }
 
 /// A lower triangular matrix by columns, each padded to whole blocks.
@@ -53,7 +55,7 @@ impl Columns {
         Self { values, padded }
     }
 
-    /// The squared length of the product with `x`.
+    /// The squared norm of the product with `x`.
     fn square_of_product(&self, x: &[f64]) -> f64 {
         on_widest(Product { columns: self, x })
     }
@@ -72,7 +74,7 @@ impl Wide for Product<'_> {
         let padded = self.columns.padded;
         let mut square = [0.0; LANES];
         for first in (0..padded).step_by(LANES) {
-            // Of these rows, the columns up to the diagonal.
+            // In these rows, the columns up to the diagonal.
             let columns = self.columns.values.chunks_exact(padded).zip(self.x);
             let mut sums = [0.0; LANES];
             for (column, &x) in columns.take(first + LANES) {
@@ -90,12 +92,12 @@ impl Wide for Product<'_> {
 }
 
 impl Range {
-    /// Of `gp`.
+    /// The range of `gp`.
     pub(crate) fn of(gp: &Gp) -> Self {
         let posterior = &gp.posterior;
         let stopping = Stopping {
             trace: 0.0,
-            pivot: LEFT,
+            pivot: LARGEST_SHARE,
             max_rank: MOST.min(posterior.points.len()),
             truncates: true,
         };
@@ -111,7 +113,7 @@ impl Range {
             lengths: posterior.lengths.clone(),
             inner: Columns::new(inverse.as_ref(), 1.0),
             outer,
-            left: pivoted.neglected / posterior.points.len().max(1) as f64,
+            mean_variance_share: pivoted.neglected / posterior.points.len().max(1) as f64,
         }
     }
 
@@ -120,16 +122,17 @@ impl Range {
         self.points.len()
     }
 
-    /// The mean share that the points leave at the training data (at those of them that carry the posterior).
-    pub fn left(&self) -> f64 {
-        self.left
+    /// The mean remaining share at the training data (at those that carry the posterior).
+    pub fn mean_variance_share(&self) -> f64 {
+        self.mean_variance_share
     }
 
-    /// The share of the prior variance left at `x`, from 0 to 1; NaN if an input is NaN, and 0 for a function known to be zero.
+    /// The remaining share of the prior variance at `x`, from 0 to 1; NaN if an input is NaN, and 0 for a function
+    /// that is known to be zero.
     ///
     /// # Panics
-    /// If `x` has not one value an input.
-    pub fn unexplained(&self, x: &[f64]) -> f64 {
+    /// If `x` does not have one value per input.
+    pub fn variance_share(&self, x: &[f64]) -> f64 {
         assert_eq!(x.len(), self.lengths.len(), "inputs given and expected");
         if self.points.len() == 0 {
             return 0.0;
@@ -165,8 +168,8 @@ mod tests {
         Gp::with_hyperparameters(&training, &hyperparameters).expect("valid")
     }
 
-    /// From above, and near: at the data, beside them and far away, with and without noise, for few points and for all that
-    /// are allowed.
+    /// The share is an upper bound, and close: at the data, near them and far away, with and without noise, for few
+    /// points and for the largest number.
     #[test]
     fn the_share_bounds_the_variance() {
         for (length, noise) in [(2.0, 0.0), (2.0, 0.4), (0.6, 0.0), (0.1, 0.0), (0.1, 0.4)] {
@@ -178,7 +181,7 @@ mod tests {
                 let far = 0.1 * f64::from(step) * length;
                 let x = [0.3 + far, 0.4 - 0.5 * far, 0.2 + far];
                 let exact = gp.mean_and_variance(&x, &mut workspace).1 / 4.0;
-                let share = range.unexplained(&x);
+                let share = range.variance_share(&x);
                 let tolerance = if noise > 0.0 { 0.01 * exact } else { 1e-9 };
                 assert!(
                     share > exact - tolerance,
@@ -186,24 +189,30 @@ mod tests {
                 );
                 assert!((0.0..=1.0).contains(&share));
             }
-            assert_eq!(range.unexplained(&[1e6; 3]), 1.0);
-            assert!(range.unexplained(&[f64::NAN, 0.0, 0.0]).is_nan());
+            assert_eq!(range.variance_share(&[1e6; 3]), 1.0);
+            assert!(range.variance_share(&[f64::NAN, 0.0, 0.0]).is_nan());
         }
         let range = gp(2.0, 0.0).range();
-        assert!(range.points() < MOST && range.left() < LEFT, "{range:?}");
-        // The path itself, between samples.
+        assert!(
+            range.points() < MOST && range.mean_variance_share() < LARGEST_SHARE,
+            "{range:?}"
+        );
+        // On the path itself, between samples.
         let at = |time: f64| [time.sin(), (1.4 * time).sin(), (1.8 * time).sin()];
         for step in 0..90 {
-            let share = range.unexplained(&at(0.1 * f64::from(step)));
+            let share = range.variance_share(&at(0.1 * f64::from(step)));
             assert!(share < 0.05, "{step}: {share}");
         }
-        assert!(gp(0.03, 0.0).range().left() > LEFT, "too many points would be needed");
+        assert!(
+            gp(0.03, 0.0).range().mean_variance_share() > LARGEST_SHARE,
+            "too many points would be needed"
+        );
     }
 
     #[test]
     fn a_function_known_to_be_zero_has_no_variance() {
         let training = TrainingSet::new(2, &[0.0, 1.0, 2.0, 3.0], &[0.0, 0.0]).expect("valid");
         let gp = Gp::fit(&training, &crate::FitOptions::default()).expect("fits");
-        assert_eq!(gp.range().unexplained(&[9.0, 9.0]), 0.0);
+        assert_eq!(gp.range().variance_share(&[9.0, 9.0]), 0.0);
     }
 }

@@ -21,13 +21,13 @@ const PATIENCE: usize = 5;
 /// Samples the starts are tried on.
 const FEW: usize = 256;
 
-/// Relative noise up to which few samples are taken to have shown the function.
+/// The relative noise up to which a search on few samples is assumed to have found the function.
 const RESOLVED: f64 = 0.03;
 
 /// Steps L-BFGS remembers.
 const MEMORY: usize = 10;
 
-/// What the search found: length scales (one, or one an input) and relative noise ρ.
+/// The result of the search: length scales (one, or one per input) and relative noise ρ.
 pub(crate) struct Found {
     pub(crate) lengths: Vec<f64>,
     pub(crate) rho: f64,
@@ -38,7 +38,7 @@ pub(crate) fn search(training: &TrainingSet, options: &FitOptions, floor: f64) -
     let shapes = shapes(training, options.lengths);
     let bounds = Bounds::new(&shapes[0], floor);
     let few = training.thinned(FEW);
-    // On few samples only the neighbourhood of an optimum is wanted.
+    // On few samples, only the neighbourhood of an optimum is needed.
     let on_few = Likelihood::new(&few, &bounds, options, 0.05);
 
     let mut grid = Vec::new();
@@ -57,7 +57,7 @@ pub(crate) fn search(training: &TrainingSet, options: &FitOptions, floor: f64) -
     grid.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut chosen: Vec<Vec<f64>> = Vec::new();
     for (_, free) in grid {
-        // Starts next to each other climb the same hill.
+        // Neighbouring starts climb to the same optimum.
         let distant = |other: &Vec<f64>| other.iter().zip(&free).any(|(a, b)| (a - b).abs() > NEIGHBOURHOOD);
         if chosen.len() < options.starts && chosen.iter().all(distant) {
             chosen.push(free);

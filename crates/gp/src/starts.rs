@@ -1,21 +1,22 @@
-//! Where the likelihood search starts, and the bounds it keeps.
+//! The starts of the likelihood search, and its bounds.
 
 use crate::LengthScales;
 use crate::data::TrainingSet;
 
-/// Multiples of the data's own scales tried as length scales.
+/// Length scales of the starts, as multiples of the scales of the data.
 pub(crate) const LENGTH_FACTORS: [f64; 7] = [0.025, 0.1, 0.4, 1.5, 6.0, 24.0, 96.0];
 
-/// Relative noises tried: noise variance / amplitude².
+/// Relative noises of the starts: noise variance / amplitude².
 pub(crate) const RELATIVE_NOISES: [f64; 4] = [0.0, 1e-8, 1e-4, 1e-1];
 
-/// Pairs of samples looked at for the median distance.
+/// The number of pairs of samples whose median distance is computed.
 const PAIRS: usize = 1000;
 
-/// The scales of the data that starting lengths are multiples of.
+/// The scales of the data, of which the initial length scales are multiples.
 ///
-/// Isotropic: the median distance between samples. One an input: the same for every input, and each input's standard deviation times √dim.
-/// An input that never changes takes the scale of the whole; the likelihood does not depend on it.
+/// Isotropic: the median distance between samples. One per input: either the median distance for every input, or each
+/// input's standard deviation times √dim. A constant input gets the overall scale; the likelihood does not depend on
+/// it.
 pub(crate) fn shapes(training: &TrainingSet, lengths: LengthScales) -> Vec<Vec<f64>> {
     let median = median_distance(training);
     match lengths {
@@ -43,7 +44,7 @@ fn median_distance(training: &TrainingSet) -> f64 {
     let n = training.samples();
     let mut distances: Vec<f64> = (0..PAIRS)
         .map(|t| {
-            // A stride far from n's divisors pairs near and far samples alike.
+            // A stride that does not divide n pairs near samples and distant ones equally.
             let i = t * 7919 % n;
             let j = (i + 1 + t * 104_729 % n.max(2).saturating_sub(1)) % n;
             let pairs = training.row(i).iter().zip(training.row(j));
@@ -81,7 +82,7 @@ impl Bounds {
         free.iter().zip(bounds).map(bounded).collect()
     }
 
-    /// The inverse, for points strictly inside.
+    /// The inverse transformation, for points strictly within the bounds.
     pub(crate) fn free_from_log(&self, log: &[f64]) -> Vec<f64> {
         let bounds = self.middles.iter().zip(&self.halves);
         let freed = |(log, (middle, half)): (&f64, (&f64, &f64))| {

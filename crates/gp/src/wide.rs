@@ -4,13 +4,13 @@ use std::sync::OnceLock;
 
 use fearless_simd::{Level, Simd};
 
-/// A computation whose loops run over a block of numbers at a time. Every number has the same operations in every width, so that
-/// the results of processors with fused multiply-add are the same bits.
+/// A computation whose loops process a block of numbers at a time. Every number has the same operations in every
+/// vector width, so that the results of all processors with fused multiply-add have the same bits.
 pub trait Wide {
-    /// What it computes.
+    /// The result.
     type Output;
 
-    /// With fused multiply-add, or without.
+    /// Runs the computation with or without fused multiply-add.
     fn run<const FUSED: bool>(self) -> Self::Output;
 }
 
@@ -37,12 +37,12 @@ pub fn on_widest<W: Wide>(task: W) -> W::Output {
     }
 }
 
-/// Leaves the processor's vector registers as code for short vectors expects them; to be called after faer's products and
-/// factorisations.
+/// Resets the processor's vector registers to the state that code for short vectors expects; to be called after
+/// products and factorisations of faer.
 ///
-/// Their kernels leave the upper halves of the registers in use (private-gemm-x86 0.1 has no `vzeroupper`). On Intel's processors,
-/// everything that is compiled for SSE then takes several times as long: a sine 180 ns instead of 8. What runs here uses long
-/// vectors, too, and the compiler ends it properly.
+/// Their kernels leave the upper halves of the registers in use (private-gemm-x86 0.1 lacks `vzeroupper`). On Intel's
+/// processors, all code compiled for SSE is then several times slower: a sine takes 180 ns instead of 8 ns. This
+/// function uses long vectors as well, and the compiler ends it with the missing instruction.
 pub fn release_vectors() {
     on_widest(Release);
 }

@@ -1,14 +1,16 @@
-//! The paper's own problem (joint 2, thirteen inputs, noise-free): the likelihood found against scikit-learn's.
+//! The paper's own problem (joint 2, thirteen inputs, noise-free): the maximised likelihood against that of
+//! scikit-learn.
 
 use std::path::Path;
 use std::time::Instant;
 
 use gp::{FitOptions, Gp, TrainingSet};
 
-/// Joint 2's data are beside the workspace, not in it.
+/// The data of joint 2 are not part of the repository.
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/peers");
 
-/// File, and the log marginal likelihood of scikit-learn 1.9.1 with the settings of peers.py: it stops where Cholesky first fails.
+/// File, and the log marginal likelihood of scikit-learn 1.9.1 with the settings of peers.py, which stops where
+/// Cholesky factorisation first fails.
 const PEERS: [(&str, f64); 2] = [
     ("ijl_joint2_train_A.csv", 8190.03),
     ("ijl_joint2_train_ABC.csv", 20581.65),

@@ -1,4 +1,5 @@
-//! Same hyperparameters, same likelihood, mean and variance as scikit-learn (tests/sklearn/reference.py).
+//! With the same hyperparameters, likelihood, mean and variance equal those of scikit-learn
+//! (tests/sklearn/reference.py).
 
 use gp::{Gp, Hyperparameters, Lengths, TrainingSet, Workspace};
 use serde::Deserialize;

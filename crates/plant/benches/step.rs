@@ -1,4 +1,5 @@
-//! What a millisecond of the plant costs, by order; a Runge-Kutta step of the analytic dynamics for comparison.
+//! The time of a millisecond of the plant by order, and that of a Runge-Kutta step of the analytic dynamics for
+//! comparison.
 #![allow(missing_docs)]
 
 #[path = "../src/test_arms.rs"]
@@ -12,7 +13,7 @@ fn main() {
     divan::main();
 }
 
-/// A swing from rest: the torques are of no account for the time.
+/// A free motion from rest; the torques do not affect the computing time.
 const START: [f64; 6] = [0.3, -0.4, 0.5, 0.6, -0.7, 0.8];
 
 fn plant(options: PlantOptions) -> Plant {
@@ -33,7 +34,7 @@ fn smooth(bencher: Bencher, order: usize) {
     });
 }
 
-/// Joint 1 at rest under more friction than drives it, the others sliding on.
+/// Joint 1 at rest under a torque below its friction, the others sliding.
 #[divan::bench]
 fn one_of_six_stuck(bencher: Bencher) {
     let mut plant = plant(PlantOptions {

@@ -1,8 +1,10 @@
-//! Error and time of a plant's millisecond by its order, as JSON, for `benches/peers.sh`. Inputs: `ROBOT.urdf TRACK.csv`.
+//! Error and computing time of a millisecond of the plant by order, as JSON, for `benches/peers.sh`. Inputs:
+//! `ROBOT.urdf TRACK.csv`.
 //!
-//! The arm tracks sines in closed loop for two seconds: inverse dynamics of the reference plus feedback at 1 kHz, held
-//! between. The error is the largest distance (rad) from the same loop on the arm's own forward dynamics, integrated by
-//! Runge and Kutta's method in steps of 20 µs. The track is written for MuJoCo to follow.
+//! The arm tracks sines in closed loop for two seconds: inverse dynamics of the reference plus feedback at 1 kHz, with
+//! constant torques between the ticks. The error is the largest distance (rad) from the same loop on the arm's own
+//! forward dynamics, integrated by the Runge-Kutta method with steps of 20 µs. The track is written so that MuJoCo can
+//! follow it.
 
 use std::fmt::Write;
 use std::time::Instant;
@@ -10,13 +12,13 @@ use std::time::Instant;
 use arm::{Arm, DMatrix, Workspace};
 use plant::{Plant, PlantOptions};
 
-/// Gains of position (1/s²) and velocity (1/s), times each joint's own inertia at q = 0.
+/// Gains of position (1/s²) and velocity (1/s), to be multiplied by each joint's own inertia at q = 0.
 const GAINS: [f64; 2] = [100.0, 20.0];
 
-/// Milliseconds of the track.
+/// The number of milliseconds of the track.
 const LENGTH: usize = 2000;
 
-/// Steps of the exact solution within one.
+/// The number of steps of the exact solution per millisecond.
 const SUBSTEPS: usize = 50;
 
 fn main() {
@@ -38,7 +40,7 @@ fn main() {
 
 /// The reference q, q̇, its torque, and the exact positions at the end of each millisecond.
 struct Track {
-    /// Of position and velocity, for each joint.
+    /// The gains of position and velocity for each joint.
     gains: [Vec<f64>; 2],
     start: [Vec<f64>; 2],
     rows: Vec<[Vec<f64>; 4]>,
@@ -122,7 +124,7 @@ fn table(track: &Track) -> String {
     text
 }
 
-/// The plant's error along the track, and the nanoseconds of one of its steps, the median over all.
+/// The plant's error along the track (rad), and the median time of one of its steps (ns).
 fn plant(arm: &Arm, order: usize, track: &Track) -> (f64, f64) {
     let options = PlantOptions {
         order,

@@ -1,25 +1,25 @@
-//! The links' inertias, made such that rapier moves them rightly.
+//! The inertias of the links, in a form with which rapier computes the right motion.
 
 use arm::{Arm, Inertia, JointKind, Matrix3, Vector3};
 
 use crate::error::PlantError;
 
-/// Below this ratio of the smallest to the largest principal moment, rapier's inverse of the tensor is not to
-/// be trusted.
+/// If the ratio of the smallest to the largest principal moment is below this, rapier's inverse of the tensor is
+/// unreliable.
 const SINGULAR: f64 = 1e-9;
 
-/// The links' inertias, base to tip, replaced by dynamically equivalent ones where rapier needs it.
+/// The inertias of the links, base to tip, replaced by dynamically equivalent ones where rapier requires it.
 ///
-/// rapier keeps a body's *inverse* tensor and inverts it again: no mass, and no tensor at all, come out
-/// right, but a tensor that has no moment about one or two axes becomes nothing at all, and the motion is
-/// silently wrong. A moment c about every axis across joint i's own turns with link i and with link i−1
-/// alike, so that taking it from the one and giving it to the other changes no torque (the regrouping of
-/// Gautier and Khalil 1990); the base has any amount of it to give. Across a prismatic joint so does a moment
-/// about any axis.
+/// rapier keeps a body's *inverse* tensor and inverts it again. A body without mass and a tensor of zeros come out
+/// right, but a tensor without a moment about one or two axes becomes zero, and the motion is wrong without an error.
+/// An equivalent body avoids this: a moment c about every axis perpendicular to joint i's own axis is added to link i and
+/// subtracted from link i−1. This changes no torque, because both links have the same angular velocity about these axes
+/// (the regrouping of Gautier and Khalil 1990). The base can give any amount. Across a prismatic joint, the same holds
+/// for the moment about any axis.
 ///
 /// # Errors
-/// [`PlantError::Singular`], if the joint before has nothing to give or the missing moment is the
-/// one about the joint's own axis.
+/// [`PlantError::Singular`], if the previous link has too little inertia to give, or if the missing moment is the one
+/// about the joint's own axis.
 pub(crate) fn simulable_inertias(arm: &Arm) -> Result<Vec<Inertia>, PlantError> {
     let mut inertias: Vec<Inertia> = arm.joints().iter().map(|joint| joint.inertia).collect();
     for i in 0..inertias.len() {
@@ -39,7 +39,7 @@ pub(crate) fn simulable_inertias(arm: &Arm) -> Result<Vec<Inertia>, PlantError> 
         let moved = given * transferable;
         inertias[i].tensor += moved;
         if let Some(parent) = i.checked_sub(1) {
-            // Symmetric about the axis, so the same at every q.
+            // Symmetric about the axis, so that it is the same at every q.
             let r = joint.parent_from_joint.rotation;
             inertias[parent].tensor -= r * moved * r.transpose();
         }

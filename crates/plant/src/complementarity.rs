@@ -1,27 +1,27 @@
-//! The torques with which dry friction holds joints that are at rest.
+//! The torques with which dry friction holds joints at rest.
 
 use arm::DMatrix;
 
-/// Where the torque of a joint is.
+/// Where a joint's friction torque lies between its limits.
 #[derive(Clone, Copy, PartialEq)]
 enum Place {
-    /// Within its level: the joint stays.
+    /// Within its limits: the joint remains at rest.
     Within,
-    /// At its level, up or down: the joint gives way.
+    /// At its positive or negative limit: the joint breaks away.
     At(f64),
 }
 
-/// The torques, each at most its level, that leave joints at rest as little acceleration as they
-/// can: none, or against the torque where it is at its level.
+/// The friction torques of joints at rest, each bounded by its level. A joint within its level has zero acceleration;
+/// a joint at its level accelerates against the friction torque.
 ///
-/// `response` is the symmetric, positive definite block of M⁻¹ that belongs to the joints, `free` their
-/// accelerations without these torques, `levels` the most each torque can be. The solution is unique. Source:
-/// least-index principal pivoting (Murty 1974), with two bounds instead of one.
+/// `response` is the symmetric, positive definite block of M⁻¹ for these joints, `free` their accelerations without
+/// friction, `levels` the largest friction torque of each (N m or N). The solution is unique. Source: least-index
+/// principal pivoting (Murty 1974), with two bounds instead of one.
 pub(crate) fn holding_torques(response: &DMatrix<f64>, free: &[f64], levels: &[f64]) -> Vec<f64> {
     let n = free.len();
     let mut places = vec![Place::Within; n];
     let mut torques = vec![0.0; n];
-    // There are no more than 3ⁿ ways to place the joints.
+    // Each of the n joints has three states, so that there are at most 3ⁿ combinations.
     for _ in 0..3_usize.saturating_pow(n as u32) {
         solve_within(response, free, levels, &places, &mut torques);
         let violated = (0..n).find_map(|i| match places[i] {
@@ -38,7 +38,7 @@ pub(crate) fn holding_torques(response: &DMatrix<f64>, free: &[f64], levels: &[f
     torques
 }
 
-/// The torques that hold the joints fast, whatever it takes (N m or N).
+/// The torques that hold all joints at rest, without regard to their levels (N m or N).
 pub(crate) fn locking_torques(response: &DMatrix<f64>, free: &[f64]) -> Vec<f64> {
     let mut torques = vec![0.0; free.len()];
     solve_within(response, free, &[], &vec![Place::Within; free.len()], &mut torques);
@@ -60,7 +60,7 @@ fn solve_within(response: &DMatrix<f64>, free: &[f64], levels: &[f64], places: &
     let wanted = DMatrix::from_fn(within.len(), 1, |a, _| {
         -acceleration(response, free, torques, within[a])
     });
-    // Positive definite, so the solution is there.
+    // `response` is positive definite, so that the solution exists.
     if let Some(solution) = block.lu().solve(&wanted) {
         for (a, &i) in within.iter().enumerate() {
             torques[i] = solution[a];
@@ -81,8 +81,8 @@ fn acceleration(response: &DMatrix<f64>, free: &[f64], torques: &[f64], i: usize
 mod tests {
     use super::*;
 
-    /// A joint within its level is at rest; one at its level does not move against its torque's sense. Any other
-    /// pivoting rule may cycle on such problems.
+    /// A joint within its level does not accelerate; one at its level does not accelerate in the direction of its
+    /// friction torque. Other pivoting rules may cycle on such problems.
     #[test]
     fn every_joint_rests_or_gives_way() {
         let mut seed = 1_u64;

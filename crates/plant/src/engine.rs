@@ -1,4 +1,4 @@
-//! The rapier world with the arm's multibody in it, and nothing else.
+//! The rapier world that contains the arm's multibody.
 
 use arm::{Arm, DMatrix, Inertia, JointKind, Matrix3, Vector3};
 use rapier3d_f64::dynamics::{
@@ -13,16 +13,15 @@ use rapier3d_f64::pipeline::PhysicsPipeline;
 use crate::bodies::simulable_inertias;
 use crate::error::PlantError;
 
-/// The stiffness of the spring that carries a joint's torque. A power of two so small that the
-/// joint's own position is lost in rounding against the rest position −τ/K: the spring is then a constant
-/// force, to the last bit of τ.
+/// The stiffness of the spring that applies a joint's torque. It is a power of two, so small that the joint's position
+/// vanishes in the rounding of the rest position −τ/K: the spring is a constant force with exactly the value τ.
 const SPRING: f64 = 1.0 / (1_u64 << 60) as f64;
 
-/// The step that asks rapier for accelerations (s): what is implicit in it, of order step times
-/// friction by inertia (1e5 in a light wrist), drowns in rounding.
+/// The step with which rapier is asked for accelerations (s). Its implicit terms are of the order step × friction /
+/// inertia (friction / inertia is 1e5 in a light wrist), which this step makes smaller than rounding errors.
 const INSTANT: f64 = 1e-24;
 
-/// A rapier world that holds one fixed-base multibody.
+/// A rapier world with one fixed-base multibody.
 pub(crate) struct Engine {
     gravity: Vector,
     parameters: IntegrationParameters,
@@ -37,9 +36,9 @@ pub(crate) struct Engine {
     soft_bodies: SoftBodySet,
     ccd_solver: CCDSolver,
     multibody: MultibodyIndex,
-    /// Each joint at coordinate zero, with the torque and the lock it has now.
+    /// Each joint at coordinate zero, with its present torque and lock.
     joints: Vec<MultibodyJoint>,
-    /// Each joint's place among rapier's six axes: 0 slides, 3 turns.
+    /// The index of each joint among rapier's six axes: 0 is a translation, 3 a rotation.
     axes: Vec<usize>,
 }
 
@@ -53,7 +52,7 @@ impl Engine {
         let mut parent = bodies.insert(RigidBodyBuilder::fixed());
         let base = parent;
         for (joint, inertia) in arm.joints().iter().zip(&inertias) {
-            // An arm that gravity compensation holds still falls asleep and then ignores its torques.
+            // An arm at rest in balance would fall asleep and then ignore its torques.
             let body = RigidBodyBuilder::dynamic()
                 .can_sleep(false)
                 .additional_mass_properties(mass_properties(inertia));
@@ -107,12 +106,12 @@ impl Engine {
         Ok(engine)
     }
 
-    /// Sets what rapier knows of the joints' drives.
+    /// Passes the joints' drives on to rapier.
     fn finish(&mut self, arm: &Arm, viscous: &[f64]) {
         let multibody = multibody_mut(&mut self.multibody_joints, self.multibody);
-        // Until the first forward kinematics the root still has its six degrees of freedom.
+        // Until the first forward kinematics, the root still has six degrees of freedom.
         multibody.forward_kinematics(&self.bodies, true);
-        // rapier damps every angular axis by 0.1 unless told otherwise.
+        // By default, rapier damps every angular axis by 0.1.
         multibody.damping_mut().fill(0.0);
         multibody.damping_mut().as_mut_slice()[..viscous.len()].copy_from_slice(viscous);
         for (armature, joint) in multibody.armature_mut().iter_mut().zip(arm.joints()) {
@@ -135,21 +134,21 @@ impl Engine {
         self.joints[i].kinematic = locked;
     }
 
-    /// Puts the multibody into a state. What a state leads to depends on nothing before it.
+    /// Sets the state of the multibody. The motion from there on does not depend on earlier states.
     pub(crate) fn load(&mut self, q: &[f64], qd: &[f64]) {
         let multibody = multibody_mut(&mut self.multibody_joints, self.multibody);
         for ((link, joint), position) in multibody.links_mut().skip(1).zip(&self.joints).zip(q) {
-            // From zero, so that the coordinate is q to the bit.
+            // The displacement starts from zero, so that the coordinate is exactly q.
             link.joint = *joint;
             link.joint.apply_displacement(std::slice::from_ref(position));
         }
         multibody.generalized_velocity_mut().as_mut_slice().copy_from_slice(qd);
     }
 
-    /// Moves on by `time` (s) in `substeps` rapier steps.
+    /// Advances by `time` (s) in `substeps` rapier steps.
     pub(crate) fn run(&mut self, time: f64, substeps: usize) {
         self.parameters.dt = time;
-        // Without contacts, solver iterations are nothing but substeps, and cheaper than whole steps.
+        // Without contacts, solver iterations are substeps, and cost less than whole steps.
         self.parameters.num_solver_iterations = substeps;
         self.pipeline.step(
             self.gravity,
@@ -168,7 +167,7 @@ impl Engine {
         );
     }
 
-    /// Position and velocity of joint `i` (rad or m, and a second).
+    /// Position (rad or m) and velocity (rad/s or m/s) of joint `i`.
     pub(crate) fn state(&self) -> impl Iterator<Item = (f64, f64)> {
         let multibody = &self.multibody_joints[self.multibody];
         let velocities = multibody.generalized_velocity();
@@ -180,7 +179,8 @@ impl Engine {
             .map(move |(i, (link, &axis))| (link.joint().coords()[axis], velocities[i]))
     }
 
-    /// The accelerations in a state under the torques driven, and M⁻¹ through [`Self::inverse_mass_column`].
+    /// The accelerations in a state under the present torques; M⁻¹ is then available from
+    /// [`Self::inverse_mass_column`].
     pub(crate) fn probe(&mut self, q: &[f64], qd: &[f64], qdd: &mut [f64]) {
         self.load(q, qd);
         self.run(INSTANT, 1);
@@ -188,7 +188,7 @@ impl Engine {
         qdd.copy_from_slice(multibody.generalized_acceleration().as_slice());
     }
 
-    /// Column `i` of M⁻¹ in the state probed last (rad/s² per N m, and so on).
+    /// Column `i` of M⁻¹ in the state of the last probe (rad/s² per N m, or the corresponding units).
     pub(crate) fn inverse_mass_column(&self, i: usize) -> DMatrix<f64> {
         let multibody = &self.multibody_joints[self.multibody];
         let mut column = DMatrix::zeros(self.axes.len(), 1);
@@ -204,7 +204,7 @@ fn multibody_mut(joints: &mut MultibodyJointSet, index: MultibodyIndex) -> &mut 
         .expect("the multibody lives as long as its engine")
 }
 
-/// rapier's own reading of a tensor drops negative moments; this keeps the tensor as it is.
+/// rapier's own constructor drops negative moments of a tensor; this one keeps the tensor unchanged.
 fn mass_properties(inertia: &Inertia) -> MassProperties {
     let eigen = inertia.tensor.symmetric_eigen();
     let mut frame = eigen.eigenvectors;

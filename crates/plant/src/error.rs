@@ -1,9 +1,9 @@
-//! What can be wrong with a plant.
+//! Errors of a plant.
 
-/// Why a [`crate::Plant`] cannot be built or cannot go on.
+/// Why a [`crate::Plant`] cannot be built or cannot continue.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PlantError {
-    /// A list has not one value per joint.
+    /// A list does not have one value per joint.
     #[error("{what} has {found} values, but the arm has {expected} joints; give one per joint")]
     Count {
         /// The list.
@@ -13,7 +13,7 @@ pub enum PlantError {
         /// The list's length.
         found: usize,
     },
-    /// A value of a joint is not a number it can be.
+    /// A value of a joint is outside the range of its quantity.
     #[error("{what} of joint \"{joint}\" is {value}; give a finite number, not negative")]
     Value {
         /// The quantity.
@@ -23,7 +23,7 @@ pub enum PlantError {
         /// What was given.
         value: f64,
     },
-    /// The step is not a length of time.
+    /// The step is not a positive duration.
     #[error("the plant's step is {step} s; give a positive, finite time")]
     Step {
         /// What was given (s).
@@ -34,13 +34,13 @@ pub enum PlantError {
     Order {
         /// What was given.
         order: usize,
-        /// The largest there is.
+        /// The largest allowed order.
         largest: usize,
     },
     /// Gravity is not finite.
     #[error("the arm's gravity is not finite")]
     Gravity,
-    /// rapier would silently move this link wrongly, and no equivalent body could be found.
+    /// rapier would move this link wrongly without an error, and there is no equivalent body.
     #[error(
         "link \"{link}\" has no moment of inertia about one of its axes ({smallest:e} kg m² at the least, {largest:e} at \
          the most), which rapier cannot simulate; give it a small one"
@@ -53,13 +53,13 @@ pub enum PlantError {
         /// Its largest principal moment (kg m²).
         largest: f64,
     },
-    /// A joint can move without moving mass.
+    /// A joint can move without moving a mass.
     #[error("joint \"{joint}\" moves no inertia; give the links beyond it an <inertial>, or its drive a rotor inertia")]
     Massless {
         /// The joint's name.
         joint: String,
     },
-    /// A position, velocity or torque is not a finite number, or a joint runs faster than any arm.
+    /// A position, velocity or torque is not finite, or a joint is faster than any robot's.
     #[error("joint \"{joint}\" at {time} s: its motion or torque has left all bounds")]
     Diverged {
         /// The first such joint's name.

@@ -1,41 +1,42 @@
-//! Dry friction: joints that slide one way, stick and break away.
+//! Dry friction: joints that slide, stick and break away.
 //!
-//! Extrapolation needs smooth motion, and with dry friction it is smooth between events only. So a
-//! joint's friction is a constant torque while it slides one way and a lock while it sticks, and a
-//! step within which a joint stops or breaks away is split there.
+//! Extrapolation requires a smooth motion, and with dry friction the motion is smooth only between events. Therefore a
+//! joint's friction is a constant torque while the joint slides in one direction and a lock while it sticks; a step
+//! within which a joint stops or breaks away is divided at that event.
 
 use crate::complementarity::{holding_torques, locking_torques};
 use crate::error::PlantError;
 use crate::plant::Plant;
 use arm::DMatrix;
 
-/// A velocity (rad/s), or a torque's distance from its level (N m), this small is at the event.
+/// A velocity (rad/s or m/s), or a distance of a torque from its level (N m or N), up to this size counts as the
+/// event.
 const AT_EVENT: f64 = 1e-12;
 
-/// How often the interval around an event is cut at most.
+/// The largest number of times that the interval around an event is divided.
 const CUTS: usize = 60;
 
-/// A step has no more events than this, times the joints; chatter beyond it waits for the next step.
+/// The largest number of events of one step, per joint; events beyond it are left to the next step.
 const EVENTS_A_JOINT: usize = 8;
 
-/// What dry friction does to a joint at the moment.
+/// The present state of a joint's dry friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Contact {
-    /// It slides up (1) or down (−1), or has no dry friction (0).
+    /// The joint slides in the positive (1) or negative (−1) direction, or has no dry friction (0).
     Sliding(f64),
-    /// It is held fast.
+    /// The joint is at rest and locked.
     Stuck,
 }
 
 /// The joints' dry friction.
 #[derive(Clone, Debug)]
 pub(crate) struct DryFriction {
-    /// The most that friction can resist, one per joint (N m or N).
+    /// The largest friction torque of each joint (N m or N).
     levels: Vec<f64>,
     contacts: Vec<Contact>,
-    /// Joints that stay at rest for this step, whatever drives them.
+    /// Joints that remain at rest for this step, whatever their torque.
     pinned: Vec<bool>,
-    /// How far each joint was from its event at the end of the last trial; negative beyond it.
+    /// The distance of each joint from its event at the end of the last trial; negative after the event.
     margins: Vec<f64>,
     qdd: Vec<f64>,
 }
@@ -66,7 +67,7 @@ impl DryFriction {
         self.contacts[i] == Contact::Stuck
     }
 
-    /// Forgets which joints stick: the next step finds out.
+    /// Discards the joints' states; the next step determines them again.
     pub(crate) fn release(&mut self) {
         self.contacts.fill(Contact::Sliding(0.0));
     }
@@ -83,14 +84,14 @@ impl DryFriction {
         (0..self.contacts.len()).filter(|&i| self.is_stuck(i)).collect()
     }
 
-    /// A joint, other than `known`, beyond its event at the end of the last trial.
+    /// A joint other than `known` that is past its event at the end of the last trial.
     fn violated(&self, known: Option<usize>) -> Option<usize> {
         (0..self.margins.len()).find(|&i| self.margins[i] < 0.0 && Some(i) != known)
     }
 }
 
 impl Plant {
-    /// [`Plant::step`] over `remaining` seconds where there is dry friction.
+    /// [`Plant::step`] over `remaining` seconds for an arm with dry friction.
     pub(crate) fn step_with_friction(&mut self, tau: &[f64], mut remaining: f64) -> Result<(), PlantError> {
         self.friction.pinned.fill(false);
         for _ in 0..EVENTS_A_JOINT * self.dof() {
@@ -100,7 +101,7 @@ impl Plant {
                 return self.accept();
             };
             let mut until = self.locate(tau, joint, remaining);
-            // At the event of one joint another may be beyond its own: that was earlier.
+            // At the event of this joint, another joint may be past its own event, which was earlier then.
             for _ in 0..self.dof() {
                 let Some(earlier) = self.friction.violated(Some(joint)) else {
                     break;
@@ -128,7 +129,7 @@ impl Plant {
         self.accept()
     }
 
-    /// Decides of every joint, in the present state, whether it slides, and which way, or sticks.
+    /// Determines in the present state, for every joint, whether it sticks or in which direction it slides.
     pub(crate) fn settle(&mut self, tau: &[f64]) {
         let friction = &mut self.friction;
         for (i, contact) in friction.contacts.iter_mut().enumerate() {
@@ -161,7 +162,7 @@ impl Plant {
         }
     }
 
-    /// Tries an interval, and finds how far every joint is from its event at the end of it.
+    /// Tries an interval, and computes how far every joint is from its event at the end of it.
     fn try_interval(&mut self, tau: &[f64], time: f64) {
         for (i, torque) in tau.iter().enumerate() {
             self.engine
@@ -187,15 +188,16 @@ impl Plant {
         }
     }
 
-    /// Shortens the trial, `until` seconds long and beyond the event of `joint`, to end at that event.
+    /// Shortens the trial, which takes `until` seconds and passes the event of `joint`, so that it ends at that event.
     ///
-    /// Returns its new length: 0, and no trial, if the joint is beyond its event all along.
-    /// Source: the Illinois method (Dowell and Jarratt 1971).
+    /// Returns the new duration (s). It is 0, without a trial, if the joint is past its event during the whole
+    /// interval. Source: the Illinois method (Dowell and Jarratt 1971).
     fn locate(&mut self, tau: &[f64], joint: usize, until: f64) -> f64 {
         let (mut after, mut margin_after) = (until, self.friction.margins[joint]);
         let (mut before, mut margin_before) = (0.0, self.qd[joint].abs());
         if margin_before == 0.0 {
-            // A joint that was released or stuck just now may begin at its event: find it before it.
+            // A joint that has just started to slide or to stick may begin exactly at its event; the interval must
+            // begin before the event.
             let mut cuts = 0..CUTS;
             before = after;
             while margin_before <= 0.0 {
@@ -224,7 +226,7 @@ impl Plant {
                 margin_after *= if latest_is_after == Some(false) { 0.5 } else { 1.0 };
             }
             latest_is_after = Some(is_after);
-            // A stuck joint must be let go beyond its level, or it would stick again.
+            // The joint must be released past its level; at its level it would stick again.
             let arrived = margin.abs() <= AT_EVENT || after - before <= f64::EPSILON * until;
             if arrived && (is_after || !self.friction.is_stuck(joint)) {
                 return middle;
@@ -234,8 +236,8 @@ impl Plant {
         after
     }
 
-    /// Of joints at rest, in the present state or at the end of the trial: how their accelerations
-    /// answer to torques on each other, and what they are without friction.
+    /// For joints at rest, in the present state or at the end of the trial: the response of their accelerations to
+    /// each other's torques, and their accelerations without friction.
     fn contact_problem(&mut self, tau: &[f64], resting: &[usize], of_trial: bool) -> (DMatrix<f64>, Vec<f64>) {
         for (i, torque) in tau.iter().enumerate() {
             self.engine.drive(i, torque + self.friction.torque(i), false);

@@ -1,23 +1,23 @@
 //! The true arm as a rapier multibody, driven by joint torques.
 //!
-//! rapier's accelerations are those of the analytic forward dynamics ([`arm::Arm::forward_dynamics`]) to 6e-15,
-//! but its step is of first order: at 1 ms its error shows beside that of a good model. So a [`Plant`]
-//! extrapolates: it runs a step as 1, 2, … k rapier steps from the same state and combines them such that the
-//! leading errors cancel (Aitken-Neville). Measured on the PUMA 560 at 1 ms, against Runge-Kutta of
-//! the analytic dynamics:
+//! rapier's accelerations equal those of the analytic forward dynamics ([`arm::Arm::forward_dynamics`]) to 6e-15, but
+//! its integration step is of first order: at 1 ms its error would be visible beside that of a good model. Therefore a
+//! [`Plant`] extrapolates: it runs a step as 1, 2, … k rapier steps from the same state and combines the results so
+//! that the leading errors cancel (Aitken-Neville). Errors on the PUMA 560 at 1 ms, relative to Runge-Kutta
+//! integration of the analytic dynamics:
 //!
-//! | order k | 1 s of free swing (rad) | with .5 kg m² rotors (rad) | 10 s of computed torque, model +20 % (rad) | stick and slip with rotors, 2 s (rad) | one step (µs) |
+//! | order k | 1 s of free motion (rad) | with 0.5 kg m² rotors (rad) | 10 s of computed torque, model +20 % (rad) | stick and slip with rotors, 2 s (rad) | one step (µs) |
 //! |---|---|---|---|---|---|
 //! | 1 (plain) | 9.8e-2 | 3.5e-3 | 3.5e-4 | 1e-3 | 6 |
 //! | 2 | 1.0e-3 | 5.6e-6 | 1.3e-6 | 6e-7 | 16 |
 //! | 3 | 2.7e-7 | 9.7e-9 | 7.0e-10 | 5e-10 | 30 |
 //! | 4 | 7.7e-9 | 7.9e-12 | 8.2e-13 | 2e-13 | 48 |
 //!
-//! The model of the third column costs 5e-2 rad itself. Energy drifts by 9e-6 J of 68 J in 10 s of swing at order 3.
-//! Dry friction is not smooth, so a step is split where a joint stops or breaks away; each such event costs some
-//! five trial steps, each step with a joint stuck two rapier steps more.
+//! In the third column, the error of the model itself costs 5e-2 rad. Energy drifts by 9e-6 J of 68 J in 10 s of free
+//! motion at order 3. Dry friction is not smooth, so that a step is divided where a joint stops or breaks away: each
+//! such event costs about five trial steps, and each step with a stuck joint two additional rapier steps.
 //!
-//! There are no contacts and no joint limits. The same inputs give the same bits.
+//! There are no contacts and no joint limits. The same inputs give bit-identical results.
 
 mod bodies;
 mod complementarity;

@@ -1,22 +1,23 @@
-//! How a plant is stepped, and the friction of its joints.
+//! The integration of a plant, and the friction of its joints.
 
 use arm::Arm;
 
 use crate::error::PlantError;
 
-/// The largest extrapolation order. Beyond it rounding outweighs what extrapolation gains.
+/// The largest extrapolation order. Beyond it, rounding errors outweigh the gain of extrapolation.
 pub const LARGEST_ORDER: usize = 8;
 
-/// How to step a [`crate::Plant`], and what resists its joints.
+/// The integration step of a [`crate::Plant`], and the friction of its joints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlantOptions {
-    /// How long a torque is held (s).
+    /// The duration of a step, in which the torque is constant (s).
     pub step: f64,
-    /// Extrapolation order k: a step runs as 1, 2, … k rapier steps, extrapolated to none; 1 is rapier's plain step.
+    /// Extrapolation order k: the results of 1, 2, … k rapier steps are extrapolated to a step of zero; 1 is rapier's
+    /// plain step.
     pub order: usize,
-    /// Viscous friction, one value per joint (N m s/rad or N s/m); empty is none.
+    /// Viscous friction, one value per joint (N m s/rad or N s/m); empty for none.
     pub viscous: Vec<f64>,
-    /// Dry (Coulomb) friction, one value per joint (N m or N), as much at rest as in motion; empty is none.
+    /// Dry (Coulomb) friction, one value per joint (N m or N), equal at rest and in motion; empty for none.
     pub coulomb: Vec<f64>,
 }
 
@@ -33,7 +34,7 @@ impl Default for PlantOptions {
 }
 
 impl PlantOptions {
-    /// Refuses what no plant of `arm` can have.
+    /// Refuses values that are impossible, or that do not fit `arm`.
     pub(crate) fn check(&self, arm: &Arm) -> Result<(), PlantError> {
         let step = self.step;
         if !(step.is_finite() && step > 0.0) {
@@ -72,7 +73,7 @@ fn check_values(what: &'static str, values: &[f64], arm: &Arm) -> Result<(), Pla
     Ok(())
 }
 
-/// Refuses a list that has not one value per joint.
+/// Refuses a list that does not have one value per joint.
 pub(crate) fn check_count(what: &'static str, values: &[f64], expected: usize) -> Result<(), PlantError> {
     if values.len() == expected {
         return Ok(());
@@ -101,7 +102,7 @@ pub(crate) fn extrapolation_weights(order: usize) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// The weights reproduce a constant (they add up to 1) and remove 1/n, … 1/nᵏ⁻¹.
+    /// The weights reproduce a constant (their sum is 1) and remove the terms 1/n, … 1/nᵏ⁻¹.
     #[test]
     fn weights_remove_the_leading_errors() {
         for order in 1..=LARGEST_ORDER {

@@ -7,14 +7,14 @@ use crate::error::PlantError;
 use crate::friction::DryFriction;
 use crate::options::{PlantOptions, check_count, extrapolation_weights};
 
-/// Faster than any joint (rad/s or m/s). rapier quietly puts a body that is not finite to rest: a
-/// motion without bounds must be seen before.
+/// Faster than any robot's joint (rad/s or m/s). rapier silently puts a body with infinite values to rest, so that a
+/// diverging motion must be detected earlier.
 const FASTEST: f64 = 1e6;
 
 /// The true arm, a rapier multibody on a fixed base, driven by joint torques.
 ///
-/// Joint vectors have one entry per joint, base to tip: rad, rad/s, rad/s² and N m, or m, m/s, m/s²
-/// and N where the joint is prismatic. Positions are not wrapped, limits are not enforced.
+/// Joint vectors have one entry per joint, base to tip: rad, rad/s, rad/s² and N m, or m, m/s, m/s² and N for a
+/// prismatic joint. Positions are not wrapped, and limits are not enforced.
 pub struct Plant {
     pub(crate) engine: Engine,
     pub(crate) friction: DryFriction,
@@ -24,7 +24,7 @@ pub struct Plant {
     steps: u64,
     pub(crate) q: Vec<f64>,
     pub(crate) qd: Vec<f64>,
-    /// Where a trial interval led.
+    /// The result of a trial interval.
     pub(crate) trial_q: Vec<f64>,
     pub(crate) trial_qd: Vec<f64>,
 }
@@ -33,7 +33,7 @@ impl Plant {
     /// A plant of `arm`, with its rotor inertias and its gravity, at q = 0 and at rest.
     ///
     /// # Errors
-    /// [`PlantError`], if an option does not fit the arm or rapier cannot simulate one of its links.
+    /// [`PlantError`], if an option does not fit the arm, or if rapier cannot simulate one of its links.
     pub fn new(arm: &Arm, options: &PlantOptions) -> Result<Self, PlantError> {
         options.check(arm)?;
         if let Some(joint) = arm.massless_joint() {
@@ -75,12 +75,12 @@ impl Plant {
         self.steps as f64 * self.step
     }
 
-    /// Whether dry friction holds joint `i` fast.
+    /// Whether dry friction holds joint `i` at rest.
     pub fn is_stuck(&self, i: usize) -> bool {
         self.friction.is_stuck(i)
     }
 
-    /// Dry friction is `levels` from now on, one value per joint (N m or N): it may change from step to step.
+    /// Sets the levels of dry friction, one value per joint (N m or N); they may differ from step to step.
     ///
     /// # Errors
     /// [`PlantError::Count`] if there is not one value per joint, [`PlantError::Value`] if one is negative or not finite.
@@ -95,7 +95,7 @@ impl Plant {
         Ok(())
     }
 
-    /// Puts the arm at `q`, moving at `qd`; the time goes on.
+    /// Sets the state to the positions `q` and velocities `qd`; the time continues.
     ///
     /// # Errors
     /// [`PlantError::Count`] if there is not one value per joint, [`PlantError::Diverged`] if one is out of bounds.
@@ -109,7 +109,7 @@ impl Plant {
         Ok(())
     }
 
-    /// Back to q = 0, at rest, at time 0.
+    /// Resets the state to q = 0 at rest, and the time to 0.
     pub fn reset(&mut self) {
         self.q.fill(0.0);
         self.qd.fill(0.0);
@@ -117,11 +117,11 @@ impl Plant {
         self.friction.release();
     }
 
-    /// Holds the torques `tau` for one step.
+    /// Advances by one step under the constant torques `tau`.
     ///
     /// # Errors
-    /// [`PlantError::Count`] if there is not one torque per joint; [`PlantError::Diverged`] if the
-    /// torques or the motion leave all bounds. The state then is that of the last event within the step, or before it.
+    /// [`PlantError::Count`] if there is not one torque per joint; [`PlantError::Diverged`] if the torques or the
+    /// motion exceed all bounds. The state is then that before the step, or of the last event within it.
     pub fn step(&mut self, tau: &[f64]) -> Result<(), PlantError> {
         check_count("the torque", tau, self.dof())?;
         self.check_bounds(tau, &self.qd)?;
@@ -138,10 +138,11 @@ impl Plant {
         Ok(())
     }
 
-    /// The accelerations `qdd` that rapier finds now under the torques `tau`, friction included.
+    /// Writes the accelerations that rapier computes in the present state under the torques `tau`, friction included,
+    /// to `qdd`.
     ///
     /// # Errors
-    /// [`PlantError::Count`] if there is not one torque, or one acceleration, a joint.
+    /// [`PlantError::Count`] if there is not one torque and one acceleration per joint.
     pub fn accelerations(&mut self, tau: &[f64], qdd: &mut [f64]) -> Result<(), PlantError> {
         check_count("the torque", tau, self.dof())?;
         check_count("the acceleration", qdd, self.dof())?;
@@ -156,15 +157,16 @@ impl Plant {
         Ok(())
     }
 
-    /// Tries an interval of `time` from the present state under the torques driven, smooth
-    /// throughout: rapier's steps, extrapolated.
+    /// Tries an interval of `time` seconds from the present state under the present torques, by extrapolated rapier
+    /// steps. There is no event of dry friction within it.
     pub(crate) fn advance(&mut self, time: f64) {
         self.trial_q.copy_from_slice(&self.q);
         self.trial_qd.copy_from_slice(&self.qd);
         for (n, weight) in self.weights.iter().enumerate() {
             self.engine.load(&self.q, &self.qd);
             self.engine.run(time, n + 1);
-            // Sums of differences round less, and leave a joint that does not move where it is.
+            // Sums of differences have smaller rounding errors, and leave a joint that does not move exactly where it
+            // is.
             for (i, (q, qd)) in self.engine.state().enumerate() {
                 self.trial_q[i] += weight * (q - self.q[i]);
                 self.trial_qd[i] += weight * (qd - self.qd[i]);
@@ -172,7 +174,7 @@ impl Plant {
         }
     }
 
-    /// Makes the trial the present state.
+    /// Makes the end of the trial the present state.
     pub(crate) fn accept(&mut self) -> Result<(), PlantError> {
         self.check_bounds(&self.trial_q, &self.trial_qd)?;
         self.q.copy_from_slice(&self.trial_q);
@@ -180,7 +182,7 @@ impl Plant {
         Ok(())
     }
 
-    /// Refuses positions (or torques) that are not finite and velocities beyond all arms'.
+    /// Refuses positions or torques that are not finite, and velocities beyond those of any robot.
     fn check_bounds(&self, q: &[f64], qd: &[f64]) -> Result<(), PlantError> {
         let is_bounded = |(q, qd): (&f64, &f64)| q.is_finite() && qd.abs() < FASTEST;
         match q.iter().zip(qd).position(|joint| !is_bounded(joint)) {

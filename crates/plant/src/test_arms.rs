@@ -1,12 +1,12 @@
-//! Arms for the tests and the bench of this crate.
+//! Arms for the tests and the benchmark of this crate.
 #![allow(dead_code, clippy::unwrap_used, missing_docs)]
 
 use arm::{Arm, Workspace};
 
-/// The PUMA 560 with the published masses; the tensor of its third link breaks the triangle inequality.
+/// The PUMA 560 with the published masses; the inertia tensor of its third link violates the triangle inequality.
 const PUMA: &str = include_str!("../../../assets/puma560.urdf");
 
-/// Seven skew axes, and tensors along none of them.
+/// Seven skew axes, and inertia tensors with principal axes along none of them.
 const SKEW: &str = r#"<robot name="skew7">
 <link name="base"/>
 <joint name="j1" type="continuous"><origin xyz="-0.035 -0.07 0.23" rpy="-1.283 0.108 -0.403"/><parent link="base"/><child link="l1"/><axis xyz="-0.884 0.015 -0.925"/></joint>
@@ -25,7 +25,7 @@ const SKEW: &str = r#"<robot name="skew7">
 <link name="l7"><inertial><origin xyz="-0.017 -0.016 0.016" rpy="0.806 -1.313 -2.596"/><mass value="0.5"/><inertia ixx="0.00912" ixy="0.00091" ixz="-0.00067" iyy="0.00950" iyz="0.00046" izz="0.00919"/></inertial></link>
 </robot>"#;
 
-/// Sliding and turning joints by turns, none along a coordinate axis.
+/// Prismatic and revolute joints in turns, with no axis along a coordinate axis.
 const GANTRY: &str = r#"<robot name="gantry">
 <link name="base"/>
 <joint name="rail" type="prismatic"><origin xyz="0 0 1" rpy="0.3 0.2 0"/><parent link="base"/><child link="carriage"/><axis xyz="1 0.5 -0.2"/><limit lower="-9" upper="9" effort="0" velocity="0"/></joint>
@@ -38,7 +38,7 @@ const GANTRY: &str = r#"<robot name="gantry">
 <link name="hand"><inertial><origin xyz="0.03 0 0.04" rpy="0.5 0.5 0"/><mass value="0.7"/><inertia ixx="0.002" ixy="0" ixz="0" iyy="0.001" iyz="0" izz="0.0015"/></inertial></link>
 </robot>"#;
 
-/// One sliding joint with the mass of the EMPS drive (Janot, Gautier and Brunot 2019).
+/// One prismatic joint with the mass of the EMPS drive (Janot, Gautier and Brunot 2019).
 const SLIDER: &str = r#"<robot name="slider">
 <link name="base"/>
 <joint name="rail" type="prismatic"><parent link="base"/><child link="carriage"/><axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="0" velocity="0"/></joint>
@@ -65,7 +65,7 @@ pub fn read(urdf: &str) -> Arm {
     Arm::from_urdf_text(urdf, "test.urdf").unwrap()
 }
 
-/// The analytic plant: [`Arm::forward_dynamics`] under viscous friction and a torque each joint may add.
+/// The analytic plant: [`Arm::forward_dynamics`] with viscous friction and an additional torque per joint.
 pub struct Reference<'a> {
     arm: &'a Arm,
     workspace: Workspace,
@@ -89,7 +89,7 @@ impl<'a> Reference<'a> {
         qdd
     }
 
-    /// `time` seconds in `steps` steps of the classical Runge-Kutta method.
+    /// Advances by `time` (s) in `steps` steps of the classical Runge-Kutta method.
     pub fn run(&mut self, q: &mut [f64], qd: &mut [f64], tau: &[f64], time: f64, steps: usize) {
         let n = q.len();
         let h = time / steps as f64;
@@ -114,12 +114,12 @@ impl<'a> Reference<'a> {
     }
 }
 
-/// The largest difference of two vectors.
+/// The largest difference between the entries of two vectors.
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// Numbers in −1 to 1, the same every time.
+/// Pseudorandom numbers from −1 to 1, always the same.
 pub struct Random(pub u64);
 
 impl Random {

@@ -11,14 +11,14 @@ pub struct Array {
     pub name: String,
     /// The numbers of rows and columns.
     pub shape: (usize, usize),
-    /// Whether `values` are in the order of rows, and not of columns.
+    /// Whether `values` are stored row after row, or else column after column.
     pub by_rows: bool,
     /// The values, rows times columns.
     pub values: Column,
 }
 
 impl Array {
-    /// Its columns; its rows, where `transposed`.
+    /// Its columns, or its rows if `transposed`.
     fn columns(&self, transposed: bool) -> Vec<Column> {
         let (rows, columns) = self.shape;
         let (samples, series) = if transposed { (columns, rows) } else { (rows, columns) };
@@ -36,8 +36,8 @@ impl Array {
     }
 }
 
-/// The table of all arrays that have a value (or a row) for each sample; there are as many samples as the longest vector
-/// has values. A column of an array with several is `name[0]` and so on.
+/// The table of all arrays that have a value (or a row) for each sample; the number of samples is the length of the
+/// longest vector. The columns of an array with several are named `name[0]` and so on.
 ///
 /// # Errors
 /// [`RecordingError::Format`] if there is no vector.

@@ -1,4 +1,4 @@
-//! Values in bytes, read one after the other, with a `None` where they end.
+//! A reader of binary values, which returns `None` at the end of the bytes.
 
 /// Bytes that are read from their start.
 #[derive(Clone, Debug)]
@@ -9,7 +9,7 @@ pub struct Bytes<'a> {
 }
 
 impl<'a> Bytes<'a> {
-    /// From the start of `data`.
+    /// A reader at the beginning of `data`.
     pub fn new(data: &'a [u8], big_endian: bool) -> Self {
         Self {
             data,
@@ -18,7 +18,7 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// How many are left.
+    /// The number of remaining bytes.
     pub fn left(&self) -> usize {
         self.data.len() - self.at
     }
@@ -30,7 +30,7 @@ impl<'a> Bytes<'a> {
         Some(taken)
     }
 
-    /// Goes on to the next multiple of `size` from the start.
+    /// Advances to the next multiple of `size` from the beginning.
     pub fn align(&mut self, size: usize) -> Option<()> {
         let over = self.at % size;
         if over > 0 {
@@ -47,40 +47,40 @@ impl<'a> Bytes<'a> {
         Some(bytes)
     }
 
-    /// A whole number of two bytes.
+    /// An unsigned integer of two bytes.
     pub fn u16(&mut self) -> Option<u16> {
         self.array().map(u16::from_le_bytes)
     }
 
-    /// A whole number of four bytes.
+    /// An unsigned integer of four bytes.
     pub fn u32(&mut self) -> Option<u32> {
         self.array().map(u32::from_le_bytes)
     }
 
-    /// A whole number of eight bytes.
+    /// An unsigned integer of eight bytes.
     pub fn u64(&mut self) -> Option<u64> {
         self.array().map(u64::from_le_bytes)
     }
 
-    /// A number of eight bytes.
+    /// A floating-point number of eight bytes.
     pub fn f64(&mut self) -> Option<f64> {
         self.array().map(f64::from_le_bytes)
     }
 
-    /// A text with its length in four bytes before it; a zero at its end is not part of it.
+    /// A string with its length in the four bytes before it; a zero at its end is not part of it.
     pub fn text(&mut self) -> Option<&'a str> {
         let length = self.u32()?;
         let text = self.take(usize::try_from(length).ok()?)?;
         std::str::from_utf8(text.strip_suffix(b"\0").unwrap_or(text)).ok()
     }
 
-    /// What is left, with another byte order.
+    /// The remaining bytes, with the other byte order.
     pub fn rest(self, big_endian: bool) -> Self {
         Self::new(&self.data[self.at..], big_endian)
     }
 
-    /// `count` whole numbers of `size` bytes; none if they are cut. The largest of those without a sign are as large as a
-    /// number with one can be.
+    /// `count` integers of `size` bytes; `None` if the bytes end before. Unsigned integers beyond the range of signed
+    /// ones are limited to that range.
     pub fn integers(mut self, size: usize, signed: bool, count: usize) -> Option<Vec<i64>> {
         if count > self.left() / size {
             return None;
@@ -103,7 +103,7 @@ impl<'a> Bytes<'a> {
         Some(values)
     }
 
-    /// `count` numbers of four or eight bytes; none if they are cut.
+    /// `count` floating-point numbers of four or eight bytes; `None` if the bytes end before.
     pub fn numbers(mut self, size: usize, count: usize) -> Option<Vec<f64>> {
         if count > self.left() / size {
             return None;

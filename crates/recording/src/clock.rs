@@ -1,10 +1,9 @@
 //! The regular clock that a drive sampled on, found from the stamps that a logger wrote.
 //!
-//! Stamps scatter about the clock (a logger stamps late), rows are lost, and the logger's own clock
-//! drifts. The period comes from differences over ever longer spans, the phase from blocks of rows,
-//! and the rows go to their ticks by the likeliest strictly increasing sequence where rounding leaves
-//! a doubt. Where stamps scatter over most of the period, none tells a phase, and the ticks come from
-//! the rows' order alone (`track`).
+//! Stamps scatter about the clock (a logger stamps late), rows are lost, and the logger's own clock drifts. The period
+//! is estimated from differences over increasingly long spans, the phase from blocks of rows, and rows are assigned to
+//! ticks by the most likely strictly increasing sequence where rounding is ambiguous. If stamps scatter over most of
+//! the period, no stamp determines a phase, and the ticks follow from the order of the rows alone (`track`).
 
 mod track;
 
@@ -57,7 +56,7 @@ pub struct Clock {
 pub fn find(time: &[f64], breaks: &[usize]) -> Clock {
     let period = estimate_period(time, breaks);
     let near = scatter(time, breaks, period, 1);
-    // What scatters as widely as this is not worth a try by phase, which takes as long again.
+    // With such a large scatter, an attempt by phase would fail and take twice the time.
     let wide = if near > BLURRED {
         track::by_order(time, breaks, period)
     } else {
@@ -142,7 +141,7 @@ fn estimate_period(time: &[f64], breaks: &[usize]) -> f64 {
         let kept: Vec<f64> = steps.iter().copied().filter(|&step| keep(step)).collect();
         kept.iter().sum::<f64>() / kept.len().max(1) as f64
     };
-    // The mean near the median where stamps are rounded, the overall mean where rows come in bursts.
+    // The mean near the median if stamps are rounded, the overall mean if rows come in bursts.
     let candidates = [
         mean(&|step| step > 0.4 * middle && step < 1.6 * middle),
         middle,
@@ -157,7 +156,7 @@ fn estimate_period(time: &[f64], breaks: &[usize]) -> f64 {
             ticks += step / period;
             count += 1.0;
         }
-        // Rows lost or doubled count as much as stamps that scatter, but a period without a pulse is none.
+        // Lost or doubled rows cost as much as scatter; a period that the steps are not multiples of is ruled out.
         let off = (off / count).sqrt();
         let cost = off + (ticks / count - 1.0_f64).abs() + if off > NO_PULSE { 1.0 } else { 0.0 };
         if cost < best.0 - 1e-6 {
@@ -167,7 +166,7 @@ fn estimate_period(time: &[f64], breaks: &[usize]) -> f64 {
     best.1
 }
 
-/// Sharpens a period over ever longer spans, each within half a period by the estimate before.
+/// Refines a period over increasingly long spans, each of which the previous estimate determines within half a period.
 fn refine(time: &[f64], breaks: &[usize], mut period: f64) -> f64 {
     let mut lag = 1;
     while lag < time.len() && lag <= 4096 {
@@ -187,7 +186,7 @@ fn refine(time: &[f64], breaks: &[usize], mut period: f64) -> f64 {
     period
 }
 
-/// How far differences over `lag` rows are from whole periods, as a share of the period; robust.
+/// The distance of differences over `lag` rows from whole periods, as a share of the period; a robust estimate.
 fn scatter(time: &[f64], breaks: &[usize], period: f64, lag: usize) -> f64 {
     let mut off: Vec<f64> = differences(time, breaks, lag)
         .map(|difference| fraction(difference / period).abs())
@@ -195,7 +194,7 @@ fn scatter(time: &[f64], breaks: &[usize], period: f64, lag: usize) -> f64 {
     if off.is_empty() { 0.0 } else { 1.4826 * median(&mut off) }
 }
 
-/// Whether the deviations accumulate from row to row, so that rows were sampled at their stamps.
+/// Whether the deviations accumulate from row to row, so that rows were sampled at the times of their stamps.
 fn accumulates(time: &[f64], pieces: &[std::ops::Range<usize>], period: f64, near: f64) -> bool {
     let breaks: Vec<usize> = pieces.iter().skip(1).map(|rows| rows.start).collect();
     let far = scatter(time, &breaks, period, 16);
@@ -283,7 +282,8 @@ fn assign(stamps: &[f64], phases: &[(f64, f64)], period: f64) -> Vec<i64> {
 const CANDIDATES: usize = 5;
 const EARLIEST: i64 = -3;
 
-/// The strictly increasing ticks with the least cost: scatter, forgiving of late rows, and lost ticks.
+/// The strictly increasing ticks with the lowest cost, which depends on scatter, asymmetrically for late rows, and on
+/// lost ticks.
 fn likeliest(exact: &[f64], nearest: &[i64]) -> Vec<i64> {
     let mut off: Vec<f64> = exact
         .iter()
@@ -326,7 +326,7 @@ fn likeliest(exact: &[f64], nearest: &[i64]) -> Vec<i64> {
         |best, candidate| if cost[candidate] < cost[best] { candidate } else { best },
     );
     if !cost[best].is_finite() {
-        // More rows than ticks: no clock.
+        // If there are more rows than ticks, there is no clock.
         return nearest.to_vec();
     }
     let mut ticks = vec![0; exact.len()];
@@ -349,8 +349,8 @@ fn measure_jitter(clock: &mut Clock, stamps: &[f64], phases: &[(f64, f64)], firs
     }
 }
 
-/// The period over all pieces by least squares, snapped to a whole number of hertz that it cannot be
-/// told from, and each piece's start.
+/// The period over all pieces by least squares, rounded to a whole number of hertz if it cannot be distinguished from
+/// that, and the start of each piece.
 fn fit(clock: &mut Clock, time: &[f64]) {
     let (mut numerator, mut denominator) = (0.0, 0.0);
     let mut means = Vec::new();

@@ -178,7 +178,7 @@ impl ColumnMap {
         })
     }
 
-    /// What separates the cells, where the map says.
+    /// The separator of the cells, if the map gives one.
     pub(crate) fn delimiter(&self) -> Option<u8> {
         self.delimiter
     }
@@ -201,7 +201,7 @@ impl ColumnMap {
         }
     }
 
-    /// What to read from a file with these headers, whose first row has the cells `first`.
+    /// The plan for a file with these headers, whose first row has the cells `first`.
     pub(crate) fn plan(&self, headers: &[String], first: &[String], file: &Path) -> Result<Plan, RecordingError> {
         let find = |(name, line): &(String, usize)| {
             let index = headers.iter().position(|header| header == name).ok_or_else(|| {

@@ -1,4 +1,4 @@
-//! Column maps: what they mean, and what is refused.
+//! Column maps: their meaning, and what is refused.
 
 use super::*;
 

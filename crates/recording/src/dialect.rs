@@ -1,4 +1,4 @@
-//! The columns of known systems: ready column maps, chosen by the header.
+//! Column maps of known systems, which are chosen by the header.
 
 use std::path::Path;
 use std::sync::LazyLock;
@@ -34,10 +34,10 @@ static READY: LazyLock<Vec<ColumnMap>> = LazyLock::new(|| {
     MAPS.iter().map(parse).collect()
 });
 
-/// The ready map for a file with these headers, for these topics.
+/// The ready map for a file with these headers and topics.
 pub fn of(headers: &[String], topics: &[String]) -> Option<ColumnMap> {
     let has = |name: &str| headers.iter().any(|header| header == name);
-    // The columns that testbed itself writes need no map.
+    // Columns that testbed itself writes need no map.
     if has("t") && headers.iter().any(|header| header.starts_with("q_")) {
         return None;
     }
@@ -49,10 +49,11 @@ pub fn of(headers: &[String], topics: &[String]) -> Option<ColumnMap> {
     READY.iter().find(known).map(|map| map.with_topics(topics))
 }
 
-/// What to read by a ready map from a file with these headers, whose first row has the cells `first`, and a note that says so.
+/// The plan of a ready map for a file with these headers, whose first row has the cells `first`, and a warning that
+/// names the system.
 ///
 /// # Errors
-/// What is missing, and the remedy.
+/// The missing columns, and the remedy.
 pub fn plan(
     map: &ColumnMap,
     headers: &[String],
@@ -84,7 +85,7 @@ pub fn plan(
         },
         other => other,
     })?;
-    // The texts of a system's own, a frame's name for one, are no news.
+    // Text columns of the system itself, such as a frame's name, are not reported.
     let is_text = |index: usize| first.get(index).is_some_and(|cell| cell.trim().parse::<f64>().is_err());
     plan.others.retain(|(index, _)| !is_text(*index));
     let example = |quantity: Quantity| {

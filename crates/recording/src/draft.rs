@@ -1,16 +1,16 @@
-//! A column map to begin with, for a file whose columns are not known: guessed from their names, and said to be guessed.
+//! A proposal of a column map for a file with unknown columns, guessed from their names.
 
-/// How many columns are listed.
+/// The largest number of columns in the list.
 const LISTED: usize = 12;
-/// The words by which a position's, a velocity's and a torque's column are told, the surest first.
+/// The words that identify a column of positions, velocities or torques, the most reliable first.
 const POSITION: &[&str] = &["position", "pos", "angle", "theta", "q"];
 const VELOCITY: &[&str] = &["velocity", "vel", "speed", "dq", "qd"];
 const TORQUE: &[&str] = &["torque", "effort", "moment", "tau", "force"];
 const CURRENT: &[&str] = &["current", "curr"];
-/// What is wanted and not measured.
+/// Words of columns with commanded values, which were not measured.
 const WANTED: &[&str] = &["target", "desired", "cmd", "command", "ref", "reference", "goal", "d"];
 
-/// A map to begin with where the names of `headers` suggest one: what follows an error.
+/// A proposal of a column map, if the names of `headers` suggest one; it is appended to an error.
 pub fn map(headers: &[String]) -> String {
     draft(headers).map_or(String::new(), |map| {
         format!(
@@ -20,7 +20,7 @@ pub fn map(headers: &[String]) -> String {
     })
 }
 
-/// The columns there are, and a map to begin with.
+/// The list of columns, and the proposal.
 pub fn of(headers: &[String]) -> String {
     let mut listed: Vec<String> = headers
         .iter()
@@ -33,7 +33,7 @@ pub fn of(headers: &[String]) -> String {
     format!(". The columns are {}{}", listed.join(", "), map(headers))
 }
 
-/// A pattern of columns: its text with `{joint}`, and the joints that it has.
+/// A pattern of columns: its text with `{joint}`, and the joints that match.
 struct Pattern {
     text: String,
     joints: Vec<String>,
@@ -86,13 +86,14 @@ fn draft(headers: &[String]) -> Option<String> {
     Some(map)
 }
 
-/// The words of a name, in lower case: letters alone.
+/// The words in a name, in lower case, without digits.
 fn words(header: &str) -> Vec<String> {
     let parts = header.split(|letter: char| !letter.is_alphabetic());
     parts.filter(|part| !part.is_empty()).map(str::to_lowercase).collect()
 }
 
-/// The patterns of all headers, in their order: a number in the place of the joint, or a name before or behind a word.
+/// The patterns of all headers, in their order, in which `{joint}` stands for a number, or for the name before or
+/// after a known word.
 fn patterns(headers: &[String]) -> Vec<Pattern> {
     let mut patterns: Vec<Pattern> = Vec::new();
     let kinds = || POSITION.iter().chain(VELOCITY).chain(TORQUE).chain(CURRENT);
@@ -148,7 +149,7 @@ mod tests {
     fn drafted(names: &str) -> Option<String> {
         let headers: Vec<String> = names.split(',').map(str::to_owned).collect();
         let map = draft(&headers)?;
-        // What is proposed can be used.
+        // The proposal is a valid column map.
         let parsed = ColumnMap::parse(&map, Path::new("map.toml")).unwrap_or_else(|error| panic!("{error}: {map}"));
         parsed
             .plan(&headers, &[], Path::new("r"))

@@ -62,9 +62,9 @@ pub enum RecordingError {
         place: Place,
         /// The column's header.
         column: String,
-        /// What the cell holds.
+        /// The content of the cell.
         found: String,
-        /// What that is.
+        /// The description of that content.
         what: &'static str,
         /// The remedy.
         remedy: &'static str,
@@ -96,7 +96,7 @@ pub enum RecordingError {
         /// The time between rows (s).
         period: f64,
     },
-    /// Time stamps that a program gave do not increase.
+    /// Time stamps from a program do not increase.
     #[error("sample {row}: time goes from {before} s to {after} s; it must increase")]
     Time {
         /// The sample, from 0.

@@ -16,7 +16,7 @@ use crate::rows::Rows;
 use crate::table::{Column, Table};
 use crate::{ColumnMap, Recording, RecordingError, dialect, draft, header};
 
-/// Above this number of values, a file is reduced to means over longer times (1 GiB).
+/// A file with more values is reduced to means over several rows (1 GiB).
 const MOST_VALUES: usize = 1 << 27;
 
 /// A format of files with recordings.
@@ -27,7 +27,7 @@ trait Format {
     /// The file as a table of named columns.
     ///
     /// # Errors
-    /// [`RecordingError`] with the place, if the file is not what its beginning promises.
+    /// [`RecordingError`] with the place, if the file is damaged.
     fn read(&self, input: Input, options: &Options<'_>) -> Result<Table, RecordingError>;
 }
 
@@ -47,15 +47,15 @@ const FORMATS: &[&dyn Format] = &[
     &npz::Npz,
     &mat::Mat,
     &unread::Unread,
-    // Text has no mark of its own.
+    // CSV comes last, because text has no signature.
     &csv::Csv,
 ];
 
 impl Recording {
-    /// Reads a recording of any format that `docs/recordings.md` lists, compressed or not, whose columns are `t` (s) and
-    /// `q_<joint>`, `tau_<joint>` for the same joints, `qd_`, `qdd_`, `q_secondary_`, `tau_current_`, `current_` and
-    /// `temperature_<joint>` where there are any, or those of a system that is known. Other columns are kept as they
-    /// are. What was dealt with is in [`Recording::warnings`].
+    /// Reads a recording of any format that `docs/recordings.md` lists, compressed or not. Its columns are `t` (s),
+    /// `q_<joint>` and `tau_<joint>` for all joints, optionally `qd_`, `qdd_`, `q_secondary_`, `tau_current_`,
+    /// `current_` and `temperature_<joint>`; or those of a known system. Other columns are kept unchanged.
+    /// [`Recording::warnings`] lists what was corrected or omitted.
     ///
     /// # Errors
     /// [`RecordingError`] with the line or row and the column, if the file cannot be read, a column is missing, a
@@ -87,8 +87,8 @@ impl Recording {
         Self::of_table(table, path, map, most)
     }
 
-    /// The recording whose columns a program has in memory, named and read as those of a file: see [`Self::read_with`].
-    /// `name` is what errors call it.
+    /// A recording from columns in memory, which are named and read like those of a file: see [`Self::read_with`].
+    /// `name` is its name in errors.
     ///
     /// # Errors
     /// Those of [`Self::read_with`], and if the columns have different lengths.

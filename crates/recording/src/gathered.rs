@@ -1,4 +1,4 @@
-//! The columns that were read, combined into a recording.
+//! Columns that were read, combined into a recording.
 
 use crate::header::Plan;
 use crate::origin::Origin;
@@ -10,39 +10,39 @@ use crate::{PartialSignal, Quantity, Recording, Signal, Warning, wraps};
 pub enum State {
     /// Nothing yet.
     New,
-    /// It has a value in every row so far.
+    /// Every row so far has a value.
     Values,
-    /// It has had no value so far, though it must have one in every row.
+    /// No row so far has a value, although every row must have one.
     Missing {
         /// The first row.
         place: Place,
-        /// What stands there.
+        /// The content of its cell.
         found: String,
     },
-    /// It can be done without, and lacks a value somewhere.
+    /// The channel is optional, and a value is missing.
     LeftOut,
 }
 
-/// Columns by a plan, the time (s) first, then the channels, then the others.
+/// The columns of a plan: first the time (s), then the channels, then the other columns.
 pub struct Gathered<'a> {
-    /// What they are.
+    /// The plan of the columns.
     pub plan: &'a Plan,
     /// Their values.
     pub columns: Vec<Vec<f64>>,
-    /// The rows at which a run begins that is not the first.
+    /// The rows at which a run begins, except the first run.
     pub breaks: Vec<usize>,
-    /// What is known of each channel.
+    /// The state of each channel.
     pub states: Vec<State>,
-    /// Whether another column holds numbers alone.
+    /// For each other column, whether all its cells are numbers.
     pub numeric: Vec<bool>,
-    /// What was found so far.
+    /// The warnings so far.
     pub warnings: Vec<Warning>,
-    /// The second of a calendar that the time is counted from.
+    /// The second since 1970 from which the time is counted, if stamps are dates.
     pub epoch: Option<i64>,
 }
 
 impl Gathered<'_> {
-    /// The recording; joints without positions or torques are left out.
+    /// Makes the recording; joints without positions or torques are omitted.
     pub fn into_recording(mut self) -> Recording {
         let keeps = self.kept_joints();
         let origin = Origin::of(self.plan, |index| {
@@ -71,7 +71,7 @@ impl Gathered<'_> {
                 signal
             }
         };
-        // For all joints or for none.
+        // Given for all joints or for none.
         let mut whole = |quantity: Quantity| -> Signal {
             let signal: Option<Signal> = partial(quantity).into_iter().collect();
             signal.unwrap_or_default()
@@ -111,7 +111,7 @@ impl Gathered<'_> {
         recording
     }
 
-    /// Whether each joint has positions and torques; the others are told of.
+    /// Whether each joint has positions and torques; there is a warning for each that does not.
     fn kept_joints(&mut self) -> Vec<bool> {
         let mut keeps = vec![true; self.plan.joints.len()];
         for (channel, state) in self.plan.channels.iter().zip(&self.states) {

@@ -9,7 +9,7 @@ pub struct Channel {
     pub index: usize,
     /// The column's header.
     pub header: String,
-    /// What it holds.
+    /// The quantity in the column.
     pub quantity: Quantity,
     /// The index of the joint, from 0.
     pub joint: usize,
@@ -28,9 +28,9 @@ pub struct TimeColumn {
     pub header: String,
     /// Seconds in the stamps' unit.
     pub factor: f64,
-    /// The column of nanoseconds to add, where the stamps are whole seconds, and its header.
+    /// The column of nanoseconds to add, if the stamps are whole seconds, and its header.
     pub nanos: Option<(usize, String)>,
-    /// The column that numbers the runs of a file, where there is one, and its header.
+    /// The column that numbers the runs of a file, if there is one, and its header.
     pub run: Option<(usize, String)>,
 }
 
@@ -46,7 +46,7 @@ impl TimeColumn {
         }
     }
 
-    /// The columns that it takes.
+    /// The indices of these columns.
     pub fn indices(&self) -> impl Iterator<Item = usize> + '_ {
         let more = self.nanos.iter().chain(&self.run).map(|(index, _)| *index);
         std::iter::once(self.index).chain(more)
@@ -64,12 +64,12 @@ pub struct Plan {
     pub channels: Vec<Channel>,
     /// The other columns, from 0, with their headers.
     pub others: Vec<(usize, String)>,
-    /// The columns whose cells are joints' names, from 0, with the names.
+    /// The columns whose cells are the names of joints, from 0, with the expected names.
     pub names: Vec<(usize, String)>,
 }
 
 impl Plan {
-    /// The plan whose other columns are all that is not used.
+    /// Makes all unused columns the other columns of the plan.
     pub fn new(headers: &[String], joints: Vec<String>, time: TimeColumn, channels: Vec<Channel>) -> Self {
         let used: Vec<usize> = time
             .indices()
@@ -89,7 +89,7 @@ impl Plan {
     }
 }
 
-/// Why headers that are numbers are none.
+/// The reason why headers that are numbers are refused.
 pub fn numbers(headers: &[String]) -> Option<String> {
     let is_number = |header: &String| header.replacen(',', ".", 1).parse::<f64>().is_ok();
     let numbers = headers.iter().filter(|header| is_number(header)).count();
@@ -102,7 +102,7 @@ pub fn numbers(headers: &[String]) -> Option<String> {
     })
 }
 
-/// The first header of those used that is there twice.
+/// The first used header that occurs twice.
 pub fn doubled<'a>(headers: &'a [String], plan: &Plan) -> Option<&'a str> {
     let used = plan
         .time
@@ -112,7 +112,7 @@ pub fn doubled<'a>(headers: &'a [String], plan: &Plan) -> Option<&'a str> {
         .find(|used| headers.iter().filter(|header| header == used).count() > 1)
 }
 
-/// The plan for headers named as testbed names them; else what is missing.
+/// The plan for headers with testbed's own names; the error contains what is missing.
 pub fn plan_by_names(headers: &[String]) -> Result<Plan, String> {
     let at = |name: &str| headers.iter().position(|header| header == name);
     let remedy = "name the columns so, or give a column map (--map)";
@@ -146,7 +146,7 @@ pub fn plan_by_names(headers: &[String]) -> Result<Plan, String> {
             "there is no column \"tau_<joint>\" (torque in N m, or force in N); {remedy}"
         ));
     }
-    // Something more about a joint that is there: q_secondary_a, q_desired_a, tau_current_a.
+    // An additional quantity of a joint with positions: q_secondary_a, q_desired_a, tau_current_a.
     let more = |name: &str| {
         joints.iter().any(|joint| {
             name.strip_suffix(joint.as_str())
@@ -210,7 +210,7 @@ pub fn plan_by_names(headers: &[String]) -> Result<Plan, String> {
     Ok(Plan::new(headers, joints, time, channels))
 }
 
-/// The first two columns that together are a stamp: `sec` and `nanosec`, `stamp.secs` and `stamp.nsecs`, and so on.
+/// The first two columns that form a stamp together: `sec` and `nanosec`, `stamp.secs` and `stamp.nsecs`, and so on.
 fn seconds_and_nanos(headers: &[String]) -> Option<TimeColumn> {
     headers.iter().enumerate().find_map(|(index, header)| {
         let stem = header.strip_suffix("secs").or_else(|| header.strip_suffix("sec"))?;

@@ -1,15 +1,15 @@
-//! Rows that repeat the sample before them, from a logger that is faster than the drive.
+//! Rows that repeat the previous sample, from a logger that is faster than the drive.
 
 use crate::{PartialSignal, Recording, Warning};
 
-/// The least number of samples in which repetitions make a pattern.
+/// The smallest number of samples in which repetitions are recognised.
 const LEAST_RUNS: usize = 20;
-/// The least part of all samples that is held for the same number of rows.
+/// The smallest share of the samples that must be repeated equally often.
 const ALIKE: f64 = 0.8;
 
-/// The recording with each sample once, and a warning, if each was written several times; `None` if rows are samples.
+/// The recording with each sample once, and a warning, if samples were written several times; `None` otherwise.
 ///
-/// Positions of held samples stand still and jump, so that no derivative of them means anything.
+/// The positions of repeated samples are constant and then jump, so that their derivatives are meaningless.
 pub fn without_held(recording: &Recording) -> Option<(Recording, Warning)> {
     let runs = runs(recording);
     let mut lengths: Vec<usize> = runs.iter().map(|&(_, length)| length).collect();
@@ -18,8 +18,8 @@ pub fn without_held(recording: &Recording) -> Option<(Recording, Warning)> {
     }
     let middle = lengths.len() / 2;
     let held = *lengths.select_nth_unstable(middle).1;
-    // A logger's clock drifts against the other: now and then a sample is held for one row more or less. What does not
-    // change for longer is the same value sampled again.
+    // The clock of the logger drifts relative to that of the drive, so that a sample is sometimes repeated once more
+    // or once less. Values that remain constant for longer are separate samples with the same value.
     let is_alike = |length: &&usize| {
         let rest = **length % held;
         rest <= 1 || rest + 1 >= held

@@ -8,25 +8,25 @@ use std::rc::Rc;
 
 use crate::RecordingError;
 
-/// The first bytes, by which a format is recognised.
+/// The number of first bytes by which a format is recognised.
 const HEAD: u64 = 1 << 16;
-/// A compressed file may expand to this many bytes, and to so many times its size beyond.
+/// A compressed file may expand to this many bytes plus this many times its size.
 const EXPANDED: u64 = 64 << 20;
 const EXPANSION: u64 = 100;
 
 /// A recording's file, or folder, before its format is known.
 pub struct Input {
-    /// Where it is.
+    /// Its path.
     pub path: PathBuf,
     /// Its first bytes, without compression; none of a folder.
     pub head: Vec<u8>,
-    /// The contents, without compression, read up to the end of `head`; none of a folder.
+    /// The contents without compression, with the position at the end of `head`; none for a folder.
     file: Option<File>,
-    /// Whether the contents are those of the file at `path`.
-    as_it_was: bool,
+    /// Whether the contents are the unchanged bytes of the file at `path`.
+    unchanged: bool,
 }
 
-/// How many bytes a file of `size` bytes may expand to.
+/// The number of bytes to which a file of `size` bytes may expand.
 pub fn most_expanded(size: u64) -> u64 {
     EXPANDED.saturating_add(size.saturating_mul(EXPANSION))
 }
@@ -47,21 +47,21 @@ impl Input {
                 path: path.to_owned(),
                 head: Vec::new(),
                 file: None,
-                as_it_was: true,
+                unchanged: true,
             });
         }
-        let mut as_it_was = file.metadata().map_err(unreadable)?.is_file();
+        let mut unchanged = file.metadata().map_err(unreadable)?.is_file();
         let mut head = read_head(&mut file).map_err(unreadable)?;
         if let Some(name) = compression(&head) {
             file = expand(path, name, head, file)?;
             head = read_head(&mut file).map_err(unreadable)?;
-            as_it_was = false;
+            unchanged = false;
         }
         Ok(Self {
             path: path.to_owned(),
             head,
             file: Some(file),
-            as_it_was,
+            unchanged,
         })
     }
 
@@ -70,9 +70,9 @@ impl Input {
         self.file.is_none()
     }
 
-    /// Whether the contents are those of the file at the path: not expanded, and no pipe.
-    pub fn is_as_it_was(&self) -> bool {
-        self.as_it_was
+    /// Whether the contents are the bytes of the file at the path: neither expanded nor from a pipe.
+    pub fn is_unchanged(&self) -> bool {
+        self.unchanged
     }
 
     /// An error that a format's reader has with this file.
@@ -84,7 +84,8 @@ impl Input {
         }
     }
 
-    /// The contents from the first byte on, and whether they end with a newline (or cannot say: a pipe).
+    /// The contents from the first byte on, and whether they end with a newline (true for a pipe, where this is not
+    /// known).
     pub fn into_stream(self) -> Result<(Box<dyn Read>, bool), RecordingError> {
         let Some(mut file) = self.file else {
             return Err(RecordingError::Read {
@@ -144,7 +145,7 @@ fn read_head(file: &mut File) -> std::io::Result<Vec<u8>> {
     Ok(head)
 }
 
-/// Whether the file ends with a newline; it stays at `place`.
+/// Whether the file ends with a newline; its position does not change.
 fn ends_with_newline(file: &mut File, place: u64) -> std::io::Result<bool> {
     if file.seek(SeekFrom::End(-1)).is_err() {
         return Ok(true);
@@ -155,7 +156,7 @@ fn ends_with_newline(file: &mut File, place: u64) -> std::io::Result<bool> {
     Ok(last[0] == b'\n')
 }
 
-/// The compression of a file that begins so.
+/// The compression of a file with these first bytes.
 fn compression(head: &[u8]) -> Option<&'static str> {
     match head {
         [0x1F, 0x8B, ..] => Some("gzip"),
@@ -164,7 +165,7 @@ fn compression(head: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// Counts the bytes that are read through it.
+/// Counts the bytes that are read.
 struct Counted<R> {
     inner: R,
     count: Rc<Cell<u64>>,

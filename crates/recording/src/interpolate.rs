@@ -1,15 +1,16 @@
-//! Values between samples, by polynomials through the nearest ones.
+//! Values between samples by polynomials through the nearest ones.
 
-/// Nodes whose weights add up (without their signs) to more are not trusted with a value: they amplify noise by as much.
-/// The widest gap that is filled on a regular clock has 3.6; of stamps without one, two may be next to each other.
+/// If the absolute weights of the nodes have a larger sum, the polynomial is not used, because it would amplify noise
+/// by that factor. The sum is 3.6 for the widest gap that is filled on a regular clock; without a regular clock, two
+/// stamps may be very close.
 pub const MOST_WEIGHT: f64 = 20.0;
 
-/// The value at `at` of the polynomial through `nodes` (place, value), of which no two share a place.
+/// The value at `at` of the polynomial through `nodes` (place, value), which have different places.
 pub fn lagrange(nodes: &[(f64, f64)], at: f64) -> f64 {
     weighted(nodes, at).0
 }
 
-/// That value, and the sum of the nodes' weights in it without their signs.
+/// The value, and the sum of the absolute weights of the nodes.
 fn weighted(nodes: &[(f64, f64)], at: f64) -> (f64, f64) {
     let (mut sum, mut weights) = (0.0, 0.0);
     for (i, (place, value)) in nodes.iter().enumerate() {
@@ -25,11 +26,11 @@ fn weighted(nodes: &[(f64, f64)], at: f64) -> (f64, f64) {
     (sum, weights)
 }
 
-/// The value at `at` from up to `side` samples on either side of the gap before sample `next`; on a straight line between the
-/// nearest two where more of them would amplify noise (see [`MOST_WEIGHT`]).
+/// The value at `at` from up to `side` samples on either side of the gap before sample `next`; by linear interpolation
+/// between the nearest two if a polynomial would amplify noise (see [`MOST_WEIGHT`]).
 ///
 /// # Panics
-/// If there is no sample before `next` or none from it on.
+/// If there is no sample on one of the two sides.
 pub fn between(places: &[f64], values: &[f64], next: usize, side: usize, at: f64) -> f64 {
     let from = next.saturating_sub(side);
     let to = (next + side).min(places.len());
@@ -61,7 +62,7 @@ mod tests {
         assert!((between(&places, &values, 1, 3, 0.5) - cube(0.5)).abs() < 1e-12);
     }
 
-    /// Rows that come in pairs, as of messages that wait for each other: their slope is all noise.
+    /// Rows in pairs, as from messages that wait for each other: their slope consists of noise.
     #[test]
     fn samples_next_to_each_other_do_not_amplify_their_noise() {
         let (places, values) = ([0.0, 0.001, 2.0, 2.001], [1.0, 1.001, 1.0, 0.999]);
@@ -71,7 +72,7 @@ mod tests {
         }
     }
 
-    /// Gaps that are filled on a regular clock take the polynomial, also at the ends.
+    /// In gaps that are filled on a regular clock, the polynomial is used, also at the ends.
     #[test]
     fn ticks_are_trusted() {
         let square = |x: f64| x * x;

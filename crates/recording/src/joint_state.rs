@@ -12,9 +12,9 @@ use crate::table::{Column, Table};
 pub const TYPES: [&str; 2] = ["sensor_msgs/msg/JointState", "sensor_msgs/JointState"];
 const FIELDS: [&str; 3] = ["position", "velocity", "effort"];
 const NANOS: i64 = 1_000_000_000;
-/// A topic that is joined with another must cover this share of its time.
+/// A topic is joined with another one if it covers this share of its time.
 const COVERED: f64 = 0.9;
-/// Values further apart than so many of their periods are not interpolated.
+/// Values are not interpolated over gaps of more periods.
 const GAP: i64 = 10;
 
 /// Values with their times (ns).
@@ -23,14 +23,14 @@ type Series = Vec<(i64, f64)>;
 /// One message.
 #[derive(Debug, PartialEq)]
 struct JointState<'a> {
-    /// Its header's stamp (ns); 0 where nobody set it.
+    /// The stamp in its header (ns); 0 if it is not set.
     stamp: i64,
     names: Vec<&'a str>,
-    /// Positions, velocities and efforts; of each as many as names, or none.
+    /// Positions, velocities and efforts; each has as many values as there are names, or none.
     fields: [Vec<f64>; 3],
 }
 
-/// Understands a message in CDR (its first version, little or big endian).
+/// Parses a message in CDR (version 1, little or big endian).
 fn decode(data: &[u8]) -> Result<JointState<'_>, String> {
     let (kind, body) = match data {
         [0, kind @ (0 | 1), _, _, body @ ..] => (*kind, body),
@@ -101,7 +101,7 @@ struct Joint {
 }
 
 impl JointStates {
-    /// Messages so far.
+    /// The number of messages so far.
     pub fn messages(&self) -> u64 {
         self.messages
     }
@@ -109,7 +109,7 @@ impl JointStates {
     /// Takes a message of `topic` that was logged at `logged` (ns).
     ///
     /// # Errors
-    /// Why it is no joint state.
+    /// The reason why it is not a joint state.
     pub fn add(&mut self, topic: &str, logged: i64, data: &[u8]) -> Result<(), String> {
         self.messages += 1;
         let number = self.messages;
@@ -123,7 +123,7 @@ impl JointStates {
             return Ok(());
         };
         for (index, name) in message.names.iter().enumerate() {
-            // Mostly the order stays the same.
+            // The order of the joints rarely changes.
             let known = match joints.get(index) {
                 Some(joint) if joint.name == *name => Some(index),
                 _ => joints.iter().position(|joint| joint.name == *name),
@@ -144,8 +144,8 @@ impl JointStates {
         Ok(())
     }
 
-    /// The table of all joint states, with the columns `<topic>/<joint>/position` and so on, on the stamps of the joint
-    /// that has the most. `chosen` topics are joined in any case, others if they add something.
+    /// The table of all joint states, with the columns `<topic>/<joint>/position` and so on, at the stamps of the
+    /// joint with the most values. `chosen` topics are always joined, others if they add something.
     ///
     /// # Errors
     /// [`RecordingError::Format`] if there are none.
@@ -161,7 +161,7 @@ impl JointStates {
         });
         let samples = |(_, joints): &(&String, &Vec<Joint>)| {
             let count = joints.iter().map(|joint| joint.fields[0].len()).max();
-            // Of equal ones, the first.
+            // The first of equal ones.
             (count.unwrap_or(0), std::cmp::Reverse(joints.len()))
         };
         let base = self.topics.iter().rev().max_by_key(samples);
@@ -202,14 +202,14 @@ impl JointStates {
     }
 }
 
-/// Whether the base has a position and an effort of all `joints`, which do not have both.
+/// Whether the base topic has positions and efforts of all `joints`, each of which lacks one or the other.
 fn adds_nothing(joints: &[Joint], base: &[Joint]) -> bool {
     let has = |joint: &Joint| !joint.fields[0].is_empty() && !joint.fields[2].is_empty();
     let in_base = |name: &str| base.iter().any(|joint| joint.name == name && has(joint));
     joints.iter().all(|joint| in_base(&joint.name) && !has(joint))
 }
 
-/// Adds the columns of a joint at `times`; rows that they have no values for are not kept.
+/// Adds the columns of a joint at `times`; rows without values are removed.
 fn join(
     topic: &str,
     joint: &Joint,
@@ -256,8 +256,8 @@ fn join(
     }
 }
 
-/// The values of `series` at `times` (ns), linearly interpolated where it has none, and how many were; none beyond its
-/// ends and in its gaps.
+/// The values of `series` at `times` (ns), interpolated linearly between samples, and the number of interpolated ones;
+/// NaN outside its time span and in its gaps.
 fn at(series: &[(i64, f64)], times: &[i64]) -> (Vec<Option<f64>>, usize) {
     let mut steps: Vec<i64> = series.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
     let middle = steps.len() / 2;
@@ -355,7 +355,7 @@ mod tests {
             for value in [0, 1, 0x7F, 0xFF] {
                 let mut damaged = data.clone();
                 damaged[at] = value;
-                // Either is good: what matters is that it ends.
+                // Both results are allowed; the test is that reading ends.
                 let _ = decode(&damaged);
             }
         }

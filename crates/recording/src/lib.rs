@@ -1,9 +1,8 @@
 //! Recordings of joint motion and torque in SI units, their files, their clock and their quality.
 //!
-//! A simulation and a robot both make a [`Recording`]: time, positions, velocities and torques of
-//! named joints, on the joint side, in s, rad (m), rad/s (m/s) and N m (N). [`Recording::regular`]
-//! puts its rows on the regular clock that the drive sampled on; [`Quality`] says what the
-//! recording is worth, before anything is fitted to it.
+//! A simulation and a robot both make a [`Recording`]: time, positions, velocities and torques of named joints, on the
+//! joint side, in s, rad (m), rad/s (m/s) and N m (N). [`Recording::regular`] assigns its rows to the regular clock on
+//! which the drive sampled; [`Quality`] describes the recording before anything is fitted to it.
 
 mod arrays;
 mod bytes;
@@ -75,13 +74,14 @@ pub struct Recording {
     pub temperature: PartialSignal,
     /// Other columns, by their header.
     pub others: Vec<(String, Vec<f64>)>,
-    /// The samples at which another run begins, where a file holds several.
+    /// The samples at which a further run begins, if a file contains several.
     pub breaks: Vec<usize>,
-    /// What was found and dealt with in reading.
+    /// What was corrected or omitted while reading.
     pub warnings: Vec<Warning>,
-    /// The second of a calendar that `time` is counted from (usually since 1970); `None` where the clock is the file's own.
+    /// The second since 1970 from which `time` is counted, if stamps are dates; `None` if the file has a clock of its
+    /// own.
     pub epoch: Option<i64>,
-    /// The columns that it was read from; `None` of what was not read.
+    /// The columns from which it was read; `None` if it was not read.
     pub origin: Option<Origin>,
 }
 
@@ -96,7 +96,7 @@ impl Recording {
         self.time.is_empty()
     }
 
-    /// From the first stamp to the last (s).
+    /// The time from the first stamp to the last (s).
     pub fn duration(&self) -> f64 {
         match (self.time.first(), self.time.last()) {
             (Some(first), Some(last)) => last - first,

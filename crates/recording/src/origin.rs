@@ -1,4 +1,4 @@
-//! The columns that a recording was read from, as a column map would have to name them.
+//! The columns from which a recording was read, in the terms of a column map.
 
 use crate::Quantity;
 use crate::header::{Plan, TimeColumn};
@@ -10,9 +10,9 @@ pub struct Origin {
     pub time: String,
     /// Seconds in the stamps' unit.
     pub time_factor: f64,
-    /// The column of nanoseconds beside it, where there is one.
+    /// The column of nanoseconds, if there is one.
     pub nanosec: Option<String>,
-    /// The column that numbers the runs, where there is one.
+    /// The column that numbers the runs, if there is one.
     pub run: Option<String>,
     /// The joints' columns.
     pub columns: Vec<OriginColumn>,
@@ -21,9 +21,9 @@ pub struct Origin {
 /// A column of one joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OriginColumn {
-    /// The joint, from 0, among the recording's.
+    /// The index of the joint in the recording, from 0.
     pub joint: usize,
-    /// What the column holds.
+    /// The quantity in the column.
     pub quantity: Quantity,
     /// Its header.
     pub header: String,
@@ -34,7 +34,8 @@ pub struct OriginColumn {
 }
 
 impl Origin {
-    /// The columns of `plan` that were kept: those for which `keeps`, given the column's place in the plan, is a joint.
+    /// The columns of `plan` for which `keeps` returns the index of a joint, given the index of the column in the
+    /// plan.
     pub(crate) fn of(plan: &Plan, keeps: impl Fn(usize) -> Option<usize>) -> Self {
         let TimeColumn {
             header,

@@ -1,4 +1,4 @@
-//! What a recording is worth, before anything is fitted to it.
+//! The quality of a recording, before anything is fitted to it.
 
 mod findings;
 mod joint;
@@ -12,14 +12,14 @@ use crate::{Recording, RegularRecording};
 pub use findings::{Finding, FindingKind};
 pub use joint::JointQuality;
 
-/// The quality of one recording: its clock, its joints, and what is doubtful.
+/// The quality of one recording: its clock, its joints, and doubtful properties.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Quality {
     /// Rows that were read.
     pub rows: usize,
-    /// From the first stamp to the last (s).
+    /// The time from the first stamp to the last (s).
     pub duration: f64,
-    /// Ticks a second (Hz).
+    /// The number of ticks per second (Hz).
     pub rate: f64,
     /// Whether the stamps have a regular clock.
     pub has_clock: bool,
@@ -27,20 +27,20 @@ pub struct Quality {
     pub jitter_rms: f64,
     /// Distance of the stamps from the clock, largest (s).
     pub jitter_max: f64,
-    /// Rows that are missing one or a few at a time.
+    /// The number of missing rows in short gaps, which are interpolated.
     pub lost_rows: usize,
-    /// Pieces between long gaps.
+    /// The number of pieces between long gaps.
     pub segments: usize,
     /// The longest gap (s); 0 if there is none.
     pub longest_gap: f64,
     /// Each joint.
     pub joints: Vec<JointQuality>,
-    /// What is doubtful, the gravest first.
+    /// Doubtful properties, the most serious first.
     pub findings: Vec<Finding>,
 }
 
 impl Quality {
-    /// The quality of `recording`, which on its clock is `regular`.
+    /// The quality of `recording`, where `regular` is the same recording on its clock.
     pub fn of(recording: &Recording, regular: &RegularRecording) -> Self {
         let motions: Vec<velocity::Slopes> = regular
             .q

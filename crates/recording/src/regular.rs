@@ -1,4 +1,4 @@
-//! A recording on the regular clock of the drive: what can be filtered and differentiated.
+//! A recording on the regular clock of the drive, which can be filtered and differentiated.
 
 use std::ops::Range;
 
@@ -9,9 +9,9 @@ use crate::{PartialSignal, Quantity, Recording, RecordingError, Signal, Warning,
 
 /// The largest number of consecutive missing ticks that are interpolated; a longer gap divides the recording.
 const FILLED: i64 = 5;
-/// No drive records faster (s).
+/// No drive records with a shorter period (s).
 const SHORTEST_PERIOD: f64 = 5e-6;
-/// Stamps closer to the clock than this share of the period are not worth a word.
+/// Deviations of the stamps from the clock up to this share of the period are not reported.
 const QUIET: f64 = 0.01;
 
 /// A stretch of evenly spaced ticks without a long gap.
@@ -25,23 +25,23 @@ pub struct Segment {
 
 /// A recording whose samples lie on a regular clock, in segments parted by long gaps.
 ///
-/// Filter and differentiate segment by segment: from the last tick of one to the first of the next
-/// is more than one period.
+/// Filter and differentiate each segment separately: the time between the last tick of one and the first of the next
+/// is longer than one period.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RegularRecording {
-    /// The joints' names, in the order of every [`Signal`].
+    /// The names of the joints, in the order of every [`Signal`].
     pub joints: Vec<String>,
     /// The time of the first tick (s).
     pub start: f64,
     /// The time between ticks (s).
     pub period: f64,
-    /// The stretches without a long gap, in order; they hold every tick.
+    /// The segments between long gaps, in order; together they contain every tick.
     pub segments: Vec<Segment>,
     /// Whether a tick was recorded; if not, its values are interpolated.
     pub present: Vec<bool>,
     /// Positions (rad or m).
     pub q: Signal,
-    /// Velocities as recorded (rad/s or m/s): usually filtered, and late.
+    /// Velocities as recorded (rad/s or m/s), which are usually filtered and delayed.
     pub qd: Option<Signal>,
     /// Accelerations as recorded (rad/s² or m/s²).
     pub qdd: Option<Signal>,
@@ -84,7 +84,7 @@ impl RegularRecording {
         })
     }
 
-    /// Counts the time from `seconds` earlier on.
+    /// Shifts the time so that it starts `seconds` earlier.
     pub fn delay(&mut self, seconds: f64) {
         self.start += seconds;
         for segment in &mut self.segments {
@@ -100,22 +100,23 @@ impl RegularRecording {
     }
 }
 
-/// Rows between long gaps and the ticks they make.
+/// The rows between two long gaps, and their ticks.
 struct Stretch {
     rows: Range<usize>,
-    /// The place of each row, in periods after the stretch's first tick.
+    /// The position of each row, in periods after the first tick.
     places: Vec<f64>,
-    /// How many ticks.
+    /// The number of ticks.
     ticks: usize,
     start: f64,
 }
 
 impl Recording {
-    /// The recording on the regular clock that its drive sampled on, and what was found on the way.
+    /// The recording on the regular clock on which its drive sampled, and the warnings.
     ///
-    /// Of a sample that is written several times the first row is taken (see [`Warning::Held`]). Each row goes to its tick, wherever its stamp lies; up to five missing ticks are interpolated
-    /// (and marked in [`RegularRecording::present`]), longer gaps part the segments; single-sample spikes
-    /// are interpolated. Stamps without a regular clock are taken at their word, and the rows resampled.
+    /// Of a sample that is written several times, the first row is used (see [`Warning::Held`]). Each row is assigned
+    /// to its tick, whatever the deviation of its stamp. Up to five missing ticks are interpolated (and marked in
+    /// [`RegularRecording::present`]), longer gaps divide the recording into segments, and single-sample spikes are
+    /// interpolated. If the stamps have no regular clock, the rows are resampled at the times of the stamps.
     ///
     /// # Errors
     /// [`RecordingError::TooShort`] below two samples, [`RecordingError::Time`] if stamps do not increase,
@@ -129,7 +130,7 @@ impl Recording {
         self.on_its_clock()
     }
 
-    /// The regular recording of rows that are samples.
+    /// The regular recording of rows that are all samples.
     fn on_its_clock(&self) -> Result<(RegularRecording, Vec<Warning>), RecordingError> {
         let rows = self.len();
         if rows < 2 {
@@ -222,7 +223,7 @@ impl Recording {
                         .map(|stamp| (stamp - origin) / clock.period);
                     (places.collect(), origin)
                 };
-                // A clock that restarts was told in reading.
+                // A restart of the clock was reported while reading.
                 if begun > 0 && !self.breaks.contains(&begun) {
                     warnings.push(Warning::Gap {
                         from: self.time[begun - 1],
@@ -270,12 +271,12 @@ impl Recording {
     }
 }
 
-/// Puts channels on the ticks.
+/// Interpolates channels at the ticks.
 struct Resampler<'a> {
     recording: &'a Recording,
     stretches: &'a [Stretch],
     period: f64,
-    /// Whether rows lie on ticks.
+    /// Whether the rows coincide with ticks.
     even: bool,
     warnings: &'a mut Vec<Warning>,
 }
@@ -307,7 +308,7 @@ impl Resampler<'_> {
         let mut largest = 0.0_f64;
         for stretch in self.stretches {
             let mut values = values[stretch.rows.clone()].to_vec();
-            // Temperatures and unknown columns may jump as they like.
+            // Temperatures and unknown columns are not checked for spikes.
             if matches!(what, Some((quantity, _)) if quantity != Quantity::Temperature) {
                 for spike in spikes::remove(&stretch.places, &mut values) {
                     times.push(stretch.start + stretch.places[spike.row] * self.period);
@@ -331,7 +332,7 @@ impl Resampler<'_> {
         resampled
     }
 
-    /// The values of a stretch at its ticks; by smooth interpolation, or (`smooth` false) the value before.
+    /// The values of a segment at its ticks, by smooth interpolation or, if `smooth` is false, from the previous row.
     fn put(&self, stretch: &Stretch, values: Vec<f64>, smooth: bool, into: &mut Vec<f64>) {
         if self.even && stretch.ticks == values.len() {
             into.extend(values);
@@ -349,7 +350,8 @@ impl Resampler<'_> {
             } else if next == 0 || next >= values.len() {
                 values[next.min(values.len() - 1)]
             } else if smooth {
-                // One missing sample takes six around it; more take four, which do not amplify noise.
+                // A single missing sample is interpolated from six neighbours; several from four, which amplify noise
+                // less.
                 let one = stretch.places[next] - stretch.places[next - 1] < 2.5;
                 between(&stretch.places, &values, next, if one && self.even { 3 } else { 2 }, at)
             } else {

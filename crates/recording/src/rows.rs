@@ -1,4 +1,4 @@
-//! The rows of a table as they are read: values by the plan, duplicates and runs told apart.
+//! The rows of a table, converted by the plan; duplicates and separate runs are recognised.
 
 use std::path::Path;
 
@@ -10,44 +10,45 @@ use crate::thinned::Thinned;
 use crate::warning::RUN_PAUSE;
 use crate::{Recording, RecordingError, Warning};
 
-/// A clock that starts anew does so within this share of its run's length from where it started.
+/// The first stamp of a new run differs from that of the previous run by at most this share of the run's duration.
 const RESTART_SHARE: f64 = 0.01;
-/// A run in a file of several has at least this many rows.
+/// The smallest number of rows of a run in a file with several.
 const RUN_ROWS: usize = 50;
-/// Rows with the stamp of the row before but other values may be this share of all.
+/// The largest share of rows that have the stamp of the previous row and other values.
 const DIFFERING_SHARE: f64 = 0.01;
 
-/// No position, speed, torque, current or temperature is larger (SI).
+/// The largest plausible value of any quantity (SI).
 const LARGEST: f64 = 1e9;
-/// No stamp is later (s).
+/// The latest plausible stamp (s).
 const LATEST: f64 = 1e15;
 
-/// The rows read so far, by the plan.
+/// The rows that were read so far, converted by the plan.
 pub struct Rows<'a> {
     path: &'a Path,
     has_lines: bool,
     plan: &'a Plan,
-    /// The time, the channels, the other columns.
+    /// The time, the channels, and the other columns.
     values: Thinned,
-    /// The row that is being taken, and the one before.
+    /// The row that is being converted, and the previous one.
     row: Vec<f64>,
     before: Vec<f64>,
-    /// Whether another column holds numbers alone so far.
+    /// For each other column, whether all its cells are numbers so far.
     numeric: Vec<bool>,
-    /// What is known of each channel so far.
+    /// The state of each channel.
     states: Vec<State>,
-    /// Rows of this run, its number in the file, and how many runs there are by such numbers.
+    /// The number of rows of this run, its number in the file, and the number of runs by these numbers.
     in_run: usize,
     number: f64,
     runs: usize,
     warnings: Vec<Warning>,
     stamps: Stamps,
-    /// The stamp of the row before as the file has it (s).
+    /// The stamp of the previous row in the file (s).
     stamp: f64,
-    /// The first stamp of this run as the file has it (s), and what is added to the stamps (s).
+    /// The first stamp of this run in the file (s), and the offset that is added to its stamps (s).
     first: f64,
     shift: f64,
-    /// Duplicated rows: how many, how many of them differ, the places of the first and of the first that differs.
+    /// Duplicated rows: their number, the number of those that differ, and the places of the first one and of the
+    /// first one that differs.
     duplicates: usize,
     differing: usize,
     duplicate_place: Place,
@@ -55,7 +56,7 @@ pub struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    /// None yet, of which at most `most` values are kept.
+    /// An empty set of rows, of which at most `most` values are kept.
     pub fn new(path: &'a Path, has_lines: bool, plan: &'a Plan, most: usize, warnings: Vec<Warning>) -> Self {
         Self {
             path,
@@ -81,7 +82,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Takes a row.
+    /// Adds a row.
     pub fn take(&mut self, row: &Row<'_>) -> Result<(), RecordingError> {
         for (index, name) in &self.plan.names {
             if !matches!(row.cell(*index), Cell::Text(cell) if cell.trim_ascii() == name.as_bytes()) {
@@ -133,7 +134,7 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// The row's time as the file has it (s).
+    /// The time of the row in the file (s).
     fn stamp(&mut self, row: &Row<'_>) -> Result<f64, RecordingError> {
         let time = &self.plan.time;
         match self.stamps.seconds(row, time) {
@@ -151,20 +152,20 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Whether another run begins with this row, by the column that numbers them.
+    /// Whether a further run begins with this row, according to the column that numbers them.
     fn new_run(&mut self, row: &Row<'_>, stamp: f64) -> bool {
         let Some((run, _)) = &self.plan.time.run else {
             return false;
         };
         let number = row.cell(*run).number().unwrap_or(f64::NAN);
         let before = std::mem::replace(&mut self.number, number);
-        // The clock may run on, too.
+        // The clock may also continue from run to run.
         let begins = self.in_run > 0 && number != before && !(number.is_nan() && before.is_nan());
         self.runs += usize::from(begins);
         begins && stamp.is_finite()
     }
 
-    /// A channel's value in SI; NaN where there is none, and the channel can do without.
+    /// The value of a channel in SI; NaN if an optional value is missing.
     fn channel_value(&mut self, row: &Row<'_>, index: usize) -> Result<f64, RecordingError> {
         let channel = &self.plan.channels[index];
         let cell = row.cell(channel.index);
@@ -232,7 +233,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// A row with the stamp of the row before.
+    /// Handles a row with the stamp of the previous row.
     fn duplicate(&mut self, row: &Row<'_>) {
         self.duplicates += 1;
         if self.duplicates == 1 {
@@ -254,7 +255,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Time that runs back: another run if it starts where this one started, else an error.
+    /// Handles time that decreases: a further run if it starts at the time at which this run started, otherwise an
+    /// error.
     fn restart(&mut self, row: &Row<'_>, stamp: f64) -> Result<(), RecordingError> {
         let length = self.stamp - self.first;
         let near_start = (stamp - self.first).abs() <= RESTART_SHARE * length;
@@ -280,7 +282,7 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// The recording that the rows make; `warnings` are those of the table's end.
+    /// Makes the recording of all rows; `warnings` are those at the end of the table.
     pub fn finish(mut self, warnings: Vec<Warning>) -> Result<Recording, RecordingError> {
         let path = self.path.to_owned();
         let rows = self.values.read();
@@ -322,7 +324,7 @@ impl<'a> Rows<'a> {
             let (runs, column) = (self.runs, column.clone());
             self.warnings.push(Warning::Runs { runs, column });
         }
-        // A joint of which nothing was recorded; if that is every joint, the first is the error.
+        // A joint without any values is omitted; if no joint has values, the first one is the error.
         let lacking = self
             .plan
             .channels
@@ -356,7 +358,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// What a value is, and how to mend it.
+/// The description of a cell's content, and the remedy.
 type Doubt = (&'static str, &'static str);
 
 const FAR: Doubt = (
@@ -364,7 +366,7 @@ const FAR: Doubt = (
     "check its unit, or delete the row: gaps are dealt with",
 );
 
-/// Why a cell is no number that can be used.
+/// The reason why the content of a cell is not a usable number.
 fn unusable(cell: Cell<'_>, remedy: &'static str) -> Doubt {
     let comma = |cell: &[u8]| {
         let text = String::from_utf8_lossy(cell);
@@ -376,7 +378,7 @@ fn unusable(cell: Cell<'_>, remedy: &'static str) -> Doubt {
     }
 }
 
-/// The error of a required value that is missing where others of its column are not.
+/// The error of a missing required value in a column that has values.
 fn missing(path: &Path, channel: &Channel, place: Place, found: String) -> RecordingError {
     RecordingError::Value {
         path: path.to_owned(),
@@ -388,7 +390,7 @@ fn missing(path: &Path, channel: &Channel, place: Place, found: String) -> Recor
     }
 }
 
-/// A number without hundreds of zeros.
+/// A number in scientific notation if it is very small.
 fn short(value: f64) -> String {
     if value != 0.0 && value.abs() < 1e-9 {
         format!("{value:e}")

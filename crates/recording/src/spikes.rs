@@ -1,32 +1,32 @@
-//! Single samples far from their neighbours: a reading that went wrong, not the arm's motion.
+//! Single samples far from their neighbours: wrong readings that are not part of the motion.
 //!
-//! A sample is compared with the cubic through its four neighbours. A spike is far off where the
-//! samples around it are not, and they are not once it is taken out: a step (a contact, a friction
-//! reversal) leaves its other side as far off, so it is no spike, and neither is anything that lasts two samples.
+//! A sample is compared with the cubic through its four neighbours. A spike has a large residual, and its neighbours
+//! have small ones once it is replaced. A step (a contact, a friction reversal) is not a spike, because the samples on
+//! its other side keep large residuals, and neither is anything that lasts two samples.
 
 use crate::interpolate::lagrange;
 
-/// How many times the local noise a spike is at least.
+/// The smallest ratio of a spike to the local noise.
 const LOCAL: f64 = 12.0;
-/// How many times the residual that 98 % of the samples stay below.
+/// The smallest ratio of a spike to the residual that 98 % of the samples do not exceed.
 const TAIL: f64 = 6.0;
-/// How many steps of the quantiser.
+/// The smallest ratio of a spike to the quantiser's step.
 const STEPS: f64 = 8.0;
-/// How far its neighbours may be off once it is taken out, as a share of it.
+/// The largest residual of a spike's neighbours once it is replaced, as a share of the spike.
 const NEIGHBOUR: f64 = 0.25;
-/// The least share of the signal's range that counts.
+/// The smallest spike, as a share of the signal's range.
 const RANGE: f64 = 0.01;
-/// Samples whose noise is taken together.
+/// The number of samples from which the local noise is computed.
 const WINDOW: usize = 64;
-/// More spikes than this share of the samples are the signal's nature.
+/// If a larger share of the samples are spikes, they are a property of the signal.
 const MOST: f64 = 0.005;
 
-/// A spike taken out.
+/// A spike that was replaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spike {
     /// Its sample.
     pub row: usize,
-    /// How far it was from its neighbours.
+    /// Its distance from the interpolated value.
     pub height: f64,
 }
 
@@ -49,7 +49,7 @@ fn predicted(places: &[f64], v: &[f64], k: usize) -> f64 {
     }
 }
 
-/// Takes the spikes out of `values` (one piece of a signal, at `places` in ticks) and says which they were.
+/// Replaces the spikes in `values` (one piece of a signal, at `places` in ticks) and returns them.
 pub fn remove(places: &[f64], values: &mut [f64]) -> Vec<Spike> {
     let count = values.len();
     if count < 16 {
@@ -63,13 +63,13 @@ pub fn remove(places: &[f64], values: &mut [f64]) -> Vec<Spike> {
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| {
             (low.min(v), high.max(v))
         });
-    // The tail of a short piece may be a spike's own neighbours, a sixth of it: rounding must not decide such a tie.
+    // In a short piece, a sixth of the samples are affected by one spike: rounding must not decide such a tie.
     let floor = (TAIL * tail * (1.0 - 1e-9))
         .max(RANGE * (high - low))
         .max(STEPS * smallest_step(values));
     let mut spikes: Vec<Spike> = Vec::new();
     for k in 3..count.saturating_sub(3) {
-        // What passes this is rare, so the rest may cost something.
+        // Few samples reach this point, so that the following may take longer.
         if off[k].abs() <= floor || off[k].abs() <= LOCAL * local_noise(&off, k) {
             continue;
         }
@@ -102,7 +102,7 @@ pub fn remove(places: &[f64], values: &mut [f64]) -> Vec<Spike> {
     spikes
 }
 
-/// The noise of the residuals around sample `k`, itself and what it spoils left out.
+/// The noise of the residuals around sample `k`, without the sample itself and those that it affects.
 fn local_noise(off: &[f64], k: usize) -> f64 {
     let around = k.saturating_sub(WINDOW)..(k + WINDOW).min(off.len());
     let mut sizes: Vec<f64> = around
@@ -116,7 +116,7 @@ fn local_noise(off: &[f64], k: usize) -> f64 {
     1.4826 * *sizes.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// The smallest difference between neighbours that is more than rounding.
+/// The smallest difference between neighbours that is larger than rounding.
 fn smallest_step(values: &[f64]) -> f64 {
     let size = values.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
     let stride = (values.len() / 20_000).max(1);
@@ -148,12 +148,13 @@ mod tests {
         let spikes = remove(&at, &mut values);
         assert_eq!(spikes.iter().map(|spike| spike.row).collect::<Vec<_>>(), [400, 1200]);
         assert!((spikes[0].height - 0.3).abs() < 0.02);
-        // The place beside the spike is shifted by one tick, which the smooth sine forgives.
+        // The neighbour of the spike is shifted by one tick, which makes little difference on a smooth sine.
         assert!((values[1200] - clean[1200]).abs() < 1e-3);
         assert!(remove(&places(2000), &mut clean.clone()).is_empty());
     }
 
-    /// Of two spikes in 350 samples, the larger is six times the residual that 98 % stay below, to the last digit.
+    /// Of two spikes in 350 samples, the larger is exactly six times the residual that 98 % of the samples do not
+    /// exceed.
     #[test]
     fn a_tie_is_not_decided_by_rounding() {
         for scale in (1..200).map(|k| 0.37 * f64::from(k)) {

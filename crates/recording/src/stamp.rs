@@ -1,29 +1,29 @@
-//! Time stamps: numbers, whole numbers too large for one, seconds with nanoseconds, ISO 8601.
+//! Time stamps: floating-point numbers, large integers, seconds with nanoseconds, ISO 8601.
 
 use chrono::{DateTime, NaiveDateTime};
 
 use crate::header::TimeColumn;
 use crate::table::{Cell, Row};
 
-/// Later stamps than this (s) are those of a calendar, and are counted from the first one's whole second: a number has
-/// not the digits for both.
+/// Stamps after this time (s) are dates. They are counted from the whole second of the first one, because a double
+/// cannot hold both the date and its fraction exactly.
 const CALENDAR: i64 = 1_000_000;
 const NANOS: i64 = 1_000_000_000;
 
-/// The stamps of one file, counted from where the first one says.
+/// The stamps of one file, in the order of its rows.
 #[derive(Debug, Default)]
 pub struct Stamps {
-    /// What is subtracted (s); unknown before the first stamp.
+    /// The offset that is subtracted (s); `None` before the first stamp.
     origin: Option<i64>,
 }
 
 impl Stamps {
-    /// The second that the stamps are counted from, where they are a calendar's.
+    /// The second since 1970 from which the stamps are counted, if they are dates.
     pub fn epoch(&self) -> Option<i64> {
         self.origin.filter(|&origin| origin != 0)
     }
 
-    /// The time of `row` (s), if it has one.
+    /// The time of `row` (s), if it has a stamp.
     pub fn seconds(&mut self, row: &Row<'_>, time: &TimeColumn) -> Option<f64> {
         let cell = row.cell(time.index);
         if let Some((nanos, _)) = &time.nanos {
@@ -44,7 +44,7 @@ impl Stamps {
             let origin = *self.origin.get_or_insert(0);
             return Some(seconds - origin as f64);
         }
-        // Digits that a number has not the room for are those of a text and of a whole number.
+        // Text and integers contain digits that a double cannot hold.
         let per_second = (1.0 / time.factor).round().max(1.0) as i64;
         let text = match cell {
             Cell::Text(text) => std::str::from_utf8(text.trim_ascii()).ok(),
@@ -64,7 +64,7 @@ impl Stamps {
         Some(self.from(seconds.floor() as i64, seconds - seconds.floor()))
     }
 
-    /// The time of a stamp of `whole` seconds and a `rest`.
+    /// The time of a stamp of `whole` seconds plus a `rest`.
     fn from(&mut self, whole: i64, rest: f64) -> f64 {
         let origin = *self
             .origin
@@ -73,7 +73,7 @@ impl Stamps {
     }
 }
 
-/// Whole seconds and the rest of a decimal number that is not negative.
+/// The whole seconds and the fraction of a non-negative decimal number.
 fn parted(text: &str) -> Option<(i64, f64)> {
     let (whole, rest) = text.split_once('.')?;
     let is_digits = |text: &str| !text.is_empty() && text.bytes().all(|letter| letter.is_ascii_digit());
@@ -83,7 +83,7 @@ fn parted(text: &str) -> Option<(i64, f64)> {
     Some((whole.parse().ok()?, format!("0.{rest}").parse().ok()?))
 }
 
-/// The time that an ISO 8601 text is (ns since 1970, UTC where it names no zone).
+/// The time of an ISO 8601 text (ns since 1970; UTC if it has no time zone).
 fn iso(text: &str) -> Option<i64> {
     if let Ok(time) = text.parse::<DateTime<chrono::FixedOffset>>() {
         return time.timestamp_nanos_opt();

@@ -1,4 +1,4 @@
-//! A table of named columns, read row by row: what every format makes of its file.
+//! A table of named columns that is read row by row: every format converts its file into one.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use serde::{Serialize, Serializer};
 
 use crate::{RecordingError, Warning};
 
-/// Where in a file something is: a line of text, or a row (message) of a file that has no lines.
+/// A place in a file: a line of text, or a row (message) of a file without lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// The line, from 1.
@@ -17,7 +17,7 @@ pub enum Place {
 }
 
 impl Place {
-    /// The place after the file's name.
+    /// The place as it is appended to the file's name.
     pub(crate) fn suffix(self) -> String {
         match self {
             Self::Line(line) => format!(":{line}"),
@@ -79,7 +79,7 @@ impl Cell<'_> {
         }
     }
 
-    /// What it holds, for a message.
+    /// Its description in a message.
     pub fn shown(self) -> String {
         let text = match self {
             Self::Text(cell) => String::from_utf8_lossy(cell).into_owned(),
@@ -120,7 +120,7 @@ impl Column {
         self.len() == 0
     }
 
-    /// The values at these places.
+    /// The values at these indices.
     pub(crate) fn picked(&self, places: impl Iterator<Item = usize>) -> Self {
         match self {
             Self::Numbers(values) => Self::Numbers(places.map(|place| values[place]).collect()),
@@ -141,7 +141,7 @@ impl Column {
 /// One row of a table.
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'a> {
-    /// Where it stands in the file.
+    /// The place in the file.
     pub place: Place,
     cells: Cells<'a>,
 }
@@ -170,28 +170,28 @@ impl<'a> Row<'a> {
     }
 }
 
-/// Where rows come from, one after the other.
+/// A source of rows.
 pub trait RowSource {
-    /// The next row; none at the end.
+    /// The next row; `None` at the end.
     fn next(&mut self) -> Result<Option<Row<'_>>, RecordingError>;
 
-    /// What was found and dealt with in reading the rows.
+    /// The warnings about the rows that were read.
     fn warnings(&mut self) -> Vec<Warning> {
         Vec::new()
     }
 }
 
-/// Named columns and the rows below them.
+/// Named columns and their rows.
 pub struct Table {
-    /// Whether it is text with lines, of which the first names the columns.
+    /// Whether it is text, whose first line contains the names of the columns.
     pub has_lines: bool,
     /// The columns' names.
     pub headers: Vec<String>,
-    /// The first row's cells, if they are text: joints may be named there.
+    /// The cells of the first row, if they are text, because they may contain names of joints.
     pub first: Vec<String>,
     /// The rows.
     pub rows: Box<dyn RowSource>,
-    /// What was found before the first row.
+    /// The warnings about the file before its first row.
     pub warnings: Vec<Warning>,
 }
 

@@ -1,31 +1,31 @@
-//! Columns of as many rows as fit into memory; of a longer file, means over equal spans of time.
+//! Columns with as many rows as fit into memory; for a longer file, means over equal time spans.
 
 /// The columns read so far, the time (s) first.
 ///
-/// When there are more than `most` values, rows are replaced by their means over two periods, then over four, and so on:
-/// what is left is a recording at a lower rate, of which positions and torques went through the same filter.
+/// If there are more than `most` values, rows are replaced by means over two periods, then over four, and so on. The
+/// result is a recording at a lower rate, in which positions and torques passed the same filter.
 pub struct Thinned {
     columns: Vec<Vec<f64>>,
-    /// The rows at which a run begins that is not the first.
+    /// The rows at which a run begins, except the first run.
     breaks: Vec<usize>,
     most: usize,
     /// The span of a mean (s); 0 while every row is kept.
     span: f64,
-    /// The span that is being summed, its rows and their sums.
+    /// The present span, the number of its rows and their sums.
     at: i64,
     count: usize,
     sums: Vec<f64>,
-    /// Rows read.
+    /// The number of rows read.
     read: usize,
 }
 
 impl Thinned {
-    /// No rows of `columns` columns yet, of which at most `most` values are kept.
+    /// An empty set of `columns` columns, of which at most `most` values are kept.
     pub fn new(columns: usize, most: usize) -> Self {
         Self {
             columns: vec![Vec::new(); columns],
             breaks: Vec::new(),
-            // Two rows at least make a mean.
+            // A mean consists of at least two rows.
             most: (most / columns).max(4),
             span: 0.0,
             at: 0,
@@ -35,12 +35,12 @@ impl Thinned {
         }
     }
 
-    /// Rows read.
+    /// The number of rows read.
     pub fn read(&self) -> usize {
         self.read
     }
 
-    /// Takes a row, the time first; `begins` if another run begins with it.
+    /// Adds a row, the time first; `begins` if another run begins with it.
     pub fn push(&mut self, row: &[f64], begins: bool) {
         self.read += 1;
         if self.span > 0.0 {
@@ -63,7 +63,7 @@ impl Thinned {
                 .zip(row)
                 .for_each(|(column, &value)| column.push(value));
         }
-        // A span that is being summed keeps its place: it ends before the next doubled one.
+        // The present span remains: it ends before the next span of double length.
         if self.columns[0].len() >= self.most {
             self.halve();
             self.at = place(row[0], self.span);
@@ -90,7 +90,7 @@ impl Thinned {
         }
         self.span *= 2.0;
         let time = &self.columns[0];
-        // The first row of each mean.
+        // The first row of each span.
         let mut firsts = Vec::with_capacity(time.len() / 2 + 1);
         let mut breaks = Vec::with_capacity(self.breaks.len());
         for row in 0..time.len() {
@@ -121,7 +121,8 @@ impl Thinned {
     }
 }
 
-/// The number of the span in which a time lies. Half a thousandth later, so that rounding does not part regular stamps.
+/// The index of the span that contains a time. A shift by 0.0005 spans prevents rounding from separating regular
+/// stamps.
 fn place(time: f64, span: f64) -> i64 {
     (time / span + 5e-4).floor() as i64
 }

@@ -1,6 +1,6 @@
-//! What TOML's errors mean to the one who wrote the file.
+//! Errors of the TOML parser, for the author of the file.
 
-/// What is wrong, in one line; an unknown key comes with the nearest known one.
+/// The error in one line; for an unknown key, with the nearest known one.
 pub fn toml_reason(message: &str) -> String {
     match unknown_field(message) {
         Some((unknown, known)) => {
@@ -22,14 +22,14 @@ pub fn toml_reason(message: &str) -> String {
     }
 }
 
-/// The name in `known` nearest to `name`, if any is near enough to be meant.
+/// The name in `known` that is nearest to `name`, if it is similar enough.
 pub fn nearest<'a>(name: &str, known: &'a [String]) -> Option<&'a str> {
     let distance = |other: &str| strsim::damerau_levenshtein(&name.to_lowercase(), &other.to_lowercase());
     let best = known.iter().min_by_key(|other| distance(other))?;
     (distance(best) <= name.len().max(best.len()).div_ceil(2)).then_some(best.as_str())
 }
 
-/// The field and the known ones in serde's "unknown field `a`, expected one of `b`, `c`".
+/// The unknown field and the known ones in serde's message "unknown field `a`, expected one of `b`, `c`".
 fn unknown_field(message: &str) -> Option<(String, Vec<String>)> {
     let rest = message.strip_prefix("unknown field `")?;
     let (unknown, rest) = rest.split_once('`')?;

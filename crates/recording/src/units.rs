@@ -47,24 +47,24 @@ const TORQUE: &[Unit] = &[
     (&["N"], 1.0),
     (&["kN"], 1e3),
 ];
-/// Units that need a scale to become a torque (N m/A, or N m for the whole).
+/// Units of currents, which need a scale to become a torque (N m/A, or N m for the whole).
 const CURRENT: &[Unit] = &[(&["A"], 1.0), (&["mA"], 1e-3)];
 const SHARE: &[Unit] = &[(&["%"], 1e-2)];
 const TEMPERATURE: &[Unit] = &[(&["C", "°C", "degC"], 1.0), (&["K"], 1.0)];
 
-/// A unit as understood.
+/// A unit as a conversion to SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conversion {
     /// SI value = factor × value + offset.
     pub factor: f64,
     /// See `factor`.
     pub offset: f64,
-    /// Whether it makes sense only together with a scale: a current that stands for a torque.
+    /// Whether it requires a scale, because it is that of a current in place of a torque.
     pub needs_scale: bool,
 }
 
 impl Conversion {
-    /// Nothing to convert.
+    /// The conversion of a value in SI.
     pub const NONE: Self = Self {
         factor: 1.0,
         offset: 0.0,
@@ -86,12 +86,12 @@ fn names(tables: &[&[Unit]]) -> String {
     all.join(", ")
 }
 
-/// The factor of a unit of time, or the units there are.
+/// The factor of a unit of time; the error lists the known units.
 pub fn time(name: &str) -> Result<f64, String> {
     find(TIME, name.trim()).ok_or_else(|| names(&[TIME]))
 }
 
-/// What the unit `name` of `quantity` means, or the units there are.
+/// The conversion of the unit `name` of `quantity`; the error lists the known units.
 pub fn of(quantity: Quantity, name: &str) -> Result<Conversion, String> {
     let name = name.trim();
     let (units, scaled): (&[Unit], &[&[Unit]]) = match quantity {

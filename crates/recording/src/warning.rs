@@ -1,4 +1,4 @@
-//! What is doubtful in a recording, though it can be used: each with its place.
+//! Doubtful properties of a recording that can be used, each with its place.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::Place;
 
-/// Which quantity of a joint a warning is about.
+/// The quantity of a joint that a warning concerns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
@@ -29,7 +29,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Whether a joint must have it.
+    /// Whether every joint must have it.
     pub(crate) fn is_required(self) -> bool {
         matches!(self, Self::Position | Self::Torque)
     }
@@ -49,91 +49,91 @@ impl Quantity {
     }
 }
 
-/// The time between two runs whose clocks say nothing of it (s).
+/// The pause that is assumed between two runs if their clocks do not determine it (s).
 pub(crate) const RUN_PAUSE: f64 = 1.0;
 
-/// Something found in a recording and dealt with.
+/// A property that was found in a recording and corrected or ignored.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Warning {
-    /// The file ends in the middle of a row, which was left out.
+    /// The file ends in the middle of a row, which was omitted.
     CutFile {
         /// The line or row.
         line: Place,
     },
-    /// Rows equal to the one before (or with its time stamp) were left out.
+    /// Rows that equal the previous one (or have its time stamp) were omitted.
     Duplicates {
-        /// How many.
+        /// Their number.
         rows: usize,
         /// The line or row of the first.
         line: Place,
-        /// Whether some had the stamp of the row before but other values.
+        /// Whether some have the stamp of the previous row and other values.
         differ: bool,
     },
     /// The file has more rows than are kept: each is the mean of several.
     Thinned {
-        /// Rows read.
+        /// The number of rows read.
         rows: usize,
-        /// Rows kept.
+        /// The number of rows kept.
         kept: usize,
-        /// The time that one is the mean over (s).
+        /// The time span of a mean (s).
         span: f64,
     },
-    /// Each sample was written several times: the rows that repeat it were left out.
+    /// Each sample was written several times; the rows that repeat it were omitted.
     Held {
-        /// Rows read.
+        /// The number of rows read.
         rows: usize,
-        /// Samples among them.
+        /// The number of samples among them.
         samples: usize,
-        /// The number of rows for which most samples are held.
+        /// The number of rows of most samples.
         held: usize,
     },
-    /// The time starts anew: several runs in one file.
+    /// The time starts again: the file contains several runs.
     ClockRestart {
-        /// The line or row of the new run's first one.
+        /// The line or row at which the new run begins.
         line: Place,
-        /// The last stamp before (s).
+        /// The last stamp before it (s).
         before: f64,
-        /// The first stamp after, as the file has it (s).
+        /// Its first stamp in the file (s).
         after: f64,
-        /// The stamp that the row has in the recording (s).
+        /// Its first stamp in the recording (s).
         placed: f64,
     },
-    /// The columns are those of a system that is known.
+    /// The columns are those of a known system.
     System {
         /// The system.
         system: String,
-        /// The columns of time, position and torque that are used.
+        /// The columns of time, position and torque that were used.
         columns: String,
-        /// Whether the joints have numbers, and no names.
+        /// Whether the joints have numbers instead of names.
         numbered: bool,
     },
-    /// The file holds several runs, by a column that numbers them.
+    /// The file contains several runs, according to a column that numbers them.
     Runs {
-        /// How many.
+        /// Their number.
         runs: usize,
         /// The column.
         column: String,
     },
-    /// Columns with stamps of their own were joined with the others by time.
+    /// Columns with their own stamps were joined with the others by time.
     Joined {
-        /// What they are of.
+        /// Their source.
         what: String,
-        /// How many rows have values between two of theirs, which were interpolated.
+        /// The number of rows between two of their samples, which were interpolated.
         interpolated: usize,
-        /// How many rows before their first and after their last were left out.
+        /// The number of rows before their first and after their last sample, which were omitted.
         left_out: usize,
     },
-    /// What has no use here, and was left out.
+    /// Something that is not used was omitted.
     LeftOut {
-        /// What, and why.
+        /// Its description, with the reason.
         what: String,
     },
-    /// A joint without a single position or torque was left out.
+    /// A joint without any position or torque was omitted.
     JointLeftOut {
         /// The joint.
         joint: String,
-        /// The column that has no values.
+        /// The column without values.
         column: String,
     },
     /// Positions that jump by a turn were made continuous.
@@ -142,18 +142,18 @@ pub enum Warning {
         joint: String,
         /// The quantity.
         quantity: Quantity,
-        /// How many jumps.
+        /// The number of jumps.
         jumps: usize,
         /// The time of the first (s).
         time: f64,
     },
-    /// A column that is not needed holds something other than numbers and was left out.
+    /// An optional column contains something other than numbers and was omitted.
     ColumnLeftOut {
         /// Its header.
         column: String,
-        /// The first line or row where it does.
+        /// The first line or row with such a cell.
         line: Place,
-        /// What stands there.
+        /// The content of that cell.
         found: String,
     },
     /// There is no velocity; it has to be differentiated from the position.
@@ -178,20 +178,20 @@ pub enum Warning {
     },
     /// Single rows are missing; their values were interpolated.
     LostRows {
-        /// How many.
+        /// Their number.
         rows: usize,
-        /// Of how many ticks.
+        /// The number of ticks.
         of: usize,
         /// The time of the first (s).
         time: f64,
     },
-    /// A gap too long to interpolate; the recording is in pieces there.
+    /// A gap that is too long to interpolate; the recording is divided there.
     Gap {
         /// The last time before it (s).
         from: f64,
         /// The first time after it (s).
         to: f64,
-        /// The clock's shift over the gap, as a share of the period, where it is not the same clock on both sides.
+        /// The shift of the clock over the gap, as a share of the period, if the clocks on both sides differ.
         shift: f64,
     },
     /// Single samples far from their neighbours were interpolated.
@@ -202,7 +202,7 @@ pub enum Warning {
         quantity: Quantity,
         /// The times (s).
         times: Vec<f64>,
-        /// The largest, against its neighbours (the quantity's unit).
+        /// The largest distance from the neighbours (in the quantity's unit).
         largest: f64,
     },
 }

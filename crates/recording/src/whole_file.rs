@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::error::RecordingError;
 
-/// Writes the file at `path` through `write`: what was there before stays until all is written.
+/// Writes the file at `path` through `write`. An earlier file is replaced only after everything has been written.
 ///
 /// # Errors
 /// [`RecordingError::Write`] if the folder or the file cannot be written.

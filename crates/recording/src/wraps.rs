@@ -1,19 +1,19 @@
-//! Encoders that start again after a turn: their positions made continuous.
+//! Encoders whose positions wrap at a turn: the positions are made continuous.
 
 use std::f64::consts::{PI, TAU};
 
 use crate::{Quantity, Recording, Warning};
 
-/// A wrapped position stays within a turn, up to this (rad).
+/// The range of a wrapped position may exceed a turn by this (rad).
 const MARGIN: f64 = 1e-2;
-/// A jump is a turn up to this many of the largest other step.
+/// The largest deviation of a jump from a turn, in multiples of the largest other step.
 const STEPS: f64 = 4.0;
-/// Rows further apart than so many periods are no neighbours.
+/// Rows that are more periods apart are not compared.
 const GAP: f64 = 3.0;
-/// The largest step between rows with which a jump can be told from motion (rad).
+/// The largest step between rows at which a jump can be distinguished from motion (rad).
 const LARGEST_STEP: f64 = 0.25 * PI;
 
-/// Makes the positions of `recording` continuous where an encoder wraps at a turn, and says so.
+/// Makes the positions of `recording` continuous where an encoder wraps at a turn, and adds a warning.
 pub fn unwrap(recording: &mut Recording) {
     let secondary = recording.q_secondary.iter_mut().map(Option::as_mut).enumerate();
     let secondary = secondary.filter_map(|(joint, q)| Some((joint, q?, Quantity::SecondaryPosition)));
@@ -36,9 +36,9 @@ pub fn unwrap(recording: &mut Recording) {
     recording.warnings.extend(warnings);
 }
 
-/// Takes the turns out of `q`, if it has the marks of a wrapped encoder: it stays within a turn, and some steps are a turn
-/// up to a motion as small as all other steps. Returns the rows after the jumps. Over a gap the shorter way is taken,
-/// which a model cannot tell from the other.
+/// Removes the jumps by a turn from `q` if it is that of a wrapped encoder: its range is at most a turn, and some
+/// steps are a turn plus or minus a motion as small as all other steps. Returns the rows after the jumps. Over a gap
+/// the shorter way is assumed, which makes no difference to a model.
 fn continuous(time: &[f64], q: &mut [f64], breaks: &[usize]) -> Vec<usize> {
     let (low, high) = q
         .iter()
@@ -112,7 +112,7 @@ mod tests {
         let (truth, mut cut) = wrapped(-PI);
         let mut q = truth.clone();
         assert!(continuous(&mut q, &[]).is_empty() && q == truth);
-        // A spike that is not a turn.
+        // A spike that differs from a turn.
         cut[1000] += 1.0;
         let before = cut.clone();
         assert!(continuous(&mut cut, &[]).is_empty() && cut == before);

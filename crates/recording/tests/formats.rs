@@ -134,7 +134,7 @@ fn joint_states_of_bags_are_read_whatever_the_storage() {
         );
         assert!(system(&recording).is_some_and(|note| note.contains("/joint_states/")));
     }
-    // A recorder that was stopped hard leaves a file that is cut.
+    // A recorder that is killed leaves an incomplete file.
     let whole = std::fs::read(path("unstamped.mcap")).expect("it is there");
     let folder = tempfile::tempdir().expect("a folder");
     let cut = folder.path().join("cut");
@@ -144,7 +144,7 @@ fn joint_states_of_bags_are_read_whatever_the_storage() {
     check(&recording, recording.len(), 0.0);
     let told = |warning: &Warning| matches!(warning, Warning::CutFile { .. });
     assert!(recording.warnings.iter().any(told));
-    // Without stamps of its own, a message has that of the log.
+    // A message without a stamp gets the time at which it was logged.
     for name in ["unstamped.mcap", "ros_writer.mcap"] {
         check(&read(name), 60, 0.0);
     }
@@ -153,7 +153,7 @@ fn joint_states_of_bags_are_read_whatever_the_storage() {
 #[test]
 fn topics_are_joined_by_time_or_chosen() {
     let joined = read("two_topics.mcap");
-    // Before the first torque there is none.
+    // There is no torque before the first one.
     assert_eq!(joined.len(), 59);
     for (row, time) in joined.time.iter().enumerate() {
         let t = 0.01 * (row + 1) as f64;
@@ -252,7 +252,7 @@ fn arrays_of_numpy_and_matlab_are_read() {
     );
 }
 
-/// Every file of a format, cut and changed at many places, is read or refused, and nothing else.
+/// Every file of a format, cut and changed in many places, is read or refused, without a panic.
 #[test]
 fn cut_and_damaged_files_are_read_or_refused() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -300,7 +300,7 @@ fn cut_and_damaged_files_are_read_or_refused() {
             }
         }
         assert!(refused > 20, "{name}: {refused}");
-        // What a file may expand to, and the table of it.
+        // The limit of the expanded file, and of its table.
         assert!(
             largest < 2 * ((64 << 20) + 100 * whole.len() as u64),
             "{name}: {largest} bytes"

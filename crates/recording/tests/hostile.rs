@@ -1,4 +1,4 @@
-//! Recordings that somebody made to do harm: bombs, computed tables, links to elsewhere.
+//! Malicious recordings: compression bombs, computed tables, links out of the folder.
 
 use std::io::Write;
 use std::path::Path;
@@ -6,14 +6,14 @@ use std::path::Path;
 use recording::Recording;
 use rusqlite::Connection;
 
-/// What reading the file says, and how many bytes it took at most.
+/// The result of reading the file, and the largest number of bytes in memory.
 fn refusal(path: &Path) -> (String, u64) {
     let mut error = None;
     let memory = allocation_counter::measure(|| error = Recording::read(path).err());
     (error.expect("it is refused").to_string(), memory.bytes_max)
 }
 
-/// Zeros or digits of 80 MB, compressed to a thousandth.
+/// 80 MB of zeros or digits, compressed to a thousandth.
 fn bomb<W: Write>(mut packer: W, pattern: &[u8]) -> W {
     let block = pattern.repeat(1 << 16);
     for _ in 0..80 * (1 << 20) / block.len() {
@@ -113,7 +113,7 @@ fn a_bag_reads_no_file_elsewhere() {
         error.contains("bag_0.mcap is a link that leads out of the bag's folder"),
         "{error}"
     );
-    // A link to the bag itself is the user's own.
+    // A link to the bag itself was made by the user.
     std::fs::remove_file(bag.join("bag_0.mcap")).expect("it goes");
     std::fs::rename(&elsewhere, bag.join("bag_0.mcap")).expect("it moves");
     let link = folder.path().join("link");

@@ -1,7 +1,7 @@
-//! Recordings at random, with gaps, lost and repeated rows, jitter, runs, spikes and bad cells: each is read or refused, and what a
-//! file's form says nothing of does not change what is read.
+//! Random recordings with gaps, lost and repeated rows, jitter, runs, spikes and bad cells: each is read or refused,
+//! and the result does not depend on the form of the file.
 //!
-//! They are drawn with a fixed seed; `PROPTEST_RNG_SEED=7 PROPTEST_CASES=10000` draws others, and more.
+//! They are drawn with a fixed seed; `PROPTEST_RNG_SEED=7 PROPTEST_CASES=10000` draws other and more recordings.
 
 mod random_table;
 
@@ -10,7 +10,7 @@ use recording::{ColumnMap, Quality, Recording, RecordingError, RegularRecording}
 
 use random_table::{Table, config, tables};
 
-/// What reading a file and putting it on its clock says.
+/// The result of reading a file and assigning it to its clock.
 fn taken(bytes: &[u8], map: Option<&str>) -> Result<(Recording, RegularRecording), RecordingError> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("r.csv");
@@ -22,7 +22,7 @@ fn taken(bytes: &[u8], map: Option<&str>) -> Result<(Recording, RegularRecording
     Ok((recording, regular))
 }
 
-/// A recording without what is its file's: the places of its warnings, and the columns.
+/// A recording without the properties of its file: the places of its warnings, and the columns.
 fn content(recording: &Recording) -> Recording {
     Recording {
         warnings: Vec::new(),
@@ -32,7 +32,7 @@ fn content(recording: &Recording) -> Recording {
     }
 }
 
-/// Fails if the two are not the same to the bit, or not refused both.
+/// Fails unless both have the same bits, or both are refused.
 fn is_same(
     a: &Result<(Recording, RegularRecording), RecordingError>,
     b: &Result<(Recording, RegularRecording), RecordingError>,
@@ -62,7 +62,7 @@ fn is_near(a: &[Vec<f64>], b: &[Vec<f64>], factor: f64, offset: f64) -> Result<(
 proptest! {
     #![proptest_config(config())]
 
-    /// What is read is finite and in order of time, every tick is in one segment, and the quality can be told.
+    /// All values are finite, time increases, every tick is in one segment, and the quality can be computed.
     #[test]
     fn whatever_is_in_the_rows_is_read_or_refused(table in tables(true)) {
         match taken(&table.csv(), None) {
@@ -85,7 +85,7 @@ proptest! {
                     prop_assert_eq!(signal.len(), table.joints.len());
                     prop_assert!(signal.iter().all(|values| values.len() == next && values.iter().all(|value| value.is_finite())));
                 }
-                // The weights of an interpolation add up to twenty at most.
+                // The sum of the absolute weights of an interpolation is at most twenty.
                 for (recorded, on_ticks) in recording.q.iter().zip(&regular.q) {
                     let [low, high] = [f64::min, f64::max].map(|f| recorded.iter().copied().fold(recorded[0], f));
                     let room = 9.5 * (high - low) + 1e-9 * (1.0 + low.abs().max(high.abs()));
@@ -97,7 +97,7 @@ proptest! {
         }
     }
 
-    /// Line ends, the mark of UTF-8, what parts the cells, the compression and spaces are the file's form.
+    /// Line ends, byte order mark, separator, compression and spaces do not change the recording.
     #[test]
     fn the_form_of_the_file_changes_nothing(table in tables(true)) {
         let plain = table.csv();
@@ -140,7 +140,7 @@ proptest! {
         is_same(&first, &named)?;
     }
 
-    /// A logger that writes every row twice, and one that writes each sample three times under new stamps.
+    /// A logger that writes every row twice, and one that writes each sample three times with new stamps.
     #[test]
     fn rows_that_are_there_twice_are_taken_once(table in tables(false)) {
         let mut doubled = table.clone();
@@ -154,13 +154,13 @@ proptest! {
             let folder = tempfile::tempdir().expect("a folder");
             let path = folder.path().join("w.csv");
             recording.write_csv(&path).expect("it is written");
-            // Runs are parted by pauses, not by the numbers that parted them.
+            // Runs are separated by pauses; the column that numbered them is removed.
             let again = Recording::read(&path).expect("it is read");
             prop_assert_eq!(Recording { breaks: again.breaks.clone(), ..content(&recording) }, content(&again));
         }
     }
 
-    /// A mirrored arm: positions and torques of the other sign are the same recording of the other sign.
+    /// A mirrored arm: the opposite signs of positions and torques give the same recording with opposite signs.
     #[test]
     fn the_sign_changes_nothing_but_the_sign(table in tables(false)) {
         let mut mirrored = table.clone();
@@ -180,10 +180,10 @@ proptest! {
         }
     }
 
-    /// Degrees, milliseconds and counts of a gear are the same motion through a column map.
+    /// Degrees, milliseconds and counts of a gear give the same motion through a column map.
     #[test]
     fn units_of_a_column_map_change_nothing(mut table in tables(false)) {
-        // Seconds since 1970 have too few digits in a number to be multiplied.
+        // Seconds since 1970 would lose digits when multiplied.
         let start = table.rows[0][0];
         for row in &mut table.rows {
             row[0] -= start;
@@ -213,7 +213,7 @@ proptest! {
         }
     }
 
-    /// A clock that started at another time is the same clock.
+    /// A clock with another start gives the same clock.
     #[test]
     fn shifted_time_shifts_the_clock_and_nothing_else(table in tables(false), shift in -50_000..50_000_i32) {
         let shift = f64::from(shift) / 64.0;
@@ -227,7 +227,7 @@ proptest! {
                 prop_assert_eq!(&a.present, &b.present);
                 is_near(&a.q, &b.q, 1.0, 0.0)?;
                 is_near(&a.tau, &b.tau, 1.0, 0.0)?;
-                // Stamps of a calendar are counted from a second of their own.
+                // Stamps that are dates are counted from a whole second.
                 let epoch = |recording: &Recording| recording.epoch.unwrap_or(0) as f64;
                 let own = shift - (epoch(&other) - epoch(&one));
                 is_near(&[a.times().collect()], &[b.times().collect()], 1.0, own)?;
@@ -237,7 +237,7 @@ proptest! {
     }
 }
 
-/// The strategies make what the laws are about: rows that are read, and rows that are refused.
+/// The strategies produce both recordings that are read and recordings that are refused.
 #[test]
 fn most_tables_are_read_and_some_are_refused() {
     use proptest::strategy::ValueTree;

@@ -59,13 +59,13 @@ fn hard_cases_land_on_their_ticks() {
             "{}: phase off by {off} s",
             path.display()
         );
-        // A row's own tick by its stamp alone, which is right up to five standard deviations.
+        // A row's own tick by its stamp alone is right up to deviations of five standard deviations.
         let present = (0..regular.len()).filter(|&tick| regular.present[tick]);
         for (stamp, tick) in recording.time.iter().zip(present) {
             wrong += usize::from((regular.time(tick) - stamp).abs() > 0.5 * regular.period);
             rows += 1;
         }
-        // A row on a wrong tick would stand out by its speed times the period, some hundred times the noise.
+        // A row at a wrong tick would differ by its velocity times the period, a few hundred times the noise.
         let quality = Quality::of(&recording, &regular);
         for (joint, q) in quality.joints.iter().zip(&regular.q) {
             let noise = joint.q_noise.max(joint.q_step.unwrap_or(0.0) / 12.0_f64.sqrt());
@@ -85,7 +85,7 @@ fn real_recordings_are_read_and_measured() {
     let folder = shared("recordings");
     for path in csv_files(&folder) {
         let (recording, regular, warnings) = load(&path);
-        // The Panda's stamps are 0.7 to 8.8 ms apart: no clock, so its rows keep the times that they were given.
+        // The stamps of the Panda are 0.7 to 8.8 ms apart: there is no clock, so that rows keep their times.
         let is_panda = path.parent().is_some_and(|folder| folder.ends_with("panda"));
         assert_eq!(regular.has_clock, !is_panda, "{}", path.display());
         if regular.has_clock {
@@ -101,7 +101,7 @@ fn real_recordings_are_read_and_measured() {
             warnings.len()
         );
     }
-    // Three runs end to end, each with its own clock.
+    // Three runs one after the other, each with its own clock.
     let (recording, ..) = load(&folder.join("iiwa14/joints_3_to_7.csv"));
     assert_eq!(recording.breaks.len(), 2);
 }

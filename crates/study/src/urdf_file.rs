@@ -238,22 +238,7 @@ impl LinkPlaces {
                 _ => None,
             };
         };
-        let (c, i) = (body.com, body.tensor);
-        let inertial = format!(
-            "<inertial><origin xyz=\"{} {} {}\" rpy=\"0 0 0\"/><mass value=\"{}\"/><inertia ixx=\"{}\" ixy=\"{}\" ixz=\"{}\" \
-             iyy=\"{}\" iyz=\"{}\" izz=\"{}\"/></inertial>",
-            c.x,
-            c.y,
-            c.z,
-            body.mass,
-            i[(0, 0)],
-            i[(0, 1)],
-            i[(0, 2)],
-            i[(1, 1)],
-            i[(1, 2)],
-            i[(2, 2)]
-        );
-        Some(self.inertial.place(inertial, "link"))
+        Some(self.inertial.place(body.to_urdf(), "link"))
     }
 }
 

@@ -16,7 +16,7 @@ use report::{numbers, words};
 use torque::Motion;
 
 use crate::cli::ExciteArgs;
-use crate::output;
+use crate::output::{self, OutputFile};
 use crate::scenario::written;
 use study::robot::{RobotFile, named_robot};
 
@@ -26,18 +26,13 @@ use study::robot::{RobotFile, named_robot};
 /// If an input cannot be used, a limit is missing, or an output cannot be written; nothing is written then.
 pub fn run(args: &ExciteArgs) -> anyhow::Result<()> {
     let outputs = args.outputs();
-    for path in &outputs {
-        output::check_writable(path)?;
+    for output in &outputs {
+        output::check_writable(output.path)?;
         let inputs = args.compare.iter().map(std::path::PathBuf::as_path);
-        output::check_is_no_input(path, inputs.chain([Path::new(&args.robot)]))?;
+        output::check_is_no_input(output.path, inputs.chain([Path::new(&args.robot)]))?;
     }
-    if let [a, b] = outputs[..] {
-        anyhow::ensure!(
-            !study::is_same(a, b),
-            "{}: is given for two outputs; give each output its own file",
-            a.display()
-        );
-    }
+    output::check_distinct(&outputs)?;
+    outputs.iter().try_for_each(OutputFile::check_ending)?;
     let robot = named_robot(&args.robot)?;
     let arm = robot.arm(&args.chain.options(&[])).context("--robot")?;
     for warning in arm.warnings() {
@@ -62,8 +57,8 @@ pub fn run(args: &ExciteArgs) -> anyhow::Result<()> {
         references(&arm, &found, args.rate).write_csv(path)?;
     }
     output::print(&text(&arm, &found, &compared))?;
-    for path in outputs {
-        output::print(&format!("written: {}\n", path.display()))?;
+    for output in outputs {
+        output::print(&format!("written: {}\n", output.path.display()))?;
     }
     Ok(())
 }

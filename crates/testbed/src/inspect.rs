@@ -12,7 +12,7 @@ use study::robot::{self, RobotFile};
 use study::{check, named};
 
 use crate::cli::InspectArgs;
-use crate::output;
+use crate::output::{self, OutputFile};
 
 /// What `--json` holds.
 #[derive(Serialize)]
@@ -53,6 +53,7 @@ pub fn run(args: &InspectArgs) -> anyhow::Result<()> {
         output::check_writable(path)?;
         let inputs = args.files.iter().chain(&args.map).map(PathBuf::as_path);
         output::check_is_no_input(path, inputs.chain(args.robot.as_deref().map(Path::new)))?;
+        OutputFile::json(path).check_ending()?;
     }
     let robot = args.robot.as_deref().map(robot::named_robot).transpose()?;
     let map = args.map.as_deref().map(ColumnMap::load).transpose()?;

@@ -64,6 +64,61 @@ pub fn write_text(path: &Path, text: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// A file to write: the option that asks for it, its path, and the endings that the name of a file of its format may have.
+#[derive(Clone, Copy, Debug)]
+pub struct OutputFile<'a> {
+    pub option: &'static str,
+    pub path: &'a Path,
+    /// In lower case, without the dot.
+    pub endings: &'static [&'static str],
+}
+
+impl<'a> OutputFile<'a> {
+    /// The file at `path`, if the option was given.
+    pub fn given(option: &'static str, path: Option<&'a Path>, endings: &'static [&'static str]) -> Option<Self> {
+        path.map(|path| Self { option, path, endings })
+    }
+
+    /// The file of `--json`.
+    pub fn json(path: &'a Path) -> Self {
+        let (option, endings) = ("--json", &["json"]);
+        Self { option, path, endings }
+    }
+
+    /// The file of `--markdown`.
+    pub fn markdown(path: &'a Path) -> Self {
+        let (option, endings) = ("--markdown", &["md", "markdown"]);
+        Self { option, path, endings }
+    }
+
+    /// The file of `--rerun save=FILE`.
+    pub fn rerun(path: &'a Path) -> Self {
+        let (option, endings) = ("--rerun save", &["rrd"]);
+        Self { option, path, endings }
+    }
+
+    /// Refuses a name with the ending of another format, which other programs would read as that format. A name without an
+    /// ending is accepted, and so is an existing device or pipe.
+    ///
+    /// # Errors
+    /// If the name has another ending, with those that it may have.
+    pub fn check_ending(&self) -> anyhow::Result<()> {
+        let Some(ending) = self.path.extension().map(|ending| ending.to_string_lossy()) else {
+            return Ok(());
+        };
+        let is_special = self.path.exists() && !self.path.is_file();
+        if is_special || self.endings.contains(&ending.to_lowercase().as_str()) {
+            return Ok(());
+        }
+        bail!(
+            "{} {}: this option does not write .{ending} files; end the name in .{}",
+            self.option,
+            self.path.display(),
+            self.endings.join(" or .")
+        );
+    }
+}
+
 /// Refuses a file that could not be written, before any work is done for it.
 ///
 /// # Errors
@@ -86,6 +141,25 @@ pub fn check_writable(path: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Refuses two outputs of the same file, of which one would be lost.
+///
+/// # Errors
+/// If there are two.
+pub fn check_distinct(outputs: &[OutputFile<'_>]) -> anyhow::Result<()> {
+    for (k, output) in outputs.iter().enumerate() {
+        if let Some(other) = outputs[..k]
+            .iter()
+            .find(|other| study::is_same(other.path, output.path))
+        {
+            bail!(
+                "{}: is given for two outputs; give each output its own file",
+                other.path.display()
+            );
+        }
+    }
+    Ok(())
+}
+
 /// Refuses an output that is one of the `inputs`: what the user had would be lost.
 ///
 /// # Errors
@@ -101,4 +175,27 @@ pub fn check_is_no_input<'a>(path: &Path, inputs: impl Iterator<Item = &'a Path>
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_ending_of_another_format_is_refused_with_those_that_are_possible() {
+        let check = |path: &str| {
+            let path = Some(Path::new(path));
+            let file = OutputFile::given("--report", path, &["html", "htm"]).expect("a path was given");
+            file.check_ending().map_err(|error| error.to_string())
+        };
+        for accepted in ["r.html", "a.b/r.HTM", "r", ".pdf", "a.b/r", "/dev/null"] {
+            assert_eq!(check(accepted), Ok(()));
+        }
+        for (refused, ending) in [("r.pdf", "pdf"), ("r.html.gz", "gz"), ("r.", "")] {
+            let message = format!(
+                "--report {refused}: this option does not write .{ending} files; end the name in .html or .htm"
+            );
+            assert_eq!(check(refused), Err(message));
+        }
+    }
 }

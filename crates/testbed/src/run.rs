@@ -14,7 +14,7 @@ use torque::{Gp, Lengths, RigidBody, Samples, TorqueModel};
 use crate::cli::{ChainArgs, LengthScalesArg, RunArgs};
 use crate::interrupt;
 use crate::models::ModelKind;
-use crate::output::{self, Tracking};
+use crate::output::{self, OutputFile, Tracking};
 use crate::progress::Progress;
 use crate::scenario::Scenario;
 use crate::simulation::{self, Observer, Outcome, Weight};
@@ -193,7 +193,13 @@ fn check_outputs(args: &RunArgs, scenario: &Scenario, sources: &[String]) -> any
             .iter()
             .map(|source| ("the model's training data", PathBuf::from(source))),
     );
-    folder::check_distinct(&outputs, &inputs)
+    folder::check_distinct(&outputs, &inputs)?;
+    let rerun = observers::rerun_file(args, here);
+    let asked = args.json.as_deref().map(OutputFile::json);
+    asked
+        .into_iter()
+        .chain(rerun.as_deref().map(OutputFile::rerun))
+        .try_for_each(|file| file.check_ending())
 }
 
 /// The model's torque error against the truth on the reference, as the paper measures it.

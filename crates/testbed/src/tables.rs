@@ -11,7 +11,7 @@ use torque::{Samples, TorqueModel, TrainingOptions};
 
 use crate::cli::ChainArgs;
 use crate::models::ModelKind;
-use crate::output::{self, Tracking};
+use crate::output::{self, OutputFile, Tracking};
 use crate::progress::Progress;
 use crate::scenario::Scenario;
 use crate::{paper, simulation, training};
@@ -95,6 +95,7 @@ pub fn table_1(train: &Scenario, test: &Scenario, options: &TrainingOptions) -> 
 pub fn run(json: Option<&Path>, options: &TrainingOptions) -> anyhow::Result<()> {
     if let Some(path) = json {
         output::check_writable(path)?;
+        OutputFile::json(path).check_ending()?;
     }
     let started = Instant::now();
     let progress = Progress::new("training 2 × 4 models of 6 joints");

@@ -12,7 +12,7 @@ use torque::{Prediction, Samples, TorqueModel, Workspace};
 
 use crate::cli::{ChainArgs, TransferArgs};
 use crate::models::ModelKind;
-use crate::output;
+use crate::output::{self, OutputFile};
 use crate::progress::Progress;
 use crate::scenario::Scenario;
 use crate::training;
@@ -90,6 +90,7 @@ pub struct Correlation {
 pub fn run(args: &TransferArgs) -> anyhow::Result<()> {
     if let Some(path) = &args.json {
         output::check_writable(path)?;
+        OutputFile::json(path).check_ending()?;
     }
     ensure!(
         (2..=MOST_TASKS).contains(&args.train.len()),

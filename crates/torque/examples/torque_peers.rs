@@ -1,8 +1,8 @@
 //! Noisy training points of Independent Joint Learning, for `benches/peers.sh`. Inputs: `SAMPLES TRAIN.csv TEST.csv`.
 //!
-//! The PUMA 560 moves by sines, its measured motion and torque have noise, and the nominal model's masses are 20 % too large:
-//! the columns are joint 2's thirteen inputs from the noisy motion, and the torque that the nominal model leaves. The test
-//! points are of another stretch of the motion, without noise.
+//! The PUMA 560 moves along sines, its measured motion and torque have noise, and the masses of the nominal model are
+//! 20 % too large. The columns are the thirteen inputs of joint 2 from the noisy motion, and the residual torque of
+//! the nominal model. The test points are from another part of the motion, without noise.
 
 #[path = "../tests/support/mod.rs"]
 #[expect(dead_code, reason = "the tests need more of it")]
@@ -15,7 +15,7 @@ use support::{motion, puma560};
 /// Standard deviations of the noise on q (rad), q̇ (rad/s), q̈ (rad/s²) and τ (N m).
 const NOISE: [f64; 4] = [1e-4, 1e-2, 0.3, 0.5];
 
-/// Test points.
+/// The number of test points.
 const TESTS: usize = 2000;
 
 /// The joint, from 0.
@@ -29,7 +29,7 @@ fn main() {
     let samples: usize = samples.parse().expect("a number of samples");
     let seconds = samples as f64 / 80.0;
     std::fs::write(train, table(samples, 0.0, 1.0)).expect("the table can be written");
-    // The frequencies have no common period that short.
+    // The frequencies have no common period within the motion.
     std::fs::write(test, table(TESTS, seconds + 0.005, 0.0)).expect("the table can be written");
 }
 
@@ -61,7 +61,7 @@ fn table(samples: usize, from: f64, noise: f64) -> String {
     text
 }
 
-/// The same numbers every time.
+/// A pseudorandom generator with a fixed seed.
 struct Random(u64);
 
 impl Random {
@@ -73,7 +73,7 @@ impl Random {
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Of mean 0 and variance 1: twelve uniform numbers less their mean.
+    /// A number with mean 0 and variance 1: the sum of twelve uniform numbers, centred.
     fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
     }

@@ -27,18 +27,18 @@ pub enum Feedback {
 /// The torques of one control step, one entry per joint (N m or N).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Command {
-    /// The model's feed-forward, in parts.
+    /// The feed-forward of the model, in parts.
     pub feedforward: Prediction,
     /// The feedback.
     pub feedback: Vec<f64>,
-    /// Their sum within the joints' effort limits.
+    /// The sum of feed-forward and feedback within the joints' effort limits.
     pub torque: Vec<f64>,
     /// Whether the limit reduced the sum.
     pub saturated: Vec<bool>,
 }
 
 impl Command {
-    /// A command without torque for `dof` joints.
+    /// A command with zero torques for `dof` joints.
     pub fn new(dof: usize) -> Self {
         Self {
             feedforward: Prediction::new(dof),
@@ -51,7 +51,7 @@ impl Command {
 
 /// Feed-forward of the reference motion by a torque model, plus proportional-derivative feedback.
 ///
-/// τ = model(q_r, q̇_r, q̈_r) + feedback(q_r − q, q̇_r − q̇), cut at the effort limits: the computed-torque
+/// τ = model(q_r, q̇_r, q̈_r) + feedback(q_r − q, q̇_r − q̇), limited to the effort limits: the computed-torque
 /// feed-forward scheme of An, Atkeson and Hollerbach 1988, chapter 5.
 pub struct Controller<'a> {
     model: &'a dyn TorqueModel,
@@ -65,11 +65,11 @@ pub struct Controller<'a> {
 
 /// The weights of the learned torques.
 struct Fading {
-    /// One a joint.
+    /// One weight per joint.
     weights: Vec<f64>,
-    /// The joint whose weight is due; none before the first step, when all are.
+    /// The joint whose weight is renewed next; none before the first step, which computes all.
     due: Option<usize>,
-    /// The rigid body's torque, for a model that has none.
+    /// The torque of the rigid body, for a model without a rigid-body part.
     rigid: Vec<f64>,
 }
 
@@ -77,7 +77,7 @@ impl<'a> Controller<'a> {
     /// A controller with the feed-forward of `model`; the mass matrix and the effort limits are those of `arm`.
     ///
     /// # Errors
-    /// [`TorqueError`] if the model is of another arm, or a gain is negative, not finite, or missing.
+    /// [`TorqueError`] if the model belongs to another arm, or if a gain is negative, not finite, or missing.
     pub fn new(model: &'a dyn TorqueModel, arm: Arm, feedback: Feedback) -> Result<Self, TorqueError> {
         let n = arm.dof();
         let sized = |what: &str, found: usize| {
@@ -111,12 +111,13 @@ impl<'a> Controller<'a> {
         })
     }
 
-    /// Lets the learned part of the feed-forward fade to the rigid-body model where the regressions do not know the torque:
-    /// τ_j = τ_rigid,j + w_j (τ_model,j - τ_rigid,j), with [`TorqueModel::weight`] w_j. Below a model that stands alone, the
-    /// rigid body is the controller's own.
+    /// Lets the learned part of the feed-forward fade to the rigid-body model where there are no training data near
+    /// the motion: τ_j = τ_rigid,j + w_j (τ_model,j − τ_rigid,j) with the weight w_j of [`TorqueModel::weight`]. For a
+    /// model without a rigid-body part, the rigid body is that of the controller.
     ///
-    /// A weight costs a part of a control step, and the motion is slow against the control rate: after the first step, each
-    /// step renews the weight of one joint, in turn. A model without a learned part is fed forward as it is.
+    /// A weight takes a part of the time of a control step, and the motion is slow compared with the control rate:
+    /// after the first step, each step renews the weight of one joint, in turn. A model without a learned part does
+    /// not fade.
     #[must_use]
     pub fn fading(mut self) -> Self {
         let dof = self.arm.dof();
@@ -128,12 +129,13 @@ impl<'a> Controller<'a> {
         self
     }
 
-    /// The weights of the learned torques in the last step, if they fade: 1 for all of it, 0 for the rigid body alone.
+    /// The weights of the learned torques in the last step, if they fade: 1 for the whole learned torque, 0 for the
+    /// rigid body alone.
     pub fn weights(&self) -> Option<&[f64]> {
         self.fade.as_ref().map(|fade| fade.weights.as_slice())
     }
 
-    /// The feed-forward torques for the motion `q`, `qd`, `qdd` of the reference, into `command`.
+    /// Writes the feed-forward torques for the reference motion `q`, `qd`, `qdd` to `command`.
     ///
     /// # Panics
     /// If a slice is of another size than the arm.
@@ -163,8 +165,8 @@ impl<'a> Controller<'a> {
         }
     }
 
-    /// The feedback torques at the measured `q` for the errors `error` (rad or m) and `error_rate`, and
-    /// the sum of all within the effort limits, into `command`.
+    /// Writes the feedback torques at the measured `q` for the errors `error` (rad or m) and `error_rate` (rad/s or
+    /// m/s), and the sum of feed-forward and feedback within the effort limits, to `command`.
     ///
     /// # Panics
     /// If a slice is of another size than the arm.

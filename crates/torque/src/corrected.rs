@@ -12,26 +12,29 @@ use crate::model::{Prediction, TorqueModel, Workspace};
 
 /// An arm and the [`Effect`]s that its URDF omits.
 ///
-/// The torque of joint j, in N m (N) as the drive reports it, is
+/// The torque of joint j, in N m or N as the drive reports it, is
 ///
 /// τ_j = clip( factor_j ( rigid_j(q + offset, q̇, q̈) + Σ effects_j(q, q̇, q̈) ), ± limit_j )
 ///
-/// - *rigid* is the inverse dynamics of [`Self::arm`]: payload, link errors, scale, rotor inertias and a turned base are
-///   in it. A payload is added after links are scaled, and is not scaled with them.
-/// - A base turned by `angle` about `axis` turns gravity, seen from it, the other way: g' = R(axis, angle)ᵀ g.
-/// - The friction forms take the exact sign of q̇, and nothing at rest. [`TorqueModel::predict`] takes a drifting friction
-///   as warm; [`Self::predict_at`] knows the time. The load of load-dependent friction is |rigid_j|.
-/// - What sets in at an onset acts from then on; where no time is given, it acts.
-/// - `q` is what the encoder says; springs and ripple take it as it is.
-/// - Delay, elasticity and backlash are no functions of (q, q̇, q̈) and are left out, as is a contact where no time is given.
+/// - *rigid* is the inverse dynamics of [`Self::arm`], which includes payload, link errors, scale, rotor inertias and
+///   a rotated base. A payload is added after the links are scaled, and is not scaled with them.
+/// - On a base that is rotated by `angle` about `axis`, gravity is rotated in the opposite direction:
+///   g' = R(axis, angle)ᵀ g.
+/// - Friction uses the exact sign of q̇, and is zero at rest. [`TorqueModel::predict`] assumes warm drives for thermal
+///   drift; [`Self::predict_at`] uses the time. The load of load-dependent friction is
+///   |rigid_j|.
+/// - An effect with an onset acts from then on; if no time is given, it acts.
+/// - `q` is the position of the encoder, which springs and ripple use directly.
+/// - Delay, elasticity and backlash are not functions of (q, q̇, q̈) and are omitted, as is a contact if no time is
+///   given.
 ///
-/// Effects that come twice add up (factors multiply, the smaller limit holds, base turns follow each other).
-/// Friction that the URDF gives is not part of it.
+/// Effects of the same kind add up (factors are multiplied, the smaller limit applies, base rotations are applied one
+/// after the other). Friction in the URDF is not included.
 #[derive(Clone, Debug)]
 pub struct Corrected {
-    /// The arm with all payloads, and the effects that are not part of it.
+    /// The arm with all payloads, and the effects that do not change the arm.
     machine: Machine,
-    /// The arms before payloads are picked up, with the times until which they hold (s), the earliest first.
+    /// The arms before payloads are picked up, with the time (s) until which each applies, the earliest first.
     earlier: Vec<(f64, Arm)>,
     tool: Frame,
 }
@@ -79,14 +82,14 @@ impl Corrected {
         &self.machine.encoder_offsets
     }
 
-    /// The effects that are not part of the arm: delays, springs, gaps and the others. Rotors and payloads are in
+    /// The effects that do not change the arm, such as delays, springs and gaps. Rotors and payloads are in
     /// [`Self::arm`].
     pub fn machine(&self) -> &Machine {
         &self.machine
     }
 
-    /// The torque of `joint` as the drive reports it over the true one, at `time` (s on the recordings' own clock); without
-    /// a time, after all onsets.
+    /// The ratio of the torque of `joint` that the drive reports to the true torque, at `time` (s on the recordings'
+    /// own clock); without a time, after all onsets.
     pub fn torque_factor(&self, joint: usize, time: Option<f64>) -> f64 {
         let acting = |scaled: &&Scaled| scaled.joint == joint && acts(scaled.onset, time);
         let acting = self.machine.factors.iter().filter(acting);
@@ -98,8 +101,8 @@ impl Corrected {
         &self.machine.limits
     }
 
-    /// Predicts as [`TorqueModel::predict`] does, at `time` (s on the recordings' own clock): with the friction of that time,
-    /// and with a contact while it lasts.
+    /// Predicts as [`TorqueModel::predict`] does, at `time` (s on the recordings' own clock): with the thermal state
+    /// of that time, and with a contact during its window.
     ///
     /// # Panics
     /// If a slice or the workspace is of another size than the arm.
@@ -144,12 +147,12 @@ impl Corrected {
         for (joint, effect) in effects.iter_mut().enumerate() {
             let limit = self.machine.limits[joint];
             let total = self.torque_factor(joint, time) * (rigid[joint] + *effect);
-            // // Everything but the rigid torque counts as an effect, also a scale and a limit.
+            // All parts but the rigid torque count as effects, including scale and limit.
             *effect = total.clamp(-limit, limit) - rigid[joint];
         }
     }
 
-    /// The inverse dynamics at the true positions of the joints, of the arm at `time`.
+    /// The inverse dynamics of the arm at `time`, at the true positions of the joints.
     fn rigid_torque(&self, time: Option<f64>, workspace: &mut Workspace, [q, qd, qdd]: [&[f64]; 3], rigid: &mut [f64]) {
         let Workspace {
             arm: scratch, input, ..
@@ -164,7 +167,7 @@ impl Corrected {
         arm.inverse_dynamics(scratch, standing, qd, qdd, rigid);
     }
 
-    /// Adds everything but rigid body and dry friction to `tau`; the workspace contains the true positions.
+    /// Adds all torques except rigid body and dry friction to `tau`; the workspace contains the true positions.
     fn add_smooth(
         &self,
         time: Option<f64>,

@@ -3,20 +3,20 @@
 /// Why a torque model or a controller could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum TorqueError {
-    /// A joint vector of another size than the arm.
+    /// A joint vector has another size than the arm.
     #[error("{what}: {found} values for an arm of {expected} joints")]
     Joints {
-        /// The vector.
+        /// The name of the vector.
         what: String,
-        /// How many values it has.
+        /// The number of its values.
         found: usize,
-        /// How many joints the arm has.
+        /// The number of the arm's joints.
         expected: usize,
     },
-    /// A number that must be finite and not negative.
+    /// A gain is negative or not finite.
     #[error("{what} of joint {joint} is {value}; it must be finite and not negative")]
     Gain {
-        /// Which gain.
+        /// The name of the gain.
         what: &'static str,
         /// The joint, from 1.
         joint: usize,

@@ -7,8 +7,8 @@ use crate::model::Workspace;
 pub enum Inputs {
     /// q, q̇ and q̈ of all joints, the same for every joint (the paper's "Lagrangian" form).
     JointMotion,
-    /// ω_i, ω̇_i, τ_{i+1}, f_{i+1} of the rigid-body model: the paper's twelve (equation 19). They are made for
-    /// revolute joints: that a link is accelerated along a slide, none of them tells.
+    /// ω_i, ω̇_i, τ_{i+1}, f_{i+1} of the rigid-body model: the paper's twelve (equation 19). They are designed for
+    /// revolute joints: the acceleration of a link along a prismatic joint is not among them.
     NewtonEuler12,
     /// The twelve and the model's own torque τ_i (the paper's algorithms 1 to 3).
     NewtonEuler13,

@@ -19,7 +19,8 @@ pub struct TrainingOptions {
     pub starts: usize,
     /// Iterations from each start: [`FitOptions::max_iterations`].
     pub max_iterations: u64,
-    /// With more samples than this, approximate by so many inducing points: [`FitOptions::inducing`].
+    /// With more samples than this, the regressions are approximated by this many inducing points:
+    /// [`FitOptions::inducing`].
     pub inducing: Option<usize>,
 }
 
@@ -35,7 +36,7 @@ impl Default for TrainingOptions {
     }
 }
 
-/// A rigid-body model (or none) plus one regression per joint for the residual torque.
+/// A rigid-body model (or none) plus one regression of the residual torque per joint.
 #[derive(Clone, Debug)]
 pub struct Learned {
     rigid_body: Option<Arm>,
@@ -45,7 +46,7 @@ pub struct Learned {
 }
 
 impl Learned {
-    /// The paper's "GPR only": the whole torque from (q, q̇, q̈).
+    /// The paper's "GPR only": regressions of the whole torque on (q, q̇, q̈).
     ///
     /// # Errors
     /// [`TorqueError`] if there are no samples or a regression fails.
@@ -57,7 +58,7 @@ impl Learned {
     /// Joint Learning on the Newton-Euler inputs (algorithm 2).
     ///
     /// # Errors
-    /// [`TorqueError`] if there are no samples, they are of another arm, or a regression fails.
+    /// [`TorqueError`] if there are no samples, if they belong to another arm, or if a regression fails.
     pub fn on_top_of(
         arm: &Arm,
         inputs: Inputs,
@@ -110,7 +111,7 @@ impl Learned {
             inducing: options.inducing,
             ..FitOptions::default()
         };
-        // Each regression is a computation of its own, so the result does not depend on the threads.
+        // The regressions are independent of each other, so that the result does not depend on the number of threads.
         let fitted: Result<Vec<Gp>, TorqueError> = (0..dof)
             .into_par_iter()
             .map(|joint| {
@@ -178,7 +179,7 @@ impl TorqueModel for Learned {
 
     fn variance<'w>(&self, workspace: &'w mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64]) -> Option<&'w [f64]> {
         self.evaluate_features(workspace, q, qd, qdd);
-        // Taken out so that the inputs can be read while the scratch is written.
+        // Moved out of the workspace, because the inputs are read while the scratch is written.
         let mut scratch = std::mem::take(&mut workspace.gp);
         for (joint, gp) in self.regressions.iter().enumerate() {
             let (_, variance) = gp.mean_and_variance(self.inputs.of(joint, workspace), &mut scratch);

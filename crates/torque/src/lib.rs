@@ -1,8 +1,8 @@
 //! Torque models behind one trait, their training, and the computed-torque controller.
 //!
-//! A [`TorqueModel`] predicts the joint torques (N m or N) that a motion q, q̇, q̈ needs, in parts: rigid-body dynamics, named
-//! effects, and a learned part. There are the paper's four models, the exact model as the reference, and the [`Corrected`]
-//! model of a diagnosis; the controller only knows the trait.
+//! A [`TorqueModel`] predicts the joint torques (N m or N) that a motion q, q̇, q̈ requires, in parts: rigid-body
+//! dynamics, named effects, and a learned part. There are the paper's four models, the exact model as the reference,
+//! and the [`Corrected`] model of a diagnosis; the controller depends on the trait only.
 
 mod controller;
 mod corrected;

@@ -5,20 +5,20 @@ use gp::Gp;
 
 use crate::samples::Samples;
 
-/// A model of the joint torques that a motion needs.
+/// A model of the joint torques that a motion requires.
 pub trait TorqueModel: Send + Sync {
     /// The number of joints.
     fn dof(&self) -> usize;
 
-    /// The torques (N m or N) for the motion `q`, `qd`, `qdd`, in parts, without allocating; parts that the model does not have
-    /// are set to zero.
+    /// Writes the parts of the torques (N m or N) for the motion `q`, `qd`, `qdd` to the workspace without allocating;
+    /// parts that the model does not have are zero.
     ///
     /// # Panics
     /// If a slice or the workspace is of another size than the arm.
     fn predict(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64], prediction: &mut Prediction);
 
-    /// The variance ((N m)² or N²) of the learned part for each joint; `None` for a model without a learned part. It costs much
-    /// more than [`Self::predict`].
+    /// The variance ((N m)² or N²) of the learned part for each joint; `None` for a model without a learned part. It
+    /// takes much longer than [`Self::predict`].
     ///
     /// # Panics
     /// If a slice or the workspace is of another size than the arm.
@@ -29,18 +29,19 @@ pub trait TorqueModel: Send + Sync {
         &[]
     }
 
-    /// What the learned part of `joint` is worth from 0 (nothing is known there) to 1, for the motion that was predicted last
-    /// with this workspace; `None` from a model without a learned part. See [`crate::Controller::fading`].
+    /// The reliability of the learned part of `joint` from 0 (no training data near the motion) to 1, for the motion
+    /// of the last prediction with this workspace; `None` from a model without a learned part. See
+    /// [`crate::Controller::fading`].
     fn weight(&self, _workspace: &Workspace, _joint: usize) -> Option<f64> {
         None
     }
 
-    /// Whether the learned part is the whole torque, with no rigid body below it.
+    /// Whether the learned part is the whole torque, without a rigid-body model.
     fn stands_alone(&self) -> bool {
         false
     }
 
-    /// The mean squared torque error on `samples` for each joint ((N m)² or N²), the paper's measure.
+    /// The mean squared torque error on `samples` for each joint ((N m)² or N²), which is the measure of the paper.
     fn mean_squared_error(&self, samples: &Samples) -> Vec<f64> {
         let mut workspace = Workspace::new(self.dof());
         let mut prediction = Prediction::new(self.dof());
@@ -78,13 +79,13 @@ impl Prediction {
         }
     }
 
-    /// The whole torque of `joint`.
+    /// The sum of the parts for `joint`.
     pub fn torque(&self, joint: usize) -> f64 {
         self.rigid[joint] + self.effects[joint] + self.learned[joint]
     }
 }
 
-/// Scratch for any torque model of an arm; make it once, pass it to every call.
+/// Scratch for any torque model of an arm; make it once and pass it to every call.
 #[derive(Clone, Debug)]
 pub struct Workspace {
     pub(crate) arm: Option<arm::Workspace>,
@@ -96,7 +97,7 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// Scratch for models of arms with `dof` joints. It grows to what the first call needs.
+    /// Scratch for models of arms with `dof` joints. It grows to its final size in the first call.
     pub fn new(dof: usize) -> Self {
         Self {
             arm: None,

@@ -1,14 +1,14 @@
-//! How far a learned torque reaches: its weight, from the variance that its regression has left.
+//! The weight of a learned torque: how reliable it is, from the remaining variance of its regression.
 
 use gp::{Gp, Range};
 
-/// The share of the prior variance up to which nothing fades.
+/// The share of the prior variance up to which the weight is 1.
 const KNOWN: f64 = 0.05;
 
-/// How soon after that the weight falls in proportion, as a share of the way to the prior.
+/// The width of the transition from 1 to a linear decrease, as a share of the way to the prior variance.
 const ROUNDING: f64 = 0.05;
 
-/// Where the learned torque of one joint is worth something.
+/// The weight of the learned torque of one joint.
 #[derive(Clone, Debug)]
 pub(crate) struct Reach {
     range: Range,
@@ -17,18 +17,19 @@ pub(crate) struct Reach {
 }
 
 impl Reach {
-    /// Of `gp`.
+    /// The weight of the mean of `gp`.
     pub(crate) fn of(gp: &Gp) -> Self {
         let range = gp.range();
-        let from = range.left().clamp(KNOWN, 1.0 - KNOWN);
+        let from = range.mean_variance_share().clamp(KNOWN, 1.0 - KNOWN);
         Self { range, from }
     }
 
-    /// The weight of the mean at `x`: with u the share of the prior variance left there and s = (u - from) / (1 - from),
-    /// 1 for s ≤ 0, else 1 - (1 + c) s² / (s + c) with c = 0.05: in proportion to what is known, with a smooth beginning.
+    /// The weight of the mean at `x`: with u the remaining share of the prior variance at `x` and s = (u − from) / (1
+    /// − from), it is 1 for s ≤ 0, and otherwise 1 − (1 + c) s² / (s + c) with c = 0.05, which decreases linearly
+    /// after a smooth beginning.
     pub(crate) fn weight(&self, x: &[f64]) -> f64 {
-        let share = (self.range.unexplained(x) - self.from) / (1.0 - self.from);
-        // A comparison rather than `max`, which would turn NaN into a number.
+        let share = (self.range.variance_share(x) - self.from) / (1.0 - self.from);
+        // A comparison instead of `max`, which would replace NaN by a number.
         if share <= 0.0 {
             return 1.0;
         }

@@ -16,20 +16,21 @@ pub struct Sine {
 /// A fade-in from rest at the start, and a fade-out to rest at the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fade {
-    /// How long either takes (s).
+    /// The duration of the fade-in and of the fade-out (s).
     pub seconds: f64,
-    /// When the motion has ended (s).
+    /// The time at which the motion has ended (s).
     pub end: f64,
 }
 
-/// q(t) = centre + Σ sines, one entry per joint; the sum times a factor that rises from 0 to 1 and falls again, if it fades.
+/// q(t) = centre + Σ sines, one entry per joint. If the motion fades, the sum is multiplied by a factor that rises
+/// from 0 to 1 and returns to 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
-    /// rad or m.
+    /// The centres (rad or m).
     pub centre: Vec<f64>,
     /// The sines.
     pub sines: Vec<Sine>,
-    /// How it fades in and out; `None` starts and ends in full motion.
+    /// The fade-in and fade-out; `None` starts and ends in full motion.
     pub fade: Option<Fade>,
 }
 
@@ -45,7 +46,7 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// At rest at zero.
+    /// At rest at position zero.
     pub fn new(dof: usize) -> Self {
         Self {
             q: vec![0.0; dof],
@@ -56,7 +57,7 @@ impl Motion {
 }
 
 impl Reference {
-    /// The motion at `time` (s), into `motion`.
+    /// Writes the motion at `time` (s) to `motion`.
     pub fn at(&self, time: f64, motion: &mut Motion) {
         motion.q.copy_from_slice(&self.centre);
         motion.qd.fill(0.0);
@@ -83,7 +84,8 @@ impl Reference {
 }
 
 impl Fade {
-    /// The factor at `time` with its first two derivatives (1, 1/s, 1/s²): x³ (10 − 15 x + 6 x²), at rest on both sides.
+    /// The factor at `time` with its first two derivatives (1, 1/s, 1/s²): x³ (10 − 15 x + 6 x²), with zero velocity
+    /// and acceleration on both sides.
     fn factor(&self, time: f64) -> [f64; 3] {
         let (x, sense) = if time < 0.5 * self.end {
             (time / self.seconds, 1.0)
@@ -108,7 +110,7 @@ impl Fade {
 mod tests {
     use super::*;
 
-    /// Velocity and acceleration are the derivatives of position; fails if a factor ω is lost.
+    /// Velocity and acceleration are the derivatives of position; fails if a factor ω is missing.
     #[test]
     fn derivatives_agree_with_differences() {
         let reference = Reference {

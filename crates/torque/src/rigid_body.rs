@@ -4,8 +4,7 @@ use arm::Arm;
 
 use crate::model::{Prediction, TorqueModel, Workspace};
 
-/// The inverse dynamics of an arm: the exact model if the arm is the true one, the paper's "RBD
-/// only" if it is the nominal one.
+/// The inverse dynamics of an arm: the exact model for the true arm, the paper's "RBD only" for the nominal one.
 #[derive(Clone, Debug)]
 pub struct RigidBody {
     arm: Arm,

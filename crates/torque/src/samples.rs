@@ -2,7 +2,7 @@
 
 use crate::error::TorqueError;
 
-/// Samples of joint motion and the torque it needed, row by row: n × dof each.
+/// Samples of joint motion and of the torque that it required, row by row: n × dof each.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Samples {
     dof: usize,
@@ -26,7 +26,7 @@ pub struct Sample<'a> {
 }
 
 impl Samples {
-    /// No samples yet, of an arm with `dof` joints.
+    /// An empty set of samples of an arm with `dof` joints.
     pub fn new(dof: usize) -> Self {
         Self { dof, ..Self::default() }
     }
@@ -34,7 +34,7 @@ impl Samples {
     /// Adds one sample.
     ///
     /// # Errors
-    /// [`TorqueError::Joints`] if a slice has not one entry per joint.
+    /// [`TorqueError::Joints`] if a slice does not have one entry per joint.
     pub fn push(&mut self, sample: Sample<'_>) -> Result<(), TorqueError> {
         for (what, values) in [
             ("q", sample.q),

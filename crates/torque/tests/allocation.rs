@@ -1,4 +1,4 @@
-//! A control step does not allocate, whatever the model; nor does the variance once its scratch has grown.
+//! No control step allocates, whatever the model; the variance does not allocate once its scratch has grown.
 
 mod support;
 

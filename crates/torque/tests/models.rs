@@ -1,4 +1,4 @@
-//! The torque models and the controller: what each must be good at, and what they refuse.
+//! The torque models and the controller: where each must be accurate, and what they refuse.
 
 mod support;
 
@@ -17,7 +17,7 @@ fn learned(inputs: Inputs) -> Learned {
     Learned::on_top_of(&nominal(), inputs, &samples(300, 0), &TrainingOptions::default()).expect("it trains")
 }
 
-/// The model error of the paper is one scalar: the scaled model's torque is 1.2 times the true one.
+/// The model error of the paper is one factor: the torque of the scaled model is 1.2 times the true one.
 #[test]
 fn scaled_inertias_scale_the_torque() {
     let tests = samples(100, 1);
@@ -39,7 +39,7 @@ fn scaled_inertias_scale_the_torque() {
     );
 }
 
-/// Every learned model explains what it was trained on. Fails if inputs and targets are mismatched.
+/// Every learned model predicts its training samples. Fails if inputs and targets are mismatched.
 #[test]
 fn learned_models_explain_their_training() {
     let train = samples(300, 0);
@@ -62,7 +62,7 @@ fn learned_models_explain_their_training() {
     }
 }
 
-/// On another motion thirteen inputs transfer best, then twelve, then q, q̇, q̈: the paper's claim.
+/// On another motion, thirteen inputs are the most accurate, then twelve, then q, q̇, q̈: the paper's result.
 #[test]
 fn newton_euler_inputs_transfer_to_another_task() {
     let tests = samples(300, 1);
@@ -77,7 +77,7 @@ fn newton_euler_inputs_transfer_to_another_task() {
     );
 }
 
-/// Variance grows away from the data, and only learned models have one.
+/// The variance increases with the distance from the data, and only learned models have one.
 #[test]
 fn variance_tells_how_far_the_data_are() {
     let model = learned(Inputs::NewtonEuler12);
@@ -126,7 +126,7 @@ fn what_does_not_fit_is_refused() {
     assert!(gains(vec![f64::NAN; 6]).is_err());
 }
 
-/// The feedback is M(q)(K_p e + K_d ė), or the gains alone, and the sum is cut at the effort limits.
+/// The feedback is M(q)(K_p e + K_d ė), or that of the gains alone, and the sum is limited to the effort limits.
 #[test]
 fn the_controller_feeds_back_and_saturates() {
     let arm = puma560();
@@ -172,8 +172,8 @@ fn the_controller_feeds_back_and_saturates() {
     assert!(command.saturated[0] && !command.saturated[2]);
 }
 
-/// Along the training motion nothing fades; where nothing is known the rigid body is left alone, also below a model that has
-/// none; and what fades in between is what the weights say.
+/// Along the training motion nothing fades; far from the data only the rigid body remains, also for a model without a
+/// rigid-body part; in between, the command follows from the weights.
 #[test]
 fn a_learned_torque_fades_where_it_knows_nothing() {
     let train = samples(300, 0);
@@ -221,7 +221,7 @@ fn a_learned_torque_fades_where_it_knows_nothing() {
     }
 }
 
-/// After the first step each renews the weight of one joint, so that in six steps all follow the motion.
+/// After the first step, each step renews the weight of one joint, so that all are renewed in six steps.
 #[test]
 fn one_weight_is_renewed_in_a_step() {
     let model = learned(Inputs::NewtonEuler13);

@@ -1,4 +1,4 @@
-//! What a URDF must be for its robot to be a serial arm with a body.
+//! The requirements on a URDF whose robot is a serial arm with masses.
 
 use std::collections::HashSet;
 
@@ -84,8 +84,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Refuses the newest link if its tensor has a negative principal moment; warns if no
-    /// distribution of mass has it (the triangle inequality).
+    /// Refuses the inertia tensor of the newest link if it has a negative principal moment, and warns if it violates
+    /// the triangle inequality, so that no distribution of mass has it.
     pub(super) fn check_tensor(&self, arm: &mut Arm) -> Result<(), ArmError> {
         let Some(joint) = arm.joints.last() else { return Ok(()) };
         let mut moments = joint.inertia.tensor.symmetric_eigenvalues();
@@ -112,8 +112,8 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Refuses an arm without any inertia. A link or two without is a matter of what is to be done with the
-    /// arm: [`Arm::massless_joint`].
+    /// Refuses an arm without any inertia. Links without inertia are allowed in general; forward dynamics needs
+    /// [`Arm::massless_joint`] to be `None`.
     pub(super) fn check_masses(&self, arm: &Arm) -> Result<(), ArmError> {
         if arm.joints.iter().any(|joint| joint.inertia != Inertia::zero()) {
             return Ok(());

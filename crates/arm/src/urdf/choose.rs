@@ -1,4 +1,4 @@
-//! Which joints of a URDF move in the arm, and where the others are fixed.
+//! Which joints of a URDF move in the arm, and the positions of the others.
 
 use std::collections::HashMap;
 
@@ -10,26 +10,26 @@ use crate::error::ArmError;
 use crate::model::JointKind;
 use crate::pose::Pose;
 
-/// What the name of a gripper's joint contains.
+/// Words in the names of grippers' joints.
 const GRIPPER_WORDS: [&str; 5] = ["gripper", "finger", "knuckle", "jaw", "thumb"];
 
-/// More runs of joints than this are counted in an error, and not listed.
+/// An error counts the runs of joints instead of listing them if there are more than this.
 const MOST_RUNS: usize = 12;
 
 /// The joints of the arm.
 pub(super) struct Chain<'a> {
-    /// The link that stands still.
+    /// The link that does not move.
     pub(super) base: &'a str,
-    /// The tip, if one was asked for.
+    /// The tip, if one was chosen.
     pub(super) tip: Option<&'a str>,
-    /// The joints that could move and do not.
+    /// The joints that could move and are fixed.
     pub(super) fixed: Vec<FixedJoint>,
-    /// All joints that do not move, with their position.
+    /// All joints that do not move, each with its position (rad or m).
     positions: HashMap<&'a str, f64>,
 }
 
 impl Chain<'_> {
-    /// Where a joint is fixed (rad or m); `None` if it moves.
+    /// The position at which a joint is fixed (rad or m); `None` if it moves.
     pub(super) fn position(&self, joint: &str) -> Option<f64> {
         self.positions.get(joint).copied()
     }
@@ -51,7 +51,7 @@ pub(super) fn kind(joint: &urdf_rs::Joint) -> JointKind {
     }
 }
 
-/// The limits of a joint's position, if it has some that make sense.
+/// The limits of a joint's position, if they are plausible.
 fn limits(joint: &urdf_rs::Joint) -> Option<(f64, f64)> {
     let (lower, upper) = (joint.limit.lower, joint.limit.upper);
     (joint.joint_type != JointType::Continuous && lower < upper).then_some((lower, upper))
@@ -93,10 +93,10 @@ fn choice(base: &str, start: usize, way: &[&urdf_rs::Joint]) -> String {
 }
 
 impl<'a> Reader<'a> {
-    /// Chooses the arm's joints below `root` as `options` ask.
+    /// Chooses the arm's joints below `root` according to `options`.
     ///
     /// # Errors
-    /// If a link or joint that is asked for is not there, or if more than one chain remains, with the tips to choose from.
+    /// If a link or joint in `options` does not exist, or if several chains are possible; the error lists their tips.
     pub(super) fn choose(&self, root: &'a str, options: &ChainOptions) -> Result<Chain<'a>, ArmError> {
         let base = options
             .base
@@ -172,7 +172,7 @@ impl<'a> Reader<'a> {
         Ok(chain)
     }
 
-    /// The joints from link `base` to link `link`; `None` if it does not hang on the base.
+    /// The joints from link `base` to link `link`; `None` if `link` is not below `base`.
     pub(super) fn path(&self, link: &str, base: &str) -> Option<Joints<'a>> {
         let mut path = Vec::new();
         let mut at = link;
@@ -225,8 +225,8 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Divides `joints` into those of grippers and the others. A gripper's joint has only such joints beyond it; if all
-    /// joints are of that kind, none is.
+    /// Divides `joints` into those of grippers and the others. Beyond a gripper's joint there are only gripper joints;
+    /// if all joints have such names, none counts as one.
     fn grippers(&self, base: &str, joints: Joints<'a>) -> (Joints<'a>, Joints<'a>) {
         let is_beyond = |joint: &urdf_rs::Joint, other: &urdf_rs::Joint| {
             self.path(&other.child.link, base)
@@ -245,8 +245,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Those of `joints` that are recorded, and those between two that are: a joint amid the arm is missing in the
-    /// recording rather than fixed. All, if none is recorded.
+    /// The recorded joints, and the joints between two of them, which are missing in the recording and not fixed. All
+    /// joints if none is recorded.
     fn recorded(&self, base: &str, joints: Joints<'a>, recorded: &[String]) -> Joints<'a> {
         let is_recorded = |joint: &urdf_rs::Joint| recorded.contains(&joint.name);
         if !joints.iter().any(|joint| is_recorded(joint)) {
@@ -269,7 +269,7 @@ impl<'a> Reader<'a> {
             .collect()
     }
 
-    /// Refuses joints that are not one chain, with the unbranched runs of joints that there are, the longest first.
+    /// Refuses joints that do not form one chain; the error lists the unbranched runs of joints, the longest first.
     fn check_chain(&self, base: &str, moving: &Joints<'a>) -> Result<(), ArmError> {
         let is_moving = |joint: &urdf_rs::Joint| moving.iter().any(|other| other.name == joint.name);
         let ways: Vec<Joints<'a>> = moving
@@ -279,7 +279,7 @@ impl<'a> Reader<'a> {
                 path.into_iter().filter(|joint| is_moving(joint)).collect()
             })
             .collect();
-        // The joints next to each joint: the last ones of the ways that are one joint longer than its own.
+        // The number of moving joints directly beyond a path: the paths that are longer by one joint.
         let next = |way: &Joints<'a>| -> usize {
             let is_next = |longer: &&Joints<'a>| {
                 longer.len() == way.len() + 1 && way.iter().zip(longer.iter()).all(|(a, b)| a.name == b.name)
@@ -314,7 +314,7 @@ impl<'a> Reader<'a> {
         ))
     }
 
-    /// Refuses joints of other kinds between the base and a joint that moves.
+    /// Refuses joints of other types between the base and a moving joint.
     fn check_kinds(&self, base: &str, moving: &Joints<'a>) -> Result<(), ArmError> {
         let on_way = |joint: &&'a urdf_rs::Joint| self.path(&joint.child.link, base).unwrap_or_default();
         let mut ways: Joints<'a> = moving.iter().flat_map(on_way).collect();
@@ -335,9 +335,9 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// Puts joints that mimic a fixed one where it puts them.
+    /// Sets the positions of joints that mimic a fixed one.
     fn follow(&self, chain: &mut Chain<'a>) {
-        // One mimics another that mimics a third: as many rounds as there are joints reach every one.
+        // A mimicked joint may mimic another one: there are at most as many steps as joints.
         for _ in 0..self.robot.joints.len() {
             let mut changed = false;
             for joint in &self.robot.joints {

@@ -1,4 +1,4 @@
-//! What of a URDF's text is read; what a text that is none most likely is, and where.
+//! The part of a URDF's text that is read, and errors of syntax with their place.
 
 use std::ops::Range;
 use std::path::Path;
@@ -7,29 +7,30 @@ use quick_xml::events::{BytesStart, Event};
 
 use crate::error::ArmError;
 
-/// The attributes that hold numbers.
+/// The attributes whose values are numbers.
 const NUMBERS: [&str; 18] = [
     "value", "ixx", "ixy", "ixz", "iyy", "iyz", "izz", "xyz", "rpy", "lower", "upper", "effort", "velocity", "damping",
     "friction", "radius", "length", "size",
 ];
 
-/// Elements within elements: no URDF needs more, and a parser's stack ends somewhere.
+/// The largest depth of nested elements. URDFs need no more, and a deeper one could overflow the parser's stack.
 const DEEPEST: usize = 64;
 
-/// A text that is XML with a `<robot>`.
+/// The text of an XML file with a `<robot>` element.
 pub(super) struct Text {
-    /// The text without its comments and without textures that name no file, which `urdf-rs` refuses. They are blanked
-    /// out, so that every other byte keeps its place.
+    /// The text without comments and without textures that name no file, which `urdf-rs` refuses. They are replaced by
+    /// spaces, so that all other bytes keep their positions.
     pub(super) blanked: String,
-    /// Where the links, joints and other elements of the robot are.
+    /// The positions of the links, joints and other elements of the robot.
     elements: Vec<Range<usize>>,
 }
 
 impl Text {
-    /// Reads `text`, which the file at `path` holds.
+    /// Reads `text`, the content of the file at `path`.
     ///
     /// # Errors
-    /// [`ArmError::Syntax`] with the line: not XML, another format, or xacro, which would lose parts silently.
+    /// [`ArmError::Syntax`] with the line, if it is not XML, another format, or xacro, parts of which would be
+    /// ignored.
     pub(super) fn of(text: &str, path: &Path) -> Result<Self, ArmError> {
         let mut reader = quick_xml::Reader::from_str(text);
         let (mut blanks, mut elements): (Vec<Range<usize>>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
@@ -101,8 +102,8 @@ impl Text {
         })
     }
 
-    /// The error of the parser, with the place of what it met: a number that is none, or else the first element that
-    /// does not parse alone.
+    /// The parser's error with its place: an attribute that is not a number, or else the first element that does not
+    /// parse by itself.
     pub(super) fn explain(&self, path: &Path, error: &urdf_rs::UrdfError) -> ArmError {
         let text = &self.blanked;
         for attribute in NUMBERS {
@@ -131,13 +132,13 @@ impl Text {
     }
 }
 
-/// What the parser says, without its own kinds of errors.
+/// The parser's message without the name of its error type.
 fn plain(error: &urdf_rs::UrdfError) -> String {
     let text = error.to_string();
     text.strip_prefix("custom: ").unwrap_or(&text).to_owned()
 }
 
-/// What the root element says of the format, if it is another than URDF.
+/// Refuses a root element that is not that of a URDF; the error names the format.
 fn check_root(tag: &BytesStart<'_>) -> Result<(), String> {
     let name = String::from_utf8_lossy(tag.name().as_ref()).into_owned();
     match name.as_str() {
@@ -157,7 +158,7 @@ fn check_root(tag: &BytesStart<'_>) -> Result<(), String> {
     }
 }
 
-/// Whether xacro has still to expand the element.
+/// Whether the element must be expanded by xacro.
 fn is_xacro(tag: &BytesStart<'_>) -> bool {
     let is_expression = |value: &[u8]| value.windows(2).any(|pair| pair == b"${" || pair == b"$(");
     tag.name().as_ref().starts_with(b"xacro:")
@@ -175,12 +176,12 @@ fn lacks_file(tag: &BytesStart<'_>) -> bool {
         .all(|attribute| attribute.key.as_ref() != b"filename")
 }
 
-/// `text` with spaces in the place of `ranges`, which are in order; lines stay.
+/// `text` with spaces in place of the sorted `ranges`; line breaks remain.
 fn blanked(text: &str, ranges: &[Range<usize>]) -> String {
     let mut result = String::with_capacity(text.len());
     let mut at = 0;
     for range in ranges {
-        // A comment within a texture is blanked out with it.
+        // A comment within a texture has already been replaced with it.
         let start = range.start.max(at);
         if range.end <= at {
             continue;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use arm::{Arm, Vector3};
+use arm::{Arm, Inertia, Vector3};
 use nalgebra::{Matrix3, Rotation3};
 use proptest::prelude::*;
 
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 mod properties;
 pub use properties::config;
 
-/// How far a frame stands from its parent, and how it is turned.
+/// The position (m) and the orientation (roll, pitch, yaw, rad) of a frame in its parent.
 type Origin = ([f64; 3], [f64; 3]);
 
 /// A joint, the link that it carries, and how they move.
@@ -21,7 +21,7 @@ pub struct Body {
     pub axis: [f64; 3],
     pub mass: f64,
     pub com: [f64; 3],
-    /// How far the mass spreads along its own three axes (m), and how they are turned.
+    /// The radii of gyration along the principal axes (m), and the orientation of these axes (rad).
     pub spread: Origin,
     pub rotor: f64,
     /// Position, velocity and acceleration.
@@ -109,20 +109,8 @@ fn inertial(body: &Body, cut: Option<Origin>) -> String {
         com = inverse * (com - Vector3::from(xyz));
         tensor = inverse * tensor * inverse.transpose();
     }
-    format!(
-        "<inertial><origin xyz=\"{} {} {}\"/><mass value=\"{}\"/><inertia ixx=\"{}\" ixy=\"{}\" ixz=\"{}\" iyy=\"{}\" \
-         iyz=\"{}\" izz=\"{}\"/></inertial>",
-        com.x,
-        com.y,
-        com.z,
-        body.mass,
-        tensor[(0, 0)],
-        tensor[(0, 1)],
-        tensor[(0, 2)],
-        tensor[(1, 1)],
-        tensor[(1, 2)],
-        tensor[(2, 2)]
-    )
+    let mass = body.mass;
+    Inertia { mass, com, tensor }.to_urdf()
 }
 
 /// The arm as URDF.

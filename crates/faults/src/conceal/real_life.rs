@@ -15,13 +15,14 @@ use crate::robot::Robot;
 use crate::truth::{Injected, Lifelike};
 
 /// The largest deviation of a recording's friction from the mean, relative.
-const DAYS: f64 = 0.1;
-/// Standard deviations of the torque constants of one robot.
+const FRICTION_SPREAD: f64 = 0.1;
+/// Relative standard deviations of the torque constants of one robot.
 const CONSTANTS: (f64, f64) = (0.03, 0.10);
-/// The sizes of the small effects of every joint, relative to its torque: with the level that they add, below the required
-/// share.
-const LITTLE: (f64, f64) = (0.002, 0.010);
-/// The frequency at which a gearbox swings with its link while the drive is held (Hz): from within the bandwidth to beyond it.
+/// The sizes of the small effects of every joint, relative to its torque; together with their level, they remain below
+/// the required share.
+const SMALL_SHARES: (f64, f64) = (0.002, 0.010);
+/// The natural frequency of a link on its elastic gearbox while the drive is held (Hz): from within the bandwidth to
+/// beyond it.
 const GEARBOX: (f64, f64) = (10.0, 80.0);
 
 /// The properties of a case that resembles a real robot.
@@ -37,12 +38,13 @@ pub(crate) struct RealLife {
     pub noise_time: f64,
     /// The steps in which torques are reported (N m or N).
     pub torque_quantum: Vec<f64>,
-    /// Whether the files have clocks of their own, if no fault depends on the time.
+    /// Whether each file has a clock of its own; only if no fault depends on the time.
     pub own_clocks: bool,
 }
 
 impl RealLife {
-    /// Drawn for a robot that moves along `training` with torques of the standard deviations `spreads` (N m or N).
+    /// Draws them for a robot that moves along `training`, with torques of the standard deviations `spreads` (N m or
+    /// N).
     pub(super) fn draw(robot: &Robot, training: &[Reference], spreads: &[f64], seed: u64) -> Self {
         let random = &mut random(seed, Stream::RealLife);
         let names: Vec<&str> = robot.arm().joints().iter().map(|joint| joint.name.as_str()).collect();
@@ -50,7 +52,7 @@ impl RealLife {
         let mut small = Vec::new();
         for (j, name) in names.iter().enumerate() {
             let load = load(training, names.len(), j).max(spreads[j]);
-            small.extend(little(name, spreads[j], load, random));
+            small.extend(small_effects(name, spreads[j], load, random));
             let normal: f64 = StandardNormal.sample(random);
             let factor = 1.0 + constants * normal.clamp(-3.0, 3.0);
             small.push(Injected::new("torque_scale", Some(name)).with("factor", factor).minor());
@@ -65,7 +67,7 @@ impl RealLife {
         let gearboxes = joints.into_iter().map(|j| gearbox(robot, j, random)).collect();
         let mut days = || {
             (0..names.len())
-                .map(|_| random.random_range(1.0 - DAYS..1.0 + DAYS))
+                .map(|_| random.random_range(1.0 - FRICTION_SPREAD..1.0 + FRICTION_SPREAD))
                 .collect()
         };
         let friction = (0..=training.len()).map(|_| days()).collect();
@@ -89,10 +91,10 @@ impl RealLife {
         }
     }
 
-    /// The small effects on joints where `effects` are not large.
+    /// The small effects of all joints, except where one of `effects` is the same on that joint.
     pub(super) fn beside<'a>(&'a self, effects: &'a [Injected]) -> impl Iterator<Item = Injected> + 'a {
         let all = self.small.iter().chain(&self.gearboxes);
-        all.filter(|small| !effects.iter().any(|effect| overrules(effect, small)))
+        all.filter(|small| !effects.iter().any(|effect| replaces(effect, small)))
             .cloned()
     }
 
@@ -107,14 +109,14 @@ impl RealLife {
     }
 }
 
-/// Whether a joint with `effect` has no `small` effect: it is the same effect, or both are parts of one drive train.
-fn overrules(effect: &Injected, small: &Injected) -> bool {
+/// Whether a joint with `effect` has no `small` effect, because both are the same effect or parts of one drive train.
+fn replaces(effect: &Injected, small: &Injected) -> bool {
     let is_drive_train =
         |of: &Injected| matches!(of.effect.as_str(), "joint_elasticity" | "backlash" | "rotor_inertia");
     effect.joint == small.joint && (effect.effect == small.effect || is_drive_train(effect) && is_drive_train(small))
 }
 
-/// The root mean square of the torque that joint `j` of `dof` gives along `training`.
+/// The root mean square of the nominal torque of joint `j` of `dof` along `training` (N m or N).
 fn load(training: &[Reference], dof: usize, j: usize) -> f64 {
     let torques = || training.iter().flat_map(|motion| motion.ff.iter().skip(j).step_by(dof));
     let count = torques().count().max(1) as f64;
@@ -122,8 +124,8 @@ fn load(training: &[Reference], dof: usize, j: usize) -> f64 {
 }
 
 /// The small effects of a joint.
-fn little(joint: &str, spread: f64, load: f64, random: &mut ChaCha8Rng) -> [Injected; 4] {
-    let mut size = || log_uniform(LITTLE.0, LITTLE.1, random);
+fn small_effects(joint: &str, spread: f64, load: f64, random: &mut ChaCha8Rng) -> [Injected; 4] {
+    let mut size = || log_uniform(SMALL_SHARES.0, SMALL_SHARES.1, random);
     let [fading, half, gain, ripple] = [
         size() * spread,
         0.7 * size() * spread,
@@ -152,7 +154,7 @@ fn little(joint: &str, spread: f64, load: f64, random: &mut ChaCha8Rng) -> [Inje
     ]
 }
 
-/// A gearbox between the rotor of a joint's drive and its link.
+/// An elastic gearbox between the rotor of a joint's drive and its link.
 fn gearbox(robot: &Robot, j: usize, random: &mut ChaCha8Rng) -> Injected {
     let (link, own) = (robot.link_inertia(j), robot.rotor_inertias()[j]);
     let drawn = link * random.random_range(0.3..1.0);

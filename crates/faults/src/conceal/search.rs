@@ -10,15 +10,15 @@ use crate::error::FaultError;
 use crate::expressed_share::{Torques, share};
 use crate::fault::{Fault, Leaves, Size, families, outside};
 use crate::machine::Run;
-use crate::motion::{DURATION, LEAD, Reference, start};
+use crate::motion::{DURATION, LEAD_TICKS, Reference, start};
 use crate::truth::Injected;
 
-/// The number of cases, and of draws of one effect, that are tried.
+/// The largest number of attempts for a case, and for one effect.
 const CASES: usize = 10;
 const DRAWS: usize = 8;
-/// The ratio to the quantisation noise above which the torque oscillates; with a gap, it always does.
+/// The ratio to the quantisation noise above which the torque counts as oscillating; with a gap, it always oscillates.
 const OSCILLATION: (f64, f64) = (0.2, 0.5);
-/// The expressed shares that a case may have.
+/// The allowed expressed shares of a case.
 const SHARES: (f64, f64) = (0.01, 1.2);
 
 /// The duration of a recording that determines sizes (s); shares are those of whole recordings.
@@ -26,10 +26,10 @@ const TRIAL: f64 = 12.0;
 
 /// The reference for effects: the machine with its baseline friction.
 struct Base {
-    /// The beginning of the first recording.
+    /// The reference at the beginning of the first recording.
     trial: Reference,
     torques: Torques,
-    /// All of the first recording.
+    /// The whole first recording.
     whole: Torques,
     above: f64,
     sorted: Vec<Vec<f64>>,
@@ -45,7 +45,7 @@ pub(super) fn search(
     let mut names = plan.effects.clone();
     for attempt in 0..CASES {
         if attempt >= CASES / 2 {
-            // Effects that this robot cannot show are replaced by others.
+            // Effects that are not detectable on this robot are replaced by others.
             for name in &mut names {
                 let is_outside = Fault::named(name).is_some_and(|fault| fault.is_outside);
                 let known = if is_outside { outside() } else { families() };
@@ -53,7 +53,7 @@ pub(super) fn search(
             }
             names.sort_unstable();
             names.dedup();
-            // Five at once may be more than the loop holds.
+            // The loop may not be able to hold five effects at the same time.
             names.truncate(3);
         }
         let Some(mut effects) = draw_all(stage, plan, &names, &base, random)? else {
@@ -61,10 +61,10 @@ pub(super) fn search(
         };
         let (runs, torques) = match stage.run_all(&effects) {
             Ok(done) => done,
-            Err(error) if is_unsound(&error) => continue,
+            Err(error) if may_succeed_with_another_draw(&error) => continue,
             Err(error) => return Err(error),
         };
-        if runs.iter().any(|run| !is_quiet(stage, &effects, run, base.above)) {
+        if runs.iter().any(|run| !is_stable(stage, &effects, run, base.above)) {
             continue;
         }
         let mut shows = true;
@@ -75,7 +75,7 @@ pub(super) fn search(
                     shows &= (SHARES.0..=SHARES.1).contains(&share);
                     effects[which].expressed_share = Some(share);
                 }
-                Err(error) if is_unsound(&error) => shows = false,
+                Err(error) if may_succeed_with_another_draw(&error) => shows = false,
                 Err(error) => return Err(error),
             }
             if !shows {
@@ -96,7 +96,7 @@ pub(super) fn search(
 fn base(stage: &Stage<'_>) -> Result<Base, FaultError> {
     let run = stage.run(&[], None, &stage.training[0])?;
     let (torques, above) = stage.torques(&run);
-    let trial = stage.training[0].clone().cut(TRIAL);
+    let trial = stage.training[0].clone().first_seconds(TRIAL);
     let sorted = torques
         .iter()
         .map(|torque| {
@@ -105,7 +105,7 @@ fn base(stage: &Stage<'_>) -> Result<Base, FaultError> {
             sizes
         })
         .collect();
-    let begin = trial.ticks() - LEAD;
+    let begin = trial.ticks() - LEAD_TICKS;
     Ok(Base {
         torques: torques.iter().map(|torque| torque[..begin].to_vec()).collect(),
         whole: torques,
@@ -115,7 +115,7 @@ fn base(stage: &Stage<'_>) -> Result<Base, FaultError> {
     })
 }
 
-/// One of each effect, on different joints; `None` if one of them is not detectable alone.
+/// One of each effect, on different joints; `None` if one of them is not detectable by itself.
 fn draw_all(
     stage: &Stage<'_>,
     plan: &CasePlan,
@@ -154,7 +154,7 @@ fn draw_all(
         for _ in 0..DRAWS {
             let mut effect = scales.draw(fault, &used, random);
             let target = target(plan.hard, random);
-            if fit(stage, fault, &mut effect, target, base)? {
+            if scale_to_target(stage, fault, &mut effect, target, base)? {
                 found = Some(effect);
                 break;
             }
@@ -165,14 +165,20 @@ fn draw_all(
     Ok(Some(effects))
 }
 
-/// The share that an effect is to have where its size is free.
+/// The target share of an effect whose size is free.
 fn target(hard: bool, random: &mut ChaCha8Rng) -> f64 {
     log_uniform(SHARES.0, if hard { 0.35 } else { 0.5 }, random)
 }
 
-/// Scales `effect` to its target share, on one recording and alone; returns whether it is detectable there.
-fn fit(stage: &Stage<'_>, fault: &Fault, effect: &mut Injected, target: f64, base: &Base) -> Result<bool, FaultError> {
-    // Its own time is not what its size is about.
+/// Scales `effect` to its target share, on one recording and by itself; returns whether it is detectable there.
+fn scale_to_target(
+    stage: &Stage<'_>,
+    fault: &Fault,
+    effect: &mut Injected,
+    target: f64,
+    base: &Base,
+) -> Result<bool, FaultError> {
+    // Its onset does not influence its size.
     let onset = effect.onset.take();
     let reference = match effect.number("start") {
         Some(time) => stage.training.iter().rfind(|reference| reference.start <= time),
@@ -184,7 +190,7 @@ fn fit(stage: &Stage<'_>, fault: &Fault, effect: &mut Injected, target: f64, bas
     let without = if leaves_more_than_the_base(effect) || is_whole {
         match run(effect, Some(0)) {
             Ok(run) => stage.torques(&run).0,
-            Err(error) if is_unsound(&error) => return Ok(false),
+            Err(error) if may_succeed_with_another_draw(&error) => return Ok(false),
             Err(error) => return Err(error),
         }
     } else {
@@ -194,13 +200,13 @@ fn fit(stage: &Stage<'_>, fault: &Fault, effect: &mut Injected, target: f64, bas
     let mut shows = false;
     for attempt in 0..2 {
         let with = match run(effect, None) {
-            Ok(run) if is_quiet(stage, std::slice::from_ref(effect), &run, base.above) => stage.torques(&run).0,
+            Ok(run) if is_stable(stage, std::slice::from_ref(effect), &run, base.above) => stage.torques(&run).0,
             Ok(_) => return Ok(false),
-            Err(error) if is_unsound(&error) && free && attempt == 0 => {
+            Err(error) if may_succeed_with_another_draw(&error) && free && attempt == 0 => {
                 fault.resize(effect, 0.3);
                 continue;
             }
-            Err(error) if is_unsound(&error) => return Ok(false),
+            Err(error) if may_succeed_with_another_draw(&error) => return Ok(false),
             Err(error) => return Err(error),
         };
         let share = share(&[with], std::slice::from_ref(&without), fault.is_constant);
@@ -209,20 +215,20 @@ fn fit(stage: &Stage<'_>, fault: &Fault, effect: &mut Injected, target: f64, bas
         if !free || off.ln().abs() < 0.7 {
             break;
         }
-        // The share is not proportional to the size: it is in its own denominator.
+        // The share is not proportional to the size, because the effect is also in the denominator.
         fault.resize(effect, off.powf(0.9));
     }
     effect.onset = onset;
     Ok(shows)
 }
 
-/// Whether the machine without the effect is not the one with baseline friction alone.
+/// Whether the machine without the effect differs from the one with baseline friction alone.
 fn leaves_more_than_the_base(effect: &Injected) -> bool {
     effect.leaves() != Leaves::Nothing
 }
 
 /// Whether another draw may be stable.
-fn is_unsound(error: &FaultError) -> bool {
+fn may_succeed_with_another_draw(error: &FaultError) -> bool {
     matches!(
         error,
         FaultError::Lost { .. } | FaultError::Plant(plant::PlantError::Diverged { .. }) | FaultError::Effect { .. }
@@ -230,8 +236,11 @@ fn is_unsound(error: &FaultError) -> bool {
 }
 
 /// Whether the loop does not oscillate.
-fn is_quiet(stage: &Stage<'_>, effects: &[Injected], run: &Run, base: f64) -> bool {
-    let rattles = effects.iter().filter_map(Injected::fault).any(|fault| fault.rattles);
-    let most = if rattles { OSCILLATION.1 } else { OSCILLATION.0 };
+fn is_stable(stage: &Stage<'_>, effects: &[Injected], run: &Run, base: f64) -> bool {
+    let may_oscillate = effects
+        .iter()
+        .filter_map(Injected::fault)
+        .any(|fault| fault.may_oscillate);
+    let most = if may_oscillate { OSCILLATION.1 } else { OSCILLATION.0 };
     stage.torques(run).1 <= most + base
 }

@@ -1,4 +1,4 @@
-//! A case in preparation: motions, baseline friction and sensors, drawn before any effect.
+//! A case in preparation: motions, baseline friction and sensors, which are drawn before the effects.
 
 use arm::{Inertia, Matrix3, Vector3};
 use rand::seq::IndexedRandom;
@@ -10,38 +10,38 @@ use super::Concealment;
 use super::real_life::RealLife;
 use crate::draw::{baseline_friction, log_uniform};
 use crate::error::FaultError;
-use crate::expressed_share::{Torques, deviation, share, smooth};
+use crate::expressed_share::{Torques, deviation, low_passed, share};
 use crate::fault::Leaves;
 use crate::machine::{Machine, Run, TICK};
-use crate::motion::{DURATION, LEAD, PAUSE, Reference, excitation, pick_and_place, start};
+use crate::motion::{DURATION, LEAD_TICKS, PAUSE, Reference, excitation, pick_and_place, start};
 use crate::robot::Robot;
 use crate::sensor::Sensors;
 use crate::truth::{Injected, Truth};
-use crate::urdf_error::{perturbed, with_tool};
+use crate::urdf_error::{with_inertial_errors, with_tool};
 
-/// Rows lie so many ticks apart in hard cases: mostly 100 to 500 Hz.
+/// The number of ticks between rows in hard cases: mostly 100 to 500 Hz.
 const HARD_TICKS: [usize; 9] = [1, 2, 2, 4, 4, 5, 5, 8, 10];
 
-/// Standard deviations of the torque's noise, of the torque's.
+/// Standard deviations of the torque noise, relative to the torque.
 const NOISE: (f64, f64) = (0.003, 0.036);
-/// How much of a recording tells whether gearboxes are held (s).
+/// The duration of the run that tests whether the loop can hold the gearboxes (s).
 const TRIAL: f64 = 8.0;
-/// How much more of the torque may lie above 20 Hz with them.
-const RESTLESS: f64 = 0.05;
+/// The largest increase of the torque above 20 Hz due to the gearboxes.
+const MOST_ADDED_ABOVE: f64 = 0.05;
 
-/// How many training recordings an easy and a hard case have.
+/// The number of training recordings of an easy and of a hard case.
 pub(crate) const TRAINING: [usize; 2] = [3, 2];
 
-/// A case under way: what is drawn first, and what does not change with the effects.
+/// A case in preparation: everything that does not depend on the effects.
 pub(crate) struct Stage<'a> {
     pub robot: &'a Robot,
     pub training: Vec<Reference>,
     pub held_out: Reference,
-    /// Baseline friction: Coulomb level and viscous coefficient of every joint, and the exponent of the latter.
+    /// Baseline friction: Coulomb level and viscous coefficient of every joint, and the exponent of the viscous law.
     pub friction: Option<(Vec<(f64, f64)>, f64)>,
-    /// Standard deviation of the torque that the training motions cost nominally (N m or N).
+    /// Standard deviation of the torque that the training motions require nominally (N m or N).
     pub spreads: Vec<f64>,
-    /// The part of it that the URDF's bodies cost, without drives (N m or N).
+    /// The standard deviation of the torque of the URDF's bodies, without drives (N m or N).
     pub loads: Vec<f64>,
     pub sensors: Sensors,
     /// The properties of a real robot; none in a plain case.
@@ -50,7 +50,7 @@ pub(crate) struct Stage<'a> {
     urdf_error: f64,
 }
 
-/// What a case is to be, beside its effects.
+/// The settings of a case except its effects.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Kind {
     pub seed: u64,
@@ -65,7 +65,7 @@ pub(crate) struct Kind {
     pub urdf_error: f64,
 }
 
-/// Streams of randomness, so that a change in one leaves the others.
+/// Random streams, one per purpose, so that changes in one do not affect the others.
 #[derive(Clone, Copy)]
 pub(super) enum Stream {
     Motion,
@@ -77,8 +77,8 @@ pub(super) enum Stream {
     Urdf,
 }
 
-/// The stream of the noise on what is recorded of a case later.
-pub(crate) const AGAIN: u64 = 8;
+/// The random stream of the noise in recordings that are made later.
+pub(crate) const RECORD_AGAIN: u64 = 8;
 
 pub(super) fn random(seed: u64, stream: Stream) -> ChaCha8Rng {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
@@ -133,37 +133,38 @@ impl<'a> Stage<'a> {
             seed,
             urdf_error: kind.urdf_error,
         };
-        stage.leave_out_what_swings()?;
+        stage.remove_unstable_gearboxes()?;
         Ok(stage)
     }
 
-    /// Gearboxes that the position loop cannot hold are none.
-    fn leave_out_what_swings(&mut self) -> Result<(), FaultError> {
+    /// Gearboxes with which the position loop is unstable are removed.
+    fn remove_unstable_gearboxes(&mut self) -> Result<(), FaultError> {
         let Some(real) = self.real.as_mut().filter(|real| !real.gearboxes.is_empty()) else {
             return Ok(());
         };
         let gearboxes = std::mem::take(&mut real.gearboxes);
-        let trial = self.training[0].clone().cut(TRIAL);
+        let trial = self.training[0].clone().first_seconds(TRIAL);
         let (_, rigid) = self.torques(&self.run(&[], None, &trial)?);
-        self.put(gearboxes);
+        self.set_gearboxes(gearboxes);
         let holds = match self.run(&[], None, &trial) {
-            Ok(run) => self.torques(&run).1 < rigid + RESTLESS,
+            Ok(run) => self.torques(&run).1 < rigid + MOST_ADDED_ABOVE,
             Err(FaultError::Lost { .. } | FaultError::Plant(_)) => false,
             Err(error) => return Err(error),
         };
         if !holds {
-            self.put(Vec::new());
+            self.set_gearboxes(Vec::new());
         }
         Ok(())
     }
 
-    fn put(&mut self, gearboxes: Vec<Injected>) {
+    fn set_gearboxes(&mut self, gearboxes: Vec<Injected>) {
         if let Some(real) = &mut self.real {
             real.gearboxes = gearboxes;
         }
     }
 
-    /// Baseline friction as effects, of joints where `effects` bring no dry friction of their own; and the small things of real joints.
+    /// Baseline friction as effects, on joints where `effects` have no dry friction of their own; and the small
+    /// effects of real joints.
     pub(crate) fn background(&self, effects: &[Injected]) -> Vec<Injected> {
         let mut background = self.baseline(effects);
         background.extend(self.real.iter().flat_map(|real| real.beside(effects)));
@@ -179,7 +180,7 @@ impl<'a> Stage<'a> {
             let own = |effect: &Injected| {
                 effect.joint.as_deref() == Some(&joint.name) && effect.leaves() == Leaves::DryFriction
             };
-            // A drifting or loaded friction stays what it is; the plain one is in it.
+            // A friction curve, drift or load dependence includes the plain friction.
             if !effects.iter().any(own) {
                 background.push(Injected::new("coulomb_friction", Some(&joint.name)).with("level", *coulomb));
             }
@@ -193,7 +194,8 @@ impl<'a> Stage<'a> {
         background
     }
 
-    /// Runs the machine with the background and `effects`, or with what stays of effect `without`.
+    /// Runs the machine with the background and `effects`; of the effect with index `without`, only the part that
+    /// remains.
     pub(crate) fn run(
         &self,
         effects: &[Injected],
@@ -223,12 +225,12 @@ impl<'a> Stage<'a> {
         machine.run(reference, self.sensors.quantum)
     }
 
-    /// The torques of a run below 20 Hz, and the largest part of a joint's above.
+    /// The torques of a run below 20 Hz, and the largest share of a joint's torque above.
     pub(crate) fn torques(&self, run: &Run) -> (Torques, f64) {
-        smooth(&run.tau, self.robot.arm().dof(), TICK, LEAD)
+        low_passed(&run.tau, self.robot.arm().dof(), TICK, LEAD_TICKS)
     }
 
-    /// Runs of all recordings, the last one held out; the torques of those for training.
+    /// Runs of all recordings, the last one held out; and the torques of the training recordings.
     pub(crate) fn run_all(&self, effects: &[Injected]) -> Result<(Vec<Run>, Vec<Torques>), FaultError> {
         let references = self.training.iter().chain([&self.held_out]);
         let runs: Vec<Run> = references
@@ -239,8 +241,8 @@ impl<'a> Stage<'a> {
         Ok((runs, torques))
     }
 
-    /// The expressed share of effect `which`: all training recordings, with and without it; `first` is the first without it, where it
-    /// is known.
+    /// The expressed share of the effect with index `which`: all training recordings, with and without it. `first` is
+    /// the first one without it, if it is known.
     pub(crate) fn share(
         &self,
         effects: &[Injected],
@@ -256,20 +258,20 @@ impl<'a> Stage<'a> {
         Ok(share(with, &without, is_constant))
     }
 
-    /// The case: recordings of `runs`, and what is concealed in them.
+    /// The case: the recordings of `runs`, and the ground truth.
     ///
     /// # Errors
-    /// [`FaultError::Setting`] if the URDF cannot be made as wrong as it is to be.
+    /// [`FaultError::Setting`] if the URDF cannot be given the requested error.
     pub(super) fn finish(&self, name: &str, effects: Vec<Injected>, runs: &[Run]) -> Result<Concealment, FaultError> {
         let seed = self.seed;
         let mut noise = random(seed, Stream::Noise);
         let sensors = Sensors {
-            own_clocks: self.sensors.own_clocks && !effects.iter().any(tells_time),
+            own_clocks: self.sensors.own_clocks && !effects.iter().any(depends_on_time),
             ..self.sensors.clone()
         };
-        let mut urdf = perturbed(self.robot.urdf(), self.urdf_error, &mut random(seed, Stream::Urdf))?;
+        let mut urdf = with_inertial_errors(self.robot.urdf(), self.urdf_error, &mut random(seed, Stream::Urdf))?;
         for tool in effects.iter().filter(|effect| effect.is_not_mounted()) {
-            urdf = with_tool(&urdf, &self.robot.arm().tool_frame().name, &drawn(tool))?;
+            urdf = with_tool(&urdf, &self.robot.arm().tool_frame().name, &body_of(tool))?;
         }
         let references = self.training.iter().chain([&self.held_out]);
         let mut train: Vec<Recording> = references
@@ -304,13 +306,13 @@ impl<'a> Stage<'a> {
     }
 }
 
-/// Whether an effect depends on the time, which files with clocks of their own do not give.
-fn tells_time(effect: &Injected) -> bool {
+/// Whether an effect depends on the time, which is not known with separate clocks of the files.
+fn depends_on_time(effect: &Injected) -> bool {
     effect.onset.is_some() || effect.effect == "thermal_drift" || effect.number("start").is_some()
 }
 
 /// The body that is drawn in the URDF for a tool that is not mounted.
-fn drawn(tool: &Injected) -> Inertia {
+fn body_of(tool: &Injected) -> Inertia {
     let list = |name: &str| -> Vec<f64> {
         let values = tool.parameters.get(name).and_then(serde_json::Value::as_array);
         values.map_or_else(Vec::new, |values| {
@@ -327,7 +329,7 @@ fn drawn(tool: &Injected) -> Inertia {
     }
 }
 
-/// The standard deviation of the torque of joint `j` along motions, nominally, with its drive or without.
+/// The nominal standard deviation of the torque of joint `j` along motions, with or without its drive.
 fn spread(robot: &Robot, motions: &[Reference], j: usize, with_drive: bool) -> f64 {
     let (n, rotor) = (
         robot.arm().dof(),

@@ -1,4 +1,4 @@
-//! Cases: the same every time, and what their truth says.
+//! Cases are reproducible, and their truths are complete.
 
 use arm::Arm;
 
@@ -28,7 +28,7 @@ fn a_case_is_the_same_every_time() {
     assert_eq!(first, conceal_case(&robot, &plan).expect("it comes out"));
     assert_eq!((first.train.len(), first.truth.case.as_str()), (2, "case_007"));
 
-    // Baseline friction is on every joint, without a share; what was drawn is there, with one within bounds.
+    // Baseline friction is on every joint, without a share; the drawn effects are present, with shares within bounds.
     let baseline = first
         .truth
         .concealed
@@ -42,7 +42,7 @@ fn a_case_is_the_same_every_time() {
         .find(|effect| effect.effect == "torque_offset");
     let share = effect.and_then(|effect| effect.expressed_share).expect("it is there");
     assert!((0.01..1.2).contains(&share), "{share}");
-    // One clock through the case: recordings of 25 s, 5 s apart.
+    // One clock for the whole case: recordings of 25 s, 5 s apart.
     let starts: Vec<f64> = first
         .train
         .iter()
@@ -76,7 +76,7 @@ fn the_truth_says_what_was_given() {
     assert_eq!(given, [payload]);
     assert!(!made.truth.background_friction && made.truth.period == 0.01);
     assert_eq!((made.train.len(), made.train[0].len()), (1, 2500));
-    // The truth is read again as it was written.
+    // A written truth is read again unchanged.
     let text = serde_json::to_string(&made.truth).expect("it is JSON");
     let read: Truth = serde_json::from_str(&text).expect("it is a truth");
     assert_eq!(read, made.truth);
@@ -125,7 +125,7 @@ fn what_cannot_be_is_refused() {
     );
 }
 
-/// A case goes to its folder, its truth elsewhere, and neither is ever overwritten.
+/// A case is written to its folder, its truth elsewhere, and neither is ever overwritten.
 #[test]
 fn cases_are_written_once() {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
@@ -152,8 +152,8 @@ fn cases_are_written_once() {
     assert!(error.contains("nothing is overwritten"), "{error}");
 }
 
-/// A case like reality: small things on every joint that nobody asks for, friction of the day, a URDF that is wrong; the truth tells them,
-/// and the machine is made of it again.
+/// A case that resembles a real robot: small effects on every joint that are not scored, friction that differs between
+/// recordings, a URDF with errors. The truth contains them, and the machine can be made from it.
 #[test]
 fn a_lifelike_case_tells_what_it_has() {
     let robot = seven_axis();
@@ -199,7 +199,7 @@ fn a_lifelike_case_tells_what_it_has() {
     }
     let all: Vec<&Injected> = truth.concealed.iter().collect();
     assert!(Machine::new(&robot, &all, None).is_ok());
-    // The machine is the true one, whatever the URDF says.
+    // The machine is the true one, whatever errors the URDF has.
     let exact = CasePlan {
         urdf_error: 0.0,
         ..plan
@@ -208,7 +208,8 @@ fn a_lifelike_case_tells_what_it_has() {
     assert_eq!((exact.train, exact.urdf.as_str()), (made.train, robot.urdf()));
 }
 
-/// The small effects of one kind, on all joints at once: of each joint's torque a part that is not asked for.
+/// The small effects of one kind, on all joints at the same time, with the part of each joint's torque that is not
+/// scored.
 #[test]
 fn small_things_are_small() {
     let robot = puma();
@@ -244,7 +245,8 @@ fn small_things_are_small() {
     }
 }
 
-/// A tool that is drawn and not mounted: the machine is the robot's own, the URDF has the tool, its share is what the tool would cost.
+/// A tool that is drawn and not mounted: the machine is the robot without it, the URDF has it, and its share is that
+/// of its torque.
 #[test]
 fn a_tool_that_is_not_mounted_is_in_the_urdf_alone() {
     let robot = puma();

@@ -6,7 +6,7 @@ use crate::machine::LONGEST_DELAY;
 pub(super) const FAULT: Fault = Fault {
     name: "actuation_delay",
     forms: &["first-order lag"],
-    alone_among: Some(Alike::BetweenCommandAndLink),
+    similar_faults: Some(SimilarFaults::BetweenCommandAndLink),
     draw: |bare, at, random| {
         let lags = at.hard && random.random_bool(0.3);
         let bare = if lags { bare.formed("first-order lag") } else { bare };
@@ -18,7 +18,7 @@ pub(super) const FAULT: Fault = Fault {
         if delay > LONGEST_DELAY {
             return Err(reader.fail(format!("its delay is above {LONGEST_DELAY} s")));
         }
-        Ok(vec![What::Delay(joint, delay, reader.form()? == 1).into()])
+        Ok(vec![Property::Delay(joint, delay, reader.form()? == 1).into()])
     },
     #[cfg(test)]
     example: |bare| bare.with("delay", 0.01),

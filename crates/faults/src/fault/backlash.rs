@@ -8,8 +8,8 @@ pub(super) const FAULT: Fault = Fault {
     forms: &["rounded"],
     form_parameters: &["rotor", "stiffness", "damping"],
     leaves: Leaves::Rotor,
-    rattles: true,
-    alone_among: Some(Alike::BetweenCommandAndLink),
+    may_oscillate: true,
+    similar_faults: Some(SimilarFaults::BetweenCommandAndLink),
     draw: |bare, at, random| {
         let own = at.rotor_inertia();
         let rotor = if own > 0.0 {
@@ -27,11 +27,11 @@ pub(super) const FAULT: Fault = Fault {
         elastic(reader, |more_rotor| {
             Ok(Connection {
                 stiffness: reader
-                    .given("stiffness")
-                    .then(|| reader.above("stiffness", 0.0))
+                    .has("stiffness")
+                    .then(|| reader.number_above("stiffness", 0.0))
                     .transpose()?,
                 damping: reader
-                    .given("damping")
+                    .has("damping")
                     .then(|| reader.at_least_zero("damping"))
                     .transpose()?,
                 halfgap: reader.at_least_zero("halfgap")?,

@@ -1,4 +1,5 @@
-//! Coulomb friction: the same dry friction at every speed. Baseline: it is drawn for the background of a case, not as its fault.
+//! Coulomb friction: equal at every speed. A baseline effect: it is drawn for the background of a case, not as its
+//! fault.
 
 use super::prelude::*;
 
@@ -16,7 +17,7 @@ pub(crate) fn level(spread: f64, random: &mut ChaCha8Rng) -> f64 {
     spread * log_uniform(0.06, 0.35, random)
 }
 
-/// Dry friction that is the same at every speed (N m or N).
+/// Dry friction that is equal at every speed (N m or N).
 pub(super) struct Level(pub f64);
 
 impl DryLaw for Level {
@@ -26,8 +27,8 @@ impl DryLaw for Level {
 }
 
 impl Level {
-    /// The plain friction of a joint, which stays when a fault that bends its curve is taken away.
-    pub(super) fn beneath(self, joint: usize) -> Piece {
-        What::Dry(joint, Box::new(self)).stays()
+    /// The plain friction of a joint, which remains when a fault that changes its curve is removed.
+    pub(super) fn below_a_curve(self, joint: usize) -> Piece {
+        Property::Dry(joint, Box::new(self)).in_both_machines()
     }
 }

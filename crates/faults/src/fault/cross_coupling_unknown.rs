@@ -11,7 +11,7 @@ pub(super) const FAULT: Fault = Fault {
         let robot = at.robot;
         let near = robot.arm().joints().iter().position(|joint| joint.name == other);
         let center = near.map_or(0.0, |o| robot.home()[o]) + random.random_range(-0.3..0.3);
-        let bare = sometimes(bare, "step", random);
+        let bare = perhaps_in_form(bare, "step", random);
         let phase = if bare.form.is_some() { center } else { phase };
         bare.with("amplitude", at.spread() * random.random_range(0.2..0.5))
             .with("other", other)
@@ -60,7 +60,7 @@ impl LinkLaw for Wave {
     }
 }
 
-/// A step along another joint's position, felt where this one is near zero.
+/// A step along another joint's position, which acts where this joint is near zero.
 struct Step {
     amplitude: f64,
     other: usize,

@@ -7,7 +7,7 @@ pub(super) const FAULT: Fault = Fault {
     forms: &["gaussian"],
     draw: |bare, at, random| {
         at.other_and_phase(random);
-        sometimes(bare, "gaussian", random)
+        perhaps_in_form(bare, "gaussian", random)
             .with("amplitude", at.spread() * random.random_range(0.1..0.4) * sign(random))
             .with("center", at.home() + random.random_range(-0.1..0.1))
             .with("width", random.random_range(0.12..0.32))
@@ -16,7 +16,7 @@ pub(super) const FAULT: Fault = Fault {
         reader.on_link(Band {
             amplitude: reader.number("amplitude")?,
             center: reader.number("center")?,
-            width: reader.above("width", 0.0)?,
+            width: reader.number_above("width", 0.0)?,
             round: reader.form()? == 1,
         })
     },

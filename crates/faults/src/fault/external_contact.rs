@@ -1,17 +1,17 @@
-//! A push at the tool that comes and goes.
+//! A force on the tool that begins and ends.
 
 use super::prelude::*;
 
 pub(super) const FAULT: Fault = Fault {
     name: "external_contact",
     forms: &["half-sine", "decaying"],
-    may_be_several: true,
+    may_repeat: true,
     draw: |bare, at, random| {
         let mut direction: [f64; 3] = [0.0; 3].map(|_: f64| StandardNormal.sample(random));
         let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
         let size = at.load() * random.random_range(8.0..27.0);
         direction = direction.map(|x| x / length * size);
-        // A recording is 25 s of every 30; the contact is within one.
+        // A recording takes 25 s of every 30 s; the contact is within one recording.
         let (first, last) = at.span;
         let recordings = ((last - first) / 30.0).round().max(1.0) as usize;
         let start = first + 30.0 * random.random_range(0..recordings) as f64;
@@ -32,11 +32,11 @@ pub(super) const FAULT: Fault = Fault {
     read: |reader| {
         let contact = Contact {
             start: reader.number("start")?,
-            duration: reader.above("duration", 0.0)?,
+            duration: reader.number_above("duration", 0.0)?,
             force: Vector3::from(reader.numbers("force")?),
             shape: [Shape::Step, Shape::HalfSine, Shape::Decaying][reader.form()?],
         };
-        Ok(vec![What::Contact(contact).into()])
+        Ok(vec![Property::Contact(contact).into()])
     },
     #[cfg(test)]
     example: |bare| {
@@ -55,7 +55,7 @@ pub(crate) struct Contact {
     shape: Shape,
 }
 
-/// How a force comes and goes.
+/// The time course of a force.
 #[derive(Clone, Copy)]
 enum Shape {
     Step,
@@ -64,7 +64,7 @@ enum Shape {
 }
 
 impl Contact {
-    /// The force's part at `time` (s, on the recordings' clock).
+    /// The share of the force at `time` (s, on the recordings' clock).
     pub(crate) fn at(&self, time: f64) -> f64 {
         let x = (time - self.start) / self.duration;
         if !(0.0..1.0).contains(&x) {

@@ -6,7 +6,7 @@ use super::prelude::*;
 pub(super) const FAULT: Fault = Fault {
     name: "friction_asymmetry",
     leaves: Leaves::DryFriction,
-    sets_in: true,
+    may_have_onset: true,
     draw: |bare, at, random| {
         let (coulomb, _) = at.dry_friction(random);
         let coulomb = coulomb.max(at.spread() * random.random_range(0.1..0.3));
@@ -24,8 +24,8 @@ pub(super) const FAULT: Fault = Fault {
         let (positive, negative) = (reader.at_least_zero("positive")?, reader.at_least_zero("negative")?);
         let tilt = Tilt(0.5 * (positive - negative));
         Ok(vec![
-            Level(0.5 * (positive + negative)).beneath(joint),
-            What::Dry(joint, Box::new(tilt)).into(),
+            Level(0.5 * (positive + negative)).below_a_curve(joint),
+            Property::Dry(joint, Box::new(tilt)).into(),
         ])
     },
     #[cfg(test)]
@@ -33,7 +33,7 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::ON_A_JOINT
 };
 
-/// More forwards and as much less backwards (N m or N).
+/// The level is larger by this in the positive direction and smaller in the negative one (N m or N).
 struct Tilt(f64);
 
 impl DryLaw for Tilt {

@@ -21,10 +21,10 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::ON_A_JOINT
 };
 
-/// The lever, with the anchor's distance from the axis as the unit of length.
+/// The length of the lever, relative to the distance of the anchor from the axis.
 const LEVER: f64 = 0.3;
 
-/// The amplitude is that of a spring without free length: stiffness times lever times the anchor's distance.
+/// The amplitude is that of a spring with zero free length: stiffness times lever times the anchor's distance.
 struct Counterbalance {
     stiffness: f64,
     angle: f64,
@@ -38,7 +38,7 @@ impl LinkLaw for Counterbalance {
         let spring = Vector3::x() - end;
         let length = spring.norm();
         let pull = spring * (self.stiffness * (length - self.free_length) / length);
-        // What the spring does for the joint, the drive need not.
+        // The torque of the spring relieves the drive.
         -end.cross(&pull).z
     }
 }

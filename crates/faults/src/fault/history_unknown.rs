@@ -18,7 +18,7 @@ pub(super) const FAULT: Fault = Fault {
     read: |reader| {
         reader.on_link(History {
             amplitude: reader.number("amplitude")?,
-            time_constant: reader.above("time_constant", 0.0)?,
+            time_constant: reader.number_above("time_constant", 0.0)?,
             of: [Past::Speed, Past::SignedSquare, Past::Position][reader.form()?],
         })
     },
@@ -27,14 +27,14 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::OUTSIDE_THE_CATALOGUE
 };
 
-/// Something of the joint's past, through a low-pass filter.
+/// A low-pass filtered function of the joint's motion.
 struct History {
     amplitude: f64,
     time_constant: f64,
     of: Past,
 }
 
-/// What of the past is felt.
+/// The function of the motion.
 #[derive(Clone, Copy, PartialEq)]
 enum Past {
     /// |v|, low-passed.

@@ -7,7 +7,7 @@ pub(super) const FAULT: Fault = Fault {
     forms: &["sharp"],
     draw: |bare, at, random| {
         at.other_and_phase(random);
-        sometimes(bare, "sharp", random)
+        perhaps_in_form(bare, "sharp", random)
             .with("amplitude", at.spread() * random.random_range(0.15..0.4))
             .with("scale", random.random_range(0.08..0.25))
             .with("shape", random.random_range(0.5..0.9))
@@ -15,7 +15,7 @@ pub(super) const FAULT: Fault = Fault {
     read: |reader| {
         reader.on_link(Hysteresis {
             amplitude: reader.number("amplitude")?,
-            scale: reader.above("scale", 0.0)?,
+            scale: reader.number_above("scale", 0.0)?,
             shape: reader.number("shape")?,
             sharpness: [1, 2][reader.form()?],
         })

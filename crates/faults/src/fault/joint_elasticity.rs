@@ -7,7 +7,7 @@ pub(super) const FAULT: Fault = Fault {
     forms: &["hardening"],
     form_parameters: &["rotor", "hardening_torque"],
     leaves: Leaves::Rotor,
-    alone_among: Some(Alike::BetweenCommandAndLink),
+    similar_faults: Some(SimilarFaults::BetweenCommandAndLink),
     draw: |bare, at, random| {
         let (link, own) = (at.link_inertia(), at.rotor_inertia());
         let rotor = if own > 0.0 {
@@ -15,7 +15,7 @@ pub(super) const FAULT: Fault = Fault {
         } else {
             link * random.random_range(0.5..1.2)
         };
-        // Gearboxes are stiffer than what shows easily: what does not show is drawn again.
+        // Gearboxes are stiffer than is easily detectable; a draw that is not detectable is repeated.
         let frequency: f64 = if at.lifelike {
             TAU * log_uniform(5.0, 40.0, random)
         } else {
@@ -37,12 +37,12 @@ pub(super) const FAULT: Fault = Fault {
         let hardens = reader.form()? == 1;
         elastic(reader, |more_rotor| {
             Ok(Connection {
-                stiffness: Some(reader.above("stiffness", 0.0)?),
+                stiffness: Some(reader.number_above("stiffness", 0.0)?),
                 damping: Some(reader.at_least_zero("damping")?),
                 halfgap: 0.0,
                 more_rotor,
                 hardening: if hardens {
-                    reader.above("hardening_torque", 0.0)?
+                    reader.number_above("hardening_torque", 0.0)?
                 } else {
                     f64::INFINITY
                 },
@@ -60,8 +60,8 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::ON_A_JOINT
 };
 
-/// What lies between rotor and link, and the rotor, which turns with its link until there is something between them; the connection is
-/// told what the rotor has beyond the drive's known inertia (kg m²).
+/// The connection between rotor and link, and the rotor, which moves with its link before the onset of the spring. The
+/// connection receives the inertia that the rotor has in addition to the drive's known inertia (kg m²).
 pub(super) fn elastic(
     reader: &Reader<'_>,
     connection: impl FnOnce(f64) -> Result<Connection, FaultError>,
@@ -74,7 +74,7 @@ pub(super) fn elastic(
     }
     let more_rotor = rotor - own;
     Ok(vec![
-        What::Body(Body::Rotor(joint, more_rotor)).stays(),
-        What::Elastic(joint, connection(more_rotor)?).into(),
+        Property::Body(Body::Rotor(joint, more_rotor)).in_both_machines(),
+        Property::Elastic(joint, connection(more_rotor)?).into(),
     ])
 }

@@ -1,4 +1,5 @@
-//! A link whose mass and inertia are another part of what the URDF says; or whose centre of mass and extent are elsewhere, too.
+//! A link whose mass and inertia differ from the URDF's by a factor; or whose centre of mass and extent differ as
+//! well.
 
 use super::prelude::*;
 
@@ -22,7 +23,7 @@ pub(super) const FAULT: Fault = Fault {
             .with("stretch", json!(stretch))
     },
     read: |reader| {
-        let (joint, factor) = (reader.joint()?, 1.0 + reader.above("relative", -1.0)?);
+        let (joint, factor) = (reader.joint()?, 1.0 + reader.number_above("relative", -1.0)?);
         if reader.form()? == 0 {
             return Ok(vec![Body::changed(move |arm| arm.with_scaled_link(joint, factor))]);
         }

@@ -6,7 +6,7 @@ use super::prelude::*;
 pub(super) const FAULT: Fault = Fault {
     name: "load_dependent_friction",
     forms: &["drive load"],
-    // The base may carry no load, and the last link may be next to nothing.
+    // The first joint may carry no load, and the last link may have almost no mass.
     place: Place::InnerJoints,
     leaves: Leaves::DryFriction,
     draw: |bare, at, random| {
@@ -26,8 +26,8 @@ pub(super) const FAULT: Fault = Fault {
             gain: reader.at_least_zero("gain")?,
         };
         Ok(vec![
-            Level(reader.at_least_zero("coulomb")?).beneath(joint),
-            What::Dry(joint, Box::new(loaded)).into(),
+            Level(reader.at_least_zero("coulomb")?).below_a_curve(joint),
+            Property::Dry(joint, Box::new(loaded)).into(),
         ])
     },
     #[cfg(test)]
@@ -35,18 +35,18 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::ON_A_JOINT
 };
 
-/// `gain` times the size of a load.
+/// `gain` times the absolute load.
 struct Loaded {
     gain: f64,
     of: Load,
 }
 
-/// Which load friction feels.
+/// The load on which friction depends.
 #[derive(Clone, Copy, PartialEq)]
 enum Load {
     /// The rigid torque.
     Rigid,
-    /// What the drive gives, behind a low-pass filter of 20 ms.
+    /// The torque of the drive behind a low-pass filter of 20 ms.
     Drive,
 }
 
@@ -59,7 +59,7 @@ impl DryLaw for Loaded {
         sum.level += self.gain * load.abs();
     }
 
-    fn feels_rigid_load(&self) -> bool {
+    fn depends_on_rigid_load(&self) -> bool {
         self.of == Load::Rigid
     }
 }

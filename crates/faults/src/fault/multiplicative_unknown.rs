@@ -7,7 +7,7 @@ pub(super) const FAULT: Fault = Fault {
     forms: &["speed times position"],
     draw: |bare, at, random| {
         let (_, phase) = at.other_and_phase(random);
-        let bare = sometimes(bare, "speed times position", random);
+        let bare = perhaps_in_form(bare, "speed times position", random);
         let center = at.home() + random.random_range(-0.3..0.3);
         let phase = if bare.form.is_some() { center } else { phase };
         bare.with("amplitude", at.spread() * random.random_range(0.2..0.6))

@@ -25,7 +25,7 @@ pub(super) const FAULT: Fault = Fault {
             of: match reader.form()? {
                 0 => Of::Signed,
                 1 => Of::Square,
-                _ => Of::Saturating(reader.above("velocity", 0.0)?),
+                _ => Of::Saturating(reader.number_above("velocity", 0.0)?),
             },
         })
     },
@@ -40,14 +40,14 @@ struct OtherVelocity {
     of: Of,
 }
 
-/// What of the other joint's velocity is felt.
+/// The function of the other joint's velocity.
 #[derive(Clone, Copy)]
 enum Of {
     /// v |v|.
     Signed,
     /// v².
     Square,
-    /// tanh(v / this).
+    /// tanh(v / width), with this width (rad/s or m/s).
     Saturating(f64),
 }
 

@@ -1,16 +1,16 @@
-//! A mass at the tool that the URDF does not know; or, negative, one that the URDF has and the machine has not.
+//! A mass at the tool that the URDF does not have; or, if negative, one that only the URDF has.
 
 use super::prelude::*;
 
 pub(super) const FAULT: Fault = Fault {
     name: "payload",
-    sets_in: true,
+    may_have_onset: true,
     draw: |bare, at, random| {
         let mass = at.load() * random.random_range(0.25..if at.hard { 0.8 } else { 1.6 });
         let mut across = || random.random_range(-0.03..0.03);
         let com = [across(), across(), random.random_range(0.03..0.16)];
         let moment = 0.4 * mass * 0.04 * 0.04;
-        // A tool that is drawn and not mounted is a negative payload.
+        // A tool that is drawn in the URDF and not mounted is a negative payload.
         let sign = if at.lifelike && random.random_bool(0.5) {
             -1.0
         } else {
@@ -22,7 +22,7 @@ pub(super) const FAULT: Fault = Fault {
         )
     },
     read: |reader| {
-        let inertia = if reader.given("inertia") {
+        let inertia = if reader.has("inertia") {
             reader.numbers("inertia")?
         } else {
             [0.0; 6]
@@ -35,14 +35,14 @@ pub(super) const FAULT: Fault = Fault {
             com: Vector3::from(reader.numbers("com")?),
             tensor: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) * sign,
         };
-        let body = What::Body(Body::Payload(payload));
+        let body = Property::Body(Body::Payload(payload));
         if mass >= 0.0 {
             return Ok(vec![body.into()]);
         }
         if reader.injected.onset.is_some() {
             return Err(reader.fail("a tool that is not mounted has no onset; leave that line out".into()));
         }
-        Ok(vec![body.comes_without()])
+        Ok(vec![body.only_without_fault()])
     },
     #[cfg(test)]
     example: |bare| bare.with("mass", 1.5).with("com", json!([0.01, 0.0, 0.08])),

@@ -7,7 +7,7 @@ pub(super) const FAULT: Fault = Fault {
     name: "quadratic_drag",
     forms: &["power"],
     form_parameters: &["exponent"],
-    sets_in: true,
+    may_have_onset: true,
     draw: |bare, at, random| {
         let coefficient = at.spread() * random.random_range(0.1..0.6);
         let exponent = *[1.7, 2.3, 2.7].choose(random).unwrap_or(&1.7);

@@ -1,4 +1,4 @@
-//! Outside the catalogue: a torque that wanders.
+//! Outside the catalogue: a torque that drifts at random.
 
 use super::prelude::*;
 
@@ -13,7 +13,10 @@ pub(super) const FAULT: Fault = Fault {
     read: |reader| {
         reader.on_link(Walk {
             amplitude: reader.number("amplitude")?,
-            values: walk(reader.above("time_constant", 0.0)?, reader.number("seed")? as u64),
+            values: walk(
+                reader.number_above("time_constant", 0.0)?,
+                reader.number("seed")? as u64,
+            ),
         })
     },
     #[cfg(test)]
@@ -21,10 +24,10 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::OUTSIDE_THE_CATALOGUE
 };
 
-/// How long a walk is before it stays where it is (s).
+/// The duration of a walk, after which the torque is constant (s).
 const LONGEST_WALK: f64 = 600.0;
 
-/// A wandering torque: values every hundredth of a second from time 0.
+/// A drifting torque: values every 0.01 s from time 0.
 struct Walk {
     amplitude: f64,
     values: Vec<f64>,
@@ -40,7 +43,7 @@ impl LinkLaw for Walk {
     }
 }
 
-/// A torque that wanders with unit variance (Ornstein and Uhlenbeck 1930), smoothed over 0.05 s, every hundredth of a second.
+/// A random torque with unit variance (Ornstein and Uhlenbeck 1930), smoothed over 0.05 s, every 0.01 s.
 fn walk(time_constant: f64, seed: u64) -> Vec<f64> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut normal = || -> f64 { StandardNormal.sample(&mut random) };

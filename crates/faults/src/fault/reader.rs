@@ -1,18 +1,19 @@
-//! A fault's words in a truth, looked up and checked, and made into parts of a machine.
+//! The names and values of a fault in a ground truth, checked, and converted into parts of a machine.
 
 use arm::Arm;
 use serde_json::Value;
 
 use super::{FAULTS, Fault, Place};
 use crate::error::FaultError;
-use crate::part::{DriveLaw, DryLaw, LinkLaw, Part, Piece, There, What};
+use crate::part::{DriveLaw, DryLaw, LinkLaw, Part, Piece, Presence, Property};
 use crate::truth::Injected;
 
-/// What `injected` is to a machine of `arm` (its drives' rotor inertias in it); without it (`whole` false), what stays when it is
-/// taken away: the plain friction under a curve, the rotor of a drive whose spring is rigid.
+/// The parts that `injected` adds to a machine of `arm` (with the drives' rotor inertias). If `whole` is false, only
+/// the part that remains when the fault is removed: the plain friction below a friction curve, or the rotor of a drive
+/// with a rigid spring.
 ///
 /// # Errors
-/// [`FaultError::Effect`], with the fault, what is wrong and the remedy.
+/// [`FaultError::Effect`], with the fault, the reason and the remedy.
 pub(crate) fn parts(injected: &Injected, arm: &Arm, whole: bool) -> Result<Vec<Part>, FaultError> {
     let reader = Reader { injected, arm };
     let onset = injected.onset.unwrap_or(f64::NEG_INFINITY);
@@ -21,25 +22,29 @@ pub(crate) fn parts(injected: &Injected, arm: &Arm, whole: bool) -> Result<Vec<P
     }
     let pieces = (reader.fault()?.read)(&reader)?.into_iter();
     let is_there = |piece: &Piece| match piece.there {
-        There::With => whole,
-        There::Always => true,
-        There::Without => !whole,
+        Presence::With => whole,
+        Presence::Always => true,
+        Presence::Without => !whole,
     };
     let part = |Piece { what, there }| Part {
-        onset: if there == There::With { onset } else { f64::NEG_INFINITY },
+        onset: if there == Presence::With {
+            onset
+        } else {
+            f64::NEG_INFINITY
+        },
         what,
     };
     Ok(pieces.filter(is_there).map(part).collect())
 }
 
-/// One fault in a truth, its joints and numbers looked up.
+/// A fault of a ground truth, whose joints and numbers can be looked up.
 pub(crate) struct Reader<'a> {
     pub(super) injected: &'a Injected,
     pub(super) arm: &'a Arm,
 }
 
 impl Reader<'_> {
-    /// Its kind, of a form that the kind has and on a joint that there is.
+    /// Its kind; the form must be one of that kind, and the joint one of the arm.
     fn fault(&self) -> Result<&'static Fault, FaultError> {
         let name = &self.injected.effect;
         if let Some(fault) = Fault::named(name) {
@@ -54,19 +59,19 @@ impl Reader<'_> {
         Err(self.fail(format!("there is no such effect; {hint}there are {}", known.join(", "))))
     }
 
-    /// The piece that is dry friction on its joint.
+    /// A piece with dry friction on its joint.
     pub(super) fn on_dry(&self, law: impl DryLaw + 'static) -> Result<Vec<Piece>, FaultError> {
-        Ok(vec![What::Dry(self.joint()?, Box::new(law)).into()])
+        Ok(vec![Property::Dry(self.joint()?, Box::new(law)).into()])
     }
 
-    /// The piece that is a torque on the drive's side of its joint.
+    /// A piece with a torque on the drive's side of its joint.
     pub(super) fn on_drive(&self, law: impl DriveLaw + 'static) -> Result<Vec<Piece>, FaultError> {
-        Ok(vec![What::Drive(self.joint()?, Box::new(law)).into()])
+        Ok(vec![Property::Drive(self.joint()?, Box::new(law)).into()])
     }
 
-    /// The piece that is a torque on the link's side of its joint.
+    /// A piece with a torque on the link's side of its joint.
     pub(super) fn on_link(&self, law: impl LinkLaw + 'static) -> Result<Vec<Piece>, FaultError> {
-        Ok(vec![What::Link(self.joint()?, Box::new(law)).into()])
+        Ok(vec![Property::Link(self.joint()?, Box::new(law)).into()])
     }
 
     pub(super) fn fail(&self, reason: String) -> FaultError {
@@ -114,19 +119,15 @@ impl Reader<'_> {
         }
     }
 
-    pub(super) fn given(&self, name: &str) -> bool {
+    pub(super) fn has(&self, name: &str) -> bool {
         self.injected.parameters.contains_key(name)
     }
 
     pub(super) fn number_or(&self, name: &str, default: f64) -> Result<f64, FaultError> {
-        if self.given(name) {
-            self.number(name)
-        } else {
-            Ok(default)
-        }
+        if self.has(name) { self.number(name) } else { Ok(default) }
     }
 
-    pub(super) fn above(&self, name: &str, least: f64) -> Result<f64, FaultError> {
+    pub(super) fn number_above(&self, name: &str, least: f64) -> Result<f64, FaultError> {
         let value = self.number(name)?;
         if value > least {
             return Ok(value);
@@ -163,7 +164,7 @@ impl Reader<'_> {
         Err(self.fail("the curve's points must be in the order of their positions".into()))
     }
 
-    /// Which of the effect's forms it has: 0 is the textbook's.
+    /// The index of the effect's form; 0 is the textbook's.
     pub(super) fn form(&self) -> Result<usize, FaultError> {
         let Some(form) = &self.injected.form else { return Ok(0) };
         let known = Fault::named(&self.injected.effect).map_or(&[][..], |fault| fault.forms);

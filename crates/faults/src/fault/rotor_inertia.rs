@@ -1,4 +1,4 @@
-//! The inertia of a drive, seen at its joint, which the URDF leaves out.
+//! The inertia of a drive, reflected to its joint, which the URDF omits.
 
 use super::prelude::*;
 
@@ -9,7 +9,7 @@ pub(super) const FAULT: Fault = Fault {
     size: Size::Times(&["inertia"]),
     read: |reader| {
         let body = Body::Rotor(reader.joint()?, reader.at_least_zero("inertia")?);
-        Ok(vec![What::Body(body).into()])
+        Ok(vec![Property::Body(body).into()])
     },
     #[cfg(test)]
     example: |bare| bare.with("inertia", 0.2),

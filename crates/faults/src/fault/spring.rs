@@ -1,11 +1,11 @@
-//! A spring beside the joint, as cables, hoses and balancers make it.
+//! A spring parallel to the joint, such as cables, hoses and balancers.
 
 use super::prelude::*;
 
 pub(super) const FAULT: Fault = Fault {
     name: "spring",
     forms: &["gas spring", "hardening", "knee"],
-    sets_in: true,
+    may_have_onset: true,
     draw: |bare, at, random| {
         let bend = *["gas spring", "hardening", "knee"].choose(random).unwrap_or(&"knee");
         let spring = bare
@@ -36,16 +36,16 @@ struct Spring {
     bend: Bend,
 }
 
-/// How a spring bends.
+/// The characteristic of a spring.
 #[derive(Clone, Copy)]
 enum Bend {
-    /// Not at all.
+    /// Linear.
     Straight,
-    /// Softer away from its rest, as a gas spring over its crank: x becomes 0.45 tanh(x/0.45).
+    /// Softer away from its rest position, as a gas spring on a crank: x becomes 0.45 tanh(x/0.45).
     Gas,
-    /// Stiffer away from its rest: x (1 + 0.6 x²).
+    /// Stiffer away from its rest position: x (1 + 0.6 x²).
     Hardening,
-    /// Two slopes: 0.25 tanh(x/0.25) + 0.5 x.
+    /// Two stiffnesses: 0.25 tanh(x/0.25) + 0.5 x.
     Knee,
 }
 
@@ -62,7 +62,7 @@ impl LinkLaw for Spring {
     }
 }
 
-/// Through points (position, torque) in order; constant beyond.
+/// Through points (position, torque) in increasing order of position; constant outside.
 struct Curve(Vec<[f64; 2]>);
 
 impl LinkLaw for Curve {

@@ -28,13 +28,13 @@ pub(super) const FAULT: Fault = Fault {
     read: |reader| {
         let (joint, coulomb) = (reader.joint()?, reader.at_least_zero("coulomb")?);
         let fading = Fading {
-            velocity: reader.above("velocity", 0.0)?,
+            velocity: reader.number_above("velocity", 0.0)?,
             extra: reader.at_least_zero("breakaway")? - coulomb,
             exponent: reader.number_or("exponent", 2.0)?,
         };
         Ok(vec![
-            Level(coulomb).beneath(joint),
-            What::Dry(joint, Box::new(fading)).into(),
+            Level(coulomb).below_a_curve(joint),
+            Property::Dry(joint, Box::new(fading)).into(),
         ])
     },
     #[cfg(test)]
@@ -42,7 +42,7 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::ON_A_JOINT
 };
 
-/// More at low speed: extra e^(−|v/velocity|^exponent).
+/// The additional friction at low speed: extra e^(−|v/velocity|^exponent).
 struct Fading {
     extra: f64,
     velocity: f64,

@@ -1,4 +1,4 @@
-//! Dry friction of a cold drive, which falls while it warms up.
+//! Dry friction of a cold drive, which decreases while the drive warms up.
 
 use super::coulomb_friction::Level;
 use super::prelude::*;
@@ -26,13 +26,13 @@ pub(super) const FAULT: Fault = Fault {
         let joint = reader.joint()?;
         let warming = Warming {
             amplitude: reader.number("amplitude")?,
-            time_constant: reader.above("time_constant", 0.0)?,
+            time_constant: reader.number_above("time_constant", 0.0)?,
             start: reader.number_or("start", 0.0)?,
             cooling: [Cooling::Exponential, Cooling::Hyperbolic, Cooling::Stretched][reader.form()?],
         };
         Ok(vec![
-            Level(reader.at_least_zero("coulomb")?).beneath(joint),
-            What::Dry(joint, Box::new(warming)).into(),
+            Level(reader.at_least_zero("coulomb")?).below_a_curve(joint),
+            Property::Dry(joint, Box::new(warming)).into(),
         ])
     },
     #[cfg(test)]
@@ -44,16 +44,16 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::ON_A_JOINT
 };
 
-/// All the rest times (1 + amplitude × cooling).
+/// Multiplies the other parts by (1 + amplitude × cooling).
 struct Warming {
     amplitude: f64,
     time_constant: f64,
-    /// When it began to warm up (s).
+    /// The time at which it began to warm up (s).
     start: f64,
     cooling: Cooling,
 }
 
-/// How something warms up, from 1 at the start to 0.
+/// The decrease from 1 at the start to 0.
 #[derive(Clone, Copy)]
 enum Cooling {
     /// e^(−t/T).

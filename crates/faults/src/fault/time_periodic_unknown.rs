@@ -7,7 +7,7 @@ pub(super) const FAULT: Fault = Fault {
     forms: &["rounded square"],
     draw: |bare, at, random| {
         let (_, phase) = at.other_and_phase(random);
-        sometimes(bare, "rounded square", random)
+        perhaps_in_form(bare, "rounded square", random)
             .with("amplitude", at.spread() * random.random_range(0.15..0.5))
             .with("hz", random.random_range(0.6..3.5))
             .with("phase", phase)
@@ -25,7 +25,7 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::OUTSIDE_THE_CATALOGUE
 };
 
-/// A periodic torque; squarer with a larger `edge` (0: a sine).
+/// A periodic torque; a sine for `edge` 0, and closer to a square wave for larger values.
 struct Periodic {
     amplitude: f64,
     hertz: f64,

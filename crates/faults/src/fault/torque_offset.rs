@@ -1,11 +1,11 @@
-//! A constant torque on a joint, as a sensor's zero or a brake's spring makes it.
+//! A constant torque on a joint, such as a sensor's zero offset or the spring of a brake.
 
 use super::prelude::*;
 
 pub(super) const FAULT: Fault = Fault {
     name: "torque_offset",
     is_constant: true,
-    sets_in: true,
+    may_have_onset: true,
     draw: |bare, at, random| bare.with("offset", at.spread() * random.random_range(0.1..0.5) * sign(random)),
     size: Size::Times(&["offset"]),
     read: |reader| reader.on_drive(Offset(reader.number("offset")?)),
@@ -14,7 +14,7 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::ON_A_JOINT
 };
 
-/// A constant (N m or N).
+/// A constant torque (N m or N).
 struct Offset(f64);
 
 impl DriveLaw for Offset {

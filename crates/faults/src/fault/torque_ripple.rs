@@ -1,4 +1,4 @@
-//! A wave along the joint's position, as cogging and gears make it.
+//! A periodic function of the joint's position, such as cogging and gear errors.
 
 use super::prelude::*;
 
@@ -6,7 +6,7 @@ pub(super) const FAULT: Fault = Fault {
     name: "torque_ripple",
     forms: &["second harmonic"],
     form_parameters: &["second"],
-    may_be_several: true,
+    may_repeat: true,
     draw: |bare, at, random| {
         let second = random.random_range(0.3..0.6);
         let ripple = bare

@@ -1,4 +1,4 @@
-//! The most that a drive applies, below what it is commanded.
+//! The largest torque that a drive applies, below the commanded one.
 
 use super::prelude::*;
 
@@ -6,7 +6,7 @@ pub(super) const FAULT: Fault = Fault {
     name: "torque_saturation",
     forms: &["soft"],
     place: Place::InnerJoints,
-    alone_among: Some(Alike::BetweenCommandAndLink),
+    similar_faults: Some(SimilarFaults::BetweenCommandAndLink),
     draw: |bare, at, random| {
         let reached = random.random_range(if at.hard { 0.9..0.98 } else { 0.8..0.95 });
         let soft = at.hard && random.random_bool(0.5);
@@ -17,8 +17,8 @@ pub(super) const FAULT: Fault = Fault {
         bare.with("limit", limit.copied().unwrap_or(at.spread()))
     },
     read: |reader| {
-        let (joint, limit) = (reader.joint()?, reader.above("limit", 0.0)?);
-        Ok(vec![What::Limit(joint, limit, reader.form()? == 1).into()])
+        let (joint, limit) = (reader.joint()?, reader.number_above("limit", 0.0)?);
+        Ok(vec![Property::Limit(joint, limit, reader.form()? == 1).into()])
     },
     #[cfg(test)]
     example: |mut bare| {

@@ -1,4 +1,4 @@
-//! A drive that another joint's motion turns, too.
+//! A drive that is also moved by another joint.
 
 use super::prelude::*;
 
@@ -7,7 +7,7 @@ pub(super) const FAULT: Fault = Fault {
     place: Place::OuterJoints,
     can_be_on: has_another_joint,
     draw: |bare, at, random| {
-        // The law is the same for both joints; it is told of the outer one, as the catalogue does.
+        // The law is symmetric in the two joints; it is listed for the outer one, as in the catalogue.
         let robot = at.robot;
         let o = at.joint.saturating_sub(1);
         let both = (robot.inertia(at.joint) * robot.inertia(o)).sqrt();
@@ -15,7 +15,7 @@ pub(super) const FAULT: Fault = Fault {
             .with("viscous", at.spread() * random.random_range(0.05..0.35))
             .with("inertia", both * random.random_range(0.15..0.55))
     },
-    // Beyond 1.4 times as much the drive would be lighter than nothing.
+    // Beyond 1.4 times this size, the inertia of the drive would be negative.
     size: Size::Changed(|injected, factor| {
         let times = |name| (name, json!(factor.min(1.4) * injected.number(name).unwrap_or(0.0)));
         vec![times("viscous"), times("inertia")]
@@ -31,9 +31,9 @@ pub(super) const FAULT: Fault = Fault {
                 coulomb,
                 sense,
             };
-            What::Link(joint, Box::new(law)).into()
+            Property::Link(joint, Box::new(law)).into()
         };
-        let inertia = What::CouplingInertia(joint, other, reader.number_or("inertia", 0.0)?);
+        let inertia = Property::CouplingInertia(joint, other, reader.number_or("inertia", 0.0)?);
         Ok(vec![half(joint, other), half(other, joint), inertia.into()])
     },
     #[cfg(test)]
@@ -41,7 +41,7 @@ pub(super) const FAULT: Fault = Fault {
     ..Fault::ON_A_JOINT
 };
 
-/// Another joint's motion turns this one's drive; its inertia is the machine's affair.
+/// Another joint's motion moves this joint's drive; the machine handles the drive's inertia.
 struct Coupling {
     other: usize,
     viscous: f64,
@@ -52,7 +52,7 @@ struct Coupling {
 impl LinkLaw for Coupling {
     fn torque(&self, at: At<'_>, _: &mut f64, _: f64) -> f64 {
         let slip = at.velocity() + self.sense * at.qd[self.other];
-        // A width far below any speed of motion, so that an explicit step stays quiet at rest.
+        // A width far below the speeds of a motion, with which an explicit step remains stable at rest.
         self.viscous * at.qd[self.other] + self.coulomb * (slip / 0.01).tanh()
     }
 }

@@ -1,5 +1,5 @@
-//! Viscous friction: a torque against the motion, in proportion to the speed or to another power of it. Baseline: it is drawn for the
-//! background of a case, not as its fault.
+//! Viscous friction: a torque against the motion that is proportional to the speed or to another power of it. A
+//! baseline effect: it is drawn for the background of a case, not as its fault.
 
 use super::prelude::*;
 
@@ -23,7 +23,7 @@ pub(crate) fn coefficient(spread: f64, random: &mut ChaCha8Rng) -> f64 {
     spread * log_uniform(0.1, 0.5, random)
 }
 
-/// coefficient sgn(v) |v|^exponent.
+/// The torque coefficient sgn(v) |v|^exponent.
 pub(super) struct Power {
     pub coefficient: f64,
     pub exponent: f64,

@@ -1,29 +1,29 @@
-//! What commands a machine's drives: the recordings' own position loop, or a controller from outside.
+//! The control laws of a machine: the position loop of the recordings, or an external controller.
 
 use super::parts::Parts;
 use crate::motion::Reference;
 use crate::robot::Robot;
 
-/// Damping ratio of the position loop, and its natural frequency (rad/s) at least and at most.
+/// The damping ratio of the position loop, and the bounds of its natural frequency (rad/s).
 const DAMPING: f64 = 0.8;
 const FREQUENCIES: (f64, f64) = (20.7, 30.0);
-/// How far a joint would hang from its loop under a torque as large as its own gravity's (rad or m).
-const SAG: f64 = 0.05;
+/// The steady-state position error under a torque as large as the joint's own gravity torque (rad or m).
+const STEADY_STATE_ERROR: f64 = 0.05;
 
-/// How a machine starts: at rest.
+/// The initial state of a machine at rest.
 pub(crate) struct Begin<'a> {
-    /// s, on the recordings' clock.
+    /// The time on the recordings' clock (s).
     pub time: f64,
-    /// What its encoders say (rad or m).
+    /// The positions that its encoders report (rad or m).
     pub q: &'a [f64],
     /// The torques that its drives held before (N m or N).
     pub holding: &'a [f64],
 }
 
-/// What a controller sees at a tick of 1 ms; one entry per joint.
+/// The inputs of a controller at a tick of 1 ms; one entry per joint.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen<'a> {
-    /// Which tick, from 0.
+pub struct Measured<'a> {
+    /// The number of the tick, from 0.
     pub tick: usize,
     /// Encoder positions (rad or m).
     pub q: &'a [f64],
@@ -31,19 +31,19 @@ pub struct Seen<'a> {
     pub qd: &'a [f64],
 }
 
-/// Finds the drives' torques, once a tick.
+/// Computes the drives' torques once per tick.
 pub(crate) trait ControlLaw {
-    /// The torques commanded for the coming tick, into `torque` (N m or N).
-    fn command(&mut self, seen: &Seen<'_>, torque: &mut [f64]);
+    /// Writes the commanded torques for the coming tick to `torque` (N m or N).
+    fn command(&mut self, seen: &Measured<'_>, torque: &mut [f64]);
 }
 
-impl<F: FnMut(&Seen<'_>, &mut [f64])> ControlLaw for F {
-    fn command(&mut self, seen: &Seen<'_>, torque: &mut [f64]) {
+impl<F: FnMut(&Measured<'_>, &mut [f64])> ControlLaw for F {
+    fn command(&mut self, seen: &Measured<'_>, torque: &mut [f64]) {
         self(seen, torque);
     }
 }
 
-/// The loop that recordings are made in: proportional and derivative, on top of the user's model.
+/// The loop of the recordings: proportional-derivative feedback and the feed-forward of the user's model.
 pub(super) struct PositionLoop<'a> {
     reference: &'a Reference,
     gains: Vec<(f64, f64)>,
@@ -60,7 +60,7 @@ impl<'a> PositionLoop<'a> {
 }
 
 impl ControlLaw for PositionLoop<'_> {
-    fn command(&mut self, seen: &Seen<'_>, torque: &mut [f64]) {
+    fn command(&mut self, seen: &Measured<'_>, torque: &mut [f64]) {
         for (j, torque) in torque.iter_mut().enumerate() {
             let at = seen.tick * self.gains.len() + j;
             let (q, qd, ff) = (self.reference.q[at], self.reference.qd[at], self.reference.ff[at]);
@@ -69,11 +69,12 @@ impl ControlLaw for PositionLoop<'_> {
     }
 }
 
-/// Proportional and derivative gain of the position loop of joint `j`, whose rotor has `more` inertia than is known of its drive.
+/// Proportional and derivative gain of the position loop of joint `j`, whose rotor has the inertia `more` in addition
+/// to the known one.
 fn gains(robot: &Robot, j: usize, more: f64) -> (f64, f64) {
     let inertia = robot.inertia(j) + more;
-    // A light wrist without rotors needs a stiffer loop, or it would hang from it.
-    let holds = (robot.holding(j) / SAG / inertia).sqrt();
+    // A light wrist without rotors needs a higher gain, or the load would deflect it too far.
+    let holds = (robot.holding(j) / STEADY_STATE_ERROR / inertia).sqrt();
     let frequency = holds.clamp(FREQUENCIES.0, FREQUENCIES.1);
     (inertia * frequency * frequency, 2.0 * DAMPING * frequency * inertia)
 }

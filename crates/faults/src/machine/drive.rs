@@ -1,4 +1,4 @@
-//! A joint's drive: encoder, what becomes of its command, and a rotor that moves by itself.
+//! A joint's drive: its encoder, its torque, and a rotor that is integrated separately.
 
 use super::TICK;
 use super::parts::DriveNow;
@@ -6,22 +6,24 @@ use crate::part::Connection;
 
 /// The drives' velocity filter (Hz).
 const VELOCITY_FILTER: f64 = 40.0;
-/// How many commands a drive remembers: the longest delay, in ticks.
+/// The number of commands that a drive stores, which bounds its delay (ticks).
 const MEMORY: usize = 128;
-/// Parts of a tick in which a rotor moves.
+/// The number of integration steps of a rotor per tick.
 const ROTOR_STEPS: usize = 10;
-/// The ends of a gap swing at this against the lighter side (rad/s): stiff, and resolved by the plant's step.
+/// The natural frequency of the lighter side against the ends of a gap (rad/s): high, but resolved by the plant's
+/// step.
 const GAP_FREQUENCY: f64 = 160.0;
 
 /// The longest delay (s) that a drive can have.
 pub(crate) const LONGEST_DELAY: f64 = (MEMORY - 2) as f64 * TICK;
 
-/// What a drive makes of its encoder: the difference over each tick, through a low-pass filter of first order at 40 Hz.
+/// The velocity that a drive computes from its encoder: differences over each tick, through a first-order low-pass
+/// filter at 40 Hz.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VelocityFilter {
-    /// What the encoder said last (rad or m).
+    /// The last position of the encoder (rad or m).
     pub position: f64,
-    /// The velocity, about 4 ms late (rad/s or m/s).
+    /// The velocity (rad/s or m/s), which is about 4 ms late.
     pub velocity: f64,
 }
 
@@ -34,7 +36,7 @@ impl VelocityFilter {
         }
     }
 
-    /// Takes what the encoder says a tick of 1 ms later.
+    /// Updates the filter with the encoder's position one tick of 1 ms later.
     pub fn take(&mut self, read: f64) {
         let weight = 1.0 - (-std::f64::consts::TAU * VELOCITY_FILTER * TICK).exp();
         self.velocity += weight * ((read - self.position) / TICK - self.velocity);
@@ -44,10 +46,10 @@ impl VelocityFilter {
 
 /// Encoder and command of a joint.
 pub(super) struct Drive {
-    /// What the encoder says, and at what rate.
+    /// The encoder's position and its filtered velocity.
     pub(super) sensed: VelocityFilter,
     commands: [f64; MEMORY],
-    /// Where the next command goes.
+    /// The index of the next command.
     next: usize,
     lagging: f64,
 }
@@ -63,7 +65,7 @@ impl Drive {
         }
     }
 
-    pub(super) fn sense(&mut self, position: f64, quantum: f64) {
+    pub(super) fn read_encoder(&mut self, position: f64, quantum: f64) {
         let read = if quantum > 0.0 {
             (position / quantum).round() * quantum
         } else {
@@ -72,13 +74,13 @@ impl Drive {
         self.sensed.take(read);
     }
 
-    /// The command of this tick (N m or N).
+    /// Stores the command of this tick (N m or N).
     pub(super) fn take(&mut self, command: f64) {
         self.commands[self.next] = command;
         self.next = (self.next + 1) % MEMORY;
     }
 
-    /// The mean over the coming tick of what the drive applies (N m or N, true): late, limited, and reported with a factor.
+    /// The true mean torque that the drive applies over the coming tick (N m or N), with its delay, limit and factor.
     pub(super) fn applied(&mut self, now: &DriveNow) -> f64 {
         let ago = |ticks: usize| self.commands[(self.next + MEMORY - 1 - ticks.min(MEMORY - 1)) % MEMORY];
         let command = if now.delay == 0.0 {
@@ -88,7 +90,8 @@ impl Drive {
             self.lagging += (1.0 - (-TICK / now.delay).exp()) * (ago(0) - self.lagging);
             self.lagging
         } else {
-            // Commands are held for a tick: a delay between ticks passes on a part of either.
+            // Commands are constant for a tick: with a delay between two ticks, each of two commands acts for a part
+            // of the tick.
             let ticks = now.delay / TICK;
             let (whole, part) = (ticks.floor(), ticks.fract());
             (1.0 - part) * ago(whole as usize) + part * ago(whole as usize + 1)
@@ -103,9 +106,9 @@ impl Drive {
     }
 }
 
-/// A rotor on a spring, in a gap or both; the encoder is on it.
+/// A rotor that is connected to its link by a spring, a gap or both; the encoder is on the rotor.
 pub(super) struct Rotor {
-    /// Where it was half a tick before the link's position now, as the link's velocity is of then.
+    /// The position half a tick before the time of the link's position, which is the time of the link's velocity.
     position: f64,
     pub(super) velocity: f64,
     inertia: f64,
@@ -115,7 +118,7 @@ pub(super) struct Rotor {
 }
 
 impl Rotor {
-    /// A rotor of `inertia` that moves with its link, of inertia `link` (kg m²), at `position` and `velocity`.
+    /// A rotor of `inertia` that moves with its link, whose inertia is `link` (kg m²), at `position` and `velocity`.
     pub(super) fn new(connection: Connection, inertia: f64, link: f64, position: f64, velocity: f64) -> Self {
         let stiffness = connection
             .stiffness
@@ -131,12 +134,12 @@ impl Rotor {
         }
     }
 
-    /// Where its encoder sees it, at the time of the link's position.
-    pub(super) fn seen(&self) -> f64 {
+    /// The position of the encoder at the time of the link's position.
+    pub(super) fn encoder_position(&self) -> f64 {
         self.position + 0.5 * TICK * self.velocity
     }
 
-    /// How far the rotor is ahead of its link under `torque`, spring and gap taken as straight.
+    /// The deflection of rotor against link under `torque`, with linear characteristics of spring and gap.
     pub(super) fn deflection(&self, torque: f64) -> f64 {
         let gap = if torque == 0.0 {
             0.0
@@ -146,7 +149,7 @@ impl Rotor {
         gap + torque / self.stiffness
     }
 
-    /// The torque on the link at a deflection and its rate.
+    /// The torque on the link at a deflection and its rate of change.
     fn torque(&self, deflection: f64, rate: f64) -> f64 {
         let gap = self.connection.halfgap;
         let (stretched, touching) = if gap == 0.0 {
@@ -165,10 +168,12 @@ impl Rotor {
         straight * (1.0 + (straight / self.connection.hardening).powi(2)) + touching * self.damping * rate
     }
 
-    /// Moves for a tick under `net` and dry friction of `level` while the link passes `q` at `v`: the mean torque on the link.
+    /// Advances by one tick under the torque `net` and dry friction of `level` while the link is at `q` with velocity
+    /// `v`; returns the mean torque on the link.
     ///
-    /// The plant's plain step keeps velocities half a step behind positions (leapfrog): a force is right if it is that of the time
-    /// about `q`, half a tick before it to half a tick after. Taken from `q` on, it would add a damping of stiffness × tick / 2.
+    /// In the plant's plain step, velocities are half a step behind positions (leapfrog), so that the force must be
+    /// the mean over the tick that is centred on the time of `q`. The mean over the tick after `q` would add a damping
+    /// of stiffness × tick / 2.
     pub(super) fn advance(&mut self, net: f64, level: f64, q: f64, v: f64) -> f64 {
         let step = TICK / ROTOR_STEPS as f64;
         let mut sum = 0.0;
@@ -176,7 +181,7 @@ impl Rotor {
             let link = q + v * (step * k as f64 - 0.5 * TICK);
             let through = self.torque(self.position - link, self.velocity - v);
             let free = self.velocity + step / self.inertia * (net - through);
-            // Friction takes what it can, and no more than stops the rotor.
+            // Friction takes the torque that stops the rotor, up to its level.
             let most = step / self.inertia * level;
             self.velocity = if free.abs() <= most {
                 0.0
@@ -194,7 +199,7 @@ impl Rotor {
 mod tests {
     use super::*;
 
-    /// A rotor and a link on a spring, let go: their oscillation dies as fast as its damping says.
+    /// A rotor and a link on a spring are released: their oscillation decays according to the damping.
     #[test]
     fn a_spring_is_damped_as_it_says() {
         let (rotor, link, stiffness, damping): (f64, f64, f64, f64) = (0.8, 2.0, 900.0, 2.0);
@@ -228,7 +233,8 @@ mod tests {
         }
     }
 
-    /// Rotor and link go on together, with nothing between them: the encoder says where the link is, not where it was.
+    /// Without a connection, rotor and link move on together: the encoder reports the present position of the link,
+    /// not an earlier one.
     #[test]
     fn what_moves_evenly_is_seen_where_it_is() {
         let connection = Connection {
@@ -242,7 +248,11 @@ mod tests {
         let (speed, mut q) = (1.0, 0.3);
         let mut rotor = Rotor::new(connection, 0.8, 2.0, q, speed);
         for _ in 0..1000 {
-            assert!((rotor.seen() - q).abs() < 1e-9, "{} {q}", rotor.seen());
+            assert!(
+                (rotor.encoder_position() - q).abs() < 1e-9,
+                "{} {q}",
+                rotor.encoder_position()
+            );
             assert!(rotor.advance(0.0, 0.0, q, speed).abs() < 1e-6);
             q += TICK * speed;
         }

@@ -1,17 +1,18 @@
-//! Dry friction of all joints at once, implicitly: what it takes to stop a joint within a tick, and no more than there is.
+//! Dry friction of all joints at once, by an implicit method: the torque that stops a joint within a tick, bounded by
+//! its level.
 
 use arm::{Arm, DMatrix, Workspace};
 
 use super::{Machine, TICK};
 
-/// The mass matrix is looked at every so many ticks.
+/// The number of ticks between evaluations of the mass matrix.
 const REFRESH: usize = 4;
-/// Sweeps at most, and the change of a velocity (rad/s or m/s) that ends them.
+/// The largest number of sweeps, and the change of velocity (rad/s or m/s) below which they end.
 const SWEEPS: usize = 50;
-const SETTLED: f64 = 1e-10;
+const TOLERANCE: f64 = 1e-10;
 
 impl Machine<'_> {
-    /// The friction with each joint's dry friction multiplied by a factor, which differs between recordings.
+    /// The friction with each joint's dry friction multiplied by a factor, which may differ between recordings.
     pub(crate) fn with_friction(mut self, factors: &[f64]) -> Self {
         self.parts.friction = factors.to_vec();
         self
@@ -20,13 +21,13 @@ impl Machine<'_> {
 
 /// Friction torques found by projected Gauss-Seidel sweeps (Jourdan, Alart and Jean 1998) on the velocities at the tick's end.
 ///
-/// The plant can locate stops and breakaways within its steps; at a plain step that doubles the cost and changes nothing that a sensor
-/// sees.
+/// The plant can locate stops and breakaways within its steps. With plain steps, this would double the computing time,
+/// and the difference would be below the sensors' resolution.
 pub(super) struct Friction {
     /// M⁻¹ (rad/s² per N m, and so on).
     response: DMatrix<f64>,
     age: usize,
-    /// What friction adds to the torques (N m or N).
+    /// The friction torques (N m or N).
     pub(super) torques: Vec<f64>,
     bias: Vec<f64>,
 }
@@ -41,13 +42,13 @@ impl Friction {
         }
     }
 
-    /// The arm has changed.
-    pub(super) fn forget(&mut self) {
+    /// Resets the mass matrix after a change of the arm.
+    pub(super) fn reset(&mut self) {
         self.age = REFRESH;
     }
 
-    /// Finds [`Self::torques`] for a tick from `q`, `qd` under the torques `net`, at most `levels` each.
-    pub(super) fn find(
+    /// Computes [`Self::torques`] for a tick from `q`, `qd` under the torques `net`, each bounded by `levels`.
+    pub(super) fn solve(
         &mut self,
         arm: &Arm,
         scratch: &mut Workspace,
@@ -90,7 +91,7 @@ impl Friction {
                 }
                 largest = largest.max(TICK * self.response[(i, i)] * change.abs());
             }
-            if largest < SETTLED {
+            if largest < TOLERANCE {
                 break;
             }
         }
@@ -102,7 +103,7 @@ mod tests {
     use super::*;
     use crate::test_robots::seven_axis;
 
-    /// Joints under less than their friction stop and stay; those under more slide against all of it.
+    /// Joints under a torque below their friction stop and remain at rest; others slide against their full friction.
     #[test]
     fn friction_stops_what_it_can() {
         let robot = seven_axis();
@@ -116,7 +117,7 @@ mod tests {
         let levels = vec![1.0; n];
         let pushes = [0.5, -0.9, 0.2, 1.5, -2.0, 0.1, 0.0];
         let net: Vec<f64> = gravity.iter().zip(pushes).map(|(g, push)| g + push).collect();
-        friction.find(arm, &mut scratch, [&q, &vec![0.0; n]], &net, &levels);
+        friction.solve(arm, &mut scratch, [&q, &vec![0.0; n]], &net, &levels);
         let total: Vec<f64> = net.iter().zip(&friction.torques).map(|(net, f)| net + f).collect();
         let mut qdd = vec![0.0; n];
         arm.forward_dynamics(&mut scratch, &q, &vec![0.0; n], &total, &mut qdd);

@@ -1,4 +1,5 @@
-//! The true machine backwards: the torques that a motion of its links takes, as its drives report them, and what its encoders say then.
+//! The inverse of the true machine: the torques that a motion of its links requires, as its drives report them, and
+//! the readings of its encoders.
 
 use arm::{Arm, Workspace};
 
@@ -18,32 +19,33 @@ pub struct LinkMotion<'a> {
     pub qdd: &'a [f64],
 }
 
-/// What a motion of the links takes; `[tick × dof + joint]`.
+/// The torques and encoder offsets that a motion of the links requires; `[tick × dof + joint]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inverse {
-    /// The torques needed at each tick, in the drives' own measure (N m or N).
+    /// The required torques at each tick, as the drives report them (N m or N).
     pub tau: Vec<f64>,
-    /// What the encoders say beyond the links' positions: an offset, a spring's deflection (rad or m).
+    /// The difference between encoder readings and link positions: an offset, a spring's deflection (rad or m).
     pub beyond: Vec<f64>,
-    /// How late each drive acts (s), one per joint.
+    /// The delay of each drive (s).
     pub delays: Vec<f64>,
 }
 
-/// Of each tick and joint, what turns the link.
+/// The parts of the torque, for each tick and joint.
 struct Links {
-    /// Rigid, without the drives' inertias.
+    /// The rigid torque, without the drives' inertias.
     rigid: Vec<f64>,
-    /// With all that acts on the link's side.
+    /// The rigid torque and all torques on the link's side, without the drives' inertias.
     through: Vec<f64>,
     /// The drives' inertias (kg m² or kg).
     rotor: Vec<f64>,
-    /// How far rotors are ahead of their links (rad or m).
+    /// The deflections of the rotors against their links (rad or m).
     ahead: Vec<f64>,
 }
 
 impl Machine<'_> {
-    /// What `motion` takes. Dry friction has the sign of the velocity and is nothing at rest. Left out: contacts, which are events; gaps
-    /// and limits, which no torque undoes; the damping of springs. What remembers starts as a run does.
+    /// The torques that `motion` requires. Dry friction has the sign of the velocity and is zero at rest. Omitted are
+    /// contacts, which are events, gaps and limits, which no torque can compensate, and the damping of springs. States
+    /// with memory start as in a run.
     pub(crate) fn inverse(&self, motion: &LinkMotion<'_>) -> Inverse {
         let n = self.robot.arm().dof();
         let ticks = motion.q.len() / n;
@@ -135,8 +137,8 @@ impl Machine<'_> {
     }
 }
 
-/// How far a spring gives under `torque`: the root of k x (1 + (k x / h)²), by Newton's method from a straight spring's; a gap's stiff
-/// end gives nothing.
+/// The deflection of a spring under `torque`: the root x of k x (1 + (k x / h)²) = torque, by Newton's method from the
+/// deflection of a linear spring. The stiff ends of a gap do not deflect.
 fn stretch(spring: &Connection, torque: f64) -> f64 {
     let Some(stiffness) = spring.stiffness.filter(|_| spring.halfgap == 0.0) else {
         return 0.0;

@@ -3,7 +3,7 @@
 use arm::Arm;
 
 use crate::fault::external_contact::Contact;
-use crate::part::{Body, Connection, DriveLaw, DryLaw, LinkLaw, Part, What};
+use crate::part::{Body, Connection, DriveLaw, DryLaw, LinkLaw, Part, Property};
 
 /// The parts on each joint's drive, and the parts on the whole machine.
 pub(super) struct Parts {
@@ -16,11 +16,11 @@ pub(super) struct Parts {
     pub(super) friction: Vec<f64>,
 }
 
-/// A law on the link's side of a joint.
+/// A law that acts on the link's side of a joint.
 pub(super) struct OnLink {
     pub joint: usize,
     pub law: Box<dyn LinkLaw>,
-    /// When it sets in (s).
+    /// Its onset (s).
     pub onset: f64,
 }
 
@@ -28,18 +28,18 @@ pub(super) struct OnLink {
 struct Joint {
     dry: Vec<(Box<dyn DryLaw>, f64)>,
     smooth: Vec<(Box<dyn DriveLaw>, f64)>,
-    drive: Vec<(What, f64)>,
+    drive: Vec<(Property, f64)>,
 }
 
-/// What a drive does to its command at a moment.
+/// The properties of a drive at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DriveNow {
-    /// Reported over true torque.
+    /// The ratio of the reported to the true torque.
     pub factor: f64,
-    /// N m or N, as reported.
+    /// The torque limit (N m or N), as it is reported.
     pub limit: f64,
     pub soft: bool,
-    /// s.
+    /// The time constant (s).
     pub delay: f64,
     pub lags: bool,
 }
@@ -56,17 +56,17 @@ impl Parts {
         };
         for Part { onset, what } in parts {
             match what {
-                What::Dry(j, law) => sorted.joints[j].dry.push((law, onset)),
-                What::Drive(j, law) => sorted.joints[j].smooth.push((law, onset)),
-                What::Link(joint, law) => sorted.links.push(OnLink { joint, law, onset }),
-                What::CouplingInertia(j, o, inertia) => sorted.couplings.push((j, o, inertia, onset)),
-                What::Body(body) => sorted.bodies.push((body, onset)),
-                What::Contact(contact) => sorted.contacts.push(contact),
-                What::Scale(j, _)
-                | What::Limit(j, ..)
-                | What::Delay(j, ..)
-                | What::Encoder(j, _)
-                | What::Elastic(j, _) => sorted.joints[j].drive.push((what, onset)),
+                Property::Dry(j, law) => sorted.joints[j].dry.push((law, onset)),
+                Property::Drive(j, law) => sorted.joints[j].smooth.push((law, onset)),
+                Property::Link(joint, law) => sorted.links.push(OnLink { joint, law, onset }),
+                Property::CouplingInertia(j, o, inertia) => sorted.couplings.push((j, o, inertia, onset)),
+                Property::Body(body) => sorted.bodies.push((body, onset)),
+                Property::Contact(contact) => sorted.contacts.push(contact),
+                Property::Scale(j, _)
+                | Property::Limit(j, ..)
+                | Property::Delay(j, ..)
+                | Property::Encoder(j, _)
+                | Property::Elastic(j, _) => sorted.joints[j].drive.push((what, onset)),
             }
         }
         // Payloads are not scaled with the links.
@@ -74,13 +74,13 @@ impl Parts {
         sorted
     }
 
-    /// `arm` with the bodies that are there at `time`.
+    /// `arm` with the changed bodies that are present at `time` (s).
     pub(super) fn arm_at(&self, arm: Arm, time: f64) -> Arm {
         let there = self.bodies.iter().filter(|(_, onset)| time >= *onset);
-        there.fold(arm, |arm, (body, _)| body.put_into(arm))
+        there.fold(arm, |arm, (body, _)| body.applied_to(arm))
     }
 
-    /// The inertia that the rotor of joint `j` has, from the start, beyond what is known of its drive (kg m²).
+    /// The inertia of the rotor of joint `j`, from the start, in addition to the known inertia of its drive (kg m²).
     pub(super) fn more_rotor(&self, j: usize) -> f64 {
         let of = |(body, onset): &(Body, f64)| match body {
             Body::Rotor(joint, inertia) if *joint == j && *onset == f64::NEG_INFINITY => *inertia,
@@ -89,22 +89,22 @@ impl Parts {
         self.bodies.iter().map(of).sum()
     }
 
-    /// When the arm changes after `time` (s); infinite if never.
+    /// The time of the arm's next change after `time` (s); infinite if there is none.
     pub(super) fn next_change(&self, time: f64) -> f64 {
         let bodies = self.bodies.iter().map(|(_, onset)| *onset);
         let elastic = self.joints.iter().flat_map(|joint| &joint.drive);
-        let elastic = elastic.filter(|(what, _)| matches!(what, What::Elastic(..)));
+        let elastic = elastic.filter(|(what, _)| matches!(what, Property::Elastic(..)));
         bodies
             .chain(elastic.map(|(_, onset)| *onset))
             .filter(|onset| *onset > time)
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// What is between rotor and link of joint `j`: springs and gaps in one.
+    /// The connection between rotor and link of joint `j`: springs and gaps combined.
     pub(super) fn connection_at(&self, j: usize, time: f64) -> Option<Connection> {
         self.drive(j, time)
             .fold(None, |found: Option<Connection>, what| match what {
-                What::Elastic(_, connection) => Some(match found {
+                Property::Elastic(_, connection) => Some(match found {
                     None => *connection,
                     Some(found) => Connection {
                         stiffness: found.stiffness.or(connection.stiffness),
@@ -119,7 +119,7 @@ impl Parts {
             })
     }
 
-    fn drive(&self, j: usize, time: f64) -> impl Iterator<Item = &What> {
+    fn drive(&self, j: usize, time: f64) -> impl Iterator<Item = &Property> {
         let drive = self.joints[j].drive.iter();
         drive.filter(move |(_, onset)| time >= *onset).map(|(what, _)| what)
     }
@@ -134,12 +134,12 @@ impl Parts {
         };
         for what in self.drive(j, time) {
             match *what {
-                What::Scale(_, factor) => now.factor *= factor,
-                What::Limit(_, limit, soft) => {
+                Property::Scale(_, factor) => now.factor *= factor,
+                Property::Limit(_, limit, soft) => {
                     now.limit = now.limit.min(limit);
                     now.soft = soft;
                 }
-                What::Delay(_, delay, lags) => {
+                Property::Delay(_, delay, lags) => {
                     now.delay += delay;
                     now.lags = lags;
                 }
@@ -149,10 +149,10 @@ impl Parts {
         now
     }
 
-    /// How much more than where it stands the encoder of joint `j` says.
+    /// The error of the encoder of joint `j` (rad or m).
     pub(super) fn encoder(&self, j: usize, time: f64) -> f64 {
-        let offset = |what: &What| {
-            if let What::Encoder(_, offset) = what {
+        let offset = |what: &Property| {
+            if let Property::Encoder(_, offset) = what {
                 *offset
             } else {
                 0.0
@@ -174,12 +174,12 @@ impl Parts {
             .map(|(law, _)| law.as_ref())
     }
 
-    pub(super) fn feels_rigid_load(&self) -> bool {
+    pub(super) fn depends_on_rigid_load(&self) -> bool {
         let mut dry = self.joints.iter().flat_map(|joint| &joint.dry);
-        dry.any(|(law, _)| law.feels_rigid_load())
+        dry.any(|(law, _)| law.depends_on_rigid_load())
     }
 
-    /// Joint, other joint and inertia of the drives that two joints turn.
+    /// Joint, other joint and inertia of the drives that two joints move.
     pub(super) fn couplings(&self, time: f64) -> impl Iterator<Item = (usize, usize, f64)> {
         let there = self.couplings.iter().filter(move |coupling| time >= coupling.3);
         there.map(|&(j, o, inertia, _)| (j, o, inertia))

@@ -1,13 +1,13 @@
-//! The machine against inverse dynamics, and what each part does to it.
+//! The machine against inverse dynamics, and the influence of each part on it.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use serde_json::json;
 
 use super::*;
-use crate::expressed_share::{share, smooth};
+use crate::expressed_share::{low_passed, share};
 use crate::fault::{FAULTS, Fault, Place};
-use crate::motion::{LEAD, excitation};
+use crate::motion::{LEAD_TICKS, excitation};
 use crate::test_robots::{puma, seven_axis};
 
 fn reference(robot: &Robot) -> Reference {
@@ -21,8 +21,8 @@ fn run(robot: &Robot, effects: &[Injected], reference: &Reference) -> Run {
     run.unwrap_or_else(|error| panic!("{effects:?}: {error}"))
 }
 
-/// The drives report the torque of the motion by inverse dynamics, to 0.2 % of its standard deviation below 20 Hz: step, hold
-/// and loop cause no larger error.
+/// The drives report the torque of the motion by inverse dynamics, to 0.2 % of its standard deviation below 20 Hz:
+/// step, hold and loop cause no larger error.
 #[test]
 fn an_empty_machine_costs_the_rigid_torque() {
     for robot in [puma(), seven_axis()] {
@@ -30,29 +30,29 @@ fn an_empty_machine_costs_the_rigid_torque() {
         let reference = reference(&robot);
         let run = run(&robot, &[], &reference);
         let rigid = Reference::along(&robot.driven(), &run.q);
-        let below = |tau: &[f64]| vec![smooth(tau, n, TICK, LEAD).0];
+        let below = |tau: &[f64]| vec![low_passed(tau, n, TICK, LEAD_TICKS).0];
         let error = share(&below(&run.tau), &below(&rigid), false);
         assert!(error < 2e-3, "{}: {error}", robot.name());
     }
 }
 
-/// A fault at a robust size, on axis 4 of the arm with seven axes or on all of it.
-fn robust(name: &str) -> Injected {
+/// A fault of a clearly detectable size, on axis 4 of the arm with seven axes or on the whole arm.
+fn detectable(name: &str) -> Injected {
     let fault = Fault::named(name).expect("there is such a fault");
     let joint = (fault.place != Place::WholeArm).then_some("axis4");
     (fault.example)(Injected::new(name, joint))
 }
 
-/// Every effect, in every form, adds a part of the torque, which differs from that of any other form.
+/// Every effect, in every form, changes the torque, and differently from any other form.
 #[test]
 fn every_effect_in_every_form_changes_the_torque() {
     let robot = seven_axis();
     let n = robot.arm().dof();
-    let reference = reference(&robot).cut(4.0);
-    let below = |run: &Run| vec![smooth(&run.tau, n, TICK, LEAD).0];
+    let reference = reference(&robot).first_seconds(4.0);
+    let below = |run: &Run| vec![low_passed(&run.tau, n, TICK, LEAD_TICKS).0];
     for fault in &FAULTS {
         let name = fault.name;
-        let effect = robust(name);
+        let effect = detectable(name);
         let without = Machine::new(&robot, &[&effect], Some(0)).expect("it fits");
         let without = below(&without.run(&reference, 0.0).expect("it follows"));
         let plain = below(&run(&robot, std::slice::from_ref(&effect), &reference));
@@ -74,7 +74,7 @@ fn every_effect_in_every_form_changes_the_torque() {
 #[test]
 fn an_onset_parts_two_machines() {
     let robot = seven_axis();
-    let reference = reference(&robot).cut(2.0);
+    let reference = reference(&robot).first_seconds(2.0);
     let plain = run(&robot, &[], &reference);
     for name in [
         "payload",
@@ -84,15 +84,15 @@ fn an_onset_parts_two_machines() {
         "encoder_offset",
         "spring",
     ] {
-        let mut effect = robust(name);
+        let mut effect = detectable(name);
         effect.onset = Some(1.0);
         let with = run(&robot, &[effect], &reference);
         let first = plain.tau.iter().zip(&with.tau).position(|(a, b)| a != b);
         let time = reference.time(first.expect("they part") / robot.arm().dof());
         assert!((0.999..1.05).contains(&time), "{name}: {time}");
     }
-    // The rotor of a drive that tears loose turned with its link before.
-    let mut gap = robust("backlash");
+    // The rotor of a drive whose connection fails moved with its link before.
+    let mut gap = detectable("backlash");
     gap.onset = Some(1.0);
     let without = Machine::new(&robot, &[&gap], Some(0)).expect("it fits");
     let without = without.run(&reference, 0.0).expect("it follows");
@@ -102,17 +102,17 @@ fn an_onset_parts_two_machines() {
     assert!((0.999..1.05).contains(&time), "{time}");
 }
 
-/// Signs and sizes of what is reported: an offset and a scale as such, a contact as −Jᵀ F, held at rest.
+/// Signs and sizes of reported torques at rest: an offset and a scale directly, a contact as −Jᵀ F.
 #[test]
 fn what_is_reported_is_what_the_catalogue_says() {
     let robot = seven_axis();
     let n = robot.arm().dof();
-    let mut reference = reference(&robot).cut(2.0);
+    let mut reference = reference(&robot).first_seconds(2.0);
     for (k, q) in reference.q.iter_mut().enumerate() {
         *q = [0.1, 0.4, -0.2, 0.5, 0.3, -0.4, 0.2][k % n];
     }
     let reference = Reference::new(robot.arm(), 0.0, reference.q);
-    // It sags in its position loop: the torque at rest is that of where it stands.
+    // The arm deflects in its position loop: the torque at rest is that of its actual pose.
     let at_rest = |effect: &Injected| -> (Vec<f64>, Vec<f64>, Vec<f64>) {
         let run = run(&robot, std::slice::from_ref(effect), &reference);
         let mut plain = vec![0.0; n];
@@ -121,9 +121,9 @@ fn what_is_reported_is_what_the_catalogue_says() {
         arm.gravity_torque(&mut Workspace::new(arm), &run.q[last..], &mut plain);
         (run.tau[last..].to_vec(), plain, run.q[last..].to_vec())
     };
-    let (found, plain, _) = at_rest(&robust("torque_offset"));
+    let (found, plain, _) = at_rest(&detectable("torque_offset"));
     assert!((found[3] - plain[3] - 2.0).abs() < 1e-3, "{} {}", found[3], plain[3]);
-    let (found, plain, _) = at_rest(&robust("torque_scale"));
+    let (found, plain, _) = at_rest(&detectable("torque_scale"));
     assert!((found[3] / plain[3] - 1.2).abs() < 1e-3, "{} {}", found[3], plain[3]);
     let contact = Injected::new("external_contact", None)
         .with("start", 0.0)
@@ -146,7 +146,7 @@ fn what_is_reported_is_what_the_catalogue_says() {
     }
 }
 
-/// Dry friction that differs by direction is an offset beside dry friction, in motion and at rest: one machine.
+/// Dry friction that differs by direction is equivalent to an offset and dry friction, in motion and at rest.
 #[test]
 fn asymmetry_and_offset_give_one_recording() {
     let robot = seven_axis();
@@ -156,8 +156,8 @@ fn asymmetry_and_offset_give_one_recording() {
         .with("negative", 1.0);
     let level = Injected::new("coulomb_friction", joint).with("level", 1.5);
     let offset = Injected::new("torque_offset", joint).with("offset", 0.5);
-    // Moving, and then held.
-    let mut reference = reference(&robot).cut(4.0);
+    // In motion, and then at rest.
+    let mut reference = reference(&robot).first_seconds(4.0);
     let (n, half) = (robot.arm().dof(), reference.q.len() / 2);
     let held: Vec<f64> = reference.q[half - n..half].to_vec();
     reference.q[half..]
@@ -165,7 +165,7 @@ fn asymmetry_and_offset_give_one_recording() {
         .enumerate()
         .for_each(|(k, q)| *q = held[k % n]);
     let reference = Reference::new(robot.arm(), 0.0, reference.q);
-    // Always, and from halfway of the motion on.
+    // From the start, and from the middle of the motion on.
     for onset in [None, Some(1.0)] {
         let [mut uneven, mut offset] = [uneven.clone(), offset.clone()];
         (uneven.onset, offset.onset) = (onset, onset);
@@ -183,14 +183,14 @@ fn what_cannot_follow_is_refused() {
     let weak = Injected::new("torque_saturation", Some("axis2")).with("limit", 1.0);
     let machine = Machine::new(&robot, &[&weak], None).expect("it fits");
     let error = machine
-        .run(&reference(&robot).cut(4.0), 0.0)
+        .run(&reference(&robot).first_seconds(4.0), 0.0)
         .map(|_| ())
         .expect_err("it is refused");
     assert!(error.to_string().contains("axis"), "{error}");
     let gap = Injected::new("backlash", Some("axis2")).with("halfgap", 0.01);
     let machine = Machine::new(&robot, &[&gap], None).expect("it fits");
     let error = machine
-        .run(&reference(&robot).cut(1.0), 0.0)
+        .run(&reference(&robot).first_seconds(1.0), 0.0)
         .map(|_| ())
         .expect_err("it is refused");
     assert!(error.to_string().contains("rotor"), "{error}");

@@ -107,7 +107,7 @@ fn recovers_one_length_an_input() {
 
 #[test]
 fn a_function_too_fine_for_the_first_samples_is_found() {
-    // A quarter of the samples, on which the search starts, tells nothing but noise.
+    // A quarter of the samples, on which the search starts, seems to be noise only.
     let mut random = Random(13);
     let inputs = scattered(&mut random, 1000, 2);
     let targets: Vec<f64> = inputs
@@ -340,10 +340,10 @@ fn inducing_points_predict_nearly_as_all_points_do() {
     let (mean, variance) = approximate.mean_and_variance(&at, &mut Workspace::default());
     assert!((mean - exact.mean(&at)).abs() < 0.02, "{mean} and {}", exact.mean(&at));
     assert!(variance > 0.0 && variance < 0.01, "{variance}");
-    // Saved and loaded, it says the same of itself.
+    // The conditioning of a model that is saved and loaded is unchanged.
     let again: Gp = serde_json::from_str(&serde_json::to_string(&approximate).expect("valid")).expect("valid");
     assert_eq!(again.conditioning(), approximate.conditioning());
-    // As many inducing points as samples are no approximation.
+    // As many inducing points as samples are exact.
     assert_eq!(fit(Some(n)).log_marginal_likelihood(), exact.log_marginal_likelihood());
     let none = FitOptions {
         inducing: Some(0),

@@ -1,4 +1,4 @@
-//! What the plant itself adds to a tracking error.
+//! The contribution of the plant itself to a tracking error.
 
 use crate::test_arms::{Reference, distance, puma};
 use crate::{Plant, PlantOptions};
@@ -10,7 +10,7 @@ const AMPLITUDE: [f64; 6] = [1.0, 0.5, 0.7, 0.5, 1.2, 1.1];
 const SLOW: [f64; 6] = [0.44, 0.36, 0.28, 0.36, 0.24, 0.36];
 const FAST: [f64; 6] = [0.24, 0.44, 0.40, 0.20, 0.48, 0.28];
 
-/// q, q̇ and q̈ of the task at `time`.
+/// q, q̇ and q̈ of the task at `time` (s).
 fn task(time: f64) -> [[f64; 6]; 3] {
     let mut motion = [[0.0; 6]; 3];
     for i in 0..6 {
@@ -36,8 +36,8 @@ fn control(model: &Arm, workspace: &mut Workspace, time: f64, q: &[f64], qd: &[f
     tau
 }
 
-/// The largest difference (rad) of two 10 s runs under one controller with a model 20 % too heavy: in the
-/// plant, and in the analytic dynamics (Runge-Kutta of .25 ms). Also the largest tracking error.
+/// The largest difference (rad) between two 10 s runs under the same controller, whose model is 20 % too heavy: one on
+/// the plant, one on the analytic dynamics (Runge-Kutta steps of 0.25 ms). Also the largest tracking error (rad).
 fn loop_error(arm: &Arm, order: usize) -> (f64, f64) {
     let model = arm.clone().with_scaled_inertias(1.2);
     let mut workspace = Workspace::new(&model);
@@ -62,9 +62,9 @@ fn loop_error(arm: &Arm, order: usize) -> (f64, f64) {
     (worst, tracking)
 }
 
-/// The plant's own error must not show beside the model's, which costs 5e-2 rad here, nor beside that of a
-/// model good to 1 % (3e-4 rad). A plain step adds 1e-4 rad and more; the testbed needs 1e-6. Measured:
-/// 3.5e-4, 1.3e-6, 7.0e-10 and 8.2e-13 rad at the orders 1 to 4, of a tracking error of 5e-2.
+/// The plant's own error must be small beside that of the model, which is 5e-2 rad here, and beside that of a model
+/// accurate to 1 % (3e-4 rad). A plain step adds at least 1e-4 rad; the testbed requires 1e-6 rad. Measured: 3.5e-4,
+/// 1.3e-6, 7.0e-10 and 8.2e-13 rad at the orders 1 to 4, for a tracking error of 5e-2 rad.
 #[test]
 fn the_closed_loop_hides_nothing() {
     for (order, bound) in [(1, 1e-2), (2, 1e-5), (3, 1e-8), (4, 1e-10)] {

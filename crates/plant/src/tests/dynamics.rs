@@ -1,10 +1,10 @@
-//! rapier's accelerations are those of the analytic forward dynamics; what rapier cannot simulate is refused.
+//! rapier's accelerations equal those of the analytic forward dynamics; links that rapier cannot simulate are refused.
 
 use crate::test_arms::{Random, Reference, distance, gantry, puma, read, skew};
 use crate::{LARGEST_ORDER, Plant, PlantError, PlantOptions};
 use arm::Arm;
 
-/// The largest relative difference of the plant's accelerations from the analytic ones over random states.
+/// The largest relative difference between the plant's accelerations and the analytic ones over random states.
 fn acceleration_error(arm: &Arm, options: &PlantOptions) -> f64 {
     let n = arm.dof();
     let mut plant = Plant::new(arm, options).unwrap();
@@ -24,8 +24,8 @@ fn acceleration_error(arm: &Arm, options: &PlantOptions) -> f64 {
     worst
 }
 
-/// q̈ = M⁻¹ (τ − C q̇ − g). A wrong joint frame, inertial frame, gravity or torque shows at once (order 1), a rounded
-/// tensor at 1e-8. Measured: 6e-15.
+/// q̈ = M⁻¹ (τ − C q̇ − g). A wrong joint frame, inertial frame, gravity or torque gives a difference of order 1, a
+/// rounded tensor one of 1e-8. Measured: 6e-15.
 #[test]
 fn accelerations_are_the_analytic_ones() {
     let drives = |arm: Arm| {
@@ -46,8 +46,9 @@ fn accelerations_are_the_analytic_ones() {
     }
 }
 
-/// The torque comes through unrounded: a spring that holds τ/K loses 1e-6 of the gravity of a light
-/// wrist if K is badly chosen. Without gravity and motion q̈ is τ's alone, to rounding, at 1e-9 and at 1e6 N m.
+/// The torque is applied without rounding: with a badly chosen K, a spring with the rest position τ/K loses 1e-6 of
+/// the gravity torque of a light wrist. Without gravity and motion, q̈ must follow from τ alone, up to rounding, at
+/// 1e-9 and at 1e6 N m.
 #[test]
 fn torques_are_exact() {
     let arm = puma().with_gravity(arm::Vector3::zeros());
@@ -74,8 +75,8 @@ fn bare(m1: f64, i1: f64, m2: f64, i2: f64, kind: &str) -> Arm {
     read(&format!("<robot name=\"bare\"><link name=\"base\"/>{text}</robot>"))
 }
 
-/// A link without mass, with no tensor, or with a moment about one axis only is the same arm in
-/// rapier, by an equivalent body. Left as they are the last move wrongly, by 6e-3 on the PUMA.
+/// For a link without mass, without inertia tensor, or with a moment about one axis only, an equivalent body gives the
+/// same motion. Without it, links of the last kind move wrongly, by 6e-3 on the PUMA 560.
 #[test]
 fn bare_links_move_rightly() {
     for (i, arm) in [
@@ -95,10 +96,10 @@ fn bare_links_move_rightly() {
     }
 }
 
-/// What cannot be replaced is refused by name.
+/// A link without an equivalent body is refused by name.
 #[test]
 fn what_rapier_cannot_simulate_is_refused() {
-    // Slender along its own joint's axis.
+    // Slender along the axis of its own joint.
     let rod = r#"<robot name="rod"><link name="base"/>
 <joint name="j1" type="continuous"><parent link="base"/><child link="shaft"/><axis xyz="0 0 1"/></joint>
 <link name="shaft"><inertial><origin xyz="0.1 0 0"/><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0"/></inertial></link></robot>"#;
@@ -107,7 +108,7 @@ fn what_rapier_cannot_simulate_is_refused() {
         matches!(&error, PlantError::Singular { link, .. } if link == "shaft"),
         "{error}"
     );
-    // A last link without inertia, unless its drive has a rotor.
+    // The last link needs an inertia, unless its drive has a rotor.
     let tip = r#"<robot name="tip"><link name="base"/>
 <joint name="j1" type="continuous"><parent link="base"/><child link="l1"/><axis xyz="0 0 1"/></joint>
 <link name="l1"><inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
@@ -172,7 +173,7 @@ fn bad_options_and_vectors_are_refused() {
     assert!(matches!(plant.step(&tau), Err(PlantError::Diverged { .. })));
     tau[4] = f64::INFINITY;
     assert!(matches!(plant.step(&tau), Err(PlantError::Diverged { .. })));
-    // A refused step leaves no trace.
+    // A refused step does not change the state.
     let mut fresh = Plant::new(&arm, &default()).unwrap();
     plant.step(&[1.0; 6]).unwrap();
     fresh.step(&[1.0; 6]).unwrap();

@@ -1,4 +1,4 @@
-//! Dry friction on one joint, against its closed form; sticking and breaking away.
+//! Dry friction on one joint against its closed-form solution; sticking and breaking away.
 
 use crate::test_arms::{distance, puma, slider};
 use crate::{Plant, PlantOptions};
@@ -18,7 +18,7 @@ fn emps() -> Plant {
     Plant::new(&slider(), &options).unwrap()
 }
 
-/// The closed form of m v̇ = F − F_v v − F_c sign v over `time`, from stop to stop.
+/// The closed-form solution of m v̇ = F − F_v v − F_c sign v over `time` (s), from stop to stop.
 fn exact(mut q: f64, mut v: f64, force: f64, mut time: f64) -> (f64, f64) {
     let rate = VISCOUS / MASS;
     loop {
@@ -47,8 +47,8 @@ fn exact(mut q: f64, mut v: f64, force: f64, mut time: f64) -> (f64, f64) {
     }
 }
 
-/// m v̇ = F − F_v v − F_c sign v, through ten reversals and as many rests, each somewhere within a step. A
-/// stop handled at the end of its step would leave 1e-7 m each; measured: 5e-11 m after 5 s.
+/// m v̇ = F − F_v v − F_c sign v, with ten reversals and ten stops, each within a step. A stop that is located at the
+/// end of its step would cost 1e-7 m each time; measured: 5e-11 m after 5 s.
 #[test]
 fn a_drive_stops_and_reverses_as_the_closed_form() {
     let mut plant = emps();
@@ -72,8 +72,8 @@ fn a_drive_stops_and_reverses_as_the_closed_form() {
     assert!(rests > 100 && worst < 1e-9, "{worst:e} m, {rests} rests");
 }
 
-/// A stuck joint does not creep: 10 s under 99 % of its level leave its position as it is, to the bit
-/// (rapier's own joint friction creeps 2.5e-3 rad). 101 % move it from the first step.
+/// A stuck joint does not creep: under 99 % of its level for 10 s, its position keeps all bits (rapier's own joint
+/// friction creeps by 2.5e-3 rad). Under 101 % it moves from the first step on.
 #[test]
 fn a_stuck_joint_does_not_creep_and_breaks_away() {
     let mut plant = emps();
@@ -88,8 +88,8 @@ fn a_stuck_joint_does_not_creep_and_breaks_away() {
     assert!((plant.qd()[0] / expected.1 - 1.0).abs() < 1e-6);
 }
 
-/// An arm stays as it is under gravity that its friction can bear, with all joints stuck at once; friction that
-/// cannot lets go of the joint concerned.
+/// An arm with all joints stuck remains at rest under gravity that its friction can hold; if the friction of one joint
+/// is too small, that joint is released.
 #[test]
 fn friction_holds_an_arm_up() {
     let arm = puma();
@@ -121,7 +121,7 @@ fn friction_holds_an_arm_up() {
     );
 }
 
-/// Joints without dry friction feel none, and friction does nothing at a level of zero.
+/// Joints without dry friction are not affected by it, and friction with a level of zero has no effect.
 #[test]
 fn no_friction_is_no_friction() {
     let arm = puma();
@@ -138,12 +138,12 @@ fn no_friction_is_no_friction() {
         plant.q().to_vec()
     };
     assert_eq!(run(vec![]), run(vec![0.0; 6]));
-    // Of 1e-9 N m is as good as none, though it goes by way of events.
+    // A level of 1e-9 N m has almost no effect, although events are located for it.
     let little = run(vec![1e-9; 6]);
     assert!(distance(&run(vec![]), &little) < 1e-6, "{little:?}");
 }
 
-/// Levels set later are as levels set at first, and what is no level is refused.
+/// Levels that are set later act as levels that are set at the beginning; impossible levels are refused.
 #[test]
 fn levels_may_change() {
     let arm = puma();
@@ -165,9 +165,8 @@ fn levels_may_change() {
     assert!(later.set_dry_friction(&[0.0, 0.0, -1.0, 0.0, 0.0, 0.0]).is_err());
 }
 
-/// Dry friction takes energy out and never puts any in, until every joint has stopped for good. The wrist,
-/// light and under friction a thousand times its weight's, stops and breaks away many times within some of
-/// the steps.
+/// Dry friction removes energy and never adds any, until all joints have stopped. The wrist, which is light and has a
+/// thousand times the friction that its weight would need, stops and breaks away several times within some steps.
 #[test]
 fn a_swing_dies_out() {
     let arm = puma();

@@ -1,4 +1,4 @@
-//! The laws a plant keeps, and how far from them it may drift.
+//! The physical laws that a plant obeys, with the largest allowed errors.
 
 mod closed_loop;
 mod dynamics;

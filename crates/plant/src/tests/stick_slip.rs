@@ -1,4 +1,4 @@
-//! Dry friction on several joints, against an analytic arm that finds its events by bisection.
+//! Dry friction on several joints, against an analytic arm whose events are located by bisection.
 
 use crate::test_arms::{distance, gantry, puma};
 use crate::{Plant, PlantOptions};
@@ -26,8 +26,9 @@ impl<'a> StickSlip<'a> {
         }
     }
 
-    /// The accelerations, and the torques that stuck joints need: with the stuck joints' accelerations zero,
-    /// the equation of motion's other rows give the rest's, and its stuck rows the torques.
+    /// The accelerations, and the torques of stuck joints: with zero acceleration of the stuck joints, the other rows
+    /// of the equation of motion give the accelerations of the other joints, and the rows of the stuck joints their
+    /// torques.
     fn accelerations(&mut self, q: &[f64], qd: &[f64], tau: &[f64], signs: &[Option<f64>]) -> (Vec<f64>, Vec<f64>) {
         let n = q.len();
         let mut mass = DMatrix::zeros(n, n);
@@ -53,7 +54,7 @@ impl<'a> StickSlip<'a> {
         (qdd, needed)
     }
 
-    /// Tries every way in which the joints at rest may stick or slide; there is one that is consistent.
+    /// Tries all combinations in which the joints at rest may stick or slide; one of them is consistent.
     fn settle(&mut self, q: &[f64], qd: &[f64], tau: &[f64]) {
         let n = q.len();
         let dry = |i: usize| self.levels[i] > 0.0;
@@ -78,7 +79,7 @@ impl<'a> StickSlip<'a> {
         panic!("no consistent way at {q:?} {qd:?}");
     }
 
-    /// One Runge-Kutta step with the present contacts.
+    /// One Runge-Kutta step in the present state of friction.
     fn smooth(&mut self, q: &[f64], qd: &[f64], tau: &[f64], h: f64) -> (Vec<f64>, Vec<f64>) {
         let n = q.len();
         let signs = self.signs.clone();
@@ -141,8 +142,8 @@ impl<'a> StickSlip<'a> {
     }
 }
 
-/// The largest difference of the plant from the reference over `steps` milliseconds under a torque law of the
-/// time and the state; the events and the steps with stuck joints there were.
+/// The largest difference between the plant and the reference over `steps` milliseconds under a torque that is a
+/// function of time and state; and the number of events and of steps with stuck joints.
 fn stick_slip_error(
     arm: &Arm,
     order: usize,
@@ -174,14 +175,14 @@ fn stick_slip_error(
     (worst, reference.events, reference.rests)
 }
 
-/// A joint under dry friction slides, stops, sticks while it is pushed by no more than its friction, and is a
-/// rigid part of its neighbour meanwhile. Handled at the end of a step instead of at its event, every stop
-/// costs 1e-6 rad and more. Measured: 1e-3, 6e-7, 5e-10, 2e-13 rad at the orders 1 to 4.
+/// A joint with dry friction slides, stops, sticks while the torque on it is below its friction, and is then rigidly
+/// connected to its neighbour. A stop that is located at the end of its step instead of at its event costs at least
+/// 1e-6 rad. Measured: 1e-3, 6e-7, 5e-10, 2e-13 rad at the orders 1 to 4.
 #[test]
 fn stick_and_slip_are_the_analytic_ones() {
     let puma = puma().with_rotor_inertias(&[0.8, 2.3, 0.6, 0.2, 0.2, 0.2]);
     let mut workspace = Workspace::new(&puma);
-    // Gravity compensation, and torques that just about overcome the friction by turns.
+    // Gravity compensation, and torques that alternately exceed the friction a little.
     let levels = [6.0, 8.0, 4.0, 0.5, 0.4, 0.3];
     let mut stirred = |time: f64, q: &[f64], qd: &[f64]| -> Vec<f64> {
         let mut tau = vec![0.0; 6];

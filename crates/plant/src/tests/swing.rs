@@ -1,4 +1,4 @@
-//! Free motion: accuracy by order, energy, and the traps that a game engine sets.
+//! Free motion: accuracy by order, energy, and properties of a game engine that would spoil it.
 
 use crate::test_arms::{Reference, distance, puma, skew, slider};
 use crate::{Plant, PlantOptions};
@@ -12,7 +12,7 @@ fn plant(arm: &Arm, order: usize) -> Plant {
     Plant::new(arm, &options).unwrap()
 }
 
-/// The error of a 1 s swing from rest at 1 ms (rad), against a Runge-Kutta run of .1 ms.
+/// The error (rad) of 1 s of free motion from rest at 1 ms, relative to Runge-Kutta steps of 0.1 ms.
 fn swing_error(arm: &Arm, order: usize) -> f64 {
     let n = arm.dof();
     let mut q: Vec<f64> = (0..n).map(|i| 0.3 + 0.2 * i as f64).collect();
@@ -26,9 +26,9 @@ fn swing_error(arm: &Arm, order: usize) -> f64 {
     distance(plant.q(), &q)
 }
 
-/// Extrapolation of order k leaves an error of order stepᵏ: each order gains two digits or more. A
-/// state that is not put back exactly, or a wrong weight, keeps the order at 1.
-/// Measured on the PUMA: 9.8e-2, 1.0e-3, 2.7e-7, 7.7e-9 rad; with rotors of .5 kg m² 3.5e-3, 5.6e-6, 9.7e-9, 7.9e-12.
+/// Extrapolation of order k has an error of order stepᵏ: each order gains at least two digits. A state that is not
+/// restored exactly, or a wrong weight, reduces the order to 1. Measured on the PUMA 560: 9.8e-2, 1.0e-3, 2.7e-7,
+/// 7.7e-9 rad; with rotors of 0.5 kg m² 3.5e-3, 5.6e-6, 9.7e-9, 7.9e-12 rad.
 #[test]
 fn every_order_gains_two_digits() {
     let bounds = [2e-1, 2e-3, 1e-6, 5e-8];
@@ -43,8 +43,8 @@ fn every_order_gains_two_digits() {
     }
 }
 
-/// Kinetic and potential energy add up to a constant while no torque acts. A plain step loses joules of the 68 J in
-/// motion, and damping that was left on more. Measured over 10 s: 9e-6 J.
+/// The sum of kinetic and potential energy is constant without torques. A plain step loses joules of the 68 J in
+/// motion, and rapier's default damping even more. Measured over 10 s: 9e-6 J.
 #[test]
 fn a_free_swing_keeps_its_energy() {
     let arm = puma();
@@ -67,8 +67,8 @@ fn a_free_swing_keeps_its_energy() {
     assert!(motion > 20.0 && drift < 1e-3, "{drift:e} J of {motion} J");
 }
 
-/// Under the gravity torques of where it is, the arm stays there (to 1e-9 rad), and after 10 s of rest a
-/// torque still moves it: a rapier body at rest falls asleep within 5 s and then ignores 20 N m.
+/// Under the gravity torques of its pose, the arm remains there (to 1e-9 rad), and after 10 s at rest a torque still
+/// moves it: rapier puts a body at rest to sleep within 5 s, and it would ignore 20 N m.
 #[test]
 fn a_compensated_arm_holds_and_does_not_sleep() {
     let arm = puma();
@@ -90,7 +90,7 @@ fn a_compensated_arm_holds_and_does_not_sleep() {
     assert!(plant.q()[0] - start[0] > 0.01, "asleep: {:?}", plant.q());
 }
 
-/// A turning joint counts its turns. An angle read off a rotation would come back within ±π.
+/// A revolute joint counts its turns; an angle computed from a rotation would be within ±π.
 #[test]
 fn positions_do_not_wrap() {
     let arm = skew().with_gravity(arm::Vector3::zeros());
@@ -110,7 +110,7 @@ fn positions_do_not_wrap() {
     assert!((plant.q()[0] - 25.0).abs() < 0.1);
 }
 
-/// The same inputs give the same bits, in a fresh plant, in one that was elsewhere before, and after a reset.
+/// The same inputs give the same bits in a new plant, in one that was in another state before, and after a reset.
 #[test]
 fn runs_repeat_to_the_bit() {
     let arm = puma();
@@ -138,9 +138,9 @@ fn runs_repeat_to_the_bit() {
     }
 }
 
-/// v̇ = −(F_v/m) v. Stiff friction (a time constant of a tenth of the step) must fade and not blow up, as an
-/// explicit step would; that of the EMPS drive (95 kg, 203 N s/m) is exact to 4e-11 m. The time is the number
-/// of steps, without rounding piling up.
+/// v̇ = −(F_v/m) v. Stiff friction (a time constant of a tenth of the step) must decay and not diverge as with an
+/// explicit step; with the friction of the EMPS drive (95 kg, 203 N s/m) the solution is exact to 4e-11 m. The time is
+/// the number of steps times the step, without accumulated rounding.
 #[test]
 fn viscous_friction_is_accurate_and_stable() {
     for (friction, bound) in [

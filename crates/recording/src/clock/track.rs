@@ -1,9 +1,8 @@
 //! Ticks of stamps whose scatter is so large, relative to the period, that no single stamp determines its tick.
 //!
-//! Rows keep their order, and few are lost: so the ticks are the sequence whose stamps stay beside a
-//! slowly moving phase. Several sequences are followed at a time, each with a phase (and a period)
-//! of its own; of two that have counted the same ticks, the better goes on (Viterbi's algorithm with
-//! the survivors' own estimates).
+//! Rows keep their order, and few are lost: the ticks are the sequence whose stamps remain near a slowly changing
+//! phase. Several sequences are followed at the same time, each with its own phase (and period); of two with the same
+//! number of ticks, the better one is kept (Viterbi's algorithm with estimates for each survivor).
 
 use super::{BLOCK, Clock, Piece, fit, measure_jitter, split};
 
@@ -14,7 +13,7 @@ const SURVIVORS: usize = 4;
 /// The cost of a lost tick, in squares of the scatter: about one row in a hundred is lost.
 const LOST: f64 = 4.5;
 const LOST_MORE: f64 = 1.0;
-/// How much of a stamp's distance goes into the phase.
+/// The share of a stamp's distance by which the phase is corrected.
 const GAIN: f64 = 0.04;
 /// The cost above that of the best at which a sequence is abandoned.
 const HOPELESS: f64 = 60.0;
@@ -24,10 +23,10 @@ const FARTHEST: i64 = 200;
 const LATEST: i64 = 3;
 /// The number of rows from which the period is estimated first.
 const FIRST: usize = 4000;
-/// The correlation of one step with the next, where stamps scatter about a clock each by itself (-1/2, a little more
-/// where ticks are lost). That of rows taken when they were stamped is 0.
+/// The correlation of successive steps if each stamp scatters independently about a clock (−1/2, slightly more if
+/// ticks are lost). It is 0 if rows were sampled at the times of their stamps.
 const BESIDE: std::ops::Range<f64> = -0.62..-0.2;
-/// That of steps farther apart, at most.
+/// The largest correlation of steps further apart.
 const UNRELATED: f64 = 0.2;
 
 /// A sequence of ticks.
@@ -39,12 +38,12 @@ struct Survivor {
     /// The time of that tick (s).
     phase: f64,
     period: f64,
-    /// Which sequence of the row before it goes on from.
+    /// The index of the sequence at the previous row that it continues.
     from: u8,
 }
 
-/// The ticks of `stamps` (increasing, one stretch), counted from the first, for a clock of about `period` (s) that
-/// stamps scatter about by `scatter` periods.
+/// The ticks of `stamps` (increasing, one piece), counted from the first, for a clock with about the period `period`
+/// (s) and a scatter of the stamps of `scatter` periods.
 fn ticks(stamps: &[f64], period: f64, scatter: f64, learn: f64) -> Vec<i64> {
     let mut survivors = vec![Survivor {
         cost: 0.0,
@@ -57,18 +56,18 @@ fn ticks(stamps: &[f64], period: f64, scatter: f64, learn: f64) -> Vec<i64> {
     path.push([(0, 0); SURVIVORS]);
     let mut next: Vec<Survivor> = Vec::with_capacity(3 * SURVIVORS);
     for (row, &stamp) in stamps.iter().enumerate().skip(1) {
-        // The first stamp is as far from its tick as any: the phase settles as a mean does.
+        // The first stamp is as uncertain as any other: the phase converges as a mean does.
         let gain = GAIN.max(1.0 / (row as f64 + 1.0));
         next.clear();
         let mut cheapest = f64::INFINITY;
         for (from, survivor) in survivors.iter().enumerate() {
             let away = (stamp - survivor.phase) / survivor.period;
             let near = (away.round() as i64).clamp(1, FARTHEST);
-            // A stamp may be late by up to three periods, and early by less than one.
+            // A stamp may be up to three periods late, but less than one period early.
             for step in (near - LATEST).max(1)..=near + 1 {
                 let off = away - step as f64;
                 let size = (off / scatter).abs();
-                // Squares near the phase, straight beyond: a stamp may come very late.
+                // Quadratic near the phase and linear beyond it, because a stamp may be very late.
                 let own = if size < 2.0 {
                     size * size / 2.0
                 } else {
@@ -147,15 +146,16 @@ fn slope(stamps: &[f64], ticks: &[i64]) -> Option<f64> {
     (denominator > 0.0).then(|| numerator / denominator)
 }
 
-/// What the steps from row to row tell: their usual size (s), the stamps' scatter as a share of it, and whether
-/// they scatter about a clock.
+/// Properties of the steps from row to row: their mean without those over a lost tick (s), the scatter of the stamps as
+/// a share of it, and whether they scatter about a clock.
 fn steps(stamps: &[f64]) -> (f64, f64, bool) {
     let all: Vec<f64> = stamps.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let mut sorted = all.clone();
     let middle = super::median(&mut sorted);
     let mut usual = middle;
     for _ in 0..8 {
-        // Differences of scattered stamps lie evenly on both sides of the period; what is beyond may have lost a tick.
+        // Differences of scattered stamps are distributed symmetrically about the period; larger ones may contain a
+        // lost tick.
         let (mut sum, mut count) = (0.0, 0.0);
         for step in all.iter().filter(|step| (*step - usual).abs() < 0.8 * usual) {
             sum += step;
@@ -164,7 +164,7 @@ fn steps(stamps: &[f64]) -> (f64, f64, bool) {
         usual = if count > 0.0 { sum / count } else { middle };
     }
     let off: Vec<f64> = all.iter().map(|step| step - usual).collect();
-    // The mean product of steps so far apart, of those that have lost no tick.
+    // The mean product of steps at this distance without a lost tick.
     let product = |lag: usize| {
         let pairs = off.iter().zip(&off[lag.min(off.len())..]);
         let kept = pairs.filter(|(a, b)| a.abs() < usual && b.abs() < usual);
@@ -181,8 +181,8 @@ fn steps(stamps: &[f64]) -> (f64, f64, bool) {
     )
 }
 
-/// The period (s) and each row's tick, counted from its stretch's first, where stamps scatter widely about a clock;
-/// nothing where they show none.
+/// The period (s) and each row's tick, counted from the first of its piece, if stamps scatter widely about a clock;
+/// `None` if they do not.
 fn find(time: &[f64], stretches: &[std::ops::Range<usize>]) -> Option<(f64, Vec<i64>)> {
     let longest = stretches.iter().max_by_key(|rows| rows.len())?;
     let start = &time[longest.start..longest.end.min(longest.start + FIRST)];
@@ -212,7 +212,7 @@ fn find(time: &[f64], stretches: &[std::ops::Range<usize>]) -> Option<(f64, Vec<
     (weight > 0.0).then(|| (sum / weight, found))
 }
 
-/// Where stamps scatter widely: the clock by the rows' order.
+/// The clock by the order of the rows, for stamps with a large scatter.
 pub fn by_order(time: &[f64], breaks: &[usize], period: f64) -> Option<Clock> {
     let pieces = split(time, breaks, period, false);
     let (period, ticks) = find(time, &pieces)?;
@@ -241,7 +241,7 @@ pub fn by_order(time: &[f64], breaks: &[usize], period: f64) -> Option<Clock> {
     Some(clock)
 }
 
-/// The mean distance of the stamps from the ticks, for known ticks (see [`phases`]).
+/// The mean distance of the stamps from the ticks, for known ticks (see [`super::phases`]).
 fn levels(stamps: &[f64], ticks: &[i64], period: f64) -> Vec<(f64, f64)> {
     let blocks = (stamps.len() / BLOCK).max(1);
     let level = |block: usize| {

@@ -77,8 +77,8 @@ pub fn entries(
         }
         value => value.as_ref().map_or(0.0, |value| *value.get_ref()),
     };
-    // Motor-side motion is divided by the gear's ratio, motor-side torque multiplied; the second
-    // encoder sits on the link's side.
+    // Motor-side motion is divided by the gear ratio, motor-side torque multiplied by it; the second encoder is on the
+    // link's side.
     let motion = joint_sign / gear;
     let torque = joint_sign * tau_sign * gear;
     let rows = [

@@ -148,7 +148,7 @@ impl ColumnMap {
         }
     }
 
-    /// Adds one joint, with the columns that are there; `topics` are those of its positions and of its torques.
+    /// Adds one joint with its existing columns; `topics` are those of its positions and of its torques.
     fn add(
         &self,
         expanded: &mut Expanded,

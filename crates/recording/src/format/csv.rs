@@ -80,18 +80,18 @@ impl Format for Csv {
     }
 }
 
-/// The rows of a file, one behind the reader: the last one may be cut.
+/// The rows of a file, delayed by one, because the last one may be cut.
 struct Lines {
     path: PathBuf,
     csv: csv::Reader<Box<dyn Read>>,
     width: usize,
     ends_whole: bool,
-    /// The row that was read last, and the one before.
+    /// The last row that was read, and the one before it.
     newest: ByteRecord,
     before: ByteRecord,
-    /// The last cell of the row above that.
+    /// The last cell of the row before these.
     above: Vec<u8>,
-    /// Whether `newest` is still to be given.
+    /// Whether `newest` has not been returned yet.
     any: bool,
     /// The line of a last row that is cut.
     cut: Option<Place>,
@@ -113,10 +113,10 @@ impl Lines {
         }
     }
 
-    /// Whether the last row, which is in `before`, is whole.
+    /// Whether the last row, which is in `before`, is complete.
     fn is_last_whole(&self) -> Result<bool, RecordingError> {
         let row = &self.before;
-        // All that follows an open quotation mark is one cell.
+        // Everything after an open quotation mark is one cell.
         if row.iter().any(|cell| cell.contains(&b'\n')) {
             let reason = "a quotation mark is not closed in this row; close it or take it out".to_owned();
             return Err(self.refuse(row, reason));
@@ -125,7 +125,7 @@ impl Lines {
             return Ok(self.ends_whole && row.len() == self.width || row.len() > self.width);
         }
         let cell = row.iter().next_back().unwrap_or_default();
-        // Without a newline at the end, the last number may have lost digits.
+        // Without a newline at the end, digits of the last number may be missing.
         let is_number = |cell: &[u8]| Cell::Text(cell).number().is_some();
         Ok(cell.len() >= self.above.len() && (is_number(cell) || !is_number(&self.above)))
     }

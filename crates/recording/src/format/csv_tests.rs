@@ -1,4 +1,4 @@
-//! CSV there and back, and what is refused.
+//! CSV files that are written and read again, and files that are refused.
 
 use std::path::PathBuf;
 

@@ -1,17 +1,17 @@
-//! What a text file begins with: whether it is a table, what separates its cells, whether it has a header.
+//! The beginning of a text file: whether it is a table, its separator, and whether it has a header.
 
 use std::io::Read;
 
-/// What separates the cells of a line.
+/// The separator of cells in a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Separator {
     /// One byte.
     Byte(u8),
-    /// Spaces, of which several are one separator.
+    /// Spaces; several of them are one separator.
     Spaces,
 }
 
-/// Why a file that begins so is no table of text, with the line.
+/// The reason why a file with this beginning is not a table of text, with the line.
 pub fn no_table(start: &[u8]) -> Option<(u64, String)> {
     let text = start.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(start);
     let said = |reason: &str| Some((1, reason.to_owned()));
@@ -44,7 +44,7 @@ pub fn find_separator(start: &[u8]) -> Separator {
     let header = first_line(start).trim_ascii();
     let has = |byte: u8| header.contains(&byte);
     match (has(b','), has(b';'), has(b'\t')) {
-        // Commas in numbers, too.
+        // Numbers contain commas as well.
         (true, true, _) if header.first().is_some_and(u8::is_ascii_digit) => Separator::Byte(b';'),
         (false, true, _) => Separator::Byte(b';'),
         (false, false, true) => Separator::Byte(b'\t'),
@@ -80,10 +80,10 @@ pub fn headless(start: &[u8], separator: Separator) -> Option<Vec<String>> {
     Some(stamp.chain(columns).collect())
 }
 
-/// Text in which one space stands for several, and none at the ends of lines.
+/// Text in which several spaces are replaced by one, and spaces at the ends of lines are removed.
 pub struct Squeezed<R> {
     inner: R,
-    /// Whether a space is due before the next byte, and whether the line has begun.
+    /// Whether a space is to be written before the next byte, and whether the line has begun.
     due: bool,
     begun: bool,
     buffer: Vec<u8>,
@@ -91,7 +91,7 @@ pub struct Squeezed<R> {
 }
 
 impl<R: Read> Squeezed<R> {
-    /// The text that `inner` reads.
+    /// The reader of the original text.
     pub fn new(inner: R) -> Self {
         Self {
             inner,

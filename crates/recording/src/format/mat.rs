@@ -10,15 +10,15 @@ use crate::input::{Input, most_expanded};
 use crate::table::{Column, Table};
 
 const NAME: &str = ".mat";
-/// The header's length, and the place of its last four bytes: the version and the byte order.
+/// The length of the header, and the position of its last four bytes: version and byte order.
 const HEADER: usize = 128;
 const VERSION: usize = 124;
 
 /// Types of data elements.
 const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
-/// Classes of arrays with numbers: double to uint64.
-/// Classes of structures and objects, tables and time series among these.
+/// Classes of arrays of numbers: double to uint64. Classes of structures and objects, which include tables and time
+/// series.
 const STRUCTURES: std::ops::RangeInclusive<u8> = 2..=3;
 const NUMERIC: std::ops::RangeInclusive<u8> = 6..=15;
 
@@ -81,11 +81,12 @@ fn read(data: &[u8]) -> Result<(Vec<Array>, Vec<String>), String> {
     Ok((arrays, structures))
 }
 
-/// The next data element: its type and its bytes. Elements begin at multiples of eight bytes, but for compressed ones.
+/// The next data element: its type and its bytes. Elements begin at multiples of eight bytes, except for compressed
+/// ones.
 fn element<'a>(bytes: &mut Bytes<'a>, is_outer: bool) -> Option<(u32, &'a [u8])> {
     let kind = bytes.u32()?;
     if kind >> 16 != 0 {
-        // A small element has its length beside its type and its data in the next four bytes.
+        // A small element contains its length beside its type, and its data in the next four bytes.
         let data = bytes.take(4)?;
         return Some((kind & 0xFFFF, data.get(..(kind >> 16) as usize)?));
     }
@@ -97,14 +98,14 @@ fn element<'a>(bytes: &mut Bytes<'a>, is_outer: bool) -> Option<(u32, &'a [u8])>
     Some((kind, data))
 }
 
-/// A variable that can be used, or could.
+/// A variable that is used, or the name of one that could be converted.
 enum Variable {
     Array(Array),
     /// The name of a structure or an object.
     Structure(String),
 }
 
-/// A variable, if it is a real array of numbers with two dimensions, or a structure.
+/// A variable, if it is a two-dimensional array of real numbers, or a structure.
 fn variable(kind: u32, content: &[u8], big_endian: bool) -> Result<Option<Variable>, String> {
     if kind != MATRIX {
         return Ok(None);
@@ -128,7 +129,7 @@ fn variable(kind: u32, content: &[u8], big_endian: bool) -> Result<Option<Variab
     let count = shape.0.checked_mul(shape.1).ok_or(DAMAGED)?;
     let (kind, data) = next()?;
     let data = Bytes::new(data, big_endian);
-    // Numbers are kept in the smallest type that holds them.
+    // Numbers are stored in the smallest type that represents them.
     let values = match kind {
         1 => data.integers(1, true, count).map(Column::Integers),
         2 => data.integers(1, false, count).map(Column::Integers),

@@ -12,7 +12,7 @@ use crate::{RecordingError, Warning};
 
 const NAME: &str = "MCAP";
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
-/// The kinds of records that matter here.
+/// The types of records that are read.
 const SCHEMA: u8 = 3;
 const CHANNEL: u8 = 4;
 const MESSAGE: u8 = 5;
@@ -36,7 +36,7 @@ impl Format for Mcap {
     }
 }
 
-/// A channel: its topic if it has joint states that are wanted.
+/// A channel: its topic if it has joint states and is requested.
 struct Channel {
     topic: String,
     is_wanted: bool,
@@ -47,7 +47,7 @@ struct Reader<'a> {
     states: &'a mut JointStates,
     schemas: HashMap<u16, String>,
     channels: HashMap<u16, Channel>,
-    /// What may be expanded still (bytes).
+    /// The number of bytes that may still be expanded.
     room: u64,
 }
 
@@ -112,7 +112,7 @@ pub fn read_into(
     Ok((!is_whole).then_some(Warning::CutFile { line: place }))
 }
 
-/// That there are no joint states, with the topics there are.
+/// The error that there are no joint states, with the existing topics.
 pub fn no_states(mut topics: Vec<&str>, options: &Options<'_>) -> String {
     topics.sort_unstable();
     let more = if topics.len() > 8 { ", …" } else { "" };

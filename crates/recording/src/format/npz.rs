@@ -68,7 +68,7 @@ fn read(data: &[u8]) -> Result<Vec<Array>, String> {
     Ok(arrays)
 }
 
-/// An array in NumPy's format; none of a type or a number of dimensions that has no columns of numbers.
+/// An array in NumPy's format; `None` if its type or its number of dimensions is not that of columns of numbers.
 fn array(name: &str, data: &[u8]) -> Result<Option<Array>, String> {
     let damaged = || format!("{name} is damaged or cut; save or copy the archive again");
     let mut bytes = Bytes::new(data, false);
@@ -118,7 +118,8 @@ fn between<'a>(text: &'a str, start: &str, end: &str) -> Option<&'a str> {
     Some(text.split_once(start)?.1.split_once(end)?.0.trim())
 }
 
-/// `count` values of NumPy's type `descr`: none if it is no type of numbers or times, within that none if they are cut.
+/// `count` values of NumPy's type `descr`: the outer `None` for a type that is neither a number nor a time, the inner
+/// one if the bytes end before.
 fn values(descr: &str, count: usize, bytes: Bytes<'_>) -> Result<Option<Option<Column>>, String> {
     let (order, kind) = descr.split_at_checked(1).unwrap_or(("", descr));
     let bytes = bytes.rest(order == ">");

@@ -17,9 +17,9 @@ use crate::table::{Column, Table};
 
 const NAME: &str = "Parquet";
 const MAGIC: &[u8] = b"PAR1";
-/// Values that are read at once.
+/// The number of values that are read together.
 const BATCH: usize = 1 << 14;
-/// The most values of a file (1 GiB).
+/// The largest number of values of a file (1 GiB).
 const MOST: usize = 1 << 27;
 
 /// Parquet.
@@ -32,7 +32,7 @@ impl Format for Parquet {
 
     fn read(&self, input: Input, _: &Options<'_>) -> Result<Table, RecordingError> {
         let file = input.to_file()?;
-        // The library panics on some damaged pages; nothing of what it holds is used afterwards.
+        // The library panics on some damaged pages; none of its objects is used afterwards.
         let read = std::panic::catch_unwind(AssertUnwindSafe(|| columns(file)));
         let read = read.unwrap_or_else(|_| Err("a page is damaged; write or copy the file again".to_owned()));
         let columns = read.map_err(|reason| input.error(NAME, reason))?;
@@ -44,20 +44,20 @@ fn damaged(error: ParquetError) -> String {
     format!("the file is damaged or cut ({error}); write or copy it again")
 }
 
-/// A column's values so far.
+/// The values of a column so far.
 enum Values {
     Numbers(Vec<f64>),
-    /// Whole numbers, as long as none is missing.
+    /// Integers, as long as no value is missing.
     Integers(Vec<i64>),
     /// Times (ns since 1970), in units of so many ns.
     Nanos(Vec<i64>, i64),
 }
 
-/// A column of the file, which makes several of the table if it holds lists.
+/// A column of the file; a column of lists becomes several columns of the table.
 struct Leaf {
     name: String,
     values: Values,
-    /// How many values each row has, where it holds lists.
+    /// The number of values per row, if it contains lists.
     width: Option<usize>,
 }
 
@@ -65,7 +65,7 @@ struct Leaf {
 fn columns(file: std::fs::File) -> Result<Vec<(String, Column)>, String> {
     let size = file.metadata().map_or(0, |metadata| metadata.len());
     let reader = SerializedFileReader::new(file).map_err(damaged)?;
-    // The library trusts the places that the footer gives.
+    // The library does not check the positions in the footer.
     let groups = reader.metadata().row_groups().iter();
     if !groups
         .flat_map(RowGroupMetaData::columns)
@@ -107,7 +107,7 @@ fn columns(file: std::fs::File) -> Result<Vec<(String, Column)>, String> {
     Ok(columns)
 }
 
-/// Whether a column's pages are within a file of `size` bytes.
+/// Whether the pages of a column are within a file of `size` bytes.
 fn is_within(column: &ColumnChunkMetaData, size: u64) -> bool {
     let first = column.dictionary_page_offset().unwrap_or(column.data_page_offset());
     let from = u64::try_from(first.min(column.data_page_offset()));
@@ -115,7 +115,7 @@ fn is_within(column: &ColumnChunkMetaData, size: u64) -> bool {
     matches!((from, length), (Ok(from), Ok(length)) if from.checked_add(length).is_some_and(|end| end <= size))
 }
 
-/// An empty column, if it is one of numbers or times, or of lists of numbers.
+/// An empty column, if its type is a number, a time, or a list of numbers.
 fn leaf(column: &ColumnDescriptor) -> Option<Leaf> {
     use parquet::basic::Type;
     let unit = match (column.logical_type_ref(), column.converted_type()) {
@@ -138,7 +138,7 @@ fn leaf(column: &ColumnDescriptor) -> Option<Leaf> {
     let parts = column.path().parts();
     let (name, width) = match column.max_rep_level() {
         0 => (parts.join("."), None),
-        // The two last parts are names of the list's own ("list.element").
+        // The last two parts are the names of the list itself ("list.element").
         1 => (parts[..parts.len().saturating_sub(2).max(1)].join("."), Some(0)),
         _ => return None,
     };
@@ -172,7 +172,7 @@ fn read_leaf(
     }
 }
 
-/// Reads one row group of a column; `both` gives a value as a number and as a whole one.
+/// Reads one row group of a column; `both` converts a value to a floating-point number and to an integer.
 fn read_typed<T: DataType>(
     mut reader: ColumnReaderImpl<T>,
     descriptor: &ColumnDescriptor,
@@ -206,7 +206,7 @@ fn read_typed<T: DataType>(
     }
 }
 
-/// Checks that all lists are as long as the first.
+/// Checks that all lists have the same length.
 fn check_lists(name: &str, width: &mut usize, repetitions: &[i16]) -> Result<(), String> {
     let mut starts = repetitions
         .iter()
@@ -229,7 +229,7 @@ fn check_lists(name: &str, width: &mut usize, repetitions: &[i16]) -> Result<(),
 }
 
 impl Leaf {
-    /// Adds a value, or that there is none.
+    /// Adds a value, or that it is missing.
     fn push(&mut self, value: Option<(f64, i64)>) -> Result<(), String> {
         match (&mut self.values, value) {
             (Values::Numbers(values), value) => values.push(value.map_or(f64::NAN, |(number, _)| number)),

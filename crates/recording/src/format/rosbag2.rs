@@ -39,7 +39,7 @@ impl Format for Rosbag2 {
         for entry in std::fs::read_dir(&input.path).map_err(unreadable)? {
             let path = entry.map_err(unreadable)?.path();
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            // A database's journal and its index are no files of the bag.
+            // The journal and the index of a database are not files of the bag.
             let is_part = [".db3", ".db3.zstd", ".mcap", ".mcap.zstd"]
                 .iter()
                 .any(|end| name.ends_with(end));
@@ -67,10 +67,10 @@ impl Format for Rosbag2 {
     }
 }
 
-/// What to give in the place of a folder that is no bag: the files below it that may be meant.
+/// The remedy for a folder that is not a bag; it names a recording below the folder if there is one.
 fn no_bag(folder: &Path) -> String {
     const DEPTH: usize = 4;
-    /// Of more folders on a level, a data set's are not the last.
+    /// The largest number of folders that are searched on each level.
     const FOLDERS: usize = 64;
     let mut level = vec![folder.to_owned()];
     for _ in 0..DEPTH {
@@ -102,7 +102,7 @@ fn no_bag(folder: &Path) -> String {
     "it is a folder without .db3 or .mcap files, and so no bag; give a recording's file or a bag's folder".to_owned()
 }
 
-/// Refuses a link in a bag's folder that leads out of it.
+/// Refuses a link in the folder of a bag that leads out of the folder.
 fn refuse_outside(input: &Input, path: &Path) -> Result<(), RecordingError> {
     let [folder, target] = [input.path.as_path(), path].map(std::fs::canonicalize);
     if matches!((folder, target), (Ok(folder), Ok(target)) if target.starts_with(&folder)) {
@@ -117,8 +117,8 @@ fn refuse_outside(input: &Input, path: &Path) -> Result<(), RecordingError> {
 
 /// Reads the joint states of a database.
 fn database(input: &Input, options: &Options<'_>, states: &mut JointStates) -> Result<(), RecordingError> {
-    // What was expanded, or is a pipe, has no path of its own.
-    let copy = if input.is_as_it_was() {
+    // An expanded file, or a pipe, has no path.
+    let copy = if input.is_unchanged() {
         None
     } else {
         let failed = |reason| RecordingError::Read {
@@ -159,11 +159,11 @@ impl From<rusqlite::Error> for Failure {
     }
 }
 
-/// Takes the messages of all topics with joint states that are wanted; returns all topics.
+/// Reads the messages of all requested topics with joint states; returns all topics.
 fn messages(path: &Path, most: u64, options: &Options<'_>, states: &mut JointStates) -> Result<Vec<String>, Failure> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let database = Connection::open_with_flags(path, flags)?;
-    // A view or a generated column is a program, which may never end or make a gigabyte of nothing.
+    // Views and generated columns are computed by SQL, which may never end or produce gigabytes.
     database.set_limit(Limit::SQLITE_LIMIT_LENGTH, i32::try_from(most).unwrap_or(i32::MAX))?;
     database.pragma_update(None, "trusted_schema", false)?;
     for table in ["topics", "messages"] {
@@ -211,7 +211,7 @@ fn messages(path: &Path, most: u64, options: &Options<'_>, states: &mut JointSta
     Ok(topics.into_iter().map(|(_, topic, _, _)| topic).collect())
 }
 
-/// The message that was compressed; what it takes is subtracted from `room` (bytes).
+/// The expanded message; its size is subtracted from `room` (bytes).
 fn expand(data: &[u8], room: &mut u64) -> Result<Vec<u8>, String> {
     let damaged = |_| "a compressed message is damaged; copy the bag again".to_owned();
     let mut expanded = Vec::new();

@@ -1,11 +1,11 @@
-//! Formats that are known but not read: what to convert them into.
+//! Formats that are recognised but not read, with the format to convert them into.
 
 use super::{Format, Options};
 use crate::RecordingError;
 use crate::input::Input;
 use crate::table::Table;
 
-/// How a format begins, its name, and the remedy.
+/// The first bytes of a format, its name, and the remedy.
 const KNOWN: &[(&[u8], &str, &str)] = &[
     (
         b"MATLAB 7.3",
@@ -30,7 +30,7 @@ const KNOWN: &[(&[u8], &str, &str)] = &[
     ),
 ];
 
-/// What is known but not read.
+/// The format that is recognised but not read.
 pub struct Unread;
 
 impl Format for Unread {

@@ -1,4 +1,4 @@
-//! What is doubtful in a recording, in sentences with the remedy.
+//! Doubtful properties of a recording, as sentences with the remedy.
 
 use serde::Serialize;
 
@@ -9,43 +9,43 @@ const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 /// Revolutions per minute in rad/s.
 const RPM: f64 = 30.0 / std::f64::consts::PI;
 
-/// Rows so far apart (s) are no drive's.
+/// Rows that are further apart than this (s) are not those of a drive.
 const SLOWEST_PERIOD: f64 = 0.1;
 
-/// What kind of doubt.
+/// The kind of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FindingKind {
     /// No joint moves.
     NoMotion,
-    /// The torque is the same throughout.
+    /// The torque is constant.
     NoTorque,
-    /// The stamps look like milliseconds, or another unit than seconds.
+    /// The stamps seem to be in milliseconds, or in another unit than seconds.
     TimeUnit,
-    /// Positions look like degrees.
+    /// Positions seem to be in degrees.
     Degrees,
     /// The recorded velocity is in another unit than the positions.
     VelocityUnit,
-    /// The recorded velocity has the other sign.
+    /// The recorded velocity has the opposite sign.
     VelocitySign,
-    /// The recorded velocity is another joint's.
+    /// The recorded velocity is that of another joint.
     VelocitySwapped,
-    /// The recorded velocity has little to do with the position.
+    /// The recorded velocity is not the derivative of the position.
     VelocityUnrelated,
-    /// The torque stays on its extreme.
+    /// The torque remains at its extreme value.
     Saturation,
     /// Some joints do not move.
     JointAtRest,
-    /// The encoder is coarse against the motion.
+    /// The encoder's step is large compared with the motion.
     CoarseEncoder,
     /// The recorded velocity is late.
     VelocityLate,
 }
 
-/// One doubt, of one joint or of the whole file.
+/// One finding, about one joint or the whole file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
-    /// What kind.
+    /// Its kind.
     pub kind: FindingKind,
     /// The joint, if it is about one.
     pub joint: Option<String>,
@@ -53,7 +53,7 @@ pub struct Finding {
     pub text: String,
 }
 
-/// The findings on `joints`; `swapped` pairs joints with the joint whose velocity theirs is.
+/// The findings on `joints`; `swapped` are pairs of joints (position, velocity) whose velocities are exchanged.
 pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize, usize)]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut add = |kind, joint: Option<&JointQuality>, text: String| {
@@ -165,8 +165,8 @@ fn lateness(least: f64, most: f64) -> String {
     }
 }
 
-/// What the stamps' unit is where it is not s: rows are too far apart for a drive, and the recorded velocities of all
-/// joints are as many times their positions' slopes as there are units in a second.
+/// The unit of the stamps if it is not s: rows are too far apart for a drive, and the recorded velocities of all
+/// joints exceed the slopes of their positions by the number of units per second.
 fn time_unit(period: f64, joints: &[JointQuality]) -> Option<String> {
     if period < SLOWEST_PERIOD {
         return None;
@@ -208,7 +208,7 @@ fn velocity(joint: &JointQuality, add: &mut impl FnMut(FindingKind, Option<&Join
         add(FindingKind::VelocitySign, Some(joint), text.into());
     }
     let size = ratio.abs();
-    // A filtered velocity is smaller than the slope where the motion is small and quick.
+    // A filtered velocity is smaller than the slope if the motion is small and fast.
     let clear = joint
         .velocity_correlation
         .is_some_and(|correlation| correlation.abs() > 0.98);

@@ -1,4 +1,4 @@
-//! What the recording of one joint is worth.
+//! The quality of the signals of one joint.
 
 use serde::Serialize;
 
@@ -6,7 +6,7 @@ use super::measures;
 use super::velocity::Slopes;
 use crate::{Recording, RegularRecording};
 
-/// The least motion that counts as one (rad or m).
+/// The smallest range of a motion (rad or m).
 const LEAST_RANGE: f64 = 1e-3;
 
 /// The quality of one joint's signals.
@@ -32,28 +32,28 @@ pub struct JointQuality {
     pub qd_noise: Option<f64>,
     /// White noise of the torque, standard deviation (N m or N).
     pub tau_noise: f64,
-    /// How late the recorded velocity is against the positions' slope (s).
+    /// The delay of the recorded velocity relative to the positions' slope (s).
     pub velocity_lag: Option<f64>,
-    /// The recorded velocity over the positions' slope: 1 if they agree.
+    /// The ratio of the recorded velocity to the positions' slope: 1 if they agree.
     pub velocity_ratio: Option<f64>,
     /// The correlation of the two at that lag.
     pub velocity_correlation: Option<f64>,
-    /// Whether the joint moves at all.
+    /// Whether the joint moves.
     pub moves: bool,
-    /// Share of the time in which it moves.
+    /// The share of the time in which it moves.
     pub moving_share: f64,
-    /// How often its direction turns.
+    /// The number of reversals of its direction.
     pub reversals: usize,
-    /// Torque plateaus, low and high: the value (N m or N) and the share of the time on it.
+    /// Torque plateaus, low and high: the value (N m or N) and the share of the time at that value.
     pub plateaus: [Option<(f64, f64)>; 2],
 }
 
 impl JointQuality {
-    /// The quality of `joint`, which moves by `motion`; nothing yet about its recorded velocity.
+    /// The quality of `joint` with the velocity `motion`; the recorded velocity is evaluated elsewhere.
     pub(super) fn of(recording: &Recording, regular: &RegularRecording, joint: usize, motion: &Slopes) -> Self {
         let (q, tau) = (&regular.q[joint], &regular.tau[joint]);
         let (low, high) = measures::range(q);
-        // Interpolated values lie between the quantiser's.
+        // Interpolated values are not multiples of the quantiser's step.
         let q_step = measures::step(&recording.q[joint]);
         let tau_step = measures::step(&recording.tau[joint]);
         let q_noise = measures::noise(q, &regular.segments);
@@ -95,7 +95,7 @@ impl JointQuality {
     }
 }
 
-/// How often the speed changes sign between values beyond `slow`.
+/// The number of sign changes between velocities beyond `slow`.
 fn reversals(speed: &[f64], slow: f64) -> usize {
     let mut direction = 0.0;
     let mut count = 0;

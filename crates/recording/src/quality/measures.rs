@@ -1,8 +1,8 @@
-//! Numbers about one signal: its range, noise, quantiser and plateaus.
+//! Properties of one signal: its range, noise, quantiser and plateaus.
 
 use crate::Segment;
 
-/// How many samples an estimate looks at, at most.
+/// The largest number of samples of an estimate.
 pub const SAMPLES: usize = 100_000;
 
 /// The smallest and the largest value.
@@ -14,7 +14,7 @@ pub fn range(values: &[f64]) -> (f64, f64) {
         })
 }
 
-/// Ticks with `side` neighbours on either side in their segment, evenly thinned to [`SAMPLES`].
+/// Ticks with `side` neighbours on both sides in their segment, evenly thinned to [`SAMPLES`].
 pub fn inner(segments: &[Segment], side: usize) -> impl Iterator<Item = usize> + '_ {
     let total: usize = segments.iter().map(|segment| segment.ticks.len()).sum();
     let stride = (total / SAMPLES).max(1);
@@ -23,7 +23,7 @@ pub fn inner(segments: &[Segment], side: usize) -> impl Iterator<Item = usize> +
         .flat_map(move |segment| (segment.ticks.start + side..segment.ticks.end.saturating_sub(side)).step_by(stride))
 }
 
-/// The value that a share of `values` lies below; 0 if there are none.
+/// The quantile of `values` at `share`; 0 if there are none.
 pub fn quantile(values: &mut [f64], share: f64) -> f64 {
     if values.is_empty() {
         return 0.0;
@@ -32,25 +32,25 @@ pub fn quantile(values: &mut [f64], share: f64) -> f64 {
     *values.select_nth_unstable_by(at, f64::total_cmp).1
 }
 
-/// The standard deviation of what is white in a signal: its distance from the cubic through four neighbours.
+/// The standard deviation of the white noise in a signal, from its distance to the cubic through four neighbours.
 pub fn noise(values: &[f64], segments: &[Segment]) -> f64 {
     let mut off: Vec<f64> = inner(segments, 2)
         .map(|k| (values[k] - (4.0 * (values[k - 1] + values[k + 1]) - values[k - 2] - values[k + 2]) / 6.0).abs())
         .collect();
-    // Of white noise, the distance has (1 + 34/36) times the variance.
+    // For white noise, the variance of the distance is (1 + 34/36) times that of the noise.
     let white = (1.0_f64 + 34.0 / 36.0).sqrt();
     let middle = 1.4826 * quantile(&mut off, 0.5);
     if middle > 0.0 {
         return middle / white;
     }
-    // A quantised signal that rests half of the time: what is left of the lower 95 %.
+    // A quantised signal may be at rest for half of the time: the mean without the largest 5 %.
     let high = quantile(&mut off, 0.95);
     let below: Vec<f64> = off.into_iter().filter(|&off| off <= high).collect();
     let squares: f64 = below.iter().map(|off| off * off).sum();
     (squares / below.len().max(1) as f64).sqrt() / white
 }
 
-/// The step of the quantiser that a signal's values are multiples of, if there is one.
+/// The step of the quantiser, if the signal's values are multiples of one.
 pub fn step(values: &[f64]) -> Option<f64> {
     let stride = (values.len() / 20_000).max(1);
     let (low, high) = range(values);
@@ -66,7 +66,7 @@ pub fn step(values: &[f64]) -> Option<f64> {
     }
     steps.sort_by(f64::total_cmp);
     let least = 1e-7 * (high - low);
-    // The smallest step may be several of the quantiser's.
+    // The smallest difference may be several steps.
     (1..=6)
         .find_map(|part| multiples(&steps, steps[0] / f64::from(part)))
         .filter(|step| *step > least)
@@ -75,7 +75,7 @@ pub fn step(values: &[f64]) -> Option<f64> {
 /// The step near `step` that sorted `steps` are multiples of, if all but a few are.
 fn multiples(steps: &[f64], mut step: f64) -> Option<f64> {
     const MOST: f64 = 1000.0;
-    // Ever larger steps sharpen it.
+    // Larger differences determine the step more precisely.
     for within in [3.0, 10.0, 30.0, 100.0, 300.0, MOST] {
         let (mut sum, mut count) = (0.0, 0.0);
         for other in steps.iter().take_while(|other| **other < within * step) {
@@ -92,7 +92,8 @@ fn multiples(steps: &[f64], mut step: f64) -> Option<f64> {
     (near >= 30 && fits as f64 > 0.95 * near as f64).then_some(step)
 }
 
-/// The share of the samples that lie on an extreme, if they stay there: `(value, share)` of the low and the high.
+/// The share of the samples at an extreme value, if the signal remains there: `(value, share)` of the smallest and the
+/// largest.
 pub fn plateaus(values: &[f64], segments: &[Segment], step: Option<f64>) -> [Option<(f64, f64)>; 2] {
     let (low, high) = range(values);
     let near = (1e-6 * (high - low)).max(0.5 * step.filter(|step| *step < 0.02 * (high - low)).unwrap_or(0.0));

@@ -1,29 +1,29 @@
-//! The motion that the positions tell, and what the recorded velocity makes of it.
+//! The velocity from slopes of the positions, compared with the recorded velocity.
 
 use super::JointQuality;
 use super::measures::{self, inner};
 use crate::{RegularRecording, Segment};
 
-/// The span of a slope (s), where the clock is fast enough.
+/// The duration over which a slope is computed (s), if the clock is fast enough.
 const SPAN: f64 = 0.008;
-/// The longest lag that is looked for (s), and in ticks.
+/// The longest lag that is considered, in s and in ticks.
 const LONGEST_LAG: f64 = 0.1;
 const MOST_TICKS: usize = 80;
-/// How many samples a correlation takes at most.
+/// The largest number of samples of a correlation.
 const SAMPLES: usize = 20_000;
 
-/// A joint's velocity by slopes of its position.
+/// The velocity of a joint from slopes of its positions.
 pub struct Slopes {
-    /// Slopes, at every tick that has the neighbours; 0 elsewhere.
+    /// The slopes, at every tick with enough neighbours; 0 elsewhere.
     pub speed: Vec<f64>,
-    /// Neighbours on either side that a slope takes.
+    /// The number of neighbours on either side.
     pub side: usize,
-    /// How much of the position's noise (rad) is in the slope (rad/s): a factor in 1/s.
+    /// The ratio of the noise of the slope (rad/s) to that of the position (rad), in 1/s.
     pub gain: f64,
 }
 
 impl Slopes {
-    /// The slopes of `q` over some milliseconds.
+    /// The slopes of `q` over a few milliseconds.
     pub fn of(q: &[f64], segments: &[Segment], period: f64) -> Self {
         let side = ((SPAN / period).round() as usize).clamp(1, 16);
         let squares: f64 = 2.0 * (1..=side).map(|k| (k * k) as f64).sum::<f64>();
@@ -42,7 +42,8 @@ impl Slopes {
     }
 }
 
-/// Correlation of two signals over `ticks`, the second taken `lag` later, and the slope of the second on the first.
+/// The correlation of two signals over `ticks`, the second one delayed by `lag`, and the slope of the second with
+/// respect to the first.
 fn correlate(first: &[f64], second: &[f64], ticks: &[usize], lag: isize) -> (f64, f64) {
     let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
     for &tick in ticks {
@@ -58,14 +59,14 @@ fn correlate(first: &[f64], second: &[f64], ticks: &[usize], lag: isize) -> (f64
     }
 }
 
-/// The largest correlation at any lag up to `limit` either way.
+/// The largest correlation at any lag up to ±`limit`.
 fn likeness(first: &[f64], second: &[f64], ticks: &[usize], limit: isize) -> f64 {
     let at = |lag: isize| correlate(first, second, ticks, lag).0.abs();
     (-limit..=limit).map(at).fold(0.0, f64::max)
 }
 
-/// Compares recorded velocities with the positions' slopes, into `joints`; the pairs of joints
-/// (position, velocity) whose velocities are swapped.
+/// Compares the recorded velocities with the slopes of the positions and writes the result to `joints`; returns pairs
+/// of joints (position, velocity) whose velocities are exchanged.
 pub fn compare(regular: &RegularRecording, motions: &[Slopes], joints: &mut [JointQuality]) -> Vec<(usize, usize)> {
     let Some(qd) = &regular.qd else { return Vec::new() };
     let reach = ((LONGEST_LAG / regular.period) as usize).clamp(4, MOST_TICKS);

@@ -1,4 +1,4 @@
-//! Tables at random, as loggers leave them.
+//! Random tables with the errors of loggers.
 
 use proptest::prelude::*;
 
@@ -17,7 +17,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// As CSV.
+    /// The table as CSV.
     pub fn csv(&self) -> Vec<u8> {
         let mut headers = vec!["t".to_owned()];
         headers.extend(self.joints.iter().map(|name| format!("q_{name}")));
@@ -33,7 +33,7 @@ impl Table {
         text.into_bytes()
     }
 
-    /// The same columns, the first `by` of them at the end.
+    /// The table with its first `by` columns moved to the end.
     pub fn with_turned_columns(&self, by: usize) -> Self {
         let mut turned = self.clone();
         let length = turned.order.len();
@@ -42,18 +42,18 @@ impl Table {
     }
 }
 
-/// What happens to a stretch of rows.
+/// An error in a part of the rows.
 #[derive(Clone, Debug)]
 enum Accident {
     /// Rows that were not written.
     Lost { at: f64, rows: usize },
-    /// A pause of so many seconds.
+    /// A pause (s).
     Pause { at: f64, seconds: f64 },
-    /// A wrong value of one column.
+    /// A wrong value in one column.
     Spike { at: f64, column: usize, value: f64 },
-    /// A column that stands still.
+    /// A column that is constant for some rows.
     Held { at: f64, rows: usize, column: usize },
-    /// A row that is there again.
+    /// A row that is repeated.
     Twice { at: f64 },
     /// The time starts anew.
     Restart { at: f64 },

@@ -9,6 +9,7 @@ use study::{Known, Request};
 use super::chain::ChainArgs;
 use super::numbers::{parse_accuracy, parse_frequency};
 use super::rerun::{Rerun, parse_rerun};
+use crate::output::OutputFile;
 
 /// The catalogue's effects, one per line.
 fn effects_help() -> String {
@@ -159,23 +160,20 @@ impl DiagnoseArgs {
     }
 
     /// The files that will be written.
-    pub fn outputs(&self) -> Vec<&Path> {
+    pub fn outputs(&self) -> Vec<OutputFile<'_>> {
         let files = [
-            &self.report,
-            &self.markdown,
-            &self.residuals,
-            &self.model,
-            &self.urdf,
-            &self.trace,
-            &self.mjcf,
-            &self.next,
+            self.json_file().map(OutputFile::json),
+            OutputFile::given("--report", self.report.as_deref(), &["html", "htm"]),
+            self.markdown.as_deref().map(OutputFile::markdown),
+            OutputFile::given("--residuals", self.residuals.as_deref(), &["csv", "parquet"]),
+            OutputFile::given("--model", self.model.as_deref(), &["toml"]),
+            OutputFile::given("--urdf", self.urdf.as_deref(), &["urdf", "xml"]),
+            OutputFile::given("--trace", self.trace.as_deref(), &["csv"]),
+            OutputFile::given("--mjcf", self.mjcf.as_deref(), &["xml", "mjcf"]),
+            OutputFile::given("--next", self.next.as_deref(), &["toml"]),
+            self.rerun_file().map(OutputFile::rerun),
         ];
-        let files = files.into_iter().flatten().map(PathBuf::as_path);
-        self.json_file()
-            .into_iter()
-            .chain(files)
-            .chain(self.rerun_file())
-            .collect()
+        files.into_iter().flatten().collect()
     }
 
     /// The file that Rerun saves to.

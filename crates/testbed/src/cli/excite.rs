@@ -1,11 +1,12 @@
 //! The arguments of `testbed excite`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
 use super::chain::ChainArgs;
 use super::numbers::parse_frequency;
+use crate::output::OutputFile;
 
 /// A limit of one joint, or of all where no joint is named.
 pub type Limit<T> = (Option<String>, T);
@@ -62,12 +63,12 @@ pub struct ExciteArgs {
 
 impl ExciteArgs {
     /// The files that will be written.
-    pub fn outputs(&self) -> Vec<&Path> {
-        [&self.scenario, &self.csv]
-            .into_iter()
-            .flatten()
-            .map(PathBuf::as_path)
-            .collect()
+    pub fn outputs(&self) -> Vec<OutputFile<'_>> {
+        let files = [
+            OutputFile::given("--scenario", self.scenario.as_deref(), &["toml"]),
+            OutputFile::given("--csv", self.csv.as_deref(), &["csv"]),
+        ];
+        files.into_iter().flatten().collect()
     }
 }
 

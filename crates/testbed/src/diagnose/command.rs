@@ -108,8 +108,8 @@ fn tell(args: &DiagnoseArgs, arm: &Arm, diagnosis: &Diagnosis, written: &Files<'
         }
         output::print(&text)
     };
-    for line in args.outputs().into_iter().filter_map(|path| written.files.line(path)) {
-        say(line)?;
+    for output in args.outputs() {
+        written.files.line(output.path).map_or(Ok(()), say)?;
     }
     if args.quiet {
         return Ok(());

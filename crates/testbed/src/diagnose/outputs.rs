@@ -7,7 +7,7 @@ use anyhow::bail;
 use super::next_file;
 use super::residuals_file::Kind;
 use crate::cli::{DiagnoseArgs, Rerun};
-use crate::output;
+use crate::output::{self, OutputFile};
 
 /// Checks where `args` write to, before anything is read.
 ///
@@ -18,8 +18,8 @@ pub fn check(args: &DiagnoseArgs) -> anyhow::Result<()> {
         bail!("this testbed was built without the viewer; build it with `--features viewer`, or leave --rerun out");
     }
     let outputs = args.outputs();
-    for path in &outputs {
-        output::check_writable(path)?;
+    for output in &outputs {
+        output::check_writable(output.path)?;
     }
     args.next.as_deref().map_or(Ok(()), next_file::check_replaceable)?;
     args.residuals
@@ -27,8 +27,9 @@ pub fn check(args: &DiagnoseArgs) -> anyhow::Result<()> {
         .map_or(Ok(()), |path| Kind::of(path).map(drop))?;
     let robot = Path::new(&args.robot);
     for output in &outputs {
+        let path = output.path;
         // A model of effects may be read, added to and written in one go.
-        let known = args.known.iter().filter(|_| args.model.as_deref() != Some(output));
+        let known = args.known.iter().filter(|_| args.model.as_deref() != Some(path));
         let recordings = args
             .train
             .iter()
@@ -36,15 +37,8 @@ pub fn check(args: &DiagnoseArgs) -> anyhow::Result<()> {
             .chain(&args.held_out)
             .chain(&args.map);
         let inputs = recordings.chain(known).map(PathBuf::as_path).chain([robot]);
-        output::check_is_no_input(output, inputs)?;
+        output::check_is_no_input(path, inputs)?;
     }
-    for (k, path) in outputs.iter().enumerate() {
-        if let Some(other) = outputs[..k].iter().find(|other| study::is_same(other, path)) {
-            bail!(
-                "{}: is given for two outputs; give each output its own file",
-                other.display()
-            );
-        }
-    }
-    Ok(())
+    output::check_distinct(&outputs)?;
+    outputs.iter().try_for_each(OutputFile::check_ending)
 }

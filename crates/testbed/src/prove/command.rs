@@ -22,7 +22,8 @@ use super::tracking::{self, CaseTracking};
 use super::vault::{Vault, make_folder};
 use super::{experiments, published, report, work};
 use crate::cli::ProveArgs;
-use crate::{interrupt, output};
+use crate::interrupt;
+use crate::output::{self, OutputFile};
 
 /// The content of `score.json`.
 #[derive(Serialize)]
@@ -51,6 +52,7 @@ pub struct Proof {
 pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
     if let Some(path) = &args.markdown {
         output::check_writable(path)?;
+        OutputFile::markdown(path).check_ending()?;
     }
     ensure!(
         !args.chain.is_given() || (args.cases_from.is_none() && args.published.is_none() && args.merge.is_none()),

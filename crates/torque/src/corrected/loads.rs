@@ -18,12 +18,13 @@ impl Corrected {
         coefficients
     }
 
-    /// What loads the joints of a simulated [`Self::arm`] at `time` (s), beside gravity and inertia, in two parts (N m or N):
-    /// `dry`, the most that dry friction resists, and `opposing`, the torque of all other effects but viscous friction,
-    /// to be taken off the drives' torque. The encoders say `q`; `qdd` is needed for couplings and loads only and may lag.
+    /// The loads on the joints of a simulated [`Self::arm`] at `time` (s) in addition to gravity and inertia, in two
+    /// parts (N m or N): `dry` is the level of dry friction, and `opposing` the torque of all other effects except
+    /// viscous friction, to be subtracted from the drives' torque. `q` are the encoders' positions; `qdd` is needed
+    /// for couplings and loads only, and may be that of the previous step.
     ///
-    /// Friction that differs by direction is a level and an offset, also at rest. Torque scale and limit are the drive's and
-    /// not in it.
+    /// Friction that differs by direction is a level and an offset, also at rest. Torque scale and torque limit are
+    /// properties of the drive and not included.
     ///
     /// # Panics
     /// If a slice or the workspace is of another size than the arm.
@@ -41,7 +42,7 @@ impl Corrected {
         let needs_rigid =
             !self.machine.contacts.is_empty() || self.machine.dry.iter().any(|(_, dry)| dry.depends_on_load());
         if needs_rigid {
-            // `dry` holds the rigid torque for as long as it is needed.
+            // `dry` contains the rigid torque until it is no longer needed.
             self.rigid_torque(Some(time), workspace, [q, qd, qdd], dry);
             workspace.rigid.copy_from_slice(dry);
         }
@@ -63,7 +64,7 @@ impl Corrected {
         self.add_contacts(Some(time), workspace, opposing);
     }
 
-    /// Adds −Jᵀ F of the contacts at `time`; the workspace contains the true positions.
+    /// Adds the torques −Jᵀ F of the contacts at `time`; the workspace contains the true positions.
     pub(super) fn add_contacts(&self, time: Option<f64>, workspace: &mut Workspace, tau: &mut [f64]) {
         let Some(time) = time else { return };
         let lasts = |contact: &&Contact| contact.start <= time && time < contact.end;

@@ -1,4 +1,4 @@
-//! The effects' torques against values computed by hand, and refused parameters.
+//! The torques of effects against values computed by hand, and parameters that are refused.
 
 use arm::Arm;
 use effects::arm::{ExternalContact, GravityMisalignment, InertialScale, LinkInertialError, Payload};
@@ -12,7 +12,7 @@ use effects::sensor::{EncoderOffset, TorqueOffset, TorqueScale};
 
 use super::*;
 
-/// Two parallel axes along z in a horizontal plane: without motion nothing is rigid.
+/// Two parallel axes along z in a horizontal plane: without motion, the rigid torque is zero.
 const FLAT: &str = r#"<robot name="flat"><link name="base"/>
 <joint name="a" type="continuous"><parent link="base"/><child link="la"/><axis xyz="0 0 1"/></joint>
 <link name="la"><inertial><mass value="1"/><inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".2"/></inertial></link>
@@ -20,7 +20,7 @@ const FLAT: &str = r#"<robot name="flat"><link name="base"/>
 <link name="lb"><inertial><mass value="2"/><inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".3"/></inertial></link>
 <joint name="f" type="fixed"><origin xyz=".5 0 0"/><parent link="lb"/><child link="tool"/></joint><link name="tool"/></robot>"#;
 
-/// One axis along y, its centre of mass .5 m out.
+/// One axis along y, with the centre of mass 0.5 m from it.
 const PENDULUM: &str = r#"<robot name="pendulum"><link name="base"/>
 <joint name="a" type="continuous"><parent link="base"/><child link="l"/><axis xyz="0 1 0"/></joint>
 <link name="l"><inertial><origin xyz=".5 0 0"/><mass value="2"/><inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".1"/></inertial></link></robot>"#;
@@ -43,7 +43,7 @@ fn predict(model: &Corrected, time: Option<f64>, q: &[f64], qd: &[f64], qdd: &[f
     prediction
 }
 
-/// What `effect` adds on joint a of the flat arm at angle `q` and velocity `qd`, without acceleration.
+/// The torque of `effect` on joint a of the flat arm at angle `q` and velocity `qd`, without acceleration.
 fn added(effect: Effect, q: f64, qd: f64) -> f64 {
     let model = Corrected::new(&arm(FLAT), &[effect]).expect("it is physical");
     predict(&model, None, &[q, 0.0], &[qd, 0.0], &[0.0, 0.0]).effects[0]
@@ -156,7 +156,7 @@ fn load_is_the_rigid_torque_of_the_corrected_arm() {
             .with("gain", 0.1),
     ];
     let model = Corrected::new(&arm(PENDULUM), &effects).expect("it is physical");
-    // About y, gravity on what sticks out along x pulls the arm down: the drive holds with a negative torque.
+    // Gravity on a mass along x turns the arm downwards about y: the drive holds it with a negative torque.
     let found = predict(&model, None, &[0.0], &[0.0], &[0.0]);
     near(found.rigid[0], -9.81 * 1.5);
     near(found.effects[0], 0.0);
@@ -196,7 +196,7 @@ fn inertial_effects_are_in_the_rigid_part() {
         rigid(&[Effect::of(&EncoderOffset).on(a()).with("offset", -0.3)], 0.2, 0.0),
         weight * 0.5_f64.cos(),
     );
-    // A base turned about the joint's own axis is a joint turned as far.
+    // Rotating the base about the joint's own axis is equivalent to rotating the joint.
     let tilt = Effect::of(&GravityMisalignment)
         .with("angle", 0.3)
         .with("axis", [0.0, 1.0, 0.0]);
@@ -215,7 +215,8 @@ fn a_coupling_follows_the_other_joint() {
     let model = Corrected::new(&arm(FLAT), &[coupling]).expect("it is physical");
     let found = predict(&model, None, &[0.0, 0.0], &[0.0, -0.1], &[0.0, 0.2]);
     near(found.effects[0], -0.2 - 0.5 + 0.6);
-    // The reaction: the other joint feels this one's motion, which rests, and the drive's dry friction.
+    // The reaction: the other joint is affected by this joint's motion, while it is at rest, and by the drive's dry
+    // friction.
     near(found.effects[1], -0.5);
 }
 
@@ -244,7 +245,7 @@ fn scale_and_limit_come_last() {
     near(of(&effects), 2.5);
 }
 
-/// At q = 0 the tool is 1.5 m from axis a and .5 m from axis b, along x.
+/// At q = 0 the tool is 1.5 m from axis a and 0.5 m from axis b, along x.
 #[test]
 fn a_contact_pushes_while_it_lasts() {
     let contact = Effect::of(&ExternalContact)
@@ -259,7 +260,7 @@ fn a_contact_pushes_while_it_lasts() {
     near(at(Some(1.4))[1], -1.0);
 }
 
-/// As loads on a simulated arm, the effects add up to the model's torque.
+/// The sum of the effects as loads on a simulated arm is the torque of the model.
 #[test]
 fn loads_and_torques_agree() {
     let effects = [

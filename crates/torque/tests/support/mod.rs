@@ -1,4 +1,4 @@
-//! What the torque models' tests and benches share: the PUMA 560 and the paper's motion.
+//! What the tests and benchmarks of torque models share: the PUMA 560 and the paper's motion.
 
 use arm::Arm;
 use torque::{RigidBody, Sample, Samples, TorqueModel};
@@ -8,7 +8,7 @@ pub fn puma560() -> Arm {
     Arm::from_urdf(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/puma560.urdf")).expect("the robot loads")
 }
 
-/// q, q̇ and q̈ at `time` (s): two sines a joint, as in equation 20 of the paper; `variant` shifts the frequencies.
+/// q, q̇ and q̈ at `time` (s): two sines per joint, as in equation 20 of the paper; `variant` changes the frequencies.
 pub fn motion(time: f64, variant: usize) -> [Vec<f64>; 3] {
     let mut motion = [vec![0.0; 6], vec![0.0; 6], vec![0.0; 6]];
     for joint in 0..6 {
