@@ -27,6 +27,18 @@ impl Evaluation {
         }
     }
 
+    /// The same for `all` samples, all / n times each, where C has the noise of their means on its diagonal: `rho` for the single ones.
+    ///
+    /// With k = all / n, the matrix of all is ρ I + E (C - ρ / k I) Eᵀ with n columns of E, of k ones each.
+    pub(crate) fn repeated(self, all: usize, rho: f64) -> Self {
+        let (n, all_samples) = (self.samples as f64, all as f64);
+        Self {
+            samples: all,
+            log_determinant: self.log_determinant + n * (all_samples / n).ln() + (all_samples - n) * rho.ln(),
+            ..self
+        }
+    }
+
     /// The amplitude² that maximises the likelihood: yᵀ C⁻¹ y / n.
     pub(crate) fn best_amplitude_squared(&self) -> f64 {
         self.quadratic / self.samples as f64
@@ -107,11 +119,22 @@ impl Factored {
             let pivoted = PivotedCholesky::new(points, stopping).expect("a truncated factor is a factor");
             return Self::LowRank(LowRank::new(pivoted, targets, rho, Method::Normal));
         }
+        // Beyond about this rank the dense factorisation is the faster one (benches/fit.rs).
+        Self::up_to_rank(targets.len() * 2 / 5, points, targets, rho, precision)
+    }
+
+    /// Factors C, densely if its rank is above `max_rank`.
+    pub(crate) fn up_to_rank(
+        max_rank: usize,
+        points: &Points,
+        targets: &[f64],
+        rho: f64,
+        precision: Precision,
+    ) -> Self {
         let stopping = Stopping {
             trace: precision.neglected * rho,
             pivot: PIVOT_FLOOR,
-            // Beyond about this rank the dense factorisation is the faster one (benches/fit.rs).
-            max_rank: targets.len() * 2 / 5,
+            max_rank,
             truncates: false,
         };
         if let Some(pivoted) = PivotedCholesky::new(points, stopping) {
