@@ -71,6 +71,8 @@ pub(crate) struct Precision {
     /// The trace neglected, in units of ρ.
     pub(crate) neglected: f64,
     pub(crate) method: Method,
+    /// Whether the gradient is wanted, too.
+    pub(crate) gradient: bool,
 }
 
 impl Precision {
@@ -78,11 +80,18 @@ impl Precision {
     pub(crate) const SEARCH: Self = Self {
         neglected: 1e-5,
         method: Method::Normal,
+        gradient: true,
+    };
+    /// For a search that needs no gradient.
+    pub(crate) const VALUE: Self = Self {
+        gradient: false,
+        ..Self::SEARCH
     };
     /// For the posterior: as exact as rounding allows.
     pub(crate) const POSTERIOR: Self = Self {
         neglected: 1e-11,
         method: Method::Orthogonal,
+        gradient: false,
     };
 }
 
@@ -115,6 +124,7 @@ impl Factored {
                 pivot: PIVOT_FLOOR,
                 max_rank: inducing,
                 truncates: true,
+                keeps_kernel: precision.gradient,
             };
             let pivoted = PivotedCholesky::new(points, stopping).expect("a truncated factor is a factor");
             return Self::LowRank(LowRank::new(pivoted, targets, rho, Method::Normal));
@@ -136,6 +146,7 @@ impl Factored {
             pivot: PIVOT_FLOOR,
             max_rank,
             truncates: false,
+            keeps_kernel: precision.gradient,
         };
         if let Some(pivoted) = PivotedCholesky::new(points, stopping) {
             let mut low_rank = LowRank::new(pivoted, targets, rho, precision.method);
@@ -232,6 +243,7 @@ mod tests {
                 let precision = Precision {
                     neglected,
                     method: Method::Orthogonal,
+                    gradient: true,
                 };
                 let factored = Factored::new(&points, &y, at[DIM].exp(), precision, None);
                 (factored, points)
@@ -329,6 +341,7 @@ mod tests {
                 pivot: PIVOT_FLOOR,
                 max_rank: n,
                 truncates: false,
+                keeps_kernel: false,
             };
             let dense = Dense::new(&points, &y, rho).expect("definite");
             let expected = dense.evaluation().profiled();
@@ -351,6 +364,7 @@ mod tests {
             pivot: PIVOT_FLOOR,
             max_rank: n,
             truncates: false,
+            keeps_kernel: false,
         };
         let pivoted = PivotedCholesky::new(&points, stopping).expect("within n");
         let product = pivoted.factor() * pivoted.factor().transpose();

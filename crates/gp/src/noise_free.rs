@@ -142,7 +142,7 @@ impl Part {
     fn with_noise(&self, log: f64, rho: f64) -> Factored {
         let points = self.training.scaled(&vec![log.exp(); self.training.dim()]);
         let most = self.samples() * 3 / 5;
-        Factored::up_to_rank(most, &points, self.training.targets(), rho, Precision::SEARCH)
+        Factored::up_to_rank(most, &points, self.training.targets(), rho, Precision::VALUE)
     }
 
     /// C with the noise of n / m samples' mean.
@@ -262,7 +262,7 @@ mod tests {
         for (length, rho) in [(0.5, 1e-2), (0.2, 1e-4)] {
             let evaluation = |set: &TrainingSet, rho: f64| {
                 let points = set.scaled(&[length; 2]);
-                Factored::up_to_rank(0, &points, set.targets(), rho, Precision::SEARCH).evaluation()
+                Factored::up_to_rank(0, &points, set.targets(), rho, Precision::VALUE).evaluation()
             };
             let expected = evaluation(&repeated, rho).profiled();
             let found = evaluation(&part, rho / 3.0).repeated(120, rho).profiled();

@@ -188,7 +188,7 @@ impl<'a> Likelihood<'a> {
         }
     }
 
-    fn factored(&self, free: &[f64]) -> (Factored, Points) {
+    fn factored(&self, free: &[f64], precision: Precision) -> (Factored, Points) {
         let found = self.found(free);
         let lengths = match self.lengths {
             LengthScales::Isotropic => vec![found.lengths[0]; self.training.dim()],
@@ -196,13 +196,13 @@ impl<'a> Likelihood<'a> {
         };
         let points = self.training.scaled(&lengths);
         let targets = self.training.targets();
-        let factored = Factored::new(&points, targets, found.rho, Precision::SEARCH, self.inducing);
+        let factored = Factored::new(&points, targets, found.rho, precision, self.inducing);
         (factored, points)
     }
 
     /// Log marginal likelihood; minus infinity where it cannot be computed.
     fn value(&self, free: &[f64]) -> f64 {
-        let value = self.factored(free).0.evaluation().profiled();
+        let value = self.factored(free, Precision::VALUE).0.evaluation().profiled();
         if value.is_nan() { f64::NEG_INFINITY } else { value }
     }
 
@@ -227,7 +227,7 @@ impl<'a> Likelihood<'a> {
         if self.stalled() {
             return Err(Error::msg("no more to gain"));
         }
-        let (factored, points) = self.factored(free);
+        let (factored, points) = self.factored(free, Precision::SEARCH);
         let value = factored.evaluation().profiled();
         let by_log = factored.gradient(&points);
         if !value.is_finite() || by_log.iter().any(|g| !g.is_finite()) {
