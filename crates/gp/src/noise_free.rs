@@ -70,7 +70,7 @@ pub(crate) fn search(training: &TrainingSet, scale: f64, starts: usize, floor: f
             let points = training.scaled(&vec![top.exp(); training.dim()]);
             let factored = Factored::new(&points, training.targets(), floor, Precision::POSTERIOR, None);
             // Where the rank is not far below n, nothing tells noise from a fine function.
-            if leaves_more_than(0.5, &factored, n).unwrap_or(true) {
+            if leaves_more_than(0.1, &factored, n).unwrap_or(true) {
                 return None;
             }
             let off = (factored.evaluation().profiled() - best.maximum.value).abs();
@@ -194,7 +194,7 @@ impl Part {
     fn is_noisy(&self, grid: &[f64], range: (f64, f64)) -> bool {
         let noisy = NOISES
             .iter()
-            .flat_map(|rho| grid.iter().map(|log| self.own_value(*log, *rho)));
+            .flat_map(|rho| grid.iter().map(|log| self.own_value(*log, rho.max(self.floor))));
         let noisy = noisy.fold(f64::NEG_INFINITY, f64::max);
         let mut line = Line::new(range, |log| self.own_value(log, self.floor));
         for log in grid {
