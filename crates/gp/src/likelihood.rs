@@ -27,6 +27,18 @@ impl Evaluation {
         }
     }
 
+    /// The same for `all` samples, all / n times each, where C has the noise of their means on its diagonal: `rho` for the single ones.
+    ///
+    /// With k = all / n, the matrix of all is ρ I + E (C - ρ / k I) Eᵀ with n columns of E, of k ones each.
+    pub(crate) fn repeated(self, all: usize, rho: f64) -> Self {
+        let (n, all_samples) = (self.samples as f64, all as f64);
+        Self {
+            samples: all,
+            log_determinant: self.log_determinant + n * (all_samples / n).ln() + (all_samples - n) * rho.ln(),
+            ..self
+        }
+    }
+
     /// The amplitude² that maximises the likelihood: yᵀ C⁻¹ y / n.
     pub(crate) fn best_amplitude_squared(&self) -> f64 {
         self.quadratic / self.samples as f64
@@ -59,6 +71,8 @@ pub(crate) struct Precision {
     /// The trace neglected, in units of ρ.
     pub(crate) neglected: f64,
     pub(crate) method: Method,
+    /// Whether the gradient is wanted, too.
+    pub(crate) gradient: bool,
 }
 
 impl Precision {
@@ -66,11 +80,18 @@ impl Precision {
     pub(crate) const SEARCH: Self = Self {
         neglected: 1e-5,
         method: Method::Normal,
+        gradient: true,
+    };
+    /// For a search that needs no gradient.
+    pub(crate) const VALUE: Self = Self {
+        gradient: false,
+        ..Self::SEARCH
     };
     /// For the posterior: as exact as rounding allows.
     pub(crate) const POSTERIOR: Self = Self {
         neglected: 1e-11,
         method: Method::Orthogonal,
+        gradient: false,
     };
 }
 
@@ -103,16 +124,29 @@ impl Factored {
                 pivot: PIVOT_FLOOR,
                 max_rank: inducing,
                 truncates: true,
+                keeps_kernel: precision.gradient,
             };
             let pivoted = PivotedCholesky::new(points, stopping).expect("a truncated factor is a factor");
             return Self::LowRank(LowRank::new(pivoted, targets, rho, Method::Normal));
         }
+        // Beyond about this rank the dense factorisation is the faster one (benches/fit.rs).
+        Self::up_to_rank(targets.len() * 2 / 5, points, targets, rho, precision)
+    }
+
+    /// Factors C, densely if its rank is above `max_rank`.
+    pub(crate) fn up_to_rank(
+        max_rank: usize,
+        points: &Points,
+        targets: &[f64],
+        rho: f64,
+        precision: Precision,
+    ) -> Self {
         let stopping = Stopping {
             trace: precision.neglected * rho,
             pivot: PIVOT_FLOOR,
-            // Beyond about this rank the dense factorisation is the faster one (benches/fit.rs).
-            max_rank: targets.len() * 2 / 5,
+            max_rank,
             truncates: false,
+            keeps_kernel: precision.gradient,
         };
         if let Some(pivoted) = PivotedCholesky::new(points, stopping) {
             let mut low_rank = LowRank::new(pivoted, targets, rho, precision.method);
@@ -209,6 +243,7 @@ mod tests {
                 let precision = Precision {
                     neglected,
                     method: Method::Orthogonal,
+                    gradient: true,
                 };
                 let factored = Factored::new(&points, &y, at[DIM].exp(), precision, None);
                 (factored, points)
@@ -306,6 +341,7 @@ mod tests {
                 pivot: PIVOT_FLOOR,
                 max_rank: n,
                 truncates: false,
+                keeps_kernel: false,
             };
             let dense = Dense::new(&points, &y, rho).expect("definite");
             let expected = dense.evaluation().profiled();
@@ -328,6 +364,7 @@ mod tests {
             pivot: PIVOT_FLOOR,
             max_rank: n,
             truncates: false,
+            keeps_kernel: false,
         };
         let pivoted = PivotedCholesky::new(&points, stopping).expect("within n");
         let product = pivoted.factor() * pivoted.factor().transpose();

@@ -279,10 +279,21 @@ impl LowRank {
             points.copy_point(pivot, &mut point);
             weighted_squares(points, &point, column, lengths);
         }
+        gradient[points.dim()] = self.slope_with(&outer_inverse);
+        gradient
+    }
+
+    /// Derivative of the profiled log marginal likelihood by log ρ.
+    pub(crate) fn slope_by_noise(&self) -> f64 {
+        self.slope_with(&inverse_of_lower(self.outer.as_ref()))
+    }
+
+    /// The same with G⁻¹ known.
+    fn slope_with(&self, outer_inverse: &Mat<f64>) -> f64 {
+        let (n, r) = (self.misfit.len(), self.outer.nrows());
+        let amplitude_squared = self.quadratic / n as f64;
         let alpha_squared = dot(&self.misfit, &self.misfit) / self.rho;
         let trace: f64 = outer_inverse.col_iter().map(|column| column.squared_norm_l2()).sum();
-        gradient[points.dim()] =
-            0.5 * (alpha_squared / amplitude_squared - (n - r) as f64 - self.rho * trace) + self.penalty();
-        gradient
+        0.5 * (alpha_squared / amplitude_squared - (n - r) as f64 - self.rho * trace) + self.penalty()
     }
 }

@@ -6,6 +6,7 @@ use crate::conditioning::{Conditioning, floor};
 use crate::data::{Hyperparameters, Lengths, TrainingSet};
 use crate::error::GpError;
 use crate::file::Saved;
+use crate::kernel::Points;
 use crate::likelihood::{Factored, Precision};
 use crate::posterior::Posterior;
 use crate::range::Range;
@@ -29,9 +30,9 @@ pub struct FitOptions {
     pub lengths: LengthScales,
     /// Least noise variance as a share of amplitude²; n ε (n samples) holds if it is larger, as it is for the default of 0.
     pub min_relative_noise: f64,
-    /// Number of starts L-BFGS climbs from, the best and distinct ones of a fixed grid; at least 1.
+    /// Number of starts that are climbed from, the best and distinct ones of a fixed grid; at least 1.
     pub starts: usize,
-    /// Iterations of L-BFGS from each start.
+    /// Iterations of L-BFGS from each start; of no account for one length scale without noise.
     pub max_iterations: u64,
     /// With more samples than this, approximate: at most so many of them, chosen one after the other where the variance left
     /// is largest, carry the posterior (variational free energy, Titsias 2009; the choice of Burt, Rasmussen and van der
@@ -77,6 +78,10 @@ impl Gp {
     /// the logarithms of the length scales and of ρ, from the best points of a fixed grid of multiples of the data's own scales
     /// on at most 256 samples, and from the best of those optima on all samples (on a part of them in between, if they are many).
     ///
+    /// One length scale for samples without noise is found without gradients, ρ at its floor: from values on a part of the samples, a
+    /// few for each rank of the kernel matrix, each of which counts as if it had been measured several times. All samples are
+    /// factored once, and must confirm that there is no noise and that the part stands for them.
+    ///
     /// Targets that are all zero need no function: amplitude and noise are then 0, as are mean and variance everywhere, and the likelihood
     /// is unbounded (infinite).
     ///
@@ -121,7 +126,10 @@ impl Gp {
         // Within a tenth of a per cent of the bound counts as at it: the smooth bound is never quite reached.
         let added = if found.rho <= 1.001 * floor { floor } else { 0.0 };
         let noise = (found.rho, floor, added);
-        Self::condition(&unit, scale, None, lengths, noise, options.inducing)
+        let factored = found
+            .factored
+            .unwrap_or_else(|| factored(&unit, &lengths, found.rho, options.inducing));
+        Self::condition(&unit, scale, None, lengths, noise, factored)
     }
 
     /// Conditions on the data at given hyperparameters.
@@ -144,22 +152,20 @@ impl Gp {
         let unit = training.clone().with_targets_divided(scale);
         let amplitude = Some(hyperparameters.amplitude);
         let lengths = hyperparameters.lengths.clone();
-        Self::condition(&unit, scale, amplitude, lengths, (rho, floor, rho - asked), None)
+        let factored = factored(&unit, &lengths, rho, None);
+        Self::condition(&unit, scale, amplitude, lengths, (rho, floor, rho - asked), factored)
     }
 
     /// Conditions on targets divided by `scale`; `amplitude` in the target's unit, the likeliest if `None`; with ρ, its floor,
-    /// and the part of it that was added.
+    /// and the part of it that was added; and with C factored for the scaled samples.
     fn condition(
         unit: &TrainingSet,
         scale: f64,
         amplitude: Option<f64>,
         lengths: Lengths,
         (rho, floor, added): (f64, f64, f64),
-        inducing: Option<usize>,
+        (factored, points): (Factored, Points),
     ) -> Result<Self, GpError> {
-        let each = lengths.each(unit.dim());
-        let points = unit.scaled(&each);
-        let factored = Factored::new(&points, unit.targets(), rho, Precision::POSTERIOR, inducing);
         let evaluation = factored.evaluation();
         let unit_amplitude = match amplitude {
             Some(amplitude) => amplitude / scale,
@@ -173,6 +179,7 @@ impl Gp {
                 "at {lengths:?}, relative noise {rho:e} and amplitude {amplitude:e} it is {log_marginal_likelihood}"
             )));
         }
+        let each = lengths.each(unit.dim());
         let (rank, neglected) = factored.rank_and_neglected();
         let likelihood_gap = factored.gap(unit.targets(), unit_amplitude.powi(2));
         Ok(Self {
@@ -282,6 +289,13 @@ impl Gp {
     pub fn range(&self) -> Range {
         Range::of(self)
     }
+}
+
+/// C for `unit` scaled by `lengths`, factored as exactly as rounding allows, or approximated.
+fn factored(unit: &TrainingSet, lengths: &Lengths, rho: f64, inducing: Option<usize>) -> (Factored, Points) {
+    let points = unit.scaled(&lengths.each(unit.dim()));
+    let factored = Factored::new(&points, unit.targets(), rho, Precision::POSTERIOR, inducing);
+    (factored, points)
 }
 
 /// The largest magnitude among the targets.

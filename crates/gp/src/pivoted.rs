@@ -12,6 +12,9 @@ const BLOCK: usize = 24;
 /// The number of candidates for one block.
 const CANDIDATES: usize = 64;
 
+/// Columns for which there is room from the beginning.
+const COLUMNS: usize = 600;
+
 /// A block takes pivots whose residual is at least this share of the largest one: close to the greedy choice, which always takes the largest.
 const ACCEPTED_SHARE: f64 = 0.2;
 
@@ -21,7 +24,7 @@ pub(crate) struct PivotedCholesky {
     pub(crate) pivots: Vec<usize>,
     /// F, n × rank, column-major; lower triangular in the rows `pivots`.
     factor: Vec<f64>,
-    /// Columns `pivots` of K, n × rank, column-major.
+    /// Columns `pivots` of K, n × rank, column-major; empty unless asked for.
     kernel: Vec<f64>,
     rows: usize,
     /// Trace of K - F Fᵀ, which bounds its largest eigenvalue.
@@ -41,6 +44,8 @@ pub(crate) struct Stopping {
     pub(crate) max_rank: usize,
     /// Instead of stopping without a result, keep the pivots found so far.
     pub(crate) truncates: bool,
+    /// Whether to keep the pivots' kernel values, for the gradient.
+    pub(crate) keeps_kernel: bool,
 }
 
 impl PivotedCholesky {
@@ -53,7 +58,8 @@ impl PivotedCholesky {
         let mut point = vec![0.0; points.dim()];
         let mut this = Self {
             pivots: Vec::new(),
-            factor: Vec::new(),
+            // Of most ranks; memory that is not written costs nothing.
+            factor: Vec::with_capacity(n * stopping.max_rank.min(COLUMNS)),
             kernel: Vec::new(),
             rows: n,
             neglected: n as f64,
@@ -85,14 +91,15 @@ impl PivotedCholesky {
             }
             let taken = block.len();
             let triangle = triangle.submatrix(0, 0, taken, taken);
-            this.kernel.resize((rank + taken) * n, 0.0);
-            for (&i, column) in block.iter().zip(this.kernel[rank * n..].chunks_exact_mut(n)) {
+            let earlier = Mat::from_fn(taken, rank, |t, j| this.factor[j * n + block[t]]);
+            this.factor.resize((rank + taken) * n, 0.0);
+            for (&i, column) in block.iter().zip(this.factor[rank * n..].chunks_exact_mut(n)) {
                 points.copy_point(i, &mut point);
                 kernel_column(points, &point, &unit, column);
             }
-            let earlier = Mat::from_fn(taken, rank, |t, j| this.factor[j * n + block[t]]);
-            this.factor
-                .extend_from_slice(&this.kernel[rank * n..(rank + taken) * n]);
+            if stopping.keeps_kernel {
+                this.kernel.extend_from_slice(&this.factor[rank * n..]);
+            }
             let (old, new) = this.factor.split_at_mut(rank * n);
             let old = MatRef::from_column_major_slice(old, n, rank);
             let mut new = MatMut::from_column_major_slice_mut(new, n, taken);
@@ -191,7 +198,7 @@ impl PivotedCholesky {
         MatRef::from_column_major_slice(&self.factor, self.rows, self.rank())
     }
 
-    /// Column `j` of K at the pivots, n values.
+    /// Column `j` of K at the pivots, n values; they were asked for.
     pub(crate) fn kernel_column(&self, j: usize) -> &[f64] {
         &self.kernel[j * self.rows..(j + 1) * self.rows]
     }

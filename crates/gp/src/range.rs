@@ -100,6 +100,7 @@ impl Range {
             pivot: LARGEST_SHARE,
             max_rank: MOST.min(posterior.points.len()),
             truncates: true,
+            keeps_kernel: false,
         };
         let pivoted = PivotedCholesky::new(&posterior.points, stopping).expect("a truncated factor is a factor");
         let rho = gp.conditioning.relative_noise;

@@ -1,4 +1,5 @@
-//! Maximum marginal likelihood: a grid of starts on few samples, then L-BFGS, then L-BFGS on all samples.
+//! Maximum marginal likelihood: a grid of starts on few samples, then L-BFGS, then L-BFGS on all samples; one length scale without
+//! noise has a search of its own.
 
 use std::cell::RefCell;
 
@@ -11,6 +12,7 @@ use crate::data::TrainingSet;
 use crate::error::GpError;
 use crate::kernel::Points;
 use crate::likelihood::{Factored, Precision};
+use crate::noise_free;
 use crate::starts::{Bounds, LENGTH_FACTORS, RELATIVE_NOISES, shapes};
 use crate::{FitOptions, LengthScales};
 
@@ -31,11 +33,19 @@ const MEMORY: usize = 10;
 pub(crate) struct Found {
     pub(crate) lengths: Vec<f64>,
     pub(crate) rho: f64,
+    /// C factored there for the scaled samples, with [`Precision::POSTERIOR`], if it was.
+    pub(crate) factored: Option<(Factored, Points)>,
 }
 
 /// Maximises the likelihood of `training` (targets of unit size, not all zero), with ρ at least `floor`.
 pub(crate) fn search(training: &TrainingSet, options: &FitOptions, floor: f64) -> Result<Found, GpError> {
     let shapes = shapes(training, options.lengths);
+    if options.lengths == LengthScales::Isotropic
+        && options.inducing.is_none_or(|inducing| inducing >= training.samples())
+        && let Some(found) = noise_free::search(training, shapes[0][0], options.starts, floor)
+    {
+        return Ok(found);
+    }
     let bounds = Bounds::new(&shapes[0], floor);
     let few = training.thinned(FEW);
     // On few samples, only the neighbourhood of an optimum is needed.
@@ -178,7 +188,7 @@ impl<'a> Likelihood<'a> {
         }
     }
 
-    fn factored(&self, free: &[f64]) -> (Factored, Points) {
+    fn factored(&self, free: &[f64], precision: Precision) -> (Factored, Points) {
         let found = self.found(free);
         let lengths = match self.lengths {
             LengthScales::Isotropic => vec![found.lengths[0]; self.training.dim()],
@@ -186,13 +196,13 @@ impl<'a> Likelihood<'a> {
         };
         let points = self.training.scaled(&lengths);
         let targets = self.training.targets();
-        let factored = Factored::new(&points, targets, found.rho, Precision::SEARCH, self.inducing);
+        let factored = Factored::new(&points, targets, found.rho, precision, self.inducing);
         (factored, points)
     }
 
     /// Log marginal likelihood; minus infinity where it cannot be computed.
     fn value(&self, free: &[f64]) -> f64 {
-        let value = self.factored(free).0.evaluation().profiled();
+        let value = self.factored(free, Precision::VALUE).0.evaluation().profiled();
         if value.is_nan() { f64::NEG_INFINITY } else { value }
     }
 
@@ -202,7 +212,11 @@ impl<'a> Likelihood<'a> {
             *value = value.exp();
         }
         let rho = lengths.pop().unwrap_or(f64::NAN);
-        Found { lengths, rho }
+        Found {
+            lengths,
+            rho,
+            factored: None,
+        }
     }
 
     /// Makes `seen` hold value and gradient at `free`.
@@ -213,7 +227,7 @@ impl<'a> Likelihood<'a> {
         if self.stalled() {
             return Err(Error::msg("no more to gain"));
         }
-        let (factored, points) = self.factored(free);
+        let (factored, points) = self.factored(free, Precision::SEARCH);
         let value = factored.evaluation().profiled();
         let by_log = factored.gradient(&points);
         if !value.is_finite() || by_log.iter().any(|g| !g.is_finite()) {
