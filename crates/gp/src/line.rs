@@ -1,4 +1,7 @@
 //! The maximum of a function of one variable, from few values: parabolas through the best ones.
+//!
+//! Each value costs a factorisation and is rounded. Brent's method, which argmin offers, narrows an interval until its values differ
+//! by less than that rounding; here the last values are so far apart that the parabola through them is not made of rounding.
 
 /// Values after which the best one is taken.
 const VALUES: usize = 32;
