@@ -6,11 +6,13 @@
 //! recording is worth, before anything is fitted to it.
 
 mod arrays;
+mod bag_windows;
 mod bytes;
 mod clock;
 mod column_map;
 mod csv_write;
 mod dialect;
+mod doubt;
 mod draft;
 mod error;
 mod format;
@@ -21,6 +23,7 @@ mod input;
 mod interpolate;
 mod joint_state;
 mod origin;
+mod parts;
 mod quality;
 mod regular;
 mod rows;
@@ -32,6 +35,7 @@ mod toml_error;
 mod units;
 mod warning;
 mod whole_file;
+mod windows;
 mod wraps;
 
 pub use column_map::ColumnMap;
@@ -81,6 +85,8 @@ pub struct Recording {
     pub warnings: Vec<Warning>,
     /// The second of a calendar that `time` is counted from (usually since 1970); `None` where the clock is the file's own.
     pub epoch: Option<i64>,
+    /// The time that was recorded and is not held, where windows of a long file were read (s).
+    pub left_out: f64,
     /// The columns that it was read from; `None` of what was not read.
     pub origin: Option<Origin>,
 }
