@@ -79,7 +79,7 @@ impl RegularRecording {
         match &windows[..] {
             [one] => {
                 let quarter = one.len() / 4;
-                vec![one.start + quarter..one.end - quarter]
+                std::iter::once(one.start + quarter..one.end - quarter).collect()
             }
             _ => {
                 let taken = |(number, _): &(usize, &Range<usize>)| is_taken(*number as u64, 1);

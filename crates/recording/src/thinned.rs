@@ -79,7 +79,7 @@ impl Thinned {
             while windows.is_full() || self.columns[0].len() > self.most {
                 windows.thin();
                 let taken: Vec<bool> = self.begun.iter().map(|(number, _)| windows.takes(*number)).collect();
-                give_up(&mut self.columns, &mut self.breaks, &mut self.begun, &taken);
+                self.breaks_off |= give_up(&mut self.columns, &mut self.breaks, &mut self.begun, &taken);
             }
             if windows.takes(number) {
                 self.begun.push((number, self.columns[0].len()));
@@ -169,8 +169,9 @@ impl Thinned {
     }
 }
 
-/// Removes the rows of the windows that begin with the rows `begun` and are not `taken`.
-fn give_up(columns: &mut [Vec<f64>], breaks: &mut Vec<usize>, begun: &mut Vec<(u64, usize)>, taken: &[bool]) {
+/// Removes the rows of the windows that begin with the rows `begun` and are not `taken`; whether another run begins with the next
+/// row that is kept.
+fn give_up(columns: &mut [Vec<f64>], breaks: &mut Vec<usize>, begun: &mut Vec<(u64, usize)>, taken: &[bool]) -> bool {
     let rows = columns[0].len();
     let ends = begun.iter().skip(1).map(|(_, first)| *first).chain([rows]);
     let spans: Vec<_> = begun.iter().zip(ends).map(|(&(_, first), end)| first..end).collect();
@@ -199,7 +200,8 @@ fn give_up(columns: &mut [Vec<f64>], breaks: &mut Vec<usize>, begun: &mut Vec<(u
     }
     breaks.dedup();
     let left = columns[0].len();
-    breaks.retain(|&row| row > 0 && row < left);
+    let is_at_end = breaks.last() == Some(&left);
+    breaks.retain(|&row| row < left);
     let firsts: Vec<(u64, usize)> = begun
         .iter()
         .zip(taken)
@@ -207,6 +209,7 @@ fn give_up(columns: &mut [Vec<f64>], breaks: &mut Vec<usize>, begun: &mut Vec<(u
         .map(|((number, first), _)| (*number, rows_before(*first)))
         .collect();
     *begun = firsts;
+    is_at_end
 }
 
 /// The number of the span in which a time lies. Half a thousandth later, so that rounding does not part regular stamps.

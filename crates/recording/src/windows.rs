@@ -6,7 +6,7 @@
 /// The length of a window (s).
 const WINDOW: f64 = 20.0;
 /// Rows that are further apart (s) are no drive's: there is a pause between them, which does not count.
-const LONGEST_STEP: f64 = 0.1;
+const LONGEST_STEP: f64 = 0.15;
 /// The golden ratio. The fractional parts of its multiples are spread evenly, so that the windows are not in step with a
 /// motion that is repeated.
 const GOLDEN: f64 = 0.618_033_988_749_895;

@@ -9,7 +9,7 @@ use recording::RegularRecording;
 use crate::data::noise::{WhiteNoise, band_noise};
 use crate::data::signal::{Kernel, outputs};
 use crate::data::statistics::median;
-use crate::data::used::{Used, WINDOW};
+use crate::data::used::{Section, Used};
 use crate::thresholds::{
     CUTOFF, CUTOFF_PERIODS, HIGHEST_CUTOFF, LARGEST_CUTOFF, LEAST_CUTOFF, LEAST_CUTOFF_PERIODS, MOST_NOISE, STILL,
     WORTH_RAISING,
@@ -21,8 +21,6 @@ const WIDER: f64 = 3.0;
 const FINE: f64 = 8.0;
 /// Rows per period of the second cut-off.
 const ROWS: f64 = 2.5;
-/// The longest chunk (s); longer ones are cut, so that memory is bounded.
-const LONGEST: f64 = 60.0;
 /// The golden ratio; the fractional parts of its multiples are spread evenly.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 /// The largest number of rows; beyond it, rows are thinned out.
@@ -221,7 +219,7 @@ impl Motions {
                 recording.held()
             } + BETWEEN;
             motions.begins = motions.begins.min(shift + recording.time(0));
-            motions.add(index, (input, &white[index]), used.share(input.held_out), thin, shift);
+            motions.add(index, (input, &white[index]), &used.sections(input), thin, shift);
         }
         motions.tempo = motions.tempo();
         motions
@@ -257,8 +255,15 @@ impl Motions {
             .collect()
     }
 
-    /// Adds the part `used` of a recording.
-    fn add(&mut self, index: usize, (input, white): (&Input<'_>, &WhiteNoise), used: f64, thin: f64, shift: f64) {
+    /// Adds the windows in `sections` of a recording.
+    fn add(
+        &mut self,
+        index: usize,
+        (input, white): (&Input<'_>, &WhiteNoise),
+        sections: &[Section],
+        thin: f64,
+        shift: f64,
+    ) {
         let recording = input.recording;
         let rate = 1.0 / recording.period;
         let first = Kernel::new((WIDER * self.cutoff).min(LARGEST_CUTOFF * rate), recording.period);
@@ -267,23 +272,15 @@ impl Motions {
         let kernel = Kernel::new(self.cutoff, period);
         let stride = (thin / (period * ROWS * self.cutoff)).round().max(1.0) as usize;
         let mut windows: Vec<Range<usize>> = Vec::new();
-        for segment in &recording.segments {
-            let longest = if used < 1.0 { WINDOW / used } else { LONGEST };
-            let most = ((longest / recording.period) as usize).max(1);
-            let pieces = segment.ticks.len().div_ceil(most).max(1);
-            let length = segment.ticks.len().div_ceil(pieces);
-            for piece in 0..pieces {
-                let from = segment.ticks.start + piece * length;
-                let to = (from + length).min(segment.ticks.end);
-                // The position of the window in its section varies (by the golden ratio), because sections may repeat one
-                // motion.
-                let kept = (used * (to - from) as f64).ceil() as usize;
-                let place = (GOLDEN * (self.chunks.len() + windows.len()) as f64).fract();
-                let from = from + (place * (to - from - kept) as f64) as usize;
-                let to = from + kept;
-                if outputs(outputs(to - from, first.reach(), decimation), kernel.reach(), stride) > 0 {
-                    windows.push(from..to);
-                }
+        for section in sections {
+            // The position of the window in its section varies (by the golden ratio), because sections may repeat one
+            // motion.
+            let free = section.ticks.len() - section.used;
+            let place = (GOLDEN * (self.chunks.len() + windows.len()) as f64).fract();
+            let from = section.ticks.start + (place * free as f64) as usize;
+            let window = from..from + section.used;
+            if outputs(outputs(window.len(), first.reach(), decimation), kernel.reach(), stride) > 0 {
+                windows.push(window);
             }
         }
         let chunk = |window: &Range<usize>| {

@@ -1,6 +1,6 @@
 //! The memory that recordings take, however long and many they are.
 
-use diagnosis::WORTH_HOLDING;
+use diagnosis::worth_holding;
 use recording::RegularRecording;
 
 use super::Prepared;
@@ -23,7 +23,8 @@ pub(super) fn bound(list: &mut [Prepared]) {
             .filter(|prepared| prepared.role.is_fitted() == is_fitted)
             .map(|prepared| &mut prepared.regular)
             .collect();
-        bound_together(&mut recordings, WORTH_HOLDING);
+        let recorded = recordings.iter().map(|recording| recording.recorded()).sum();
+        bound_together(&mut recordings, worth_holding(recorded));
     }
 }
 
