@@ -15,6 +15,7 @@ pub mod noise;
 pub mod rigid;
 pub mod signal;
 pub mod statistics;
+pub mod used;
 
 /// What is known before any fit: the filtered recordings, and the model along them.
 pub struct Data {

@@ -37,6 +37,8 @@ pub(crate) struct Options<'a> {
     pub delimiter: Option<u8>,
     /// The topics to read of a file that has topics; all if there are none.
     pub topics: &'a [String],
+    /// Of a longer recording, windows of this time in all are read (s).
+    pub seconds: Option<f64>,
 }
 
 /// The formats; the first one that matches is used.
@@ -69,14 +71,25 @@ impl Recording {
     /// # Errors
     /// Those of [`Self::read`], and [`RecordingError::Map`] if the file lacks a column that the map names.
     pub fn read_with(path: &Path, map: Option<&ColumnMap>) -> Result<Self, RecordingError> {
-        Self::read_within(path, map, MOST_VALUES)
+        Self::read_within(path, map, (MOST_VALUES, None))
     }
 
-    fn read_within(path: &Path, map: Option<&ColumnMap>, most: usize) -> Result<Self, RecordingError> {
+    /// Reads a recording as [`Self::read_with`] does; but of one that is longer than `seconds`, only windows that are spread
+    /// evenly over the whole and last between half of that time and all of it together. The rest is read for its time alone
+    /// (see [`Self::left_out`]), so that a file of any length takes no more memory.
+    ///
+    /// # Errors
+    /// Those of [`Self::read_with`], for the rows in the windows.
+    pub fn read_windows(path: &Path, map: Option<&ColumnMap>, seconds: f64) -> Result<Self, RecordingError> {
+        Self::read_within(path, map, (MOST_VALUES, Some(seconds)))
+    }
+
+    fn read_within(path: &Path, map: Option<&ColumnMap>, most: (usize, Option<f64>)) -> Result<Self, RecordingError> {
         let input = Input::open(path)?;
         let options = Options {
             delimiter: map.and_then(ColumnMap::delimiter),
             topics: map.map_or(&[], ColumnMap::topics),
+            seconds: most.1,
         };
         let format = FORMATS.iter().find(|format| format.matches(&input));
         let format = format.ok_or_else(|| RecordingError::Read {
@@ -109,10 +122,15 @@ impl Recording {
                 ),
             });
         }
-        Self::of_table(Table::of_columns(columns), Path::new(name), map, MOST_VALUES)
+        Self::of_table(Table::of_columns(columns), Path::new(name), map, (MOST_VALUES, None))
     }
 
-    fn of_table(mut table: Table, path: &Path, map: Option<&ColumnMap>, most: usize) -> Result<Self, RecordingError> {
+    fn of_table(
+        mut table: Table,
+        path: &Path,
+        map: Option<&ColumnMap>,
+        (most, seconds): (usize, Option<f64>),
+    ) -> Result<Self, RecordingError> {
         let topics = map.map_or(&[] as &[String], ColumnMap::topics);
         let has_lines = table.has_lines;
         let header_error = |reason: String| RecordingError::Header {
@@ -136,11 +154,15 @@ impl Recording {
         if let Some(header) = header::doubled(&table.headers, &plan) {
             return Err(header_error(format!("there are two columns \"{header}\"; rename one")));
         }
-        let mut rows = Rows::new(path, has_lines, &plan, most, warnings);
+        // A format that holds all in memory has chosen the windows.
+        let seconds = seconds.filter(|_| table.left_out == 0.0);
+        let mut rows = Rows::new(path, has_lines, &plan, (most, seconds));
         while let Some(row) = table.rows.next()? {
             rows.take(&row)?;
         }
-        rows.finish(table.rows.warnings())
+        let mut recording = rows.finish(warnings, table.rows.warnings())?;
+        recording.left_out += table.left_out;
+        Ok(recording)
     }
 }
 

@@ -39,6 +39,8 @@ pub struct Gathered<'a> {
     pub warnings: Vec<Warning>,
     /// The second since 1970 from which the time is counted, if stamps are dates.
     pub epoch: Option<i64>,
+    /// The time that was read and is not kept (s).
+    pub left_out: f64,
 }
 
 impl Gathered<'_> {
@@ -105,6 +107,7 @@ impl Gathered<'_> {
             breaks: self.breaks,
             warnings: self.warnings,
             epoch: self.epoch,
+            left_out: self.left_out,
             origin: Some(origin),
         };
         wraps::unwrap(&mut recording);

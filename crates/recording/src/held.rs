@@ -91,6 +91,7 @@ fn picked(recording: &Recording, rows: &[usize]) -> Recording {
             .collect(),
         warnings: recording.warnings.clone(),
         epoch: recording.epoch,
+        left_out: recording.left_out,
         origin: recording.origin.clone(),
     }
 }

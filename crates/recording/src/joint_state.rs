@@ -1,9 +1,11 @@
 //! Messages `sensor_msgs/msg/JointState` of ROS 2, in CDR, and the table that the messages of a bag make.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use crate::RecordingError;
 use crate::Warning;
+use crate::bag_windows::{BagWindows, is_in};
 use crate::bytes::Bytes;
 use crate::input::Input;
 use crate::table::{Column, Table};
@@ -92,6 +94,8 @@ fn decode_body(mut body: Bytes<'_>) -> Option<JointState<'_>> {
 pub struct JointStates {
     topics: BTreeMap<String, Vec<Joint>>,
     messages: u64,
+    /// The windows that are kept, if not everything is.
+    windows: Option<BagWindows>,
 }
 
 #[derive(Debug)]
@@ -101,6 +105,14 @@ struct Joint {
 }
 
 impl JointStates {
+    /// None yet; of bags that last longer than `seconds` (s), windows of that time in all are kept.
+    pub fn new(seconds: Option<f64>) -> Self {
+        Self {
+            windows: seconds.map(BagWindows::new),
+            ..Self::default()
+        }
+    }
+
     /// The number of messages so far.
     pub fn messages(&self) -> u64 {
         self.messages
@@ -116,6 +128,17 @@ impl JointStates {
         let message =
             decode(data).map_err(|reason| format!("message {number} of joint states, in {topic}: {reason}"))?;
         let time = if message.stamp == 0 { logged } else { message.stamp };
+        if let Some(windows) = &mut self.windows {
+            let topics = &mut self.topics;
+            let keep = |spans: &[Range<i64>]| {
+                for series in topics.values_mut().flatten().flat_map(|joint| &mut joint.fields) {
+                    series.retain(|(time, _)| is_in(spans, *time));
+                }
+            };
+            if !windows.wants(time, keep) {
+                return Ok(());
+            }
+        }
         if !self.topics.contains_key(topic) {
             self.topics.insert(topic.to_owned(), Vec::new());
         }
@@ -198,6 +221,7 @@ impl JointStates {
             .map(|(name, values)| (name, Column::Numbers(kept(values))));
         let mut table = Table::of_columns(std::iter::once(("__time".to_owned(), stamps)).chain(columns).collect());
         table.warnings = warnings;
+        table.left_out = self.windows.as_ref().map_or(0.0, BagWindows::left_out);
         Ok(table)
     }
 }

@@ -5,11 +5,13 @@
 //! which the drive sampled; [`Quality`] describes the recording before anything is fitted to it.
 
 mod arrays;
+mod bag_windows;
 mod bytes;
 mod clock;
 mod column_map;
 mod csv_write;
 mod dialect;
+mod doubt;
 mod draft;
 mod error;
 mod format;
@@ -20,6 +22,7 @@ mod input;
 mod interpolate;
 mod joint_state;
 mod origin;
+mod parts;
 mod quality;
 mod regular;
 mod rows;
@@ -31,6 +34,7 @@ mod toml_error;
 mod units;
 mod warning;
 mod whole_file;
+mod windows;
 mod wraps;
 
 pub use column_map::ColumnMap;
@@ -81,6 +85,8 @@ pub struct Recording {
     /// The second since 1970 from which `time` is counted, if stamps are dates; `None` if the file has a clock of its
     /// own.
     pub epoch: Option<i64>,
+    /// The time that was recorded and is not held, where windows of a long file were read (s).
+    pub left_out: f64,
     /// The columns from which it was read; `None` if it was not read.
     pub origin: Option<Origin>,
 }

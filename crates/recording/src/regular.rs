@@ -63,6 +63,8 @@ pub struct RegularRecording {
     pub jitter_rms: f64,
     /// Distance of the stamps from the clock, largest (s).
     pub jitter_max: f64,
+    /// The time that was recorded and is not held (s).
+    pub left_out: f64,
 }
 
 impl RegularRecording {
@@ -197,6 +199,7 @@ impl Recording {
             has_clock: clock.regular,
             jitter_rms: clock.jitter.0,
             jitter_max: clock.jitter.1,
+            left_out: self.left_out,
         };
         Ok((regular, warnings))
     }
@@ -223,8 +226,8 @@ impl Recording {
                         .map(|stamp| (stamp - origin) / clock.period);
                     (places.collect(), origin)
                 };
-                // A restart of the clock was reported while reading.
-                if begun > 0 && !self.breaks.contains(&begun) {
+                // A restart of the clock was reported while reading, and between windows nothing is missing.
+                if begun > 0 && !self.breaks.contains(&begun) && self.left_out == 0.0 {
                     warnings.push(Warning::Gap {
                         from: self.time[begun - 1],
                         to: self.time[begun],

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use crate::doubt::{Doubt, FAR, missing, short, unusable};
 use crate::gathered::{Gathered, State};
-use crate::header::{Channel, Plan};
+use crate::header::Plan;
 use crate::stamp::Stamps;
 use crate::table::{Cell, Place, Row};
 use crate::thinned::Thinned;
@@ -32,6 +33,8 @@ pub struct Rows<'a> {
     /// The row that is being converted, and the previous one.
     row: Vec<f64>,
     before: Vec<f64>,
+    /// Whether the row before was read for its time alone.
+    is_left_out: bool,
     /// For each other column, whether all its cells are numbers so far.
     numeric: Vec<bool>,
     /// The state of each channel.
@@ -56,13 +59,18 @@ pub struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    /// An empty set of rows, of which at most `most` values are kept.
-    pub fn new(path: &'a Path, has_lines: bool, plan: &'a Plan, most: usize, warnings: Vec<Warning>) -> Self {
+    /// None yet, of which at most `most` values are kept, of a longer recording in windows of `seconds` in all if there are any.
+    pub fn new(path: &'a Path, has_lines: bool, plan: &'a Plan, (most, seconds): (usize, Option<f64>)) -> Self {
+        let values = Thinned::new(1 + plan.channels.len() + plan.others.len(), most);
         Self {
             path,
             has_lines,
             plan,
-            values: Thinned::new(1 + plan.channels.len() + plan.others.len(), most),
+            values: match seconds {
+                Some(seconds) => values.in_windows(seconds),
+                None => values,
+            },
+            is_left_out: false,
             row: Vec::new(),
             before: Vec::new(),
             numeric: vec![true; plan.others.len()],
@@ -70,7 +78,7 @@ impl<'a> Rows<'a> {
             in_run: 0,
             number: f64::NAN,
             runs: 1,
-            warnings,
+            warnings: Vec::new(),
             stamps: Stamps::default(),
             stamp: f64::NAN,
             first: f64::NAN,
@@ -101,13 +109,21 @@ impl<'a> Rows<'a> {
             self.first = stamp;
         } else if self.in_run > 0 && stamp <= self.stamp {
             if stamp == self.stamp {
-                self.duplicate(row);
+                if !self.is_left_out {
+                    self.duplicate(row);
+                }
                 return Ok(());
             }
             self.restart(row, stamp)?;
             begins = true;
         } else if self.in_run == 0 {
             self.first = stamp;
+        }
+        self.in_run = if begins { 1 } else { self.in_run + 1 };
+        self.stamp = stamp;
+        self.is_left_out = !self.values.wants(stamp + self.shift, begins);
+        if self.is_left_out {
+            return Ok(());
         }
         self.row.clear();
         self.row.push(stamp + self.shift);
@@ -127,9 +143,7 @@ impl<'a> Rows<'a> {
             }
             self.row.push(value.unwrap_or(f64::NAN));
         }
-        self.values.push(&self.row, begins);
-        self.in_run = if begins { 1 } else { self.in_run + 1 };
-        self.stamp = stamp;
+        self.values.push(&self.row);
         std::mem::swap(&mut self.row, &mut self.before);
         Ok(())
     }
@@ -282,8 +296,9 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// Makes the recording of all rows; `warnings` are those at the end of the table.
-    pub fn finish(mut self, warnings: Vec<Warning>) -> Result<Recording, RecordingError> {
+    /// The recording that the rows make; `before` are the warnings from before the rows, `warnings` those of the table's end.
+    pub fn finish(mut self, before: Vec<Warning>, warnings: Vec<Warning>) -> Result<Recording, RecordingError> {
+        self.warnings.splice(0..0, before);
         let path = self.path.to_owned();
         let rows = self.values.read();
         if rows < 2 {
@@ -336,6 +351,7 @@ impl<'a> Rows<'a> {
                 };
                 Some(missing(self.path, channel, *place, found.clone()))
             });
+        let left_out = self.values.left_out();
         let (columns, breaks, span) = self.values.finish();
         if let Some(span) = span {
             let kept = columns[0].len();
@@ -349,52 +365,12 @@ impl<'a> Rows<'a> {
             numeric: self.numeric,
             warnings: self.warnings,
             epoch: self.stamps.epoch(),
+            left_out,
         };
         let recording = gathered.into_recording();
         match lacking {
             Some(error) if recording.joints.is_empty() => Err(error),
             _ => Ok(recording),
         }
-    }
-}
-
-/// The description of a cell's content, and the remedy.
-type Doubt = (&'static str, &'static str);
-
-const FAR: Doubt = (
-    "far beyond what is measured",
-    "check its unit, or delete the row: gaps are dealt with",
-);
-
-/// The reason why the content of a cell is not a usable number.
-fn unusable(cell: Cell<'_>, remedy: &'static str) -> Doubt {
-    let comma = |cell: &[u8]| {
-        let text = String::from_utf8_lossy(cell);
-        text.contains(',') && Cell::Text(text.replacen(',', ".", 1).as_bytes()).number().is_some()
-    };
-    match cell {
-        Cell::Text(cell) if comma(cell) => ("a number with a decimal comma", "write numbers with a decimal point"),
-        _ => ("not a finite number", remedy),
-    }
-}
-
-/// The error of a missing required value in a column that has values.
-fn missing(path: &Path, channel: &Channel, place: Place, found: String) -> RecordingError {
-    RecordingError::Value {
-        path: path.to_owned(),
-        place,
-        column: channel.header.clone(),
-        found,
-        what: "not a finite number",
-        remedy: "delete the row: a row that is missing is a gap, and gaps are dealt with",
-    }
-}
-
-/// A number in scientific notation if it is very small.
-fn short(value: f64) -> String {
-    if value != 0.0 && value.abs() < 1e-9 {
-        format!("{value:e}")
-    } else {
-        value.to_string()
     }
 }

@@ -193,6 +193,8 @@ pub struct Table {
     pub rows: Box<dyn RowSource>,
     /// The warnings about the file before its first row.
     pub warnings: Vec<Warning>,
+    /// The time that was recorded and is not in the rows (s).
+    pub left_out: f64,
 }
 
 impl Table {
@@ -206,6 +208,7 @@ impl Table {
             headers,
             rows: Box::new(Held { columns, rows, next: 0 }),
             warnings: Vec::new(),
+            left_out: 0.0,
         }
     }
 }

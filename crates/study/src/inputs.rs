@@ -2,6 +2,7 @@
 
 mod epoch;
 mod joints;
+mod memory;
 
 use std::path::{Path, PathBuf};
 
@@ -39,7 +40,7 @@ impl Given {
 
     fn read(&self, map: Option<&ColumnMap>) -> Result<Recording, RecordingError> {
         match self {
-            Self::File(path) => Recording::read_with(path, map),
+            Self::File(path) => Recording::read_windows(path, map, diagnosis::WORTH_HOLDING),
             Self::Columns { name, columns } => Recording::of_columns(name, columns.clone(), map),
         }
     }
@@ -210,6 +211,7 @@ pub fn read(
             );
         }
         list.push(prepared);
+        memory::bound(&mut list);
     }
     epoch::share(&mut list);
     let training = || list.iter().filter(|recording| recording.role == Role::Train);
@@ -294,7 +296,7 @@ fn prepare(
             column_map: column_map.clone(),
         })
         .collect();
-    let regular = reordered(regular, order);
+    let regular = memory::without_unused(reordered(regular, order));
     if let Some(reason) = unusable(&regular) {
         bail!("{name}: {reason}");
     }

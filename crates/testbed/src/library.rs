@@ -9,6 +9,9 @@ use recording::nearest;
 pub use serial::serial_urdf;
 use study::Source;
 
+/// The largest number of scenarios that a message lists.
+const MOST_LISTED: usize = 20;
+
 /// The files are part of the program, so that it runs from any folder.
 const SCENARIOS: [(&str, &str); 5] = [
     ("taskA", include_str!("../../../scenarios/taskA.toml")),
@@ -52,10 +55,17 @@ pub fn find_scenario(name: &str) -> anyhow::Result<Source> {
                 .filter(|name| !SCENARIOS.iter().any(|(known, _)| known == name)),
         );
         let hint = nearest(name, &known).map_or(String::new(), |nearest| format!("did you mean {nearest}? "));
-        bail!(
-            "there is no scenario \"{name}\"; {hint}there are {}, or give the path of a .toml file",
-            known.join(", ")
-        );
+        let listed = known
+            .iter()
+            .take(MOST_LISTED)
+            .map(String::as_str)
+            .collect::<Vec<_>>()
+            .join(", ");
+        let more = match known.len().saturating_sub(MOST_LISTED) {
+            0 => String::new(),
+            more => format!(" and {more} more under scenarios/"),
+        };
+        bail!("there is no scenario \"{name}\"; {hint}there are {listed}{more}, or give the path of a .toml file");
     };
     let text = std::fs::read_to_string(&path).with_context(|| {
         format!(

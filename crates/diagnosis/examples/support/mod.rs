@@ -8,7 +8,7 @@ use recording::{Recording, RegularRecording};
 
 /// The recording in `file` on its regular clock, with its joints in the arm's order.
 pub fn read(arm: &Arm, file: &Path) -> Result<RegularRecording, Box<dyn Error>> {
-    let (mut recording, _) = Recording::read(file)?.regular()?;
+    let (mut recording, _) = Recording::read_windows(file, None, diagnosis::WORTH_HOLDING)?.regular()?;
     let names = arm.joints().iter().map(|joint| joint.name.clone());
     let places: Vec<usize> = names
         .map(|name| {

@@ -1,11 +1,15 @@
 //! Filtered recordings: positions, their derivatives and torques on a grid that is fine enough for nonlinear functions of them.
 
+use std::ops::Range;
+
 use arm::Arm;
+use rayon::prelude::*;
 use recording::RegularRecording;
 
-use crate::data::noise::{band_noise, white_noise};
+use crate::data::noise::{WhiteNoise, band_noise};
 use crate::data::signal::{Kernel, outputs};
 use crate::data::statistics::median;
+use crate::data::used::{Section, Used};
 use crate::thresholds::{
     CUTOFF, CUTOFF_PERIODS, HIGHEST_CUTOFF, LARGEST_CUTOFF, LEAST_CUTOFF, LEAST_CUTOFF_PERIODS, MOST_NOISE, STILL,
     WORTH_RAISING,
@@ -17,13 +21,6 @@ const WIDER: f64 = 3.0;
 const FINE: f64 = 8.0;
 /// Rows per period of the second cut-off.
 const ROWS: f64 = 2.5;
-/// The longest chunk (s); longer ones are cut, so that memory is bounded.
-const LONGEST: f64 = 60.0;
-/// The total duration that is used of training recordings, and of held-out recordings (s). Of longer ones, evenly spread
-/// windows are used.
-const MOST_SECONDS: f64 = 900.0;
-/// The length of these windows, if the recording allows (s).
-const WINDOW: f64 = 20.0;
 /// The golden ratio; the fractional parts of its multiples are spread evenly.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 /// The largest number of rows; beyond it, rows are thinned out.
@@ -143,7 +140,9 @@ impl Motions {
     /// the positions would be a large part of the torques of `arm`.
     pub fn new(inputs: &[Input<'_>], cutoff: Option<f64>, arm: &Arm) -> Self {
         let wanted = cutoff.unwrap_or(CUTOFF);
-        let mut motions = Self::at(inputs, wanted);
+        let white: Vec<WhiteNoise> = inputs.iter().map(|input| WhiteNoise::of(input.recording)).collect();
+        let at = |cutoff: f64| Self::at(inputs, &white, cutoff);
+        let mut motions = at(wanted);
         if motions.cutoff < wanted {
             motions.remarks.push(format!(
                 "the lowest sampling rate limits the filter to {:.1} Hz instead of {wanted:.0} Hz; faster effects are not detectable",
@@ -156,7 +155,7 @@ impl Motions {
         let tempo = median(motions.tempo.iter().copied().filter(|&tempo| tempo > 0.0).collect());
         let quick = (CUTOFF_PERIODS * tempo).min(HIGHEST_CUTOFF);
         if quick > WORTH_RAISING * motions.cutoff {
-            motions = Self::at(inputs, quick);
+            motions = at(quick);
         }
         let (share, joint) = motions.noise_share(arm);
         if share > MOST_NOISE {
@@ -164,7 +163,7 @@ impl Motions {
             let quiet = motions.cutoff * (MOST_NOISE / share).powf(0.4);
             let least = LEAST_CUTOFF.max(LEAST_CUTOFF_PERIODS * tempo).min(motions.cutoff);
             let before = motions.cutoff;
-            motions = Self::at(inputs, quiet.max(least));
+            motions = at(quiet.max(least));
             motions.remarks.push(format!(
                 "filtered at {:.1} Hz: at {before:.0} Hz, the noise of the positions alone would be {share:.2} times the torque of {}",
                 motions.cutoff,
@@ -174,22 +173,14 @@ impl Motions {
         motions
     }
 
-    fn at(inputs: &[Input<'_>], wanted: f64) -> Self {
+    fn at(inputs: &[Input<'_>], white: &[WhiteNoise], wanted: f64) -> Self {
         let slowest = inputs
             .iter()
             .map(|input| 1.0 / input.recording.period)
             .fold(f64::INFINITY, f64::min);
         let cutoff = wanted.min(LARGEST_CUTOFF * slowest);
-        let seconds = |held_out: bool| -> f64 {
-            let of_role = inputs.iter().filter(|input| input.held_out == held_out);
-            // An empty sum is −0, and a division by it gives −∞.
-            0.0 + of_role
-                .map(|input| input.recording.len() as f64 * input.recording.period)
-                .sum::<f64>()
-        };
-        let used = |held_out: bool| (MOST_SECONDS / seconds(held_out)).min(1.0);
-        let total: f64 = [false, true].map(|role| used(role) * seconds(role)).iter().sum();
-        let thin = (total * ROWS * cutoff / MOST_ROWS).max(1.0);
+        let used = Used::of(inputs);
+        let thin = (used.seconds() * ROWS * cutoff / MOST_ROWS).max(1.0);
         let has_before = inputs.iter().any(|input| input.before);
         // Recordings from before get a clock of their own: the change happened between them and the others.
         let overlap = if has_before { None } else { overlapping(inputs) };
@@ -202,16 +193,7 @@ impl Motions {
             one_clock: overlap.is_none() && !has_before,
             begins: f64::INFINITY,
             changed_at: None,
-            remarks: [(false, "training"), (true, "held-out")]
-                .into_iter()
-                .filter(|&(role, _)| seconds(role) > MOST_SECONDS)
-                .map(|(role, what)| {
-                    format!(
-                        "of the {:.0} s of {what} recordings, {MOST_SECONDS:.0} s are used, in evenly spaced windows of {WINDOW:.0} s",
-                        seconds(role)
-                    )
-                })
-                .collect(),
+            remarks: used.remarks(),
         };
         if let Some([a, b]) = overlap {
             motions.remarks.push(format!(
@@ -230,9 +212,14 @@ impl Motions {
             if has_before && !input.before && motions.changed_at.is_none() {
                 motions.changed_at = Some(end - 0.5 * BETWEEN);
             }
-            end += recording.len() as f64 * recording.period + BETWEEN;
+            // Between windows is time, too.
+            end += if recording.left_out > 0.0 {
+                recording.time(recording.len() - 1) - recording.time(0)
+            } else {
+                recording.held()
+            } + BETWEEN;
             motions.begins = motions.begins.min(shift + recording.time(0));
-            motions.add(index, input, used(input.held_out), thin, shift);
+            motions.add(index, (input, &white[index]), &used.sections(input), thin, shift);
         }
         motions.tempo = motions.tempo();
         motions
@@ -268,8 +255,15 @@ impl Motions {
             .collect()
     }
 
-    /// Adds the part `used` of a recording.
-    fn add(&mut self, index: usize, input: &Input<'_>, used: f64, thin: f64, shift: f64) {
+    /// Adds the windows in `sections` of a recording.
+    fn add(
+        &mut self,
+        index: usize,
+        (input, white): (&Input<'_>, &WhiteNoise),
+        sections: &[Section],
+        thin: f64,
+        shift: f64,
+    ) {
         let recording = input.recording;
         let rate = 1.0 / recording.period;
         let first = Kernel::new((WIDER * self.cutoff).min(LARGEST_CUTOFF * rate), recording.period);
@@ -277,60 +271,54 @@ impl Motions {
         let period = recording.period * decimation as f64;
         let kernel = Kernel::new(self.cutoff, period);
         let stride = (thin / (period * ROWS * self.cutoff)).round().max(1.0) as usize;
-        for segment in &recording.segments {
-            let longest = if used < 1.0 { WINDOW / used } else { LONGEST };
-            let most = ((longest / recording.period) as usize).max(1);
-            let pieces = segment.ticks.len().div_ceil(most).max(1);
-            let length = segment.ticks.len().div_ceil(pieces);
-            for piece in 0..pieces {
-                let from = segment.ticks.start + piece * length;
-                let to = (from + length).min(segment.ticks.end);
-                // The position of the window in its section varies (by the golden ratio), because sections may repeat one
-                // motion.
-                let kept = (used * (to - from) as f64).ceil() as usize;
-                let place = (GOLDEN * self.chunks.len() as f64).fract();
-                let from = from + (place * (to - from - kept) as f64) as usize;
-                let to = from + kept;
-                if outputs(outputs(to - from, first.reach(), decimation), kernel.reach(), stride) == 0 {
-                    continue;
-                }
-                let each = |signal: &[Vec<f64>], filter: fn(&Kernel, &[f64], usize) -> Vec<f64>| -> Vec<Vec<f64>> {
-                    signal
-                        .iter()
-                        .map(|values| filter(&first, &values[from..to], decimation))
-                        .collect()
-                };
-                self.chunks.push(Chunk {
-                    recording: index,
-                    start: shift + recording.time(from) + first.reach() as f64 * recording.period,
-                    period,
-                    q: each(&recording.q, Kernel::smooth),
-                    qd: each(&recording.q, Kernel::first),
-                    qdd: each(&recording.q, Kernel::second),
-                    tau: each(&recording.tau, Kernel::smooth),
-                    kernel: kernel.clone(),
-                    stride,
-                });
+        let mut windows: Vec<Range<usize>> = Vec::new();
+        for section in sections {
+            // The position of the window in its section varies (by the golden ratio), because sections may repeat one
+            // motion.
+            let free = section.ticks.len() - section.used;
+            let place = (GOLDEN * (self.chunks.len() + windows.len()) as f64).fract();
+            let from = section.ticks.start + (place * free as f64) as usize;
+            let window = from..from + section.used;
+            if outputs(outputs(window.len(), first.reach(), decimation), kernel.reach(), stride) > 0 {
+                windows.push(window);
             }
         }
+        let chunk = |window: &Range<usize>| {
+            let each = |signal: &[Vec<f64>], filter: fn(&Kernel, &[f64], usize) -> Vec<f64>| -> Vec<Vec<f64>> {
+                let filtered = signal
+                    .iter()
+                    .map(|values| filter(&first, &values[window.clone()], decimation));
+                filtered.collect()
+            };
+            Chunk {
+                recording: index,
+                start: shift + recording.time(window.start) + first.reach() as f64 * recording.period,
+                period,
+                q: each(&recording.q, Kernel::smooth),
+                qd: each(&recording.q, Kernel::first),
+                qdd: each(&recording.q, Kernel::second),
+                tau: each(&recording.tau, Kernel::smooth),
+                kernel: kernel.clone(),
+                stride,
+            }
+        };
+        self.chunks.par_extend(windows.par_iter().map(chunk));
         let both = Kernel::new(
             1.0 / (1.0 / self.cutoff.powi(2) + (first.width() / kernel.width() / self.cutoff).powi(2)).sqrt(),
             recording.period,
         );
         let (smooth, second) = both.noise_gains();
         let slope = first.first_noise_gain();
-        let noise = |signal: &Vec<f64>| white_noise(signal, recording);
+        let acceleration = recording.q.par_iter().zip(&white.q);
         self.sources.push(SourceRecording {
             name: input.name.to_owned(),
             held_out: input.held_out,
             shift,
-            torque_noise: recording.tau.iter().map(|tau| smooth * noise(tau)).collect(),
-            acceleration_noise: recording
-                .q
-                .iter()
-                .map(|q| second * noise(q).max(band_noise(q, recording, self.cutoff)))
+            torque_noise: white.tau.iter().map(|noise| smooth * noise).collect(),
+            acceleration_noise: acceleration
+                .map(|(q, noise)| second * noise.max(band_noise(q, recording, self.cutoff)))
                 .collect(),
-            velocity_noise: recording.q.iter().map(|q| slope * noise(q)).collect(),
+            velocity_noise: white.q.iter().map(|noise| slope * noise).collect(),
         });
     }
 

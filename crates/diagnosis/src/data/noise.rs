@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use arm::{Arm, Workspace};
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 use recording::RegularRecording;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
@@ -55,9 +56,33 @@ impl Motions {
     }
 }
 
+/// The standard deviations of the white noise of a recording's signals, one per joint.
+pub struct WhiteNoise {
+    /// Of the positions (rad or m).
+    pub q: Vec<f64>,
+    /// Of the torques (N m or N).
+    pub tau: Vec<f64>,
+}
+
+impl WhiteNoise {
+    /// The noise of `recording`.
+    pub fn of(recording: &RegularRecording) -> Self {
+        let of = |signals: &[Vec<f64>]| {
+            signals
+                .par_iter()
+                .map(|signal| white_noise(signal, recording))
+                .collect()
+        };
+        Self {
+            q: of(&recording.q),
+            tau: of(&recording.tau),
+        }
+    }
+}
+
 /// The standard deviation of a signal's white noise: its third differences have 20 times the variance. Of a signal that is held
 /// for several samples, one sample each is used.
-pub fn white_noise(signal: &[f64], recording: &RegularRecording) -> f64 {
+fn white_noise(signal: &[f64], recording: &RegularRecording) -> f64 {
     let mut squares = Vec::new();
     for segment in &recording.segments {
         let values = &signal[segment.ticks.clone()];
@@ -77,7 +102,12 @@ pub fn white_noise(signal: &[f64], recording: &RegularRecording) -> f64 {
     // The mean of the lower nine tenths, because jumps (a reversal, a contact) are no noise. For a normal variable, the mean
     // of the squares up to their 90 % quantile is 0.6245 of the variance.
     let keep = (squares.len() * 9 / 10).max(1);
-    squares.sort_by(f64::total_cmp);
+    if keep < squares.len() {
+        squares.select_nth_unstable_by(keep, f64::total_cmp);
+        squares.truncate(keep);
+    }
+    // In order, so that the sum does not depend on how they were parted.
+    squares.sort_unstable_by(f64::total_cmp);
     (squares[..keep].iter().sum::<f64>() / keep as f64 / 0.6245).sqrt()
 }
 

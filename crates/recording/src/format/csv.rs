@@ -76,6 +76,7 @@ impl Format for Csv {
             headers,
             rows: Box::new(rows),
             warnings: Vec::new(),
+            left_out: 0.0,
         })
     }
 }

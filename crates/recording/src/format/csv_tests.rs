@@ -254,7 +254,7 @@ fn a_file_of_many_rows_is_read_as_means() {
         text += &format!("{t},{},{},{mode}\n", t.sin(), t.cos());
     }
     let path = write(&folder, &text);
-    let read = Recording::read_within(&path, None, 4 * 1000).expect("it reads");
+    let read = Recording::read_within(&path, None, (4 * 1000, None)).expect("it reads");
     assert_eq!(read.len(), 625);
     for (row, t) in read.time.iter().enumerate() {
         assert!((read.q[0][row] - t.sin()).abs() < 1e-5 && (read.tau[0][row] - t.cos()).abs() < 1e-5);
@@ -273,7 +273,7 @@ fn a_file_of_many_rows_is_read_as_means() {
     assert!(read.others.is_empty());
     // A bad value is found wherever it stands.
     std::fs::write(&path, text.replace("4.9,", "4.9x,")).expect("it writes");
-    let error = Recording::read_within(&path, None, 4 * 1000).expect_err("it is refused");
+    let error = Recording::read_within(&path, None, (4 * 1000, None)).expect_err("it is refused");
     assert!(error.to_string().contains("r.csv:4902"), "{error}");
 }
 

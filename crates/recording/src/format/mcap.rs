@@ -28,7 +28,7 @@ impl Format for Mcap {
     }
 
     fn read(&self, input: Input, options: &Options<'_>) -> Result<Table, RecordingError> {
-        let mut states = JointStates::default();
+        let mut states = JointStates::new(options.seconds);
         let warning = read_into(&input, options, &mut states)?;
         let mut table = states.into_table(&input, NAME, options.topics)?;
         table.warnings.extend(warning);

@@ -26,7 +26,7 @@ impl Format for Rosbag2 {
     }
 
     fn read(&self, input: Input, options: &Options<'_>) -> Result<Table, RecordingError> {
-        let mut states = JointStates::default();
+        let mut states = JointStates::new(options.seconds);
         if !input.is_folder() {
             database(&input, options, &mut states)?;
             return states.into_table(&input, NAME, options.topics);

@@ -19,8 +19,6 @@ pub struct Stretch {
     pub gram: Gram,
     /// The moving rows.
     rows: Vec<usize>,
-    /// The columns on them, one after the other.
-    packed: Vec<f64>,
 }
 
 impl Stretch {
@@ -43,7 +41,6 @@ impl Stretch {
                 recording,
                 gram: Gram::default(),
                 rows: rows.to_vec(),
-                packed: Vec::new(),
             }));
         }
         stretches
@@ -56,13 +53,20 @@ impl Stretch {
         let pick = |signal: &[f64]| -> Vec<f64> { self.rows.iter().map(|&row| signal[row]).collect() };
         let y = pick(y);
         self.gram.square = y.iter().map(|y| y * y).sum();
+        if known == total {
+            return;
+        }
         for x in &x[known..] {
             let x = pick(x);
             self.gram.right.push(x.iter().zip(&y).map(|(x, y)| x * y).sum());
             self.gram.sums.push(x.iter().sum());
-            self.packed.extend(x);
         }
-        let all = MatRef::from_column_major_slice(&self.packed, y.len(), total);
+        // The columns one after the other, for this call only: kept, they would take as much memory as the table.
+        let mut packed = Vec::with_capacity(total * y.len());
+        for x in x {
+            packed.extend(self.rows.iter().map(|&row| x[row]));
+        }
+        let all = MatRef::from_column_major_slice(&packed, y.len(), total);
         for from in (known..total).step_by(TOGETHER) {
             let to = total.min(from + TOGETHER);
             let mut product = Mat::zeros(to, to - from);

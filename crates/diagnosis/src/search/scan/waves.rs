@@ -5,13 +5,15 @@ use std::f64::consts::TAU;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
-use super::{explained_by_two, peaks, power, samples};
+use super::{Sample, explained_by_two, peaks, power, samples};
 use crate::data::motion::Motions;
 use crate::regression::table::Table;
 use crate::thresholds::{WAVE_CUTOFF, WAVE_FREQUENCIES};
 
 /// The number of bins per period of the highest frequency; each sample goes to the nearest bin.
 const BINS: f64 = 8.0;
+/// The longest time in which waves are looked for (s): the transform grows with it, and recordings may be days apart.
+const LONGEST: f64 = 10_000.0;
 
 /// The frequencies (rad/s) of sinusoids in time that explain most of the residual of `joint`: peaks, best first.
 ///
@@ -25,11 +27,12 @@ pub fn waves(
     fitted: &[bool],
     most: usize,
 ) -> Vec<f64> {
-    let samples = samples(table, motions, joint, residual, fitted);
-    let (Some(first), Some(last)) = (samples.first(), samples.last()) else {
+    let samples = densest(samples(table, motions, joint, residual, fitted));
+    let Some(first) = samples.iter().map(|sample| sample.time).reduce(f64::min) else {
         return Vec::new();
     };
-    let span = (last.time - first.time).max(1.0);
+    let last = samples.iter().fold(first, |last, sample| last.max(sample.time));
+    let span = (last - first).max(1.0);
     let (low, high) = (
         TAU * WAVE_FREQUENCIES.0,
         TAU * WAVE_FREQUENCIES.1.min(WAVE_CUTOFF * motions.cutoff),
@@ -44,7 +47,7 @@ pub fn waves(
     // Residuals and ones in one transform: both are real.
     let mut bins = vec![Complex::new(0.0, 0.0); size];
     for sample in &samples {
-        bins[(((sample.time - first.time) / bin).round() as usize).min(size - 1)] += Complex::new(sample.residual, 1.0);
+        bins[(((sample.time - first) / bin).round() as usize).min(size - 1)] += Complex::new(sample.residual, 1.0);
     }
     FftPlanner::new().plan_fft_forward(size).process(&mut bins);
     let step = TAU / (size as f64 * bin);
@@ -65,4 +68,42 @@ pub fn waves(
             ((omega * sample.time).sin(), (omega * sample.time).cos())
         })
     })
+}
+
+/// All samples, or those of the [`LONGEST`] time that has the most.
+fn densest(samples: Vec<Sample>) -> Vec<Sample> {
+    let mut times: Vec<f64> = samples.iter().map(|sample| sample.time).collect();
+    times.sort_by(f64::total_cmp);
+    let count = |from: usize| times.partition_point(|time| *time <= times[from] + LONGEST) - from;
+    // Of equal ones, the first.
+    let Some(from) = (0..times.len()).rev().max_by_key(|&from| count(from)) else {
+        return samples;
+    };
+    let span = times[from]..=times[from] + LONGEST;
+    samples
+        .into_iter()
+        .filter(|sample| span.contains(&sample.time))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_days_the_densest_hours_are_searched() {
+        let at = |time: f64| Sample {
+            time,
+            q: 0.0,
+            qd: 0.0,
+            residual: 1.0,
+        };
+        let day = 86_400.0;
+        let times = [0.0, 10.0, day, day + 10.0, day + 9000.0, 400.0 * day];
+        let kept: Vec<f64> = densest(times.map(at).into()).iter().map(|sample| sample.time).collect();
+        assert_eq!(kept, times[2..5]);
+        let short = [5.0, 3.0, 9000.0];
+        let kept: Vec<f64> = densest(short.map(at).into()).iter().map(|sample| sample.time).collect();
+        assert_eq!(kept, short);
+    }
 }
