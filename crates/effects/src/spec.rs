@@ -258,6 +258,9 @@ pub struct Spec {
     pub is_simple: bool,
     /// Whether its form is certain, because it follows from rigid-body dynamics.
     pub is_certain_in_form: bool,
+    /// The evidence that it must bring beside the correction of all inertial parameters that is best without it (nats); `None` if
+    /// that is not asked.
+    pub least_beside_inertials: Option<f64>,
     /// Whether it may be present in one recording only.
     pub is_passing: bool,
     /// Whether residuals suggest its forms; they are suggested again when more is known.
@@ -318,6 +321,7 @@ impl Spec {
         is_friction: false,
         is_simple: false,
         is_certain_in_form: false,
+        least_beside_inertials: None,
         is_passing: false,
         is_suggested: false,
         may_be_inertial: false,

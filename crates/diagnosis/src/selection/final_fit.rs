@@ -16,9 +16,7 @@ use crate::search::study::Study;
 use crate::selection::judge::{self, Selection};
 use crate::selection::naming::{Named, name};
 use crate::selection::predict::{augmented, errors};
-use crate::thresholds::{
-    BESIDE_WORTHLESS_URDF, HOPELESS, LEAST_FINAL_SHARE, LEAST_UNDECIDED, PARTLY, UNDECIDED_NATS, WORTHLESS_URDF,
-};
+use crate::thresholds::{HOPELESS, LEAST_FINAL_SHARE, LEAST_UNDECIDED, PARTLY, UNDECIDED_NATS};
 
 /// Fits the named effects about the arm with them, with the rows near reversals. Removes effects that increase a joint's
 /// held-out error, that do not reduce it, or whose size may be zero.
@@ -182,23 +180,26 @@ fn unclear(study: &Study, judged: &Selection, resampled: &Resampled) -> Option<(
     Some((weakest.candidate, contradicted(weakest)))
 }
 
-/// The weakest effect whose name is as likely wrong as right: a small one in whose place another explains nearly as much, or one
-/// that wrong inertials resemble, found with little evidence where the inertials are so wrong that their prior says little. Or one
-/// that is nothing in the final fit.
-fn undecided(study: &Study, judged: &Selection) -> Option<usize> {
+/// The weakest effect whose name is as likely wrong as right: a small one in whose place another explains nearly as much; one that
+/// wrong inertials resemble, with little evidence beside the background that is best without it; or one that is nothing in the final
+/// fit.
+fn undecided(study: &mut Study, judged: &Selection) -> Option<usize> {
     let products = study.training_products();
-    let problem = study.problem(&products);
-    let is_worthless = study.strengths.common() > WORTHLESS_URDF;
-    let is_undecided = |member: &&judge::Member| {
-        let hypothesis = study.candidates[member.candidate].hypothesis;
-        let is_doubtful = is_worthless && hypothesis.is_certain_in_form() && member.evidence < BESIDE_WORTHLESS_URDF;
-        let is_tiny = !hypothesis.is_baseline() && !hypothesis.is_passing() && member.share() < LEAST_FINAL_SHARE;
-        let is_small = !hypothesis.is_friction() && member.share() < LEAST_UNDECIDED;
-        let margin = || standing(study, &problem, &judged.named, member.candidate).margin;
-        is_doubtful || is_tiny || is_small && margin() < UNDECIDED_NATS
-    };
     let mut members: Vec<&judge::Member> = judged.members.iter().collect();
     members.sort_by(|a, b| a.evidence.total_cmp(&b.evidence));
+    let is_undecided = |member: &&judge::Member| {
+        let hypothesis = study.candidates[member.candidate].hypothesis;
+        let is_tiny = !hypothesis.is_baseline() && !hypothesis.is_passing() && member.share() < LEAST_FINAL_SHARE;
+        let is_small = !hypothesis.is_friction() && member.share() < LEAST_UNDECIDED;
+        let margin = || standing(study, &study.problem(&products), &judged.named, member.candidate).margin;
+        if is_tiny || is_small && margin() < UNDECIDED_NATS {
+            return true;
+        }
+        hypothesis
+            .spec()
+            .least_beside_inertials
+            .is_some_and(|least| study.evidence_beside_best_background(&judged.named, member.candidate) < least)
+    };
     let undecided = members.into_iter().find(is_undecided)?;
     Some(undecided.candidate)
 }

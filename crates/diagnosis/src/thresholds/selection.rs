@@ -37,12 +37,6 @@ pub const LEAST_UNDECIDED: f64 = 0.03;
 pub const UNDECIDED_NATS: f64 = 2.0;
 /// The least share of an effect in the joint's torque in the final fit, where the background may have taken most of it.
 pub const LEAST_FINAL_SHARE: f64 = 0.01;
-/// The strength of the background of inertials beyond which the URDF says little about them. Source: the prior is the second-order
-/// form of a distance between bodies, which holds for relative changes well below one.
-pub const WORTHLESS_URDF: f64 = 1.0;
-/// The evidence that an effect that resembles wrong inertials must have beside such a URDF (nats). Source: simulated cases with URDFs
-/// wrong by 30 %; false encoder offsets had 14 to 17, true ones more than 100.
-pub const BESIDE_WORTHLESS_URDF: f64 = 30.0;
 /// No further search is made once so many names were refused by the final fit.
 pub const MOST_REFUSED: usize = 3;
 /// A time for whose sake the fit is so much worse is outside the 95 % interval of an onset (nats). Source: half the square of

@@ -60,6 +60,11 @@ fn relations() -> String {
                 .iter()
                 .map(|(name, part)| format!("exceeds {part} of `{name}`")),
         );
+        if let Some(nats) = spec.least_beside_inertials {
+            relations.push(format!(
+                "brings {nats} nats beside the best correction of all inertial parameters"
+            ));
+        }
         if let Some(multiple) = spec.least_beside_residual {
             relations.push(format!("exceeds {multiple} times the structured residual"));
         }

@@ -28,6 +28,8 @@ static SPEC: Spec = Spec {
     main: &["angle"],
     is_certain_in_form: true,
     may_be_inertial: true,
+    // As for an encoder offset; injected ones had 175 nats and more.
+    least_beside_inertials: Some(60.0),
     is_behind_the_drive: true,
     experiment: Some(Experiment {
         rank: 7,

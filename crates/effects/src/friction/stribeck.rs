@@ -67,6 +67,10 @@ pub fn velocity(terms: &[Term]) -> Option<f64> {
     Some(term.sizes[0])
 }
 
+/// The largest Stribeck velocity (rad/s or m/s). Published ones of robot joints are 0.01 to 0.2 rad/s, those of simulated cases at most
+/// 0.3; friction that falls over a larger speed is the form of the viscous friction.
+const FASTEST: f64 = 0.5;
+
 /// The least Coulomb friction of a joint in motion, as a part of the additional breakaway friction.
 const LEAST_COULOMB: f64 = 0.1;
 
@@ -94,7 +98,8 @@ impl EffectKind for StribeckFriction {
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
         let (coulomb, falling) = (fitted.value(0), fitted.value(1));
-        falling > 0.0 && coulomb > LEAST_COULOMB * falling && fades(fitted) && falls(fitted)
+        let is_slow = fitted.term(1).sizes[0] <= FASTEST;
+        is_slow && falling > 0.0 && coulomb > LEAST_COULOMB * falling && fades(fitted) && falls(fitted)
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {

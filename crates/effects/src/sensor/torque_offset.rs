@@ -31,6 +31,8 @@ static SPEC: Spec = Spec {
     is_simple: true,
     is_certain_in_form: true,
     may_be_inertial: true,
+    // A false one had 12 nats in simulated cases with URDFs wrong by 30 %, the smallest injected ones 29.
+    least_beside_inertials: Some(25.0),
     least_beside_residual: Some(1.0),
     against: Against::Position,
     experiment: Some(KNOWN_LOAD),

@@ -234,6 +234,24 @@ impl Study {
         chosen
     }
 
+    /// The evidence for `member` of `chosen` beside the background that is best without it (nats): an effect that wrong inertials
+    /// resemble lets the background be smaller, which must not speak for it.
+    pub fn evidence_beside_best_background(&mut self, chosen: &Chosen, member: usize) -> f64 {
+        let bare = self.bare_products(|r| self.fitted[r]);
+        let kept = self.strengths.clone();
+        let products = bare.with_background(self.background());
+        let mut without = self.problem(&products).without(chosen, member);
+        for _ in 0..MOST_MOVES {
+            let Some((strengths, next)) = self.strengthened(&bare, &without, self.strengths.neighbours()) else {
+                break;
+            };
+            self.strengths = strengths;
+            without = next;
+        }
+        self.strengths = kept;
+        without.score - chosen.score
+    }
+
     /// `chosen` with another body of a link in the place of the effects on its joint that may together imitate it: a scale of
     /// the link and a spring on a lever resemble a shifted centre of mass. Effects that are clearly better stay.
     pub fn without_imitations(&mut self, mut chosen: Chosen) -> Chosen {
