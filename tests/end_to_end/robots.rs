@@ -112,7 +112,7 @@ fn the_arm_of_a_branching_robot_is_the_recorded_one_or_chosen() {
         "--base column --tip fore (2 joints: shoulder … elbow) or --base floor --tip fore (3 joints: turn … elbow)";
     says(
         &case.sandbox.refuse(&conceal),
-        &["--robot robot.urdf", "2 chains", flags],
+        &["--robot: robot.urdf:1: ", "2 chains", flags],
     );
     let chosen = [&conceal[..], &["--tip", "fore", "--lock", "swing=0.5"]].concat();
     case.sandbox.succeed(&chosen);

@@ -185,32 +185,6 @@ fn stribeck_friction() {
     );
 }
 
-/// Two dry frictions on one joint share one Coulomb level, which only one of them states: their torques add up.
-#[test]
-fn two_dry_frictions_on_a_joint_add_up() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
-        baseline_friction(motion, tau);
-        let speed = motion.qd[ELBOW];
-        let directional = if speed > 0.0 { 3.0 } else { -1.0 };
-        tau[ELBOW] += directional + 3.0 * (-(speed / 0.12).powi(2)).exp() * speed.signum();
-    };
-    let diagnosis = diagnosed(&trio(), &trio(), &concealed, Vec::new());
-    let number = |effect: &str, key: &str| {
-        let mut effects = diagnosis.effects.iter();
-        let found = effects.find(|found| found.spec().name == effect && found.joint() == Some("elbow"));
-        found.expect("it is found").number(key)
-    };
-    for (key, truth) in [("positive", 3.6), ("negative", 1.6)] {
-        let found = number("friction_asymmetry", key);
-        assert!((found / truth - 1.0).abs() < 0.1, "{key}: {found} instead of {truth}");
-    }
-    assert_eq!(number("stribeck_friction", "coulomb"), 0.0);
-    assert!((number("stribeck_friction", "breakaway") / 3.0 - 1.0).abs() < 0.25);
-    let again = diagnosed(&trio(), &trio(), &concealed, diagnosis.effects.clone());
-    assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
-    exports_what_it_reports(&diagnosis, &again);
-}
-
 #[test]
 fn spring() {
     let law = |m: &Motion| 9.0 * (m.q[SHOULDER] - 0.3);

@@ -2,7 +2,7 @@
 
 mod support;
 
-use support::{Motion, baseline_friction, diagnosed, sentences, trio};
+use support::{ELBOW, Motion, baseline_friction, diagnosed, sentences, trio};
 
 /// Friction that only reaches its level at some speed is not larger at standstill.
 #[test]
@@ -38,4 +38,30 @@ fn more_friction_in_the_held_out_recording_is_no_burst() {
     let diagnosis = diagnosed(&trio(), &trio(), &concealed, Vec::new());
     let left = &diagnosis.report.unexplained;
     assert!(left.iter().all(|left| left.time.is_empty()), "{left:?}");
+}
+
+/// Two dry frictions on one joint share one Coulomb level, which only one of them states: their torques add up.
+#[test]
+fn two_dry_frictions_on_a_joint_add_up() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        baseline_friction(motion, tau);
+        let speed = motion.qd[ELBOW];
+        let directional = if speed > 0.0 { 3.0 } else { -1.0 };
+        tau[ELBOW] += directional + 3.0 * (-(speed / 0.12).powi(2)).exp() * speed.signum();
+    };
+    let diagnosis = diagnosed(&trio(), &trio(), &concealed, Vec::new());
+    let number = |effect: &str, key: &str| {
+        let mut effects = diagnosis.effects.iter();
+        let found = effects.find(|found| found.spec().name == effect && found.joint() == Some("elbow"));
+        found.expect("it is found").number(key)
+    };
+    for (key, truth) in [("positive", 3.6), ("negative", 1.6)] {
+        let found = number("friction_asymmetry", key);
+        assert!((found / truth - 1.0).abs() < 0.1, "{key}: {found} instead of {truth}");
+    }
+    assert_eq!(number("stribeck_friction", "coulomb"), 0.0);
+    assert!((number("stribeck_friction", "breakaway") / 3.0 - 1.0).abs() < 0.25);
+    let again = diagnosed(&trio(), &trio(), &concealed, diagnosis.effects.clone());
+    assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
+    assert!(again.report.unexplained.is_empty(), "{:?}", again.report.unexplained);
 }
