@@ -195,10 +195,12 @@ fn undecided(study: &mut Study, judged: &Selection) -> Option<usize> {
         if is_tiny || is_small && margin() < UNDECIDED_NATS {
             return true;
         }
-        hypothesis
-            .spec()
-            .least_beside_inertials
-            .is_some_and(|least| study.evidence_beside_best_background(&judged.named, member.candidate) < least)
+        // Where most links are as the URDF says, one wrong link is the less likely explanation.
+        let Some(least) = hypothesis.spec().least_beside_inertials else {
+            return false;
+        };
+        let is_wrong = study.strengths.common() > 0.0;
+        is_wrong && study.evidence_beside_best_background(&judged.named, member.candidate) < least
     };
     let undecided = members.into_iter().find(is_undecided)?;
     Some(undecided.candidate)
