@@ -1,6 +1,7 @@
 //! The recordings of a diagnosis, checked before anything is fitted.
 
 mod epoch;
+mod independent;
 mod joints;
 mod memory;
 
@@ -11,6 +12,7 @@ use arm::Arm;
 use diagnosis::Doubt;
 use recording::{Column, ColumnMap, FindingKind, Quality, Recording, RecordingError, RegularRecording};
 
+use self::independent::Stretches;
 use self::joints::{order, reordered};
 use crate::notes::{Notes, shortened};
 use crate::{check, named};
@@ -72,6 +74,8 @@ pub struct Prepared {
     pub regular: RegularRecording,
     /// Its role.
     pub role: Role,
+    /// Some of its stretches, from before parts of it were left out.
+    stretches: Stretches,
     /// The second of a calendar that its time is counted from.
     epoch: Option<i64>,
     /// The column map that mends what does not fit the arm.
@@ -95,24 +99,6 @@ impl Role {
     fn is_fitted(self) -> bool {
         self != Self::HeldOut
     }
-}
-
-/// Whether `a` contains a moving stretch of `b`, sample for sample: a part of a recording under another name.
-fn overlap(a: &RegularRecording, b: &RegularRecording) -> bool {
-    const STRETCH: usize = 50;
-    let (Some(last), Some(first)) = (a.len().checked_sub(STRETCH), b.len().checked_sub(STRETCH)) else {
-        return false;
-    };
-    [1, 2, 3].into_iter().any(|quarter| {
-        let from = first * quarter / 4;
-        let moves = b.q.iter().any(|q| q[from] != q[from + STRETCH - 1]);
-        let same = |a: &[f64], b: &[f64], at: usize| a[at..at + STRETCH] == b[from..from + STRETCH];
-        moves
-            && (0..=last).any(|at| {
-                let mut pairs = a.q.iter().chain(&a.tau).zip(b.q.iter().chain(&b.tau));
-                pairs.all(|(a, b)| same(a, b, at))
-            })
-    })
 }
 
 /// The recordings to be read, the first of which has been read: its joints choose the arm.
@@ -191,7 +177,7 @@ pub fn read(
         // The same samples under another name.
         let twin = list.iter().find(|known| {
             let (a, b) = (&known.regular, &prepared.regular);
-            a.q == b.q && a.tau == b.tau
+            prepared.stretches.are_all_of(&known.stretches) || a.q == b.q && a.tau == b.tau
         });
         if let Some(twin) = twin {
             bail!(
@@ -201,7 +187,7 @@ pub fn read(
             );
         }
         let source = list.iter().find(|known| {
-            known.role.is_fitted() != prepared.role.is_fitted() && overlap(&known.regular, &prepared.regular)
+            known.role.is_fitted() != prepared.role.is_fitted() && prepared.stretches.are_in(&known.stretches)
         });
         if let Some(source) = source {
             bail!(
@@ -302,6 +288,7 @@ fn prepare(
     }
     Ok(Prepared {
         name,
+        stretches: Stretches::of(&regular),
         regular,
         role,
         epoch: recording.epoch,

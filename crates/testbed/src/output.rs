@@ -97,12 +97,15 @@ impl<'a> OutputFile<'a> {
         Self { option, path, endings }
     }
 
-    /// Refuses a name with the ending of another format, which other programs would read as that format. A name without an
-    /// ending is accepted, and so is an existing device or pipe.
+    /// Refuses a name with the ending of another format, which other programs would read as that format, and standard output
+    /// (`-`), which only JSON is written to. A name without an ending is accepted, and so is an existing device or pipe.
     ///
     /// # Errors
     /// If the name has another ending, with those that it may have.
     pub fn check_ending(&self) -> anyhow::Result<()> {
+        if self.path == Path::new("-") && self.option != "--json" {
+            bail!("{} -: only --json writes to standard output; name a file", self.option);
+        }
         let Some(ending) = self.path.extension().map(|ending| ending.to_string_lossy()) else {
             return Ok(());
         };

@@ -212,9 +212,9 @@ impl Motions {
             if has_before && !input.before && motions.changed_at.is_none() {
                 motions.changed_at = Some(end - 0.5 * BETWEEN);
             }
-            // Between windows is time, too.
-            end += if recording.left_out > 0.0 {
-                recording.time(recording.len() - 1) - recording.time(0)
+            // Pauses, and what is left out between windows, are time, too.
+            end += if recording.segments.len() > 1 {
+                recording.time(recording.len() - 1) - recording.time(0) + recording.period
             } else {
                 recording.held()
             } + BETWEEN;

@@ -114,7 +114,8 @@ fn variants(terms: &[Term], round: usize, mass: f64) -> Vec<Vec<Term>> {
 /// the best size may be far from its own: a torque limit far below the true one explains a part of a friction not yet found.
 fn first_sizes(study: &Study, member: usize) -> Vec<Vec<Term>> {
     let this = &study.candidates[member];
-    if sizes(&study.terms(member)).is_empty() {
+    let own = study.terms(member);
+    if sizes(&own).is_empty() || own.iter().any(|term| term.onset().is_some()) {
         return Vec::new();
     }
     let is_like = |c: &usize| {

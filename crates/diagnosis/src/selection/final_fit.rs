@@ -34,8 +34,8 @@ pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
         if judged.named.set.len() < before {
             continue;
         }
-        if let Some(undecided) = undecided(study, judged) {
-            drop_name(study, judged, undecided, "too small, or as likely another effect");
+        if let Some((undecided, rule)) = undecided(study, judged) {
+            drop_name(study, judged, undecided, rule);
             continue;
         }
         let resampled = resample(study, &judged.named);
@@ -183,27 +183,28 @@ fn unclear(study: &Study, judged: &Selection, resampled: &Resampled) -> Option<(
 /// The weakest effect whose name is as likely wrong as right: a small one in whose place another explains nearly as much; one that
 /// wrong inertials resemble, with little evidence beside the background that is best without it; or one that is nothing in the final
 /// fit.
-fn undecided(study: &mut Study, judged: &Selection) -> Option<usize> {
+fn undecided(study: &mut Study, judged: &Selection) -> Option<(usize, &'static str)> {
     let products = study.training_products();
     let mut members: Vec<&judge::Member> = judged.members.iter().collect();
     members.sort_by(|a, b| a.evidence.total_cmp(&b.evidence));
-    let is_undecided = |member: &&judge::Member| {
+    let mut rule = |member: &judge::Member| {
         let hypothesis = study.candidates[member.candidate].hypothesis;
-        let is_tiny = !hypothesis.is_baseline() && !hypothesis.is_passing() && member.share() < LEAST_FINAL_SHARE;
-        let is_small = !hypothesis.is_friction() && member.share() < LEAST_UNDECIDED;
+        if !hypothesis.is_baseline() && !hypothesis.is_passing() && member.share() < LEAST_FINAL_SHARE {
+            return Some("too small in the final fit");
+        }
         let margin = || standing(study, &study.problem(&products), &judged.named, member.candidate).margin;
-        if is_tiny || is_small && margin() < UNDECIDED_NATS {
-            return true;
+        if !hypothesis.is_friction() && member.share() < LEAST_UNDECIDED && margin() < UNDECIDED_NATS {
+            return Some("small, and another effect explains nearly as much in its place");
         }
         // Where most links are as the URDF says, one wrong link is the less likely explanation.
-        let Some(least) = hypothesis.spec().least_beside_inertials else {
-            return false;
-        };
         let is_wrong = study.strengths.common() > 0.0;
-        is_wrong && study.evidence_beside_best_background(&judged.named, member.candidate) < least
+        let least = hypothesis.spec().least_beside_inertials.filter(|_| is_wrong)?;
+        let evidence = study.evidence_beside_best_background(&judged.named, member.candidate);
+        (evidence < least).then_some("wrong inertials explain nearly as much in its place")
     };
-    let undecided = members.into_iter().find(is_undecided)?;
-    Some(undecided.candidate)
+    members
+        .into_iter()
+        .find_map(|member| Some((member.candidate, rule(member)?)))
 }
 
 /// Whether the intervals of all main parameters contain the value without effect. One clear parameter is sufficient.
