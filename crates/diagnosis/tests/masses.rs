@@ -144,7 +144,7 @@ fn new_payload(factors: [f64; 3], pause: f64) -> diagnosis::Parameter {
         panic!("{:?}", sentences(&diagnosis))
     };
     assert_eq!(payload.effect, "payload");
-    payload.parameters["mass"].clone()
+    payload.parameters["mass"]
 }
 
 /// Torque constants that are wrong by a few per cent are so for the torque of a new payload as well, so that no joint's torque
