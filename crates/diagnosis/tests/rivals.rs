@@ -135,15 +135,20 @@ fn dry_friction_that_stays_is_no_thermal_drift() {
     assert!(names(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
 }
 
-/// What is recorded is commanded. Where the drive gives no more, a position loop asks for far more than the motion needs.
+/// What is recorded is commanded. Where the drive gives no more than −`limit`, a position loop asks for far more than the motion
+/// needs.
+fn wind_up(tau: &mut f64, limit: f64) {
+    let missing = *tau + limit;
+    if missing < 0.0 {
+        *tau = 20.0 * missing - limit;
+    }
+}
+
 #[test]
 fn torque_saturation() {
     let concealed = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
-        let missing = tau[SHOULDER] + 30.0;
-        if missing < 0.0 {
-            tau[SHOULDER] = -30.0 + 20.0 * missing;
-        }
+        wind_up(&mut tau[SHOULDER], 30.0);
     };
     let diagnosis = check(&concealed, &[("torque_saturation", "shoulder")]);
     is_sized(&diagnosis, "torque_saturation", &[("limit", 30.0)], 0.05);
@@ -155,13 +160,9 @@ fn torque_saturation() {
 fn a_torque_limit_that_is_hardly_reached() {
     let concealed = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
-        let missing = tau[SHOULDER] + 32.0;
-        if missing < 0.0
-            && [10.0, 1006.0]
-                .iter()
-                .any(|from| (0.0..2.0).contains(&(motion.clock - from)))
-        {
-            tau[SHOULDER] = -32.0 + 20.0 * missing;
+        let begins = [10.0, 1006.0].iter();
+        if begins.clone().any(|from| (0.0..2.0).contains(&(motion.clock - from))) {
+            wind_up(&mut tau[SHOULDER], 32.0);
         }
     };
     let diagnosis = check(&concealed, &[("torque_saturation", "shoulder")]);

@@ -67,14 +67,15 @@ impl dyn Estimate + '_ {
         self.arm_joint().name.clone()
     }
 
-    /// Whether another effect on the candidate's joint has a column of one of these laws.
+    /// The part of the Coulomb level that the candidate states: none of it if an effect with one of these laws is on its joint.
     ///
     /// Dry frictions that act together on a joint share the column of its Coulomb level, and their torques add up, so that one of
     /// them states the level: warming friction, which is relative to it, then asymmetric, load-dependent and Stribeck friction. A
     /// friction that sets in later has a column of its own.
-    pub fn is_beside(&self, laws: &[&'static Law]) -> bool {
+    pub fn level_beside(&self, laws: &[&'static Law]) -> f64 {
         let is_there = |law: &&'static Law| self.on_joint(law).is_some();
-        self.terms().iter().all(|term| term.onset().is_none()) && laws.iter().any(is_there)
+        let is_stated = self.terms().iter().all(|term| term.onset().is_none()) && laws.iter().any(is_there);
+        if is_stated { 0.0 } else { 1.0 }
     }
 
     /// The index in a draw of the coefficient of the first column of a law, with or without an onset.

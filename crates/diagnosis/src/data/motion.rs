@@ -213,11 +213,7 @@ impl Motions {
                 motions.changed_at = Some(end - 0.5 * BETWEEN);
             }
             // Pauses, and what is left out between windows, are time, too.
-            end += if recording.segments.len() > 1 {
-                recording.time(recording.len() - 1) - recording.time(0) + recording.period
-            } else {
-                recording.held()
-            } + BETWEEN;
+            end += recording.time(recording.len() - 1) - recording.time(0) + recording.period + BETWEEN;
             motions.begins = motions.begins.min(shift + recording.time(0));
             motions.add(index, (input, &white[index]), &used.sections(input), thin, shift);
         }

@@ -72,8 +72,8 @@ impl EffectKind for FrictionAsymmetry {
         let (a, b) = (estimate.place(0)?, estimate.place(1)?);
         let effect = Effect::of(&Self).on(estimate.joint_name());
         // Beside an effect that states the level, it is what one direction has more than the other.
-        let is_beside = estimate.is_beside(&[&WARMING]);
-        let level = |draw: &[f64]| if is_beside { draw[b].abs() } else { draw[a] };
+        let is_whole = estimate.level_beside(&[&WARMING]) > 0.0;
+        let level = |draw: &[f64]| if is_whole { draw[a] } else { draw[b].abs() };
         let positive = estimate.note("positive", |draw| level(draw) + draw[b]);
         let negative = estimate.note("negative", |draw| level(draw) - draw[b]);
         Some(effect.with("positive", positive).with("negative", negative))

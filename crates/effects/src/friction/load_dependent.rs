@@ -70,11 +70,7 @@ impl EffectKind for LoadDependentFriction {
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        let level = if estimate.is_beside(&[&WARMING, &ABS_SIGN]) {
-            0.0
-        } else {
-            1.0
-        };
+        let level = estimate.level_beside(&[&WARMING, &ABS_SIGN]);
         let coulomb = estimate.coefficient("coulomb", estimate.place(0), level);
         let place = estimate.place(1)?;
         let gain = estimate.note_within(Systematic::OfArm, "gain", &|draw| draw[place]);

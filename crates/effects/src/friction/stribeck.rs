@@ -107,11 +107,7 @@ impl EffectKind for StribeckFriction {
         let second = *estimate.terms().get(1)?;
         let [velocity, exponent, ..] = second.sizes;
         let effect = Effect::of(&Self).on(estimate.joint_name());
-        let level = if estimate.is_beside(&[&WARMING, &ABS_SIGN, &LOAD_SIGN]) {
-            0.0
-        } else {
-            1.0
-        };
+        let level = estimate.level_beside(&[&WARMING, &ABS_SIGN, &LOAD_SIGN]);
         let coulomb = estimate.note("coulomb", |draw| level * draw[a]);
         let breakaway = estimate.note_within(Systematic::OfForm, "breakaway", &|draw| level * draw[a] + draw[b]);
         let velocity = estimate.size(Systematic::OfForm, "velocity", Size::Main, velocity);
