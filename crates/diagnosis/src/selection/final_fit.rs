@@ -188,13 +188,19 @@ fn undecided(study: &mut Study, judged: &Selection) -> Option<(usize, &'static s
     let mut members: Vec<&judge::Member> = judged.members.iter().collect();
     members.sort_by(|a, b| a.evidence.total_cmp(&b.evidence));
     let mut rule = |member: &judge::Member| {
-        let hypothesis = study.candidates[member.candidate].hypothesis;
+        let candidate = &study.candidates[member.candidate];
+        let hypothesis = candidate.hypothesis;
+        let is_mass_of_the_arm = hypothesis.is_wrong_mass() && candidate.joint.is_none();
         if !hypothesis.is_baseline() && !hypothesis.is_passing() && member.share() < LEAST_FINAL_SHARE {
             return Some("too small in the final fit");
         }
         let margin = || standing(study, &study.problem(&products), &judged.named, member.candidate).margin;
         if !hypothesis.is_friction() && member.share() < LEAST_UNDECIDED && margin() < UNDECIDED_NATS {
             return Some("small, and another effect explains nearly as much in its place");
+        }
+        // Some payload or common factor fits any wrong inertials better than nothing.
+        if is_mass_of_the_arm && margin() < UNDECIDED_NATS {
+            return Some("wrong inertials, or another effect, explain nearly as much in its place");
         }
         // Where most links are as the URDF says, one wrong link is the less likely explanation.
         let is_wrong = study.strengths.common() > 0.0;
