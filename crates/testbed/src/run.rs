@@ -1,6 +1,7 @@
 //! `testbed --scenario …`: one run, from the scenario to its folder.
 
 mod folder;
+mod left;
 mod observers;
 
 use std::path::{Path, PathBuf};
@@ -9,9 +10,9 @@ use anyhow::{Context, bail};
 use report::numbers::rounded;
 use report::terminal::table;
 use serde::Serialize;
-use torque::{Gp, Lengths, RigidBody, Samples, TorqueModel};
+use torque::{Gp, Lengths, Samples, TorqueModel};
 
-use crate::cli::{ChainArgs, LengthScalesArg, RunArgs};
+use crate::cli::{ChainArgs, RunArgs};
 use crate::interrupt;
 use crate::models::ModelKind;
 use crate::output::{self, OutputFile, Tracking};
@@ -158,7 +159,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     drop(deferred);
     let mut text = text(&scenario, kind, &sources, &summary, &outcome);
     if kind.learns() {
-        text += &hardly_learned(&scenario, &summary.torque_mse, length_scales)?;
+        text += &left::hardly_learned(&scenario, &summary.torque_mse, length_scales)?;
         text += &approximated(model.regressions());
     }
     text += &written.lines();
@@ -205,39 +206,6 @@ fn check_outputs(args: &RunArgs, scenario: &Scenario, sources: &[String]) -> any
 /// The model's torque error against the truth on the reference, as the paper measures it.
 fn torque_error(scenario: &Scenario, model: &dyn TorqueModel) -> anyhow::Result<Vec<f64>> {
     Ok(model.mean_squared_error(&training::own_samples(scenario)?))
-}
-
-/// The part of the rigid body's RMS torque error from which what is left of it is too much for a learned torque to be worth it.
-const HARDLY_LEARNED: f64 = 0.5;
-
-/// A sentence on the joints whose torque error, with the model's `errors` ((N m)²), is hardly below that of the rigid body alone.
-///
-/// # Errors
-/// If the reference cannot be sampled.
-fn hardly_learned(scenario: &Scenario, errors: &[f64], length_scales: LengthScalesArg) -> anyhow::Result<String> {
-    let rigid = torque_error(scenario, &RigidBody::new(scenario.nominal_arm()))?;
-    let left = |joint: usize| (errors[joint] / rigid[joint]).sqrt();
-    let joints: Vec<String> = (0..errors.len())
-        .filter(|&joint| rigid[joint] > 0.0 && left(joint) > HARDLY_LEARNED)
-        .map(|joint| {
-            let name = &scenario.arm.joints()[joint].name;
-            format!("{name} ({:.0} % of it remains)", 100.0 * left(joint))
-        })
-        .collect();
-    if joints.is_empty() {
-        return Ok(String::new());
-    }
-    let advice = match length_scales {
-        LengthScalesArg::One => {
-            "; one length scale for all inputs can hide small torques: compare with --length-scales per-input"
-        }
-        LengthScalesArg::PerInput => "",
-    };
-    Ok(format!(
-        "The learned torque hardly reduces the rigid body's RMS torque error on {}. Compare the tracking there with --model \
-         rigid-body{advice}.\n",
-        report::words::list(&joints)
-    ))
 }
 
 /// A sentence on regressions that are approximated: by what, and how far off they can be.

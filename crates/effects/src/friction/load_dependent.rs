@@ -78,6 +78,15 @@ impl EffectKind for LoadDependentFriction {
         Some(effect.with("coulomb", coulomb).with("gain", gain))
     }
 
+    /// Where another dry friction of the joint states the Coulomb level, this one has none of its own.
+    fn sentence(&self, effect: &Effect) -> &'static str {
+        if effect.number("coulomb") == 0.0 {
+            "dry friction of {gain} times the load torque"
+        } else {
+            SPEC.sentence
+        }
+    }
+
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
         let (coulomb, gain) = (effect.number("coulomb"), effect.number("gain"));
         let dry = Dry::new(move |_, at| coulomb + gain * at.load.abs()).loaded();
