@@ -16,7 +16,7 @@ use crate::cli::{ChainArgs, RunArgs};
 use crate::interrupt;
 use crate::models::ModelKind;
 use crate::output::{self, OutputFile, Tracking};
-use crate::progress::Progress;
+use crate::progress::{Pieces, Progress};
 use crate::scenario::Scenario;
 use crate::simulation::{self, Observer, Outcome, Weight};
 use crate::training;
@@ -102,11 +102,13 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     options.inducing = args.inducing.map(|count| count as usize);
     let model = {
         let progress = Progress::new("training");
-        if kind.learns() {
-            let (title, sources) = (kind.title(), sources.join(", "));
-            progress.doing(format!("training {title} on {sources} ({} samples)", samples.len()));
-        }
-        let model = kind.build(&scenario.arm, &scenario.nominal_arm(), &samples, &options);
+        let (title, sources, count) = (kind.title(), sources.join(", "), samples.len());
+        let what = format!("training {title} on {sources} ({count} samples), regressions");
+        let pieces = kind
+            .learns()
+            .then(|| Pieces::new(&progress, what, scenario.arm.dof(), 1.0));
+        let fitted = || pieces.iter().for_each(Pieces::next);
+        let model = kind.build_with(&scenario.arm, &scenario.nominal_arm(), &samples, &options, &fitted);
         progress.finish();
         model.context("training failed")?
     };
