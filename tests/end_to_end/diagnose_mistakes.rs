@@ -99,7 +99,7 @@ fn files_in_each_others_places_are_told() {
     command[2] = "empty.urdf";
     says(&refused_command(&case, &command), &["empty.urdf:1", "is empty"]);
     command[2] = ".";
-    says(&refused_command(&case, &command), &["--robot .", "is a folder"]);
+    says(&refused_command(&case, &command), &["--robot: .", "is a folder"]);
 }
 
 #[test]

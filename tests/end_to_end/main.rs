@@ -19,6 +19,7 @@ mod faults_outputs;
 mod formats;
 mod inspect;
 mod manual;
+mod named_once;
 mod paper;
 mod prove;
 mod prove_paper;

@@ -60,8 +60,16 @@ fn two_dry_frictions_on_a_joint_add_up() {
         assert!((found / truth - 1.0).abs() < 0.1, "{key}: {found} instead of {truth}");
     }
     assert_eq!(number("stribeck_friction", "coulomb"), 0.0);
+    // The level in motion is that of the asymmetric friction, and the sentence does not say that it is zero.
+    let said = sentences(&diagnosis);
+    let larger = |said: &&&str| {
+        said.starts_with("elbow: dry friction that is larger by ") && said.contains("at breakaway than in motion")
+    };
+    assert!(said.iter().any(|said| larger(&said)), "{said:?}");
     assert!((number("stribeck_friction", "breakaway") / 3.0 - 1.0).abs() < 0.25);
     let again = diagnosed(&trio(), &trio(), &concealed, diagnosis.effects.clone());
     assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
-    assert!(again.report.unexplained.is_empty(), "{:?}", again.report.unexplained);
+    // The rows near reversals are above the noise. Twice the Coulomb level would leave a third of the torque.
+    let left = &again.report.unexplained;
+    assert!(left.iter().all(|left| left.share < 0.03), "{left:?}");
 }

@@ -16,23 +16,28 @@ impl Behind {
         Self { at, ticks }
     }
 
-    /// The torque that it adds on `joint`: M δ̈ + ∂τ/∂q̇ δ̇ + ∂τ/∂q δ.
+    /// The torque that it adds on `joint`: M δ̈ + ∂τ/∂q̇ δ̇ + ∂τ/∂q δ. The rotor is before the compliance and does not move
+    /// with δ.
     pub fn torque(&self, joint: usize, rigid: Rigid<'_>) -> Vec<f64> {
         let (mass, drag, slope) = (
             &rigid.mass[joint][self.at],
             &rigid.by_velocity[joint][self.at],
             &rigid.by_position[joint][self.at],
         );
+        let rotor = if joint == self.at { rigid.rotor(joint) } else { 0.0 };
         self.ticks
             .iter()
             .enumerate()
-            .map(|(k, [delta, speed, acceleration])| mass[k] * acceleration + drag[k] * speed + slope[k] * delta)
+            .map(|(k, [delta, speed, acceleration])| {
+                (mass[k] - rotor) * acceleration + drag[k] * speed + slope[k] * delta
+            })
             .collect()
     }
 }
 
 /// δ behind a spring at joint `at`, in a gap of ± `halfgap` (none: zero) in which the link moves freely:
-/// M δ̈ + (D + ∂τ/∂q̇) δ̇ + ∂τ/∂q δ + K (δ ∓ halfgap) = −τ, driven by the drive's measured motion. `damping` gives D for M.
+/// M δ̈ + (D + ∂τ/∂q̇) δ̇ + ∂τ/∂q δ + K (δ ∓ halfgap) = −τ, driven by the drive's measured motion, with M and τ of the links
+/// alone, without the rotor. `damping` gives D for M.
 ///
 /// Integrated by the trapezoidal rule (Newmark, β = 1/4), from the quasi-static deflection.
 pub fn sprung(
@@ -43,16 +48,13 @@ pub fn sprung(
     motion: &Signals<'_>,
 ) -> Vec<[f64; 3]> {
     let (h, rigid) = (motion.period, motion.rigid);
-    let (mass, drag, slope) = (
-        &rigid.mass[at][at],
-        &rigid.by_velocity[at][at],
-        &rigid.by_position[at][at],
-    );
-    let tau = &rigid.tau[at];
+    let (drag, slope) = (&rigid.by_velocity[at][at], &rigid.by_position[at][at]);
+    let mass = |k: usize| rigid.mass[at][at][k] - rigid.rotor(at);
+    let tau = |k: usize| motion.load(at, k);
     let ticks = motion.ticks();
     let mut out = Vec::with_capacity(ticks);
     // Positive torque: the drive pushes the link in the positive direction, so the link lags behind.
-    let mut delta = -halfgap.copysign(tau[0]) - tau[0] / (stiffness + slope[0]);
+    let mut delta = -halfgap.copysign(tau(0)) - tau(0) / (stiffness + slope[0]);
     let (mut speed, mut acceleration) = (0.0, 0.0);
     for k in 0..ticks {
         if k > 0 {
@@ -60,9 +62,9 @@ pub fn sprung(
             let pace = speed + 0.5 * h * acceleration;
             let solve = |damping: f64, spring: f64, rest: f64| {
                 let (d, s) = (drag[k] + damping, slope[k] + spring);
-                -(tau[k] + d * pace + s * place - spring * rest) / (mass[k] + 0.5 * h * d + 0.25 * h * h * s).max(1e-9)
+                -(tau(k) + d * pace + s * place - spring * rest) / (mass(k) + 0.5 * h * d + 0.25 * h * h * s).max(1e-9)
             };
-            let against = |end: f64| solve(damping(mass[k]), stiffness, end);
+            let against = |end: f64| solve(damping(mass(k)), stiffness, end);
             // The contact force acts on the side of the gap where the link is.
             acceleration = if halfgap == 0.0 {
                 against(0.0)
@@ -83,21 +85,22 @@ pub fn sprung(
 /// freely to the other side when the torque changes its sign; impacts are inelastic.
 pub fn gap(at: usize, halfgap: f64, motion: &Signals<'_>) -> Vec<[f64; 3]> {
     let (h, rigid) = (motion.period, motion.rigid);
-    let tau = &rigid.tau[at];
+    let tau = |k: usize| motion.load(at, k);
     let ticks = motion.ticks();
     let mut out = Vec::with_capacity(ticks);
     // Positive torque: the drive pushes the link in the positive direction, so the link lags behind, δ = −halfgap.
-    let mut delta = if tau[0] >= 0.0 { -halfgap } else { halfgap };
+    let mut delta = if tau(0) >= 0.0 { -halfgap } else { halfgap };
     let mut speed = 0.0;
     let mut free = false;
     for k in 0..ticks {
-        let needed = tau[k] + rigid.by_position[at][at][k] * delta;
+        let needed = tau(k) + rigid.by_position[at][at][k] * delta;
         let mut acceleration = 0.0;
         if !free && needed * delta > 0.0 {
             free = true;
         }
         if free {
-            acceleration = -(needed + rigid.by_velocity[at][at][k] * speed) / rigid.mass[at][at][k].max(1e-9);
+            acceleration =
+                -(needed + rigid.by_velocity[at][at][k] * speed) / (rigid.mass[at][at][k] - rigid.rotor(at)).max(1e-9);
             let before = speed;
             speed += h * acceleration;
             delta += h * speed;

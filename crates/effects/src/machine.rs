@@ -30,7 +30,7 @@ pub struct Place {
 pub struct Circumstance {
     /// s on the recordings' own clock; `None` for a warm drive.
     pub time: Option<f64>,
-    /// The rigid torque of the joint (N m or N).
+    /// The torque of the links on the joint, which its gear transmits: the rigid torque without that of the rotor (N m or N).
     pub load: f64,
 }
 

@@ -33,6 +33,8 @@ impl Scales {
 pub struct Rigid<'a> {
     /// τ (N m or N).
     pub tau: &'a [Vec<f64>],
+    /// The rotor inertias that τ and the mass matrix contain (kg m² or kg); none where empty.
+    pub rotors: &'a [f64],
     /// Each link's share of τ: `[joint][link]`.
     pub links: &'a [Vec<Vec<f64>>],
     /// The ten columns of the torque regressor of a body on the tool, in the tool's frame: `[joint][parameter]`.
@@ -74,6 +76,13 @@ pub struct Signals<'a> {
     pub scales: &'a Scales,
 }
 
+impl Rigid<'_> {
+    /// The inertia of the rotor of `joint` that τ and the mass matrix contain (kg m² or kg).
+    pub fn rotor(&self, joint: usize) -> f64 {
+        self.rotors.get(joint).copied().unwrap_or(0.0)
+    }
+}
+
 impl Signals<'_> {
     /// The number of ticks.
     pub fn ticks(&self) -> usize {
@@ -88,6 +97,11 @@ impl Signals<'_> {
     /// A signal on the ticks.
     pub fn map(&self, f: impl Fn(usize) -> f64) -> Option<Vec<f64>> {
         Some((0..self.ticks()).map(f).collect())
+    }
+
+    /// The torque that the gear of a joint transmits to the links (N m or N): τ without that of the rotor.
+    pub fn load(&self, joint: usize, tick: usize) -> f64 {
+        self.rigid.tau[joint][tick] - self.rigid.rotor(joint) * self.qdd[joint][tick]
     }
 
     /// The smooth sign of a joint's velocity.

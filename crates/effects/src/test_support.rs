@@ -168,6 +168,7 @@ fn along<T>(visit: impl FnOnce(&Signals<'_>) -> T) -> T {
         tau: &tau,
         rigid: Rigid {
             tau: &tau,
+            rotors: &[],
             links: &links,
             payload: &payload,
             by_position: &by_position,
@@ -208,7 +209,7 @@ pub fn agree(effect: &Effect, columns: &[(Term, f64)]) {
                 }
                 let at = Circumstance {
                     time: Some(motion.time(tick)),
-                    load: motion.rigid.tau[joint][tick],
+                    load: motion.load(joint, tick),
                 };
                 let mut needed = torque(&arm, [q, qd, qdd])[joint] - motion.rigid.tau[joint][tick];
                 for (_, dry) in machine.dry.iter().filter(|(on, _)| *on == joint) {

@@ -37,7 +37,7 @@ fn blocks(report: &Report, arm: &Arm) -> Vec<Block> {
         blocks.push(text(format!("Not enough data: {reason}.")));
     }
     blocks.extend(findings(report));
-    blocks.extend(unexplained(report));
+    blocks.extend(unexplained(report, arm));
     blocks.extend(errors(report, arm));
     blocks.extend(rollout(report, arm));
     blocks.extend(not_testable(report, arm));
@@ -121,7 +121,7 @@ fn findings(report: &Report) -> Vec<Block> {
     ]
 }
 
-fn unexplained(report: &Report) -> Vec<Block> {
+fn unexplained(report: &Report, arm: &Arm) -> Vec<Block> {
     if report.unexplained.is_empty() {
         return Vec::new();
     }
@@ -131,6 +131,10 @@ fn unexplained(report: &Report) -> Vec<Block> {
             "nothing that was tried".to_owned()
         } else {
             words::list(&on)
+        };
+        let on = match terminal::largest(report, open, Some(arm)) {
+            Some(place) => format!("{on}; {place}"),
+            None => on,
         };
         vec![code(&open.joint), on, open.next.clone(), numbers::share(open.share)]
     };

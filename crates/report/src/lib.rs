@@ -12,6 +12,7 @@ mod markdown;
 pub mod next_words;
 pub mod numbers;
 mod page;
+mod regions;
 pub mod score;
 mod shell;
 pub mod statistics;

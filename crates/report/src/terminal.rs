@@ -5,10 +5,10 @@ use std::fmt::Write;
 
 use arm::{Arm, JointKind};
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, Width, presets};
-use diagnosis::{Confusable, Finding, NotObservable, Report, Unexplained};
+use diagnosis::{Confusable, Finding, Located, NotObservable, Report, Unexplained};
 
 use crate::statistics::rms;
-use crate::{doubts, next_words, numbers, words};
+use crate::{doubts, next_words, numbers, regions, words};
 
 pub(crate) mod steps;
 
@@ -69,6 +69,9 @@ pub fn complete(report: &Report, arm: &Arm) -> String {
     }
     for open in &report.unexplained {
         text += &wrapped(&format!("{}: {}", open.joint, unexplained(open)), "- ");
+        if let Some(place) = largest(report, open, Some(arm)) {
+            text += &wrapped(&place, "    ");
+        }
         if !open.next.is_empty() {
             text += &wrapped(&format!("next experiment: {}", open.next), "    ");
         }
@@ -141,6 +144,30 @@ fn unexplained(open: &Unexplained) -> String {
     } else {
         format!("unexplained residual {size}; it depends on {}", words::list(&on))
     }
+}
+
+/// Where an unexplained residual is largest: stretches of time, and regions of the joint's state, whose units need the `arm`.
+/// Regions are those of the nominal residual, and only without findings is all of it unexplained.
+pub fn largest(report: &Report, open: &Unexplained, arm: Option<&Arm>) -> Option<String> {
+    let is_this = |located: &&Located| located.joint == open.joint;
+    let located = report
+        .located
+        .iter()
+        .filter(|_| report.findings.is_empty())
+        .find(is_this);
+    let joint = arm.and_then(|arm| arm.joints().iter().find(|joint| joint.name == open.joint));
+    let mut places: Vec<String> = match (located, joint) {
+        (Some(located), Some(joint)) => located
+            .regions
+            .iter()
+            .map(|region| regions::region(region, joint))
+            .collect(),
+        _ => Vec::new(),
+    };
+    if !open.time.is_empty() {
+        places.push(regions::windows(&open.time));
+    }
+    (!places.is_empty()).then(|| format!("largest: {}", places.join("; ")))
 }
 
 /// What the table does not show of a finding: further parameters, and alternatives. Empty if there are neither.

@@ -46,14 +46,14 @@ impl RobotFile {
 /// # Errors
 /// If there is none.
 pub fn named_robot(robot: &str) -> anyhow::Result<RobotFile> {
-    find_robot(robot, Path::new("")).with_context(|| format!("--robot {robot}"))
+    find_robot(robot, Path::new("")).context("--robot")
 }
 
 /// The robot that is named in a file of `folder`: the path of a URDF beside that file (or absolute), or the name of one
 /// that comes with testbed.
 ///
 /// # Errors
-/// If there is none, or it cannot be read.
+/// If there is none, or it cannot be read; the error names the robot or its file once.
 pub fn find_robot(robot: &str, folder: &Path) -> anyhow::Result<RobotFile> {
     if let Some((name, text)) = ROBOTS.iter().find(|(known, _)| *known == robot) {
         let path = PathBuf::from(format!("assets/{name}.urdf"));
@@ -70,7 +70,7 @@ pub fn find_robot(robot: &str, folder: &Path) -> anyhow::Result<RobotFile> {
         let known: Vec<String> = ROBOTS.iter().map(|(name, _)| (*name).to_owned()).collect();
         let hint = nearest(robot, &known).map_or(String::new(), |nearest| format!("did you mean \"{nearest}\"? "));
         bail!(
-            "there is no robot of this name; {hint}there are {}, or give the path of a .urdf file",
+            "{robot}: there is no robot of this name; {hint}there are {}, or give the path of a .urdf file",
             known.join(", ")
         );
     }
@@ -96,10 +96,23 @@ fn refuse_no_xml(path: &Path) -> anyhow::Result<()> {
     if start.starts_with(b"\xFF\xFE") || start.starts_with(b"\xFE\xFF") {
         bail!("{}:1: the text is UTF-16; save it as UTF-8", path.display());
     }
+    let is_text = match std::str::from_utf8(&start) {
+        Ok(_) => true,
+        // The last character may be cut.
+        Err(error) => error.error_len().is_none(),
+    };
     let text = String::from_utf8_lossy(&start);
     let text = text.trim_start_matches('\u{FEFF}').trim_start();
     if text.is_empty() {
         bail!("{}:1: the file is empty; give the robot's URDF", path.display());
+    }
+    let is_binary = |c: char| c.is_control() && !c.is_whitespace();
+    if !text.starts_with('<') && (!is_text || text.contains(is_binary)) {
+        bail!(
+            "{}: is not a URDF, which is XML, but a binary file; give the robot's URDF here, recordings after --train or \
+             --held-out",
+            path.display()
+        );
     }
     if !text.starts_with('<') {
         let line: String = text.lines().next().unwrap_or_default().chars().take(40).collect();

@@ -86,11 +86,27 @@ impl ModelKind {
         samples: &Samples,
         options: &TrainingOptions,
     ) -> anyhow::Result<Box<dyn TorqueModel>> {
-        let on_top = |inputs| Learned::on_top_of(nominal_arm, inputs, samples, options);
+        self.build_with(true_arm, nominal_arm, samples, options, &|| {})
+    }
+
+    /// Makes the model as [`Self::build`] does, and calls `fitted` after the regression of each joint, on any thread.
+    ///
+    /// # Errors
+    /// If training fails.
+    pub fn build_with(
+        self,
+        true_arm: &Arm,
+        nominal_arm: &Arm,
+        samples: &Samples,
+        options: &TrainingOptions,
+        fitted: &(dyn Fn() + Sync),
+    ) -> anyhow::Result<Box<dyn TorqueModel>> {
+        let train = |arm, inputs| Learned::train(arm, inputs, samples, options, fitted);
+        let on_top = |inputs| train(Some(nominal_arm), inputs);
         Ok(match self {
             Self::True => Box::new(RigidBody::new(true_arm.clone())),
             Self::RigidBody => Box::new(RigidBody::new(nominal_arm.clone())),
-            Self::Gp => Box::new(Learned::gp_only(samples, options)?),
+            Self::Gp => Box::new(train(None, Inputs::JointMotion)?),
             Self::Hybrid => Box::new(on_top(Inputs::JointMotion)?),
             Self::IndependentJoint => Box::new(on_top(Inputs::NewtonEuler12)?),
             Self::IndependentJoint13 => Box::new(on_top(Inputs::NewtonEuler13)?),

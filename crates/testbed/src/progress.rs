@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 use std::io::IsTerminal;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -114,6 +115,39 @@ impl Progress {
     }
 }
 
+/// Equal pieces of work, counted as they are done on any thread.
+pub struct Pieces<'a> {
+    progress: &'a Progress,
+    what: String,
+    count: usize,
+    /// The part of the task that all of them are.
+    share: f64,
+    done: AtomicUsize,
+}
+
+impl<'a> Pieces<'a> {
+    /// `count` pieces of `what`, with which the part `share` of the task is done.
+    pub fn new(progress: &'a Progress, what: impl Into<String>, count: usize, share: f64) -> Self {
+        let (what, done) = (what.into(), AtomicUsize::new(0));
+        progress.doing(what.clone());
+        Self {
+            progress,
+            what,
+            count,
+            share,
+            done,
+        }
+    }
+
+    /// One more is done.
+    pub fn next(&self) {
+        let done = 1 + self.done.fetch_add(1, Ordering::Relaxed);
+        let part = self.share * done as f64 / self.count.max(1) as f64;
+        let (what, count) = (&self.what, self.count);
+        self.progress.done(part, format!("{what}: {done} of {count}"));
+    }
+}
+
 /// `45 s`, `3 min`, `2 h 10 min`.
 fn words(time: Duration) -> String {
     let seconds = time.as_secs_f64().round() as u64;
@@ -142,6 +176,20 @@ mod tests {
         assert_eq!(clock(0.9).left(later), Some(Duration::ZERO));
         assert_eq!(clock(0.0).left(later), None);
         assert_eq!(clock(0.5).left(now + Duration::from_secs(1)), None);
+    }
+
+    #[test]
+    fn pieces_are_counted_on_any_thread() {
+        let progress = Progress::hidden();
+        let pieces = Pieces::new(&progress, "training", 8, 0.8);
+        std::thread::scope(|scope| {
+            for _ in 0..2 {
+                scope.spawn(|| (0..2).for_each(|_| pieces.next()));
+            }
+        });
+        let done = progress.clock.lock().expect("no thread panicked").done;
+        assert!((done - 0.4).abs() < 1e-12, "{done}");
+        assert_eq!(pieces.done.load(Ordering::Relaxed), 4);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! `testbed --scenario …`: one run, from the scenario to its folder.
 
 mod folder;
+mod left;
 mod observers;
 
 use std::path::{Path, PathBuf};
@@ -9,13 +10,13 @@ use anyhow::{Context, bail};
 use report::numbers::rounded;
 use report::terminal::table;
 use serde::Serialize;
-use torque::{Gp, Lengths, RigidBody, Samples, TorqueModel};
+use torque::{Gp, Lengths, Samples, TorqueModel};
 
-use crate::cli::{ChainArgs, LengthScalesArg, RunArgs};
+use crate::cli::{ChainArgs, RunArgs};
 use crate::interrupt;
 use crate::models::ModelKind;
 use crate::output::{self, OutputFile, Tracking};
-use crate::progress::Progress;
+use crate::progress::{Pieces, Progress};
 use crate::scenario::Scenario;
 use crate::simulation::{self, Observer, Outcome, Weight};
 use crate::training;
@@ -101,11 +102,13 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     options.inducing = args.inducing.map(|count| count as usize);
     let model = {
         let progress = Progress::new("training");
-        if kind.learns() {
-            let (title, sources) = (kind.title(), sources.join(", "));
-            progress.doing(format!("training {title} on {sources} ({} samples)", samples.len()));
-        }
-        let model = kind.build(&scenario.arm, &scenario.nominal_arm(), &samples, &options);
+        let (title, sources, count) = (kind.title(), sources.join(", "), samples.len());
+        let what = format!("training {title} on {sources} ({count} samples), regressions");
+        let pieces = kind
+            .learns()
+            .then(|| Pieces::new(&progress, what, scenario.arm.dof(), 1.0));
+        let fitted = || pieces.iter().for_each(Pieces::next);
+        let model = kind.build_with(&scenario.arm, &scenario.nominal_arm(), &samples, &options, &fitted);
         progress.finish();
         model.context("training failed")?
     };
@@ -158,7 +161,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     drop(deferred);
     let mut text = text(&scenario, kind, &sources, &summary, &outcome);
     if kind.learns() {
-        text += &hardly_learned(&scenario, &summary.torque_mse, length_scales)?;
+        text += &left::hardly_learned(&scenario, &summary.torque_mse, length_scales)?;
         text += &approximated(model.regressions());
     }
     text += &written.lines();
@@ -205,39 +208,6 @@ fn check_outputs(args: &RunArgs, scenario: &Scenario, sources: &[String]) -> any
 /// The model's torque error against the truth on the reference, as the paper measures it.
 fn torque_error(scenario: &Scenario, model: &dyn TorqueModel) -> anyhow::Result<Vec<f64>> {
     Ok(model.mean_squared_error(&training::own_samples(scenario)?))
-}
-
-/// The part of the rigid body's RMS torque error from which what is left of it is too much for a learned torque to be worth it.
-const HARDLY_LEARNED: f64 = 0.5;
-
-/// A sentence on the joints whose torque error, with the model's `errors` ((N m)²), is hardly below that of the rigid body alone.
-///
-/// # Errors
-/// If the reference cannot be sampled.
-fn hardly_learned(scenario: &Scenario, errors: &[f64], length_scales: LengthScalesArg) -> anyhow::Result<String> {
-    let rigid = torque_error(scenario, &RigidBody::new(scenario.nominal_arm()))?;
-    let left = |joint: usize| (errors[joint] / rigid[joint]).sqrt();
-    let joints: Vec<String> = (0..errors.len())
-        .filter(|&joint| rigid[joint] > 0.0 && left(joint) > HARDLY_LEARNED)
-        .map(|joint| {
-            let name = &scenario.arm.joints()[joint].name;
-            format!("{name} ({:.0} % of it remains)", 100.0 * left(joint))
-        })
-        .collect();
-    if joints.is_empty() {
-        return Ok(String::new());
-    }
-    let advice = match length_scales {
-        LengthScalesArg::One => {
-            "; one length scale for all inputs can hide small torques: compare with --length-scales per-input"
-        }
-        LengthScalesArg::PerInput => "",
-    };
-    Ok(format!(
-        "The learned torque hardly reduces the rigid body's RMS torque error on {}. Compare the tracking there with --model \
-         rigid-body{advice}.\n",
-        report::words::list(&joints)
-    ))
 }
 
 /// A sentence on regressions that are approximated: by what, and how far off they can be.

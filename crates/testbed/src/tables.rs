@@ -12,7 +12,7 @@ use torque::{Samples, TorqueModel, TrainingOptions};
 use crate::cli::ChainArgs;
 use crate::models::ModelKind;
 use crate::output::{self, OutputFile, Tracking};
-use crate::progress::Progress;
+use crate::progress::{Pieces, Progress};
 use crate::scenario::Scenario;
 use crate::{paper, simulation, training};
 
@@ -98,7 +98,7 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions) -> anyhow::Result<()>
         OutputFile::json(path).check_ending()?;
     }
     let started = Instant::now();
-    let progress = Progress::new("training 2 × 4 models of 6 joints");
+    let progress = Progress::new("reading");
     let mut test = Scenario::load("taskD")?;
     // The paper's controller.
     test.fade = false;
@@ -114,9 +114,12 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions) -> anyhow::Result<()>
         .rev()
         .flat_map(|set| ROWS.map(|model| (set, model)))
         .collect();
+    let learned = jobs.iter().filter(|(_, model)| model.learns()).count();
+    let what = format!("training {learned} models, regressions");
+    let pieces = Pieces::new(&progress, what, learned * test.arm.dof(), 0.8);
     let train = |&(set, model): &(usize, ModelKind)| {
         let samples: &Samples = &training_samples[set];
-        let built = model.build(&test.arm, &nominal, samples, options);
+        let built = model.build_with(&test.arm, &nominal, samples, options, &|| pieces.next());
         built.with_context(|| format!("training \"{}\" on {}", model.flag(), TRAINING[set].join(", ")))
     };
     let models: Vec<Box<dyn TorqueModel>> = jobs.par_iter().map(train).collect::<anyhow::Result<_>>()?;

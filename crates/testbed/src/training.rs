@@ -121,10 +121,10 @@ pub fn training_samples(
         let path = Path::new(source);
         let ends = |end: &str| path.extension().is_some_and(|extension| extension == end);
         if ends("csv") || (path.exists() && !ends("toml")) {
-            let recording = named::read(path, None, Some(&scenario.arm)).with_context(of_source)?;
+            let recording = named::read(path, None, Some(&scenario.arm)).context("training")?;
             recording_samples(scenario, &recording, &mut samples).with_context(of_source)?;
         } else {
-            let task = Scenario::load_chain(source, chain).with_context(of_source)?;
+            let task = Scenario::load_chain(source, chain).context("training")?;
             reference_samples(
                 scenario,
                 &task.reference,

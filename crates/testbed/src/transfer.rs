@@ -13,7 +13,7 @@ use torque::{Prediction, Samples, TorqueModel, Workspace};
 use crate::cli::{ChainArgs, TransferArgs};
 use crate::models::ModelKind;
 use crate::output::{self, OutputFile};
-use crate::progress::Progress;
+use crate::progress::{Pieces, Progress};
 use crate::scenario::Scenario;
 use crate::training;
 
@@ -103,7 +103,7 @@ pub fn run(args: &TransferArgs) -> anyhow::Result<()> {
         args.model.flag()
     );
     let progress = Progress::new("training on every set of tasks");
-    let report = compare(args)?;
+    let report = compare(args, &progress)?;
     progress.finish();
     if let Some(path) = &args.json {
         output::write_json(path, &report)?;
@@ -111,7 +111,7 @@ pub fn run(args: &TransferArgs) -> anyhow::Result<()> {
     output::print(&words::text(&report))
 }
 
-fn compare(args: &TransferArgs) -> anyhow::Result<Report> {
+fn compare(args: &TransferArgs, progress: &Progress) -> anyhow::Result<Report> {
     let scenario = Scenario::load(&args.test)?;
     let chain = ChainArgs::default();
     let mut tasks = args.train.clone();
@@ -130,16 +130,20 @@ fn compare(args: &TransferArgs) -> anyhow::Result<Report> {
         &tests[0],
         &args.length_scales.training_options(),
     )?;
+    let sets = (1_usize << args.train.len()) - 1;
+    let what = "training on every set of tasks, regressions";
+    let pieces = Pieces::new(progress, what, sets * scenario.arm.dof(), 1.0);
     let of_set = |&set: &usize| -> anyhow::Result<Vec<Row>> {
         let train: Vec<String> = (0..args.train.len())
             .filter(|task| set >> task & 1 == 1)
             .map(|task| args.train[task].clone())
             .collect();
-        let model = args.model.build(
+        let model = args.model.build_with(
             &scenario.arm,
             &scenario.nominal_arm(),
             &samples_of(&train)?,
             &args.length_scales.training_options(),
+            &|| pieces.next(),
         );
         let model = model.with_context(|| format!("training on {}", train.join(", ")))?;
         let others = tasks.iter().zip(&tests).filter(|(task, _)| !train.contains(task));

@@ -21,8 +21,8 @@ use crate::model::{Prediction, TorqueModel, Workspace};
 /// - On a base that is rotated by `angle` about `axis`, gravity is rotated in the opposite direction:
 ///   g' = R(axis, angle)ᵀ g.
 /// - Friction uses the exact sign of q̇, and is zero at rest. [`TorqueModel::predict`] assumes warm drives for thermal
-///   drift; [`Self::predict_at`] uses the time. The load of load-dependent friction is
-///   |rigid_j|.
+///   drift; [`Self::predict_at`] uses the time. The load of load-dependent friction is what the gear transmits to the
+///   links: rigid_j without the torque that accelerates the rotor, |rigid_j − I_j q̈_j|.
 /// - An effect with an onset acts from then on; if no time is given, it acts.
 /// - `q` is the position of the encoder, which springs and ripple use directly.
 /// - Delay, elasticity and backlash are not functions of (q, q̇, q̈) and are omitted, as is a contact if no time is
@@ -138,7 +138,7 @@ impl Corrected {
         for (joint, dry) in &self.machine.dry {
             let at = Circumstance {
                 time,
-                load: rigid[*joint],
+                load: self.gear_load(*joint, rigid, qdd),
             };
             let direction = sign(qd[*joint]);
             effects[*joint] += direction * dry.level(qd[*joint], at) + direction.abs() * dry.bias();
@@ -150,6 +150,11 @@ impl Corrected {
             // All parts but the rigid torque count as effects, including scale and limit.
             *effect = total.clamp(-limit, limit) - rigid[joint];
         }
+    }
+
+    /// The torque that the gear of `joint` transmits to the links: the rigid torque without the rotor's.
+    fn gear_load(&self, joint: usize, rigid: &[f64], qdd: &[f64]) -> f64 {
+        rigid[joint] - self.machine.arm.joints()[joint].rotor_inertia * qdd[joint]
     }
 
     /// The inverse dynamics of the arm at `time`, at the true positions of the joints.

@@ -51,7 +51,7 @@ impl Learned {
     /// # Errors
     /// [`TorqueError`] if there are no samples or a regression fails.
     pub fn gp_only(samples: &Samples, options: &TrainingOptions) -> Result<Self, TorqueError> {
-        Self::train(None, Inputs::JointMotion, samples, options)
+        Self::train(None, Inputs::JointMotion, samples, options, &|| {})
     }
 
     /// Learns the residual torque of `arm` from `inputs`: the paper's "RBD + GPR" on [`Inputs::JointMotion`], and Independent
@@ -65,17 +65,23 @@ impl Learned {
         samples: &Samples,
         options: &TrainingOptions,
     ) -> Result<Self, TorqueError> {
-        Self::train(Some(arm.clone()), inputs, samples, options)
+        Self::train(Some(arm), inputs, samples, options, &|| {})
     }
 
-    fn train(
-        rigid_body: Option<Arm>,
+    /// Learns as [`Self::on_top_of`] does if there is an `arm`, and the whole torque if there is none. `fitted` is called after
+    /// the regression of each joint, on any thread.
+    ///
+    /// # Errors
+    /// Those of [`Self::on_top_of`].
+    pub fn train(
+        arm: Option<&Arm>,
         inputs: Inputs,
         samples: &Samples,
         options: &TrainingOptions,
+        fitted: &(dyn Fn() + Sync),
     ) -> Result<Self, TorqueError> {
         let dof = samples.dof();
-        if let Some(arm) = &rigid_body
+        if let Some(arm) = arm
             && arm.dof() != dof
         {
             return Err(TorqueError::Joints {
@@ -88,7 +94,7 @@ impl Learned {
             return Err(TorqueError::NoSamples);
         }
         let mut model = Self {
-            rigid_body,
+            rigid_body: arm.cloned(),
             inputs,
             regressions: Vec::new(),
             reaches: Vec::new(),
@@ -112,17 +118,18 @@ impl Learned {
             ..FitOptions::default()
         };
         // The regressions are independent of each other, so that the result does not depend on the number of threads.
-        let fitted: Result<Vec<Gp>, TorqueError> = (0..dof)
+        let regressions: Result<Vec<Gp>, TorqueError> = (0..dof)
             .into_par_iter()
             .map(|joint| {
-                let fitted = TrainingSet::new(dimension, &x[joint], &y[joint]).and_then(|set| Gp::fit(&set, &fit));
-                fitted.map_err(|source| TorqueError::Regression {
+                let regression = TrainingSet::new(dimension, &x[joint], &y[joint]).and_then(|set| Gp::fit(&set, &fit));
+                fitted();
+                regression.map_err(|source| TorqueError::Regression {
                     joint: joint + 1,
                     source,
                 })
             })
             .collect();
-        model.regressions = fitted?;
+        model.regressions = regressions?;
         model.reaches = model.regressions.iter().map(Reach::of).collect();
         Ok(model)
     }

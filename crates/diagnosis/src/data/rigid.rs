@@ -12,6 +12,8 @@ use crate::data::motion::Chunk;
 pub struct Rigid {
     /// τ (N m or N).
     pub tau: Vec<Vec<f64>>,
+    /// The rotor inertias that τ and the mass matrix contain, which are known ones (kg m² or kg).
+    pub rotors: Vec<f64>,
     /// Each link's share of τ: `[joint][link]`.
     pub links: Vec<Vec<Vec<f64>>>,
     /// The last link's ten columns of the torque regressor, in the tool's frame: `[joint][parameter]`.
@@ -43,6 +45,18 @@ impl Rigid {
         Self::with_derivatives(arm, nominal, offset, chunk, true)
     }
 
+    /// The torque that the gear of `joint` transmits to the links at a tick of `chunk` (N m or N): τ without that of the rotor.
+    pub fn load(&self, joint: usize, chunk: &Chunk, tick: usize) -> f64 {
+        self.tau[joint][tick] - self.rotors[joint] * chunk.qdd[joint][tick]
+    }
+
+    /// The inertia that `joint` alone moves behind its gear, at each tick (kg m² or kg).
+    pub fn link_mass(&self, joint: usize) -> impl Iterator<Item = f64> {
+        self.mass[joint][joint]
+            .iter()
+            .map(move |mass| mass - self.rotors[joint])
+    }
+
     /// Sets the background to the difference of the torque from that of `arm` for the same positions of the joints.
     pub fn set_background(&mut self, arm: &Arm, chunk: &Chunk) {
         let along = Along::new(chunk, &self.offset, 0..chunk.ticks());
@@ -62,6 +76,7 @@ impl Rigid {
         let square = || (0..n).map(|_| (0..n).map(|_| zeros()).collect()).collect();
         let mut rigid = Self {
             tau: (0..n).map(|_| zeros()).collect(),
+            rotors: arm.joints().iter().map(|joint| joint.rotor_inertia).collect(),
             links: square(),
             payload: (0..n).map(|_| (0..10).map(|_| zeros()).collect()).collect(),
             by_position: square(),

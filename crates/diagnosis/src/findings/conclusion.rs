@@ -12,7 +12,7 @@ use super::locate::locate;
 use super::observability::unseen;
 use super::report::{Finding, JointFit, Located, NotObservable, RecordingNames, Report, SCHEMA, Traces, Unexplained};
 use super::traces::traces;
-use super::verdict::{not_enough, poorly_predicted, unexplained, verdict};
+use super::verdict::{not_enough, only_located, poorly_predicted, unexplained, verdict};
 use super::{dual_sensor, sentences, transients};
 use crate::data::motion::Input;
 use crate::diagnose::{Diagnosis, Options, Step};
@@ -77,6 +77,10 @@ impl Conclusion {
         let fit = fit(study, [residual, &by_exported], identified);
         let mut unexplained = unexplained(study, judged, &bursts, residual);
         poorly_predicted(study, &fit, &mut unexplained);
+        let located = locate(study, residual);
+        if findings.is_empty() && unexplained.is_empty() && not_enough_data.is_empty() {
+            unexplained = only_located(&located, &fit);
+        }
         findings.sort_by(|(a, _), (b, _)| {
             b.share
                 .total_cmp(&a.share)
@@ -91,7 +95,7 @@ impl Conclusion {
             finding.sentence = sentences::of(finding, &fit);
         }
         Self {
-            located: locate(study, residual),
+            located,
             traces: traces(study, judged, &findings, [residual, &by_exported]),
             not_observable: not_named(unseen(study, products, &judged.named), &findings),
             findings,
@@ -161,7 +165,7 @@ impl Conclusion {
                 held_out: names(true),
             },
             doubts: Vec::new(),
-            verdict: verdict(&findings, &self.unexplained, &self.not_enough_data, &self.located),
+            verdict: verdict(&findings, &self.unexplained, &self.not_enough_data),
             unexplained: self.unexplained,
             not_observable: self.not_observable,
             not_enough_data: self.not_enough_data,

@@ -208,7 +208,8 @@ pub struct Unexplained {
     pub joint: String,
     /// Standard deviation of the structured residual over that of the measured torque.
     pub share: f64,
-    /// `own_position`, `own_speed`, `time`, `history`, `other_joint:NAME`, …; empty if no tried regressor predicts it.
+    /// `own_position`, `own_speed`, `load`, `time`, `history`, `other_joint:NAME`, …; empty if no tried regressor predicts it. In
+    /// a diagnosis without findings, where no tried regressor predicts anything, it is the state in which the residual is largest.
     pub depends_on: Vec<String>,
     /// Stretches of time where it is largest; the whole time if empty.
     pub time: Vec<TimeWindow>,

@@ -132,6 +132,9 @@ pub fn next_experiment(joint: &str, on: &str) -> String {
         "own_position_times_speed" => {
             format!("sweep {joint} over its range at three constant speeds, in both directions")
         }
+        "load" => format!(
+            "repeat one motion of {joint} in several postures of the other joints, with and without a known load on the tool"
+        ),
         "time" => format!("repeat one motion of {joint} every minute for ten minutes"),
         _ => format!("move {joint} alone at three constant speeds, in both directions, twice"),
     }

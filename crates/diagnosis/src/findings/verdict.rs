@@ -96,6 +96,34 @@ pub fn poorly_predicted(study: &Study, fit: &BTreeMap<String, JointFit>, unexpla
     }
 }
 
+/// Where the nominal residual is larger than the errors of noise and filtering, for recordings in which nothing was named and no
+/// regressor predicts the rest: the mismatch is on these joints, and depends on the state in which it is largest.
+pub fn only_located(located: &[Located], fit: &BTreeMap<String, JointFit>) -> Vec<Unexplained> {
+    let one = |located: &Located| {
+        let error = |fit: &JointFit| fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented);
+        let mut depends_on: Vec<String> = Vec::new();
+        for region in &located.regions {
+            let on = match region.axis {
+                "near_reversal" | "speed" => "own_speed",
+                "angle" => "own_position",
+                "elapsed_time" => "time",
+                axis => axis,
+            };
+            if !depends_on.iter().any(|known| known == on) {
+                depends_on.push(on.to_owned());
+            }
+        }
+        Unexplained {
+            next: sentences::next_experiment(&located.joint, depends_on.first().map_or("", String::as_str)),
+            joint: located.joint.clone(),
+            share: fit.get(&located.joint).map_or(0.0, error),
+            depends_on,
+            time: located.time.clone(),
+        }
+    };
+    located.iter().map(one).collect()
+}
+
 /// The reasons why the recordings are not sufficient for a diagnosis; empty if they are.
 pub fn not_enough(study: &Study, products: &Products) -> Vec<String> {
     let seconds = |joint: usize| -> f64 {
@@ -130,16 +158,11 @@ pub fn not_enough(study: &Study, products: &Products) -> Vec<String> {
 }
 
 /// The verdict.
-pub fn verdict(
-    findings: &[Finding],
-    unexplained: &[Unexplained],
-    not_enough: &[String],
-    located: &[Located],
-) -> Verdict {
+pub fn verdict(findings: &[Finding], unexplained: &[Unexplained], not_enough: &[String]) -> Verdict {
     match (findings.is_empty(), unexplained.is_empty()) {
         _ if !not_enough.is_empty() => Verdict::NotEnoughData,
-        (true, true) if located.is_empty() => Verdict::NoMismatch,
-        (true, _) => Verdict::Unexplained,
+        (true, true) => Verdict::NoMismatch,
+        (true, false) => Verdict::Unexplained,
         (false, true) => Verdict::Explained,
         (false, false) => Verdict::PartlyExplained,
     }

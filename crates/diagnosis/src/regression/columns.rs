@@ -17,6 +17,7 @@ fn along<'a>(chunk: &'a Chunk, rigid: &'a Rigid, scales: &'a Scales) -> Signals<
         tau: &chunk.tau,
         rigid: effects::Rigid {
             tau: &rigid.tau,
+            rotors: &rigid.rotors,
             links: &rigid.links,
             payload: &rigid.payload,
             by_position: &rigid.by_position,

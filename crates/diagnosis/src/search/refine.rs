@@ -162,7 +162,7 @@ pub fn resize(study: &mut Study, mut chosen: Chosen, again: bool) -> Chosen {
                 .map(|&column| study.table.terms[column])
                 .collect();
             let mass = candidate.joint.map_or(0.0, |joint| {
-                mean(study.rigid.iter().flat_map(|rigid| &rigid.mass[joint][joint]))
+                mean(study.rigid.iter().flat_map(|rigid| rigid.link_mass(joint)))
             });
             let mut list = variants(&terms, round, mass);
             if round == 0 {

@@ -111,7 +111,7 @@ impl Study {
         );
         let mut terms: Vec<Term> = prior.terms().to_vec();
         let mut candidates = Vec::new();
-        let mass = |joint: usize| mean(rigid.iter().flat_map(|r| &r.mass[joint][joint]));
+        let mass = |joint: usize| mean(rigid.iter().flat_map(|r| r.link_mass(joint)));
         let mut list = catalogue(&Grounds {
             scales: &scales,
             span: motions.one_clock.then_some(span),
@@ -262,7 +262,7 @@ impl Study {
         rows
     }
 
-    /// The rigid torque (N m or N) and the time (s) of given rows of `joint`, in ascending order.
+    /// The torque that the gear transmits to the links (N m or N) and the time (s) of given rows of `joint`, in ascending order.
     pub fn loads_and_times(&self, joint: usize, rows: &[usize]) -> (Vec<f64>, Vec<f64>) {
         let (mut loads, mut times) = (Vec::with_capacity(rows.len()), Vec::with_capacity(rows.len()));
         let mut rows = rows.iter().peekable();
@@ -273,7 +273,7 @@ impl Study {
                 && row < end
             {
                 let tick = chunk.tick_of(row - first);
-                loads.push(rigid.tau[joint][tick]);
+                loads.push(rigid.load(joint, chunk, tick));
                 times.push(chunk.time(tick));
                 rows.next();
             }

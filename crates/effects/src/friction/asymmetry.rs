@@ -84,6 +84,17 @@ impl EffectKind for FrictionAsymmetry {
         (sum < 0.0).then_some(("positive + negative", sum, "finite and not negative"))
     }
 
+    /// Where another dry friction of the joint states the Coulomb level, this one is what one direction has more than the other.
+    fn sentence(&self, effect: &Effect) -> &'static str {
+        if effect.number("negative") == 0.0 {
+            "dry friction that is larger by {positive} forwards than backwards"
+        } else if effect.number("positive") == 0.0 {
+            "dry friction that is larger by {negative} backwards than forwards"
+        } else {
+            SPEC.sentence
+        }
+    }
+
     fn dry_friction(&self, effect: &Effect) -> Option<f64> {
         Some(0.5 * (effect.number("positive") + effect.number("negative")))
     }

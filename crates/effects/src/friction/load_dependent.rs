@@ -8,7 +8,7 @@ use crate::{
     Range, Spec, Systematic, Term, Turn, Unseen,
 };
 
-/// τ = (coulomb + gain |τ rigid|) sgn q̇.
+/// τ = (coulomb + gain |τ rigid|) sgn q̇; τ rigid is what the gear transmits to the links, without the rotor's own torque.
 #[derive(Debug)]
 pub struct LoadDependentFriction;
 
@@ -36,10 +36,10 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// |τ rigid| sgn q̇.
+/// |τ rigid| sgn q̇, without the torque of a known rotor.
 pub static LOAD_SIGN: Law = Law {
     name: "load_sign",
-    column: |_, joint, motion| motion.map(|k| motion.rigid.tau[joint][k].abs() * motion.sign(joint, k)),
+    column: |_, joint, motion| motion.map(|k| motion.load(joint, k).abs() * motion.sign(joint, k)),
     needs_model: true,
     cone: Cone::Level(|_, load, _| load.abs()),
     ..Law::PLAIN
@@ -76,6 +76,15 @@ impl EffectKind for LoadDependentFriction {
         let gain = estimate.note_within(Systematic::OfArm, "gain", &|draw| draw[place]);
         let effect = Effect::of(&Self).on(estimate.joint_name());
         Some(effect.with("coulomb", coulomb).with("gain", gain))
+    }
+
+    /// Where another dry friction of the joint states the Coulomb level, this one has none of its own.
+    fn sentence(&self, effect: &Effect) -> &'static str {
+        if effect.number("coulomb") == 0.0 {
+            "dry friction of {gain} times the load torque"
+        } else {
+            SPEC.sentence
+        }
     }
 
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {

@@ -115,6 +115,15 @@ impl EffectKind for StribeckFriction {
         Some(effect.with("velocity", velocity).with("exponent", exponent))
     }
 
+    /// Where another dry friction of the joint states the Coulomb level, this one has none of its own.
+    fn sentence(&self, effect: &Effect) -> &'static str {
+        if effect.number("coulomb") == 0.0 {
+            "dry friction that is larger by {breakaway} at breakaway than in motion, with a Stribeck velocity of {velocity}"
+        } else {
+            SPEC.sentence
+        }
+    }
+
     fn dry_friction(&self, effect: &Effect) -> Option<f64> {
         Some(effect.number("coulomb"))
     }

@@ -234,7 +234,16 @@ def array_files():
     rows = {name: values.T for name, values in arrays.items()}
     more = {"rate": 100.0, "info": {"robot": "duo"}, "names": np.array(NAMES, dtype=object), "text": "a text"}
     scipy.io.savemat(HERE / "rows.mat", rows | more, do_compression=True)
-    (HERE / "new.mat").write_bytes(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(512) + b"\x89HDF\r\n\x1a\n")
+    (HERE / "new.mat").write_bytes(newer_header())
+
+
+def newer_header():
+    """The first bytes of a file of MATLAB's version 7.3: its header in the user block of an HDF5 file, and that file's superblock."""
+    said = b"MATLAB 7.3 MAT-file, Platform: GLNXA64, Created on: Thu Mar 14 15:09:26 2024 HDF5 schema 1.00 ."
+    header = said.ljust(116) + bytes(8) + b"\x00\x02IM"
+    superblock = b"\x89HDF\r\n\x1a\n" + bytes([0, 0, 0, 0, 0, 8, 8, 0, 4, 0, 16, 0]) + bytes(4)
+    addresses = (512).to_bytes(8, "little") + b"\xff" * 8 + (2048).to_bytes(8, "little") + b"\xff" * 8
+    return header.ljust(512, b"\x00") + superblock + addresses
 
 
 if __name__ == "__main__":

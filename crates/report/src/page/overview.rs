@@ -25,34 +25,49 @@ impl Page<'_> {
         // Joints with a model error; the effects cannot improve the others.
         let missed = |name: &str| self.report.located.iter().any(|located| located.joint == name);
         let any = self.report.fit.keys().any(|name| missed(name));
-        let fits = || {
-            self.report
-                .fit
-                .iter()
-                .filter(|(name, _)| !any || missed(name))
-                .map(|(_, fit)| fit)
-        };
-        let median = |pick: fn(&diagnosis::JointFit) -> Option<f64>| {
-            let mut errors: Vec<f64> = fits().filter_map(pick).filter(|error| error.is_finite()).collect();
-            errors.sort_by(f64::total_cmp);
-            errors.get(errors.len().saturating_sub(1) / 2).copied()
-        };
-        let before = median(|fit| fit.held_out_nrmse_nominal);
-        let after = median(|fit| fit.held_out_nrmse_augmented);
-        let of_joints = if self.report.fit.len() > 1 {
-            " times the torque's standard deviation (median over the joints with a model error)."
+        let errors: Vec<(&str, [f64; 2])> = self
+            .report
+            .fit
+            .iter()
+            .filter(|(name, _)| !any || missed(name))
+            .filter_map(|(name, fit)| {
+                let errors = [fit.held_out_nrmse_nominal?, fit.held_out_nrmse_augmented?];
+                let is_finite = errors.iter().all(|error| error.is_finite());
+                is_finite.then_some((name.as_str(), errors))
+            })
+            .collect();
+        if errors.is_empty() {
+            return html! {};
+        }
+        let [before, after] = [0, 1].map(|which: usize| median(errors.iter().map(|(_, errors)| errors[which])));
+        let is_found = !self.report.findings.is_empty();
+        let is_same = |[before, after]: [f64; 2]| numbers::nrmse(before) == numbers::nrmse(after);
+        let fallen = errors
+            .iter()
+            .filter(|(_, errors)| errors[1] < errors[0] && !is_same(*errors));
+        let most = fallen.max_by(|(_, a), (_, b)| (a[0] - a[1]).total_cmp(&(b[0] - b[1])));
+        let middle = numbers::nrmse(after);
+        let several = errors.len() > 1;
+        let over = if several {
+            " (median over the joints with a model error)"
         } else {
-            " times the torque's standard deviation."
+            ""
         };
+        let torque = " times the torque's standard deviation";
         html! {
-            @if let (Some(before), Some(after)) = (before, after) {
-                p.lead {
-                    @if self.report.findings.is_empty() {
-                        "On the held-out recordings, the model's RMS torque error is " (numbers::nrmse(before)) (of_joints)
-                    } @else {
-                        "On the held-out recordings, the RMS torque error " (changes(before, after)) " from "
-                        b { (numbers::nrmse(before)) } " to " b { (numbers::nrmse(after)) } (of_joints)
-                    }
+            p.lead {
+                @if !is_found {
+                    "On the held-out recordings, the model's RMS torque error is " (numbers::nrmse(before)) (torque) (over) "."
+                } @else if !is_same([before, after]) {
+                    "On the held-out recordings, the RMS torque error " (changes(before, after)) " from "
+                    b { (numbers::nrmse(before)) } " to " b { (numbers::nrmse(after)) } (torque) (over) "."
+                } @else if let (true, Some((name, [before, after]))) = (several, most) {
+                    "On the held-out recordings, the RMS torque error of " (name) " falls from "
+                    b { (numbers::nrmse(*before)) } " to " b { (numbers::nrmse(*after)) } (torque)
+                    ", more than that of any other joint; the median over the joints with a model error remains "
+                    (middle) "."
+                } @else {
+                    "On the held-out recordings, the RMS torque error remains " b { (numbers::nrmse(after)) } (torque) (over) "."
                 }
             }
         }
@@ -152,6 +167,14 @@ fn coded(text: &str) -> Markup {
             @if index % 2 == 1 { code { (part) } } @else { (part) }
         }
     }
+}
+
+/// The median of at least one value.
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    let last = values.len() - 1;
+    0.5 * (values[last / 2] + values[values.len() / 2])
 }
 
 fn changes(before: f64, after: f64) -> &'static str {

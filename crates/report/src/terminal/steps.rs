@@ -2,7 +2,7 @@
 
 use diagnosis::{Report, Verdict};
 
-use super::{alternatives, has_alternatives, unexplained};
+use super::{alternatives, has_alternatives, largest, unexplained};
 use crate::{next_words, words};
 
 /// The next steps, in sentences: missing data, unexplained residuals, the proposed motion, findings with alternatives.
@@ -38,7 +38,11 @@ fn residuals(report: &Report) -> Vec<String> {
     }
     let said = groups.iter().map(|group| {
         let what = match group.as_slice() {
-            [one] => format!("{}: {}", one.joint, unexplained(one)),
+            [one] => {
+                let place = largest(report, one, None).filter(|_| report.findings.is_empty());
+                let place = place.map_or_else(String::new, |place| format!("; {place}"));
+                format!("{}: {}{place}", one.joint, unexplained(one))
+            }
             several => {
                 let joints: Vec<String> = several.iter().map(|open| open.joint.clone()).collect();
                 format!("{}: unexplained residuals", words::list(&joints))

@@ -36,6 +36,46 @@ fn the_page_needs_nothing_else_and_says_it_all() {
     assert!(!own.contains("NaN") && !own.contains("inf "));
 }
 
+/// The error in the first sentence changes as the sentence says, in the digits that are shown.
+#[test]
+fn the_first_sentence_says_what_changes() {
+    let lead = |errors: &[[f64; 2]]| {
+        let (mut report, traces, arm) = made_up::diagnosis(errors.len(), Plot::Rich);
+        report.located.clear();
+        for (fit, [before, after]) in report.fit.values_mut().zip(errors) {
+            (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented) = (Some(*before), Some(*after));
+        }
+        let text = report::page(&report, &traces, &arm);
+        let lead = text
+            .split("<p class=\"lead\">")
+            .nth(1)
+            .and_then(|rest| rest.split("</p>").next());
+        lead.expect("it has a first sentence")
+            .replace("<b>", "")
+            .replace("</b>", "")
+    };
+    let torque = "times the torque's standard deviation";
+    let median = "(median over the joints with a model error).";
+    let text = lead(&[[0.8, 0.1], [0.2, 0.1], [0.6, 0.3], [0.4, 0.05]]);
+    assert!(
+        text.ends_with(&format!("falls from 0.50 to 0.10 {torque} {median}")),
+        "{text}"
+    );
+    // Most joints are as they were, and one is better.
+    let text = lead(&[[0.25, 0.25], [0.25, 0.25], [0.9, 0.26]]);
+    let one =
+        format!("falls from 0.90 to 0.26 {torque}, more than that of any other joint; the median over the joints");
+    assert!(text.contains(&one) && !text.contains("0.25 to 0.25"), "{text}");
+    assert!(text.ends_with("with a model error remains 0.25."), "{text}");
+    let text = lead(&[[0.25, 0.2501], [0.25, 0.2499]]);
+    assert!(
+        text.ends_with(&format!("the RMS torque error remains 0.25 {torque} {median}")),
+        "{text}"
+    );
+    let text = lead(&[[0.25, 0.25]]);
+    assert!(text.ends_with(&format!("remains 0.25 {torque}.")), "{text}");
+}
+
 #[test]
 fn the_contents_lead_to_every_section() {
     let text = page(7, Plot::Rich);

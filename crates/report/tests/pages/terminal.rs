@@ -82,6 +82,33 @@ fn an_empty_diagnosis_has_no_table() {
     assert!(terminal::diagnosis(&report).contains("not enough data: 1.9 s in motion"));
 }
 
+/// Without findings, all of the residual is unexplained, and the text says in which state and when it is largest.
+#[test]
+fn an_unexplained_mismatch_says_where_it_is_and_what_to_do() {
+    let (mut report, _, arm) = made_up::diagnosis(6, Plot::Rich);
+    report.findings.clear();
+    report.verdict = diagnosis::Verdict::Unexplained;
+    let joint = report.located[1].joint.clone();
+    report.unexplained.truncate(1);
+    report.unexplained[0].joint = joint.clone();
+    report.unexplained[0].time = report.located[1].time.clone();
+    let flat = |text: String| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let short = flat(terminal::diagnosis(&report));
+    for part in [
+        &format!("The mismatch on {joint} is unexplained"),
+        "largest: 11.2 to 12.8 s of recordings/a_sines.csv",
+        "next experiment: Sweep this joint alone",
+    ] {
+        assert!(short.contains(part), "{part} is not in\n{short}");
+    }
+    let place =
+        "largest: angle from -1.9 to -0.8 rad; speed below 0.05 rad/s; 11.2 to 12.8 s of recordings/a_sines.csv";
+    let long = flat(terminal::complete(&report, &arm)).replace('−', "-");
+    assert!(long.contains(place), "{long}");
+    let markdown = report::diagnosis_markdown(&report, &arm).replace('−', "-");
+    assert!(markdown.contains(place), "{markdown}");
+}
+
 #[test]
 fn a_residual_above_the_torques_spread_is_no_percentage() {
     let (mut report, ..) = made_up::diagnosis(6, Plot::Rich);

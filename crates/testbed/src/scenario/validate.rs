@@ -35,8 +35,8 @@ const MAX_VALUE: f64 = 1e9;
 /// One line that names file, line and key, what was found and how to mend it.
 pub fn scenario(source: &Source, raw: RawScenario, chosen: &ChainArgs) -> anyhow::Result<Scenario> {
     let of_robot = || {
-        let (place, robot) = (source.place(raw.robot.span()), raw.robot.get_ref());
-        format!("{place}: robot = \"{robot}\"")
+        let place = source.place(raw.robot.span());
+        format!("{place}: robot")
     };
     let robot =
         robot::find_robot(raw.robot.get_ref(), source.path.parent().unwrap_or(Path::new(""))).with_context(of_robot)?;

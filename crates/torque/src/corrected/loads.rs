@@ -51,7 +51,11 @@ impl Corrected {
         for (joint, law) in &self.machine.dry {
             let at = Circumstance {
                 time: Some(time),
-                load: if needs_rigid { workspace.rigid[*joint] } else { 0.0 },
+                load: if needs_rigid {
+                    self.gear_load(*joint, &workspace.rigid, qdd)
+                } else {
+                    0.0
+                },
             };
             dry[*joint] += law.level(qd[*joint], at);
             opposing[*joint] += law.bias();

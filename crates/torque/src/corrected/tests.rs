@@ -260,6 +260,22 @@ fn a_contact_pushes_while_it_lasts() {
     near(at(Some(1.4))[1], -1.0);
 }
 
+/// The gear does not transmit the torque that accelerates the rotor, which is the motor's own.
+#[test]
+fn load_dependent_friction_does_not_grow_with_the_rotors_torque() {
+    let friction = Effect::of(&LoadDependentFriction)
+        .on(a())
+        .with("coulomb", 0.5)
+        .with("gain", 0.1);
+    let rotor = Effect::of(&RotorInertia).on(a()).with("inertia", 7.0);
+    let model = Corrected::new(&arm(PENDULUM), &[friction, rotor]).expect("they are physical");
+    let prediction = predict(&model, None, &[0.0], &[1.0], &[3.0]);
+    // Weight and inertia of the link: m g l acts against the positive direction about y.
+    let link = (0.1 + 2.0 * 0.25) * 3.0 - 2.0 * 9.81 * 0.5;
+    near(prediction.rigid[0], link + 7.0 * 3.0);
+    near(prediction.effects[0], 0.5 + 0.1 * link.abs());
+}
+
 /// The sum of the effects as loads on a simulated arm is the torque of the model.
 #[test]
 fn loads_and_torques_agree() {
@@ -272,6 +288,7 @@ fn loads_and_torques_agree() {
             .on("b")
             .with("coulomb", 0.5)
             .with("gain", 0.1),
+        Effect::of(&RotorInertia).on("b").with("inertia", 0.4),
         Effect::of(&ViscousFriction).on(a()).with("coefficient", 0.7),
         Effect::of(&Spring).on("b").with("stiffness", 3.0).with("rest", 0.1),
         Effect::of(&ExternalContact)

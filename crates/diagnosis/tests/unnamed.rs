@@ -1,0 +1,46 @@
+//! A mismatch that nothing names is still said to be somewhere.
+
+mod support;
+
+use diagnosis::Verdict;
+use support::{ELBOW, Motion, SHOULDER, TURN, diagnosed, trio};
+
+/// A small torque in a part of the elbow's range that depends on three joints at once, which no regressor predicts: the list is
+/// not empty beside the verdict that the mismatch is unexplained.
+#[test]
+fn what_nothing_predicts_has_its_joint_its_place_and_an_experiment() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        let phase = 5.0 * motion.qd[TURN] * motion.q[SHOULDER] + 4.0 * motion.q[ELBOW] * motion.qd[SHOULDER];
+        if motion.q[ELBOW] > 1.0 {
+            tau[ELBOW] += 0.12 * phase.sin();
+        }
+    };
+    let report = diagnosed(&trio(), &trio(), &concealed, Vec::new()).report;
+    assert_eq!(report.verdict, Verdict::Unexplained, "{:?}", report.findings);
+    let [open] = report.unexplained.as_slice() else {
+        panic!("{:?}", report.unexplained);
+    };
+    assert_eq!(open.joint, "elbow");
+    assert!(open.share > 0.01 && open.share < 0.2, "{open:?}");
+    assert_eq!(
+        open.depends_on.first().map(String::as_str),
+        Some("own_position"),
+        "{open:?}"
+    );
+    assert!(
+        open.next.contains("sweep elbow slowly over its whole range"),
+        "{open:?}"
+    );
+    let located = report
+        .located
+        .iter()
+        .find(|located| located.joint == "elbow")
+        .expect("it is located");
+    let region = located
+        .regions
+        .iter()
+        .find(|region| region.axis == "angle")
+        .expect("it stands out");
+    assert!(region.range[0] > 0.8, "{region:?}");
+    assert!(!open.time.is_empty() && open.time == located.time, "{open:?}");
+}
