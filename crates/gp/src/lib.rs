@@ -24,6 +24,7 @@
 //! possible error.
 
 mod algebra;
+mod climb;
 mod conditioning;
 mod data;
 mod dense;
