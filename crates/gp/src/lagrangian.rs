@@ -237,7 +237,7 @@ impl LagrangianGp {
     }
 
     /// Writes the posterior variance of the torques (noise not included) at a motion to `variances`; allocates nothing once the
-    /// workspace has grown. It takes a thousand times as long as the mean.
+    /// workspace has grown. It takes about a hundred times as long as the mean.
     ///
     /// # Panics
     /// If a slice is of another number of joints.
