@@ -185,6 +185,8 @@ fn every_model_runs_on_arms_of_one_and_of_four_joints() {
             "hybrid",
             "independent-joint",
             "independent-joint-13",
+            "lagrangian",
+            "lagrangian-only",
         ] {
             sandbox.succeed(&words(&format!(
                 "--scenario r.toml --model {model} --train r.toml --rerun off --json s.json"

@@ -59,6 +59,16 @@ pub enum GpError {
         /// Number of inputs.
         dim: usize,
     },
+    /// A list of hyperparameters is of another length than the joints require.
+    #[error("{name} has {given} entries, expected {expected}")]
+    Entries {
+        /// Its name.
+        name: &'static str,
+        /// Number of entries given.
+        given: usize,
+        /// Number of entries for the joints.
+        expected: usize,
+    },
     /// The kernel matrix could not be factored, or the likelihood is not finite.
     #[error("the likelihood cannot be computed: {0}")]
     Likelihood(String),

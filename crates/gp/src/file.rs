@@ -4,6 +4,7 @@ use std::fs;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::conditioning::Conditioning;
@@ -117,7 +118,7 @@ impl TryFrom<Saved> for Gp {
     }
 }
 
-fn check_finite(name: &str, values: &[f64]) -> Result<(), String> {
+pub(crate) fn check_finite(name: &str, values: &[f64]) -> Result<(), String> {
     match values.iter().position(|value| !value.is_finite()) {
         Some(at) => Err(format!("{name}[{at}] is {}", values[at])),
         None => Ok(()),
@@ -138,6 +139,45 @@ fn check_triangle(name: &str, triangle: &Triangle, rank: usize) -> Result<(), St
     }
 }
 
+/// Writes `value` to a JSON file, completely or not at all: first to a temporary file in the same folder, which is then renamed.
+pub(crate) fn save(value: &impl Serialize, path: &Path) -> Result<(), GpError> {
+    let failed = |source| GpError::File {
+        path: path.to_owned(),
+        source,
+    };
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let file = tempfile::NamedTempFile::new_in(folder).map_err(failed)?;
+    let mut writer = BufWriter::new(file);
+    serde_json::to_writer(&mut writer, value).map_err(|error| failed(error.into()))?;
+    writer.flush().map_err(failed)?;
+    let file = writer.into_inner().map_err(|error| failed(error.into_error()))?;
+    file.as_file().sync_all().map_err(failed)?;
+    file.persist(path).map_err(|error| failed(error.error))?;
+    Ok(())
+}
+
+/// Reads what [`save`] wrote, of the version `expected`.
+pub(crate) fn load<T: DeserializeOwned>(path: &Path, expected: &str) -> Result<T, GpError> {
+    let text = fs::read_to_string(path).map_err(|source| GpError::File {
+        path: path.to_owned(),
+        source,
+    })?;
+    let malformed = |reason: String| GpError::Format {
+        path: path.to_owned(),
+        reason,
+    };
+    // The version is checked first, so that a file of another version is not refused for a missing field.
+    let tag: Tag = serde_json::from_str(&text).map_err(|error| malformed(error.to_string()))?;
+    if tag.format != expected {
+        let given = tag.format;
+        return Err(malformed(format!("format is \"{given}\", expected \"{expected}\"")));
+    }
+    serde_json::from_str(&text).map_err(|error| malformed(error.to_string()))
+}
+
 impl Gp {
     /// Writes the model to a JSON file, completely or not at all: first to a temporary file in the same folder, which
     /// is then renamed.
@@ -145,23 +185,7 @@ impl Gp {
     /// # Errors
     /// [`GpError::File`], naming the file.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), GpError> {
-        let path = path.as_ref();
-        let failed = |source| GpError::File {
-            path: path.to_owned(),
-            source,
-        };
-        let folder = match path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
-        let file = tempfile::NamedTempFile::new_in(folder).map_err(failed)?;
-        let mut writer = BufWriter::new(file);
-        serde_json::to_writer(&mut writer, self).map_err(|error| failed(error.into()))?;
-        writer.flush().map_err(failed)?;
-        let file = writer.into_inner().map_err(|error| failed(error.into_error()))?;
-        file.as_file().sync_all().map_err(failed)?;
-        file.persist(path).map_err(|error| failed(error.error))?;
-        Ok(())
+        save(self, path.as_ref())
     }
 
     /// Reads a model from a file that [`Gp::save`] wrote; its predictions have the same bits as those of the saved
@@ -171,21 +195,6 @@ impl Gp {
     /// [`GpError::File`] if it cannot be read, [`GpError::Format`] if it is not a model of this version or is inconsistent, both
     /// naming the file.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, GpError> {
-        let path = path.as_ref();
-        let text = fs::read_to_string(path).map_err(|source| GpError::File {
-            path: path.to_owned(),
-            source,
-        })?;
-        let malformed = |reason: String| GpError::Format {
-            path: path.to_owned(),
-            reason,
-        };
-        // The version is checked first, so that a file of another version is not refused for a missing field.
-        let tag: Tag = serde_json::from_str(&text).map_err(|error| malformed(error.to_string()))?;
-        if tag.format != FORMAT {
-            let given = tag.format;
-            return Err(malformed(format!("format is \"{given}\", expected \"{FORMAT}\"")));
-        }
-        serde_json::from_str(&text).map_err(|error| malformed(error.to_string()))
+        load(path.as_ref(), FORMAT)
     }
 }

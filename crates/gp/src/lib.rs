@@ -22,14 +22,19 @@
 //! With [`FitOptions::inducing`], the factorisation stops at a given rank, because noisy data have no low rank. This
 //! is an approximation whose likelihood is a lower bound of the exact one; [`Conditioning`] contains its largest
 //! possible error.
+//!
+//! [`LagrangianGp`] is a regression of another kind: of the torques of all joints of an arm at once, by Gaussian processes of its
+//! energies.
 
 mod algebra;
+mod climb;
 mod conditioning;
 mod data;
 mod dense;
 mod error;
 mod file;
 mod kernel;
+mod lagrangian;
 mod likelihood;
 mod line;
 mod low_rank;
@@ -45,6 +50,10 @@ mod wide;
 pub use conditioning::Conditioning;
 pub use data::{Hyperparameters, Lengths, TrainingSet};
 pub use error::GpError;
+pub use lagrangian::{
+    JointType, LagrangianConditioning, LagrangianGp, LagrangianOptions, LagrangianPrior, LagrangianRange,
+    LagrangianWorkspace, TorqueSamples,
+};
 pub use model::{FitOptions, Gp, LengthScales, Workspace};
 pub use range::Range;
 pub use wide::{Wide, on_widest, release_vectors};

@@ -37,13 +37,13 @@ pub struct Range {
 
 /// A lower triangular matrix by columns, each padded to whole blocks.
 #[derive(Clone, Debug)]
-struct Columns {
+pub(crate) struct Columns {
     values: Vec<f64>,
     padded: usize,
 }
 
 impl Columns {
-    fn new(matrix: faer::MatRef<'_, f64>, scale: f64) -> Self {
+    pub(crate) fn new(matrix: faer::MatRef<'_, f64>, scale: f64) -> Self {
         let n = matrix.nrows();
         let padded = n.div_ceil(LANES) * LANES;
         let mut values = vec![0.0; padded * n];
@@ -56,7 +56,7 @@ impl Columns {
     }
 
     /// The squared norm of the product with `x`.
-    fn square_of_product(&self, x: &[f64]) -> f64 {
+    pub(crate) fn square_of_product(&self, x: &[f64]) -> f64 {
         on_widest(Product { columns: self, x })
     }
 }

@@ -1,13 +1,7 @@
 //! Maximum marginal likelihood: a grid of starts on few samples, then L-BFGS, then L-BFGS on all samples; one length scale without
 //! noise has a search of its own.
 
-use std::cell::RefCell;
-
-use argmin::core::{CostFunction, Error, Executor, Gradient, State};
-use argmin::solver::linesearch::MoreThuenteLineSearch;
-use argmin::solver::quasinewton::LBFGS;
-
-use crate::algebra::sum_of_squares;
+use crate::climb::{self, climb};
 use crate::data::TrainingSet;
 use crate::error::GpError;
 use crate::kernel::Points;
@@ -16,18 +10,11 @@ use crate::noise_free;
 use crate::starts::{Bounds, LENGTH_FACTORS, RELATIVE_NOISES, shapes};
 use crate::{FitOptions, LengthScales};
 
-/// Points looked at in vain, beyond the number of parameters, before a search ends. Near the floor of ρ the likelihood is rough with
-/// rounding, where a line search, which takes it to be smooth, would never end.
-const PATIENCE: usize = 5;
-
 /// Samples the starts are tried on.
 const FEW: usize = 256;
 
 /// The relative noise up to which a search on few samples is assumed to have found the function.
 const RESOLVED: f64 = 0.03;
-
-/// Steps L-BFGS remembers.
-const MEMORY: usize = 10;
 
 /// The result of the search: length scales (one, or one per input) and relative noise ρ.
 pub(crate) struct Found {
@@ -78,7 +65,7 @@ pub(crate) fn search(training: &TrainingSet, options: &FitOptions, floor: f64) -
     let on_all = Likelihood::new(training, &bounds, options, 0.003);
     let mut best = (f64::NEG_INFINITY, Vec::new());
     for start in &chosen {
-        let (_, free) = on_few.climb(start, options.max_iterations)?;
+        let (_, free) = climb(&on_few, start, options.max_iterations)?;
         let value = on_all.value(&free);
         if value > best.0 || best.1.is_empty() {
             best = (value, free);
@@ -102,17 +89,17 @@ pub(crate) fn search(training: &TrainingSet, options: &FitOptions, floor: f64) -
         // Halfway there on the geometric mean of few and all: first steps are long, and some of them lead to a high rank.
         let between = training.thinned((FEW * training.samples()).isqrt());
         let on_between = Likelihood::new(&between, &bounds, options, 0.05);
-        best = on_between.climb(&best.1, options.max_iterations)?;
+        best = climb(&on_between, &best.1, options.max_iterations)?;
         if options.inducing.is_some() {
             // Few noisy samples may have set an input aside, where no slope leads back from: once more from all inputs alike.
             let start = best_start(&on_between, &shapes, &bounds, floor);
-            let other = on_between.climb(&start, options.max_iterations)?;
+            let other = climb(&on_between, &start, options.max_iterations)?;
             if other.0 > best.0 {
                 best = other;
             }
         }
     }
-    let (_, free) = on_all.climb(&best.1, options.max_iterations)?;
+    let (_, free) = climb(&on_all, &best.1, options.max_iterations)?;
     Ok(on_all.found(&free))
 }
 
@@ -146,34 +133,6 @@ struct Likelihood<'a> {
     inducing: Option<usize>,
     /// Gains that are no gain, nats.
     tolerance: f64,
-    /// The last point asked for (the search asks for value and gradient separately), and the best one.
-    seen: RefCell<Seen>,
-}
-
-struct Seen {
-    last: Vec<f64>,
-    value: f64,
-    gradient: Vec<f64>,
-    best: f64,
-    best_at: Vec<f64>,
-    /// The tolerance, and what rounding makes of one likelihood near the floor of ρ, nats.
-    negligible: f64,
-    /// Points looked at since the last gain that was not negligible.
-    stalled: usize,
-}
-
-impl Default for Seen {
-    fn default() -> Self {
-        Self {
-            last: Vec::new(),
-            value: f64::NAN,
-            gradient: Vec::new(),
-            best: f64::NEG_INFINITY,
-            best_at: Vec::new(),
-            negligible: 0.0,
-            stalled: 0,
-        }
-    }
 }
 
 impl<'a> Likelihood<'a> {
@@ -184,7 +143,6 @@ impl<'a> Likelihood<'a> {
             lengths: options.lengths,
             inducing: options.inducing,
             tolerance,
-            seen: RefCell::default(),
         }
     }
 
@@ -218,20 +176,15 @@ impl<'a> Likelihood<'a> {
             factored: None,
         }
     }
+}
 
-    /// Makes `seen` hold value and gradient at `free`.
-    fn look(&self, free: &[f64]) -> Result<(), Error> {
-        if self.seen.borrow().last == free {
-            return Ok(());
-        }
-        if self.stalled() {
-            return Err(Error::msg("no more to gain"));
-        }
+impl climb::Likelihood for Likelihood<'_> {
+    fn value_and_gradient(&self, free: &[f64]) -> Option<(f64, Vec<f64>)> {
         let (factored, points) = self.factored(free, Precision::SEARCH);
         let value = factored.evaluation().profiled();
         let by_log = factored.gradient(&points);
         if !value.is_finite() || by_log.iter().any(|g| !g.is_finite()) {
-            return Err(Error::msg("the likelihood is not finite"));
+            return None;
         }
         let (by_length, by_rho) = by_log.split_at(self.training.dim());
         let mut gradient = match self.lengths {
@@ -242,103 +195,15 @@ impl<'a> Likelihood<'a> {
         for (g, slope) in gradient.iter_mut().zip(self.bounds.slopes(free)) {
             *g *= slope;
         }
-        let mut seen = self.seen.borrow_mut();
+        Some((value, gradient))
+    }
+
+    fn observations(&self) -> f64 {
+        self.training.samples() as f64
+    }
+
+    fn negligible(&self, free: &[f64]) -> f64 {
         let rounding = f64::EPSILON * self.training.samples() as f64 / self.found(free).rho;
-        seen.negligible = self.tolerance + 0.5 * rounding;
-        if value > seen.best + seen.negligible {
-            seen.stalled = 0;
-        } else {
-            seen.stalled += 1;
-        }
-        if value > seen.best {
-            seen.best = value;
-            seen.best_at = free.to_vec();
-        }
-        seen.last = free.to_vec();
-        seen.value = value;
-        seen.gradient = gradient;
-        Ok(())
-    }
-
-    fn stalled(&self) -> bool {
-        let seen = self.seen.borrow();
-        seen.stalled >= PATIENCE + seen.last.len()
-    }
-
-    /// Climbs from `start` to a maximum: its value and place.
-    ///
-    /// The value kept is the best one met, so that a line search that ends in rounding loses nothing. The search is taken up again from
-    /// there, with its memory cleared, for as long as that gains anything.
-    fn climb(&self, start: &[f64], max_iterations: u64) -> Result<(f64, Vec<f64>), GpError> {
-        self.seen.replace(Seen::default());
-        let mut best = (f64::NEG_INFINITY, start.to_vec());
-        let mut left = max_iterations;
-        while left > 0 {
-            // A start whose likelihood is not finite is no start.
-            if self.look(&best.1).is_err() {
-                break;
-            }
-            let steepness = sum_of_squares(&self.seen.borrow().gradient).sqrt();
-            // Of order one; and the first step, which is the gradient itself, no longer than one in the logarithms.
-            let divisor = steepness.max(self.training.samples() as f64);
-            self.seen.borrow_mut().stalled = 0;
-            let solver = solver().map_err(|error| GpError::Search(error.to_string()))?;
-            let problem = Scaled {
-                likelihood: self,
-                divisor,
-            };
-            let run = Executor::new(problem, solver)
-                .configure(|state| state.param(best.1.clone()).max_iters(left))
-                .ctrlc(false)
-                .timer(false)
-                .run();
-            // An error is the search's own end, with the best point seen.
-            let used = run.map_or(left, |run| run.state.get_iter() + 1);
-            left = left.saturating_sub(used);
-            let seen = self.seen.borrow();
-            let gained = seen.best - best.0;
-            best = (seen.best, seen.best_at.clone());
-            if gained <= seen.negligible || self.stalled() {
-                break;
-            }
-        }
-        Ok(best)
-    }
-}
-
-type Solver = LBFGS<MoreThuenteLineSearch<Vec<f64>, Vec<f64>, f64>, Vec<f64>, Vec<f64>, f64>;
-
-/// L-BFGS, for a function whose gradient is of order one.
-fn solver() -> Result<Solver, Error> {
-    let line_search = MoreThuenteLineSearch::new().with_width_tolerance(0.02)?;
-    LBFGS::new(line_search, MEMORY)
-        .with_tolerance_grad(1e-6)?
-        .with_tolerance_cost(1e-9)
-}
-
-/// The problem as argmin wants it: owned by the executor, minimised, of order one.
-struct Scaled<'a, 'b> {
-    likelihood: &'a Likelihood<'b>,
-    divisor: f64,
-}
-
-impl CostFunction for Scaled<'_, '_> {
-    type Param = Vec<f64>;
-    type Output = f64;
-
-    fn cost(&self, free: &Vec<f64>) -> Result<f64, Error> {
-        self.likelihood.look(free)?;
-        Ok(-self.likelihood.seen.borrow().value / self.divisor)
-    }
-}
-
-impl Gradient for Scaled<'_, '_> {
-    type Param = Vec<f64>;
-    type Gradient = Vec<f64>;
-
-    fn gradient(&self, free: &Vec<f64>) -> Result<Vec<f64>, Error> {
-        self.likelihood.look(free)?;
-        let seen = self.likelihood.seen.borrow();
-        Ok(seen.gradient.iter().map(|g| -g / self.divisor).collect())
+        self.tolerance + 0.5 * rounding
     }
 }

@@ -70,8 +70,13 @@ impl Bounds {
             .iter()
             .map(|length| (length * 1e-4, length * 1e6))
             .chain([(floor, 1e4)]);
+        Self::of_logs(ranges.map(|(low, high)| (low.ln(), high.ln())))
+    }
+
+    /// Bounds from the lowest and the highest logarithm of each parameter.
+    pub(crate) fn of_logs(ranges: impl Iterator<Item = (f64, f64)>) -> Self {
         let (middles, halves) = ranges
-            .map(|(low, high)| ((low.ln() + high.ln()) / 2.0, (high.ln() - low.ln()) / 2.0))
+            .map(|(low, high)| ((low + high) / 2.0, (high - low) / 2.0))
             .unzip();
         Self { middles, halves }
     }

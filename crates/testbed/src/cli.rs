@@ -95,7 +95,7 @@ pub struct RunArgs {
     pub fade: Option<bool>,
 
     /// With more samples than this, approximate each regression by so many inducing points; the result says how far off it is
-    /// [default: exact]
+    /// [default: exact; 250 samples of all joints for the energies]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub inducing: Option<u32>,
 
@@ -122,6 +122,10 @@ pub struct TablesArgs {
     /// The length scales of the regressions: one for all inputs, as in the paper, or one per input
     #[arg(long, value_enum, default_value = "one")]
     pub length_scales: LengthScalesArg,
+
+    /// Also train models of today, which the paper does not have: energies with a rigid body and alone
+    #[arg(long)]
+    pub today: bool,
 
     /// Also write the tables to this file
     #[arg(long, value_name = "FILE")]

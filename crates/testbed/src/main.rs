@@ -37,7 +37,7 @@ fn main() -> ExitCode {
     }
     let result = match (&cli.command, &cli.run) {
         (Some(cli::Command::Tables(args)), _) => {
-            tables::run(args.json.as_deref(), &args.length_scales.training_options())
+            tables::run(args.json.as_deref(), &args.length_scales.training_options(), args.today)
         }
         (Some(cli::Command::Transfer(args)), _) => transfer::run(args),
         (Some(cli::Command::Inspect(args)), _) => inspect::run(args),

@@ -2,7 +2,7 @@
 
 use arm::Arm;
 use serde::{Serialize, Serializer};
-use torque::{Inputs, Learned, RigidBody, Samples, TorqueModel, TrainingOptions};
+use torque::{Inputs, Lagrangian, LagrangianOptions, Learned, RigidBody, Samples, TorqueModel, TrainingOptions};
 
 /// The torque models one can ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -20,17 +20,23 @@ pub enum ModelKind {
     /// The independent-joint model with its own rigid torque as the 13th input
     #[value(name = "independent-joint-13")]
     IndependentJoint13,
+    /// Rigid body plus one regression of all joints by kinetic and potential energy and friction (Giacomuzzo and others, 2024)
+    Lagrangian,
+    /// The regression by energies and friction alone, which needs no masses and inertias
+    LagrangianOnly,
 }
 
 impl ModelKind {
-    /// All, from the reference down the columns of the paper's tables.
-    pub const ALL: [Self; 6] = [
+    /// All: the reference, those of the paper's tables, those of today.
+    pub const ALL: [Self; 8] = [
         Self::True,
         Self::RigidBody,
         Self::Gp,
         Self::Hybrid,
         Self::IndependentJoint,
         Self::IndependentJoint13,
+        Self::Lagrangian,
+        Self::LagrangianOnly,
     ];
 
     /// The name in JSON.
@@ -42,6 +48,8 @@ impl ModelKind {
             Self::Hybrid => "hybrid",
             Self::IndependentJoint => "independent_joint",
             Self::IndependentJoint13 => "independent_joint_13",
+            Self::Lagrangian => "lagrangian",
+            Self::LagrangianOnly => "lagrangian_only",
         }
     }
 
@@ -59,12 +67,24 @@ impl ModelKind {
             Self::Hybrid => "rigid body + GP",
             Self::IndependentJoint => "IJL, 12 inputs",
             Self::IndependentJoint13 => "IJL, 13 inputs",
+            Self::Lagrangian => "rigid body + energies",
+            Self::LagrangianOnly => "energies only",
         }
     }
 
     /// Whether it is trained.
     pub fn learns(self) -> bool {
         !matches!(self, Self::True | Self::RigidBody)
+    }
+
+    /// Whether the paper does not have it, nor its inputs: a model of today.
+    pub fn is_of_today(self) -> bool {
+        matches!(self, Self::Lagrangian | Self::LagrangianOnly)
+    }
+
+    /// Whether its regressions have length scales.
+    pub fn has_length_scales(self) -> bool {
+        self.learns() && !self.is_of_today()
     }
 
     /// The rigid-body model the controller has beside it, for its mass matrix.
@@ -89,7 +109,7 @@ impl ModelKind {
         self.build_with(true_arm, nominal_arm, samples, options, &|| {})
     }
 
-    /// Makes the model as [`Self::build`] does, and calls `fitted` after the regression of each joint, on any thread.
+    /// Makes the model as [`Self::build`] does, and calls `fitted` once a joint, after its regression, on any thread.
     ///
     /// # Errors
     /// If training fails.
@@ -103,6 +123,10 @@ impl ModelKind {
     ) -> anyhow::Result<Box<dyn TorqueModel>> {
         let train = |arm, inputs| Learned::train(arm, inputs, samples, options, fitted);
         let on_top = |inputs| train(Some(nominal_arm), inputs);
+        let energies = LagrangianOptions {
+            support: options.inducing.unwrap_or(LagrangianOptions::default().support),
+            ..LagrangianOptions::default()
+        };
         Ok(match self {
             Self::True => Box::new(RigidBody::new(true_arm.clone())),
             Self::RigidBody => Box::new(RigidBody::new(nominal_arm.clone())),
@@ -110,6 +134,16 @@ impl ModelKind {
             Self::Hybrid => Box::new(on_top(Inputs::JointMotion)?),
             Self::IndependentJoint => Box::new(on_top(Inputs::NewtonEuler12)?),
             Self::IndependentJoint13 => Box::new(on_top(Inputs::NewtonEuler13)?),
+            Self::Lagrangian | Self::LagrangianOnly => {
+                let make = match self {
+                    Self::Lagrangian => Lagrangian::on_top_of,
+                    _ => Lagrangian::alone,
+                };
+                let model = make(nominal_arm, samples, &energies)?;
+                // One regression for all joints.
+                (0..samples.dof()).for_each(|_| fitted());
+                Box::new(model)
+            }
         })
     }
 }

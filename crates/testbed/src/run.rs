@@ -1,5 +1,6 @@
 //! `testbed --scenario …`: one run, from the scenario to its folder.
 
+mod fitted;
 mod folder;
 mod left;
 mod observers;
@@ -10,7 +11,7 @@ use anyhow::{Context, bail};
 use report::numbers::rounded;
 use report::terminal::table;
 use serde::Serialize;
-use torque::{Gp, Lengths, Samples, TorqueModel};
+use torque::{Samples, TorqueModel};
 
 use crate::cli::{ChainArgs, RunArgs};
 use crate::interrupt;
@@ -21,6 +22,7 @@ use crate::scenario::Scenario;
 use crate::simulation::{self, Observer, Outcome, Weight};
 use crate::training;
 use crate::written::Written;
+use fitted::{Energies, Regression, approximated, energies, regression};
 use folder::RunFolder;
 use observers::{Simulating, View};
 
@@ -48,22 +50,9 @@ struct Summary<'a> {
     fade_weights: &'a [Weight],
     /// The regressions of the model, one a joint; none if it does not learn.
     regressions: Vec<Regression>,
-}
-
-/// What training found for one joint: enough to repeat it.
-#[derive(Serialize)]
-struct Regression {
-    /// Standard deviation of the learned torque (N m or N).
-    amplitude: f64,
-    /// Length scale of all inputs, or of each.
-    length_scales: Vec<f64>,
-    /// Standard deviation of the noise (N m or N).
-    noise: f64,
-    log_marginal_likelihood: f64,
-    /// The numerical rank of the kernel matrix.
-    rank: usize,
-    /// What was added to the kernel matrix's diagonal, and why.
-    conditioning: String,
+    /// The regression of all joints by energies; absent if the model has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    energies: Option<Energies<'a>>,
 }
 
 #[derive(Serialize)]
@@ -145,6 +134,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
             p99: outcome.control_step_p99,
         },
         regressions: model.regressions().iter().map(regression).collect(),
+        energies: model.energies().map(energies),
     };
     let mut written = Written::default();
     let [recording, file] = ["recording.csv", "summary.json"].map(|name| folder.path.join(name));
@@ -161,6 +151,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     drop(deferred);
     let mut text = text(&scenario, kind, &sources, &summary, &outcome);
     if kind.learns() {
+        let length_scales = kind.has_length_scales().then_some(length_scales);
         text += &left::hardly_learned(&scenario, &summary.torque_mse, length_scales)?;
         text += &approximated(model.regressions());
     }
@@ -210,42 +201,6 @@ fn torque_error(scenario: &Scenario, model: &dyn TorqueModel) -> anyhow::Result<
     Ok(model.mean_squared_error(&training::own_samples(scenario)?))
 }
 
-/// A sentence on regressions that are approximated: by what, and how far off they can be.
-fn approximated(regressions: &[Gp]) -> String {
-    let conditionings = regressions.iter().map(Gp::conditioning);
-    let gaps: Vec<(f64, &torque::Conditioning)> = conditionings
-        .filter_map(|conditioning| Some((conditioning.likelihood_gap?, conditioning)))
-        .collect();
-    let Some((gap, worst)) = gaps.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else {
-        return String::new();
-    };
-    let samples = worst.samples as f64;
-    format!(
-        "{} of {} regressions are approximated by {} inducing points (variational free energy); at the worst they leave {} of the \
-         prior variance at the samples, and the exact log likelihood is at most {} nats a sample higher.\n",
-        gaps.len(),
-        regressions.len(),
-        worst.rank,
-        rounded(worst.neglected / samples, 2),
-        rounded(gap / samples, 2)
-    )
-}
-
-fn regression(gp: &Gp) -> Regression {
-    let hyperparameters = gp.hyperparameters();
-    Regression {
-        amplitude: hyperparameters.amplitude,
-        length_scales: match &hyperparameters.lengths {
-            Lengths::Isotropic(length) => vec![*length],
-            Lengths::PerInput(lengths) => lengths.clone(),
-        },
-        noise: hyperparameters.noise,
-        log_marginal_likelihood: gp.log_marginal_likelihood(),
-        rank: gp.rank(),
-        conditioning: gp.conditioning().to_string(),
-    }
-}
-
 /// Says what is doubtful in what was asked for, in the robot and in the reference.
 fn notes(args: &RunArgs, kind: ModelKind, scenario: &Scenario, samples: &Samples) {
     for note in &scenario.notes {
@@ -254,7 +209,13 @@ fn notes(args: &RunArgs, kind: ModelKind, scenario: &Scenario, samples: &Samples
     if args.train.is_some() && !kind.learns() {
         eprintln!("note: the model \"{}\" is not trained; --train is ignored", kind.flag());
     }
-    if samples.len() > MANY_SAMPLES && args.inducing.is_none() {
+    if args.length_scales.is_some() && !kind.has_length_scales() {
+        eprintln!(
+            "note: the model \"{}\" has no length scales; --length-scales is ignored",
+            kind.flag()
+        );
+    }
+    if samples.len() > MANY_SAMPLES && args.inducing.is_none() && kind.has_length_scales() {
         eprintln!(
             "note: training on {} samples may take minutes; --inducing 200 or a lower reference.sample_rate shortens it",
             samples.len()

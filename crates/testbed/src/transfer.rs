@@ -193,9 +193,9 @@ fn row(model: &dyn TorqueModel, rigid: &dyn TorqueModel, train: &[String], test:
         model.predict(&mut workspace, sample.q, sample.qd, sample.qdd, &mut prediction);
         let variances = model.variance(&mut workspace, sample.q, sample.qd, sample.qdd);
         let variances = variances.unwrap_or_default();
-        for (joint, (gp, variance)) in model.regressions().iter().zip(variances).enumerate() {
+        for (joint, variance) in variances.iter().enumerate() {
             // Of the torque: the function's and the noise's.
-            let variance = variance + gp.hyperparameters().noise.powi(2);
+            let variance = variance + model.noise(joint).powi(2);
             let error = sample.tau[joint] - prediction.torque(joint);
             expected[joint] += variance;
             likelihood[joint] -= 0.5 * (error * error / variance + (std::f64::consts::TAU * variance).ln());

@@ -5,7 +5,10 @@ mod support;
 
 use divan::Bencher;
 use support::{motion, puma560, samples};
-use torque::{Command, Controller, Feedback, Inputs, Learned, RigidBody, TorqueModel, TrainingOptions};
+use torque::{
+    Command, Controller, Feedback, Inputs, Lagrangian, LagrangianOptions, Learned, RigidBody, TorqueModel,
+    TrainingOptions,
+};
 
 fn bench(bencher: Bencher, model: &dyn TorqueModel, fades: bool) {
     let nominal = puma560().with_scaled_inertias(1.2);
@@ -57,6 +60,21 @@ fn independent_joint_13(bencher: Bencher) {
 #[divan::bench]
 fn independent_joint_13_fading(bencher: Bencher) {
     bench(bencher, &learned(Inputs::NewtonEuler13), true);
+}
+
+fn energies() -> Lagrangian {
+    let nominal = puma560().with_scaled_inertias(1.2);
+    Lagrangian::on_top_of(&nominal, &samples(2000, 0), &LagrangianOptions::default()).expect("it trains")
+}
+
+#[divan::bench]
+fn lagrangian(bencher: Bencher) {
+    bench(bencher, &energies(), false);
+}
+
+#[divan::bench]
+fn lagrangian_fading(bencher: Bencher) {
+    bench(bencher, &energies(), true);
 }
 
 fn main() {

@@ -147,7 +147,7 @@ impl<'a> Controller<'a> {
             let due = fade.due.map_or(0..dof, |joint| joint..joint + 1);
             fade.due = Some(fade.due.map_or(0, |joint| (joint + 1) % dof));
             for joint in due {
-                if let Some(weight) = self.model.weight(&self.workspace, joint) {
+                if let Some(weight) = self.model.weight(&mut self.workspace, joint) {
                     fade.weights[joint] = weight;
                 }
             }

@@ -34,6 +34,9 @@ pub enum TorqueError {
         /// The error of the regression.
         source: gp::GpError,
     },
+    /// The regression of all joints' torques by the arm's energies failed.
+    #[error("the energies cannot be learned: {0}")]
+    Energies(gp::GpError),
     /// An effect that does not fit the arm.
     #[error(transparent)]
     Effect(#[from] effects::EffectError),

@@ -167,7 +167,7 @@ impl TorqueModel for Learned {
         &self.regressions
     }
 
-    fn weight(&self, workspace: &Workspace, joint: usize) -> Option<f64> {
+    fn weight(&self, workspace: &mut Workspace, joint: usize) -> Option<f64> {
         Some(self.reaches[joint].weight(self.inputs.of(joint, workspace)))
     }
 

@@ -1,7 +1,7 @@
 //! The trait of all torque models.
 
 use arm::{Arm, NewtonEulerFeatures};
-use gp::Gp;
+use gp::{Gp, LagrangianGp, LagrangianWorkspace};
 
 use crate::samples::Samples;
 
@@ -24,15 +24,28 @@ pub trait TorqueModel: Send + Sync {
     /// If a slice or the workspace is of another size than the arm.
     fn variance<'w>(&self, workspace: &'w mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64]) -> Option<&'w [f64]>;
 
-    /// The regressions of the learned part, one per joint; none in a model without a learned part.
+    /// The regressions of the learned part, one per joint; none in a model that does not have one per joint.
     fn regressions(&self) -> &[Gp] {
         &[]
+    }
+
+    /// The regression of the learned part by the arm's energies, if it is that.
+    fn energies(&self) -> Option<&LagrangianGp> {
+        None
+    }
+
+    /// The standard deviation (N m or N) of the noise that the learned part of `joint` has found in its training data; 0 without a
+    /// learned part.
+    fn noise(&self, joint: usize) -> f64 {
+        self.regressions()
+            .get(joint)
+            .map_or(0.0, |gp| gp.hyperparameters().noise)
     }
 
     /// The reliability of the learned part of `joint` from 0 (no training data near the motion) to 1, for the motion
     /// of the last prediction with this workspace; `None` from a model without a learned part. See
     /// [`crate::Controller::fading`].
-    fn weight(&self, _workspace: &Workspace, _joint: usize) -> Option<f64> {
+    fn weight(&self, _workspace: &mut Workspace, _joint: usize) -> Option<f64> {
         None
     }
 
@@ -92,6 +105,7 @@ pub struct Workspace {
     pub(crate) features: Vec<NewtonEulerFeatures>,
     pub(crate) input: Vec<f64>,
     pub(crate) gp: gp::Workspace,
+    pub(crate) lagrangian: Option<LagrangianWorkspace>,
     pub(crate) rigid: Vec<f64>,
     pub(crate) variance: Vec<f64>,
 }
@@ -104,6 +118,7 @@ impl Workspace {
             features: vec![[0.0; arm::FEATURES]; dof],
             input: vec![0.0; 3 * dof],
             gp: gp::Workspace::default(),
+            lagrangian: None,
             rigid: vec![0.0; dof],
             variance: vec![0.0; dof],
         }
@@ -111,5 +126,9 @@ impl Workspace {
 
     pub(crate) fn arm(&mut self, arm: &Arm) -> &mut arm::Workspace {
         self.arm.get_or_insert_with(|| arm::Workspace::new(arm))
+    }
+
+    pub(crate) fn lagrangian(&mut self, gp: &LagrangianGp) -> &mut LagrangianWorkspace {
+        self.lagrangian.get_or_insert_with(|| gp.workspace())
     }
 }

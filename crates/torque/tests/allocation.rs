@@ -8,20 +8,37 @@ use effects::friction::LoadDependentFriction;
 use effects::joint::Spring;
 use support::{motion, puma560, samples};
 use torque::{
-    Command, Controller, Corrected, Feedback, Inputs, Learned, Prediction, TorqueModel, TrainingOptions, Workspace,
+    Command, Controller, Corrected, Feedback, Inputs, Lagrangian, LagrangianOptions, Learned, Prediction, TorqueModel,
+    TrainingOptions, Workspace,
 };
 
 #[test]
 fn no_control_step_allocates() {
     let nominal = puma560().with_scaled_inertias(1.2);
-    for inputs in [Inputs::JointMotion, Inputs::NewtonEuler12, Inputs::NewtonEuler13] {
-        let model =
-            Learned::on_top_of(&nominal, inputs, &samples(100, 0), &TrainingOptions::default()).expect("it trains");
+    let learned = |inputs: Inputs| -> Box<dyn TorqueModel> {
+        let model = Learned::on_top_of(&nominal, inputs, &samples(100, 0), &TrainingOptions::default());
+        Box::new(model.expect("it trains"))
+    };
+    let options = LagrangianOptions {
+        starts: 1,
+        max_iterations: 5,
+        ..LagrangianOptions::default()
+    };
+    let energies = Lagrangian::on_top_of(&nominal, &samples(60, 0), &options).expect("it trains");
+    let alone = Lagrangian::alone(&nominal, &samples(60, 0), &options).expect("it trains");
+    let models: [(&str, Box<dyn TorqueModel>); 5] = [
+        ("joint motion", learned(Inputs::JointMotion)),
+        ("12 inputs", learned(Inputs::NewtonEuler12)),
+        ("13 inputs", learned(Inputs::NewtonEuler13)),
+        ("energies", Box::new(energies)),
+        ("energies only", Box::new(alone)),
+    ];
+    for (name, model) in models {
         let feedback = Feedback::MassMatrix {
             kp: vec![100.0; 6],
             kd: vec![20.0; 6],
         };
-        let mut controller = Controller::new(&model, nominal.clone(), feedback)
+        let mut controller = Controller::new(model.as_ref(), nominal.clone(), feedback)
             .expect("it fits")
             .fading();
         let mut command = Command::new(6);
@@ -35,7 +52,7 @@ fn no_control_step_allocates() {
         let counted = allocation_counter::measure(|| {
             step();
         });
-        assert_eq!(counted.count_total, 0, "{inputs:?}");
+        assert_eq!(counted.count_total, 0, "{name}");
     }
 }
 

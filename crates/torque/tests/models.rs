@@ -5,8 +5,8 @@ mod support;
 use arm::{Arm, DMatrix};
 use support::{motion, puma560, samples};
 use torque::{
-    Command, Controller, Feedback, Inputs, Learned, Prediction, RigidBody, Samples, TorqueError, TorqueModel,
-    TrainingOptions, Workspace,
+    Command, Controller, Feedback, Inputs, Lagrangian, LagrangianOptions, Learned, Prediction, RigidBody, Sample,
+    Samples, TorqueError, TorqueModel, TrainingOptions, Workspace,
 };
 
 fn nominal() -> Arm {
@@ -77,6 +77,91 @@ fn newton_euler_inputs_transfer_to_another_task() {
     );
 }
 
+/// Energies learned from one motion are those of another, on a rigid body and without one; fails if the torques of the joints are
+/// mixed up, or those of the rigid body are not subtracted.
+#[test]
+fn energies_transfer_to_another_task() {
+    let (train, tests) = (samples(400, 0), samples(300, 1));
+    let rigid = RigidBody::new(nominal()).mean_squared_error(&tests);
+    let options = LagrangianOptions {
+        starts: 2,
+        ..LagrangianOptions::default()
+    };
+    let on_top = Lagrangian::on_top_of(&nominal(), &train, &options).expect("it trains");
+    let alone = Lagrangian::alone(&nominal(), &train, &options).expect("it trains");
+    for (model, most) in [(&on_top, 5e-3), (&alone, 0.2)] {
+        let error = model.mean_squared_error(&tests);
+        for joint in 0..3 {
+            assert!(
+                error[joint] < most * rigid[joint],
+                "joint {joint}: {error:?} of {rigid:?}"
+            );
+        }
+        assert!((0..6).all(|joint| model.noise(joint) > 0.0));
+        assert!(model.regressions().is_empty() && model.energies().is_some());
+    }
+    assert!(alone.stands_alone() && !on_top.stands_alone());
+}
+
+/// Along the training motion, the torque of energies does not fade; where joints leave the little that they moved in training, it
+/// does, to the rigid body, also for a model that has none.
+#[test]
+fn energies_fade_where_they_are_not_known() {
+    let exact = RigidBody::new(puma560());
+    let small =
+        |k: usize| motion(k as f64 / 80.0, 0).map(|part| part.iter().map(|value| 0.03 * value).collect::<Vec<_>>());
+    let mut train = Samples::new(6);
+    let (mut workspace, mut below) = (Workspace::new(6), Prediction::new(6));
+    for k in 0..300 {
+        let [q, qd, qdd] = small(k);
+        exact.predict(&mut workspace, &q, &qd, &qdd, &mut below);
+        let tau = &below.rigid;
+        train
+            .push(Sample {
+                q: &q,
+                qd: &qd,
+                qdd: &qdd,
+                tau,
+            })
+            .expect("the sizes fit");
+    }
+    let options = LagrangianOptions {
+        starts: 1,
+        ..LagrangianOptions::default()
+    };
+    let rigid = RigidBody::new(nominal());
+    for model in [
+        Lagrangian::on_top_of(&nominal(), &train, &options).expect("it trains"),
+        Lagrangian::alone(&nominal(), &train, &options).expect("it trains"),
+    ] {
+        let gains = Feedback::Gains {
+            kp: vec![0.0; 6],
+            kd: vec![0.0; 6],
+        };
+        let mut plain = Prediction::new(6);
+        let mut least = 1.0_f64;
+        for ([q, qd, qdd], known) in [(small(100), true), (motion(1.0, 1), false)] {
+            let mut controller = Controller::new(&model, nominal(), gains.clone())
+                .expect("it fits")
+                .fading();
+            let mut command = Command::new(6);
+            controller.feed_forward(&q, &qd, &qdd, &mut command);
+            model.predict(&mut workspace, &q, &qd, &qdd, &mut plain);
+            rigid.predict(&mut workspace, &q, &qd, &qdd, &mut below);
+            for (joint, weight) in controller.weights().expect("it fades").iter().enumerate() {
+                let expected = below.rigid[joint] + weight * (plain.torque(joint) - below.rigid[joint]);
+                assert!((command.feedforward.torque(joint) - expected).abs() < 1e-9 * expected.abs().max(1.0));
+                assert!(
+                    (0.0..=1.0).contains(weight) && (!known || joint > 2 || *weight > 0.99),
+                    "{weight}"
+                );
+                least = least.min(*weight);
+            }
+        }
+        assert!(least < 0.5, "{least}");
+    }
+}
+
 /// The variance increases with the distance from the data, and only learned models have one.
 #[test]
 fn variance_tells_how_far_the_data_are() {
@@ -109,6 +194,17 @@ fn variance_tells_how_far_the_data_are() {
 fn what_does_not_fit_is_refused() {
     let none = Learned::gp_only(&Samples::new(6), &TrainingOptions::default());
     assert!(matches!(none, Err(TorqueError::NoSamples)));
+    let options = LagrangianOptions::default();
+    let none = Lagrangian::alone(&puma560(), &Samples::new(6), &options);
+    assert!(matches!(none, Err(TorqueError::NoSamples)));
+    let other = Lagrangian::on_top_of(&puma560(), &Samples::new(5), &options);
+    assert!(matches!(other, Err(TorqueError::Joints { found: 5, .. })));
+    let options = LagrangianOptions { starts: 0, ..options };
+    let message = Lagrangian::alone(&puma560(), &samples(9, 0), &options).expect_err("it is refused");
+    assert_eq!(
+        message.to_string(),
+        "the energies cannot be learned: starts is 0: it must be at least 1"
+    );
     let model = RigidBody::new(puma560());
     let gains = |kp: Vec<f64>| Controller::new(&model, puma560(), Feedback::Gains { kp, kd: vec![1.0; 6] });
     assert!(matches!(

@@ -20,7 +20,7 @@ const LARGER: f64 = 1.005;
 pub(super) fn hardly_learned(
     scenario: &Scenario,
     errors: &[f64],
-    length_scales: LengthScalesArg,
+    length_scales: Option<LengthScalesArg>,
 ) -> anyhow::Result<String> {
     let rigid = torque_error(scenario, &RigidBody::new(scenario.nominal_arm()))?;
     let joints = scenario.arm.joints().iter().map(|joint| joint.name.as_str());
@@ -33,7 +33,7 @@ pub(super) fn hardly_learned(
 }
 
 /// The sentences of [`hardly_learned`] on joints with what is `left` of the error, as a part of that of the rigid body.
-fn left_of_the_error(left: &[(&str, f64)], length_scales: LengthScalesArg) -> String {
+fn left_of_the_error(left: &[(&str, f64)], length_scales: Option<LengthScalesArg>) -> String {
     let (hardly, larger): (Vec<_>, Vec<_>) = left
         .iter()
         .filter(|(_, left)| *left > HARDLY_LEARNED)
@@ -59,10 +59,10 @@ fn left_of_the_error(left: &[(&str, f64)], length_scales: LengthScalesArg) -> St
         text += &format!("With the learned torque, the RMS torque error is larger than the rigid body's on {joints}. ");
     }
     let advice = match length_scales {
-        LengthScalesArg::One => {
+        Some(LengthScalesArg::One) => {
             "; one length scale for all inputs can hide small torques: compare with --length-scales per-input"
         }
-        LengthScalesArg::PerInput => "",
+        Some(LengthScalesArg::PerInput) | None => "",
     };
     format!("{text}Compare the tracking there with --model rigid-body{advice}.\n")
 }
@@ -75,18 +75,18 @@ mod tests {
     #[test]
     fn an_error_that_grows_is_no_part_that_remains() {
         let left = [("a", 0.3), ("b", 0.62), ("c", 1.002), ("d", 3.21), ("e", 198_737.37)];
-        let text = left_of_the_error(&left, LengthScalesArg::PerInput);
+        let text = left_of_the_error(&left, Some(LengthScalesArg::PerInput));
         assert_eq!(
             text,
             "The learned torque hardly reduces the rigid body's RMS torque error on b (62 % of it remains) and c (100 % of it \
              remains). With the learned torque, the RMS torque error is larger than the rigid body's on d (3.2 times as large) and \
              e (2.0e5 times as large). Compare the tracking there with --model rigid-body.\n"
         );
-        let grown = left_of_the_error(&left[3..4], LengthScalesArg::One);
+        let grown = left_of_the_error(&left[3..4], Some(LengthScalesArg::One));
         assert!(
             grown.starts_with("With the learned torque, ") && grown.contains("--length-scales per-input"),
             "{grown}"
         );
-        assert_eq!(left_of_the_error(&left[..1], LengthScalesArg::One), "");
+        assert_eq!(left_of_the_error(&left[..1], Some(LengthScalesArg::One)), "");
     }
 }
