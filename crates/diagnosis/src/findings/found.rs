@@ -14,7 +14,7 @@ use crate::search::problem::Problem;
 use crate::search::study::Study;
 use crate::selection::judge::{Member, Selection};
 use crate::selection::naming::name;
-use crate::thresholds::{AS_WELL, GAIN_PIECE, LEAST_OF_HALF, LISTED_SHARE, POWER_PIECES};
+use crate::thresholds::{AS_WELL, CLEAR_DRIVE, GAIN_PIECE, LEAST_OF_HALF, LISTED_SHARE, POWER_PIECES};
 
 /// The findings, each with its candidate.
 pub fn findings(
@@ -179,7 +179,23 @@ fn held_out_gain(
         held.rss(table, &fit.columns, &fit.coefficients),
         held.rss(table, &without.fit.columns, &without.fit.coefficients),
     );
-    (held.count[joint] > 0.0).then(|| 1.0 - (with[joint].max(0.0) / without[joint].max(1e-300)).sqrt())
+    let gain = |without: &[f64]| 1.0 - (with[joint].max(0.0) / without[joint].max(1e-300)).sqrt();
+    let mut gains = vec![gain(&without)];
+    // Every drive has friction, and most have a rotor: they are also useful if the rest of the fit, as it is, predicts worse
+    // without them. Fitted again, the inertials may change by more than the friction of a joint with a large load.
+    let hypothesis = study.candidates[member.candidate].hypothesis;
+    if hypothesis.is_friction() || hypothesis.is_drive_inertia() && member.evidence >= CLEAR_DRIVE {
+        let of_others = |column: &usize| !study.candidates[member.candidate].columns.contains(column);
+        let (columns, values): (Vec<usize>, Vec<f64>) = fit
+            .columns
+            .iter()
+            .copied()
+            .zip(fit.coefficients.iter().copied())
+            .filter(|(column, _)| of_others(column))
+            .unzip();
+        gains.push(gain(&held.rss(table, &columns, &values)));
+    }
+    (held.count[joint] > 0.0).then(|| gains.into_iter().fold(f64::MIN, f64::max))
 }
 
 /// The relative reduction of the error on `joint` by `candidate` where it was not fitted: its torque is scaled to the residual

@@ -161,7 +161,7 @@ impl Products {
     }
 
     /// One joint's part of [`Self::loss`].
-    fn joint_loss(&self, joint: usize, rss: f64) -> f64 {
+    pub fn joint_loss(&self, joint: usize, rss: f64) -> f64 {
         0.5 * self.evidence[joint] * self.variance(joint, rss).ln()
     }
 

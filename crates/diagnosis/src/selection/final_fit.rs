@@ -188,9 +188,7 @@ fn undecided(study: &mut Study, judged: &Selection) -> Option<(usize, &'static s
     let mut members: Vec<&judge::Member> = judged.members.iter().collect();
     members.sort_by(|a, b| a.evidence.total_cmp(&b.evidence));
     let mut rule = |member: &judge::Member| {
-        let candidate = &study.candidates[member.candidate];
-        let hypothesis = candidate.hypothesis;
-        let is_mass_of_the_arm = hypothesis.is_wrong_mass() && candidate.joint.is_none();
+        let hypothesis = study.candidates[member.candidate].hypothesis;
         if !hypothesis.is_baseline() && !hypothesis.is_passing() && member.share() < LEAST_FINAL_SHARE {
             return Some("too small in the final fit");
         }
@@ -198,8 +196,8 @@ fn undecided(study: &mut Study, judged: &Selection) -> Option<(usize, &'static s
         if !hypothesis.is_friction() && member.share() < LEAST_UNDECIDED && margin() < UNDECIDED_NATS {
             return Some("small, and another effect explains nearly as much in its place");
         }
-        // Some payload or common factor fits any wrong inertials better than nothing.
-        if is_mass_of_the_arm && margin() < UNDECIDED_NATS {
+        // Some payload or factor on inertials fits any wrong inertials better than nothing.
+        if hypothesis.is_wrong_mass() && margin() < UNDECIDED_NATS {
             return Some("wrong inertials, or another effect, explain nearly as much in its place");
         }
         // Where most links are as the URDF says, one wrong link is the less likely explanation.
@@ -230,9 +228,13 @@ fn is_part_of_the_rest(study: &Study, judged: &Selection, member: &judge::Member
         return false;
     };
     let Some(joint) = candidate.joint else { return false };
-    let unmodelled = judged.unmodelled.iter().map(|member| member.shares[joint]);
-    let left = structured(&errors(study, joint, &augmented(study, &judged.named, joint)));
-    factor * unmodelled.chain(left).fold(0.0, f64::max) > member.shares[joint]
+    let fit = errors(study, joint, &augmented(study, &judged.named, joint));
+    // Unmodelled forms also stand for parts of named effects: what counts is what the named effects leave.
+    let has_forms = judged.unmodelled.iter().any(|member| member.shares[joint] > 0.0);
+    let left = structured(&fit)
+        .into_iter()
+        .chain(has_forms.then_some(fit.train_nrmse_augmented));
+    factor * left.fold(0.0, f64::max) > member.shares[joint]
 }
 
 /// Reduces the background, and removes findings, until no joint's held-out error is larger than the nominal model's.

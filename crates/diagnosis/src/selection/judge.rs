@@ -92,18 +92,27 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
         .partition(|member| study.candidates[member.candidate].hypothesis.name().is_none());
     let mut kept = problem.choose(named.iter().map(|m| m.candidate).collect(), &chosen.fit.weights);
     if !unmodelled.is_empty() {
-        // Unmodelled forms may have replaced simple effects: a constant is allowed only if no other form remains on its
-        // joint.
+        // Unmodelled forms may have replaced simple effects. A constant is allowed if no other form remains on its joint, or if it
+        // is larger than all that the named effects leave there: the forms also stand for constants.
         let candidates = &study.candidates;
         let simple: Vec<usize> = (0..candidates.len())
             .filter(|&c| candidates[c].hypothesis.is_simple())
             .collect();
-        let left: Vec<Option<usize>> = beside(study, &problem, &problem.forward(kept.clone(), &simple), &unmodelled)
+        let with_all = problem.forward(kept.clone(), &simple);
+        let left: Vec<Option<usize>> = beside(study, &problem, &with_all, &unmodelled)
             .iter()
             .map(|member| candidates[member.candidate].joint)
             .collect();
+        let exceeds_the_rest = |c: usize| {
+            let Some(joint) = candidates[c].joint else { return false };
+            let rest = (with_all.fit.rss[joint].max(0.0) / products.count[joint].max(1.0)).sqrt();
+            with_all.set.contains(&c)
+                && shares(study, &with_all, c)[joint] > rest / study.scales.torque[joint].max(1e-300)
+        };
         let mut allowed = simple;
-        allowed.retain(|&c| candidates[c].hypothesis.is_baseline() || !left.contains(&candidates[c].joint));
+        allowed.retain(|&c| {
+            candidates[c].hypothesis.is_baseline() || !left.contains(&candidates[c].joint) || exceeds_the_rest(c)
+        });
         let next = problem.forward(kept.clone(), &allowed);
         study.note("replaces unmodelled forms", &kept, &next);
         kept = next;

@@ -242,7 +242,10 @@ impl Study {
         let products = bare.with_background(self.background());
         let mut without = self.problem(&products).without(chosen, member);
         for _ in 0..MOST_MOVES {
-            let Some((strengths, next)) = self.strengthened(&bare, &without, self.strengths.neighbours()) else {
+            let mut neighbours = self.strengths.neighbours();
+            // Friction of its own in each recording is another matter, and explains little elsewhere.
+            neighbours.retain(|next| next.friction == kept.friction);
+            let Some((strengths, next)) = self.strengthened(&bare, &without, neighbours) else {
                 break;
             };
             self.strengths = strengths;

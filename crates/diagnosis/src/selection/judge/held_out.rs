@@ -54,7 +54,13 @@ pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut 
                 let removed = set.remove(k);
                 let rest = problem.choose(set, &chosen.fit.weights);
                 let without = rss(&rest);
-                let mut gain = held.loss(&without) - held.loss(&with);
+                // It predicts if it does on all joints together or on those that it acts on: on the others, only the background
+                // changes.
+                let this = &study.candidates[removed];
+                let acts = |joint: usize| this.columns.iter().any(|&column| table.place[joint][column].is_some());
+                let lost = |joint| held.joint_loss(joint, without[joint]) - held.joint_loss(joint, with[joint]);
+                let there: f64 = (0..with.len()).filter(|&joint| acts(joint)).map(lost).sum();
+                let mut gain = there.max(held.loss(&without) - held.loss(&with));
                 // The background in its place predicts as well, for more nats.
                 if problem.is_background_too(&study.candidates[removed]) {
                     gain += rest.score - chosen.score;
