@@ -6,7 +6,7 @@
 
 use effects::arm::Payload;
 
-use crate::findings::rivals::allowance;
+use crate::findings::rivals::{allowance, standing};
 use crate::regression::background::Strengths;
 use crate::regression::bodies::PER_LINK;
 use crate::regression::bootstrap::{Resampled, resample};
@@ -14,9 +14,10 @@ use crate::search::problem::Chosen;
 use crate::search::study::Study;
 use crate::selection::judge::{self, Selection};
 use crate::selection::naming::name;
-use crate::thresholds::{LEAST_OF_THE_LINK, NEARLY_ALL};
+use crate::thresholds::{LEAST_OF_THE_LINK, NEARLY_ALL, UNDECIDED_NATS};
 
-/// Names a body that is missing at the tool, if the background represents one; returns the new resamplings. Other payloads are
+/// Names a body that is missing at the tool, if the background represents one and no other effect explains nearly as much in its
+/// place; returns the new resamplings. Other payloads are
 /// unchanged: a part of the background, or named by the search.
 pub fn unmounted(study: &mut Study, judged: &mut Selection) -> Option<Resampled> {
     let is_payload = |c: usize| study.candidates[c].hypothesis.is(&Payload);
@@ -34,12 +35,14 @@ pub fn unmounted(study: &mut Study, judged: &mut Selection) -> Option<Resampled>
         .first()
         .and_then(|named| named.parameters.get("mass"))
         .is_some_and(|mass| mass.ci95[1] < 0.0 && -mass.value >= LEAST_OF_THE_LINK * drawn);
-    if !is_missing {
+    let products = study.training_products();
+    let problem = study.problem(&products);
+    let standing = standing(study, &problem, &next, body);
+    if !is_missing || standing.margin < UNDECIDED_NATS && !standing.rivals.is_empty() {
         study.strengths = before;
         return None;
     }
-    let products = study.training_products();
-    judged.members = judge::describe(study, &study.problem(&products), &next);
+    judged.members = judge::describe(study, &problem, &next);
     study.note_strengths(
         "one missing body explains nearly as much as the background",
         &judged.named,
