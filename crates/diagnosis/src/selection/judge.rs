@@ -8,7 +8,7 @@ use crate::search::physics::is_at_its_size;
 use crate::search::problem::{Chosen, IMPOSSIBLE, Problem};
 use crate::search::study::Study;
 use crate::thresholds::{
-    HARMLESS, IDLE_EFFECT, LEAST_DRIVE, LEAST_OF_MISMATCH, MOST_OF_A_RECORDING, NEARLY_CONSTANT, WORSE,
+    ABOVE_THE_REST, HARMLESS, IDLE_EFFECT, LEAST_DRIVE, LEAST_OF_MISMATCH, MOST_OF_A_RECORDING, NEARLY_CONSTANT, WORSE,
 };
 
 mod held_out;
@@ -93,7 +93,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
     let mut kept = problem.choose(named.iter().map(|m| m.candidate).collect(), &chosen.fit.weights);
     if !unmodelled.is_empty() {
         // Unmodelled forms may have replaced simple effects. A constant is allowed if no other form remains on its joint, or if it
-        // is larger than all that the named effects leave there: the forms also stand for constants.
+        // is much larger than all that the named effects leave there: the forms also stand for constants.
         let candidates = &study.candidates;
         let simple: Vec<usize> = (0..candidates.len())
             .filter(|&c| candidates[c].hypothesis.is_simple())
@@ -107,7 +107,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
             let Some(joint) = candidates[c].joint else { return false };
             let rest = (with_all.fit.rss[joint].max(0.0) / products.count[joint].max(1.0)).sqrt();
             with_all.set.contains(&c)
-                && shares(study, &with_all, c)[joint] > rest / study.scales.torque[joint].max(1e-300)
+                && shares(study, &with_all, c)[joint] > ABOVE_THE_REST * rest / study.scales.torque[joint].max(1e-300)
         };
         let mut allowed = simple;
         allowed.retain(|&c| {
