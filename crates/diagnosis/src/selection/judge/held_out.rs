@@ -61,8 +61,8 @@ pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut 
                 let lost = |joint| held.joint_loss(joint, without[joint]) - held.joint_loss(joint, with[joint]);
                 let there: f64 = (0..with.len()).filter(|&joint| acts(joint)).map(lost).sum();
                 let mut gain = there.max(held.loss(&without) - held.loss(&with));
-                // The background in its place predicts as well, for more nats.
-                if problem.is_background_too(&study.candidates[removed]) {
+                // The background in its place predicts as well, for more nats. Every drive has friction: all recordings decide.
+                if problem.is_background_too(this) || this.hypothesis.is_friction() {
                     gain += rest.score - chosen.score;
                 }
                 (removed, gain, without)
