@@ -45,16 +45,7 @@ impl Lagrangian {
         options: &LagrangianOptions,
     ) -> Result<Self, TorqueError> {
         let dof = samples.dof();
-        if arm.dof() != dof {
-            return Err(TorqueError::Joints {
-                what: "training samples".into(),
-                found: dof,
-                expected: arm.dof(),
-            });
-        }
-        if samples.is_empty() {
-            return Err(TorqueError::NoSamples);
-        }
+        samples.check(Some(arm))?;
         let mut parts = [const { Vec::new() }; 4];
         let mut rigid = vec![0.0; dof];
         let mut workspace = rigid_body.as_ref().map(arm::Workspace::new);

@@ -81,18 +81,7 @@ impl Learned {
         fitted: &(dyn Fn() + Sync),
     ) -> Result<Self, TorqueError> {
         let dof = samples.dof();
-        if let Some(arm) = arm
-            && arm.dof() != dof
-        {
-            return Err(TorqueError::Joints {
-                what: "training samples".into(),
-                found: dof,
-                expected: arm.dof(),
-            });
-        }
-        if samples.is_empty() {
-            return Err(TorqueError::NoSamples);
-        }
+        samples.check(arm)?;
         let mut model = Self {
             rigid_body: arm.cloned(),
             inputs,

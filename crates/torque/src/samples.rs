@@ -1,5 +1,7 @@
 //! Motion and torque samples: what a torque model learns from and is tested on.
 
+use arm::Arm;
+
 use crate::error::TorqueError;
 
 /// Samples of joint motion and of the torque that it required, row by row: n × dof each.
@@ -29,6 +31,26 @@ impl Samples {
     /// An empty set of samples of an arm with `dof` joints.
     pub fn new(dof: usize) -> Self {
         Self { dof, ..Self::default() }
+    }
+
+    /// Whether there are samples, of `arm` if it is given.
+    ///
+    /// # Errors
+    /// [`TorqueError::Joints`] if the arm has another number of joints, [`TorqueError::NoSamples`] if there is none.
+    pub(crate) fn check(&self, arm: Option<&Arm>) -> Result<(), TorqueError> {
+        if let Some(arm) = arm
+            && arm.dof() != self.dof
+        {
+            return Err(TorqueError::Joints {
+                what: "training samples".into(),
+                found: self.dof,
+                expected: arm.dof(),
+            });
+        }
+        if self.is_empty() {
+            return Err(TorqueError::NoSamples);
+        }
+        Ok(())
     }
 
     /// Adds one sample.

@@ -3,10 +3,10 @@
 mod support;
 
 use arm::{Arm, DMatrix};
-use support::{motion, puma560, samples};
+use support::{motion, puma560, samples, samples_of};
 use torque::{
-    Command, Controller, Feedback, Inputs, Lagrangian, LagrangianOptions, Learned, Prediction, RigidBody, Sample,
-    Samples, TorqueError, TorqueModel, TrainingOptions, Workspace,
+    Command, Controller, Feedback, Inputs, Lagrangian, LagrangianOptions, Learned, Prediction, RigidBody, Samples,
+    TorqueError, TorqueModel, TrainingOptions, Workspace,
 };
 
 fn nominal() -> Arm {
@@ -107,24 +107,9 @@ fn energies_transfer_to_another_task() {
 /// does, to the rigid body, also for a model that has none.
 #[test]
 fn energies_fade_where_they_are_not_known() {
-    let exact = RigidBody::new(puma560());
-    let small =
-        |k: usize| motion(k as f64 / 80.0, 0).map(|part| part.iter().map(|value| 0.03 * value).collect::<Vec<_>>());
-    let mut train = Samples::new(6);
+    let small = |time: f64| motion(time, 0).map(|part| part.iter().map(|value| 0.03 * value).collect::<Vec<_>>());
+    let train = samples_of(300, small);
     let (mut workspace, mut below) = (Workspace::new(6), Prediction::new(6));
-    for k in 0..300 {
-        let [q, qd, qdd] = small(k);
-        exact.predict(&mut workspace, &q, &qd, &qdd, &mut below);
-        let tau = &below.rigid;
-        train
-            .push(Sample {
-                q: &q,
-                qd: &qd,
-                qdd: &qdd,
-                tau,
-            })
-            .expect("the sizes fit");
-    }
     let options = LagrangianOptions {
         starts: 1,
         ..LagrangianOptions::default()
@@ -140,7 +125,7 @@ fn energies_fade_where_they_are_not_known() {
         };
         let mut plain = Prediction::new(6);
         let mut least = 1.0_f64;
-        for ([q, qd, qdd], known) in [(small(100), true), (motion(1.0, 1), false)] {
+        for ([q, qd, qdd], known) in [(small(100.0 / 80.0), true), (motion(1.0, 1), false)] {
             let mut controller = Controller::new(&model, nominal(), gains.clone())
                 .expect("it fits")
                 .fading();

@@ -192,13 +192,11 @@ fn undecided(study: &mut Study, judged: &Selection) -> Option<(usize, &'static s
         if !hypothesis.is_baseline() && !hypothesis.is_passing() && member.share() < LEAST_FINAL_SHARE {
             return Some("too small in the final fit");
         }
-        let margin = || standing(study, &study.problem(&products), &judged.named, member.candidate).margin;
-        if !hypothesis.is_friction() && member.share() < LEAST_UNDECIDED && margin() < UNDECIDED_NATS {
-            return Some("small, and another effect explains nearly as much in its place");
-        }
         // Some payload or factor on inertials fits any wrong inertials better than nothing.
-        if hypothesis.is_wrong_mass() && margin() < UNDECIDED_NATS {
-            return Some("wrong inertials, or another effect, explain nearly as much in its place");
+        let is_small = !hypothesis.is_friction() && member.share() < LEAST_UNDECIDED;
+        let margin = || standing(study, &study.problem(&products), &judged.named, member.candidate).margin;
+        if (is_small || hypothesis.is_wrong_mass()) && margin() < UNDECIDED_NATS {
+            return Some("another effect explains nearly as much in its place");
         }
         // Where most links are as the URDF says, one wrong link is the less likely explanation.
         let is_wrong = study.strengths.common() > 0.0;

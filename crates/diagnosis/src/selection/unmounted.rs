@@ -17,8 +17,7 @@ use crate::selection::naming::name;
 use crate::thresholds::{LEAST_OF_THE_LINK, NEARLY_ALL, UNDECIDED_NATS};
 
 /// Names a body that is missing at the tool, if the background represents one and no other effect explains nearly as much in its
-/// place; returns the new resamplings. Other payloads are
-/// unchanged: a part of the background, or named by the search.
+/// place; returns the new resamplings. Other payloads are unchanged: a part of the background, or named by the search.
 pub fn unmounted(study: &mut Study, judged: &mut Selection) -> Option<Resampled> {
     let is_payload = |c: usize| study.candidates[c].hypothesis.is(&Payload);
     if study.strengths.links.last().is_none_or(|&rho| rho == 0.0) || judged.named.set.iter().any(|&c| is_payload(c)) {
@@ -37,8 +36,11 @@ pub fn unmounted(study: &mut Study, judged: &mut Selection) -> Option<Resampled>
         .is_some_and(|mass| mass.ci95[1] < 0.0 && -mass.value >= LEAST_OF_THE_LINK * drawn);
     let products = study.training_products();
     let problem = study.problem(&products);
-    let standing = standing(study, &problem, &next, body);
-    if !is_missing || standing.margin < UNDECIDED_NATS && !standing.rivals.is_empty() {
+    let is_undecided = || {
+        let standing = standing(study, &problem, &next, body);
+        standing.margin < UNDECIDED_NATS && !standing.rivals.is_empty()
+    };
+    if !is_missing || is_undecided() {
         study.strengths = before;
         return None;
     }

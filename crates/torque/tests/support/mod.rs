@@ -29,12 +29,17 @@ pub fn motion(time: f64, variant: usize) -> [Vec<f64>; 3] {
 
 /// `count` samples of the motion at 80 Hz, with the true torques.
 pub fn samples(count: usize, variant: usize) -> Samples {
+    samples_of(count, |time| motion(time, variant))
+}
+
+/// `count` samples of `motion`, a function of the time (s), at 80 Hz, with the true torques.
+pub fn samples_of(count: usize, motion: impl Fn(f64) -> [Vec<f64>; 3]) -> Samples {
     let exact = RigidBody::new(puma560());
     let mut workspace = torque::Workspace::new(6);
     let mut prediction = torque::Prediction::new(6);
     let mut samples = Samples::new(6);
     for k in 0..count {
-        let [q, qd, qdd] = motion(k as f64 / 80.0, variant);
+        let [q, qd, qdd] = motion(k as f64 / 80.0);
         exact.predict(&mut workspace, &q, &qd, &qdd, &mut prediction);
         let tau = &prediction.rigid;
         samples
