@@ -14,6 +14,7 @@ pub mod final_fit;
 pub mod judge;
 pub mod naming;
 pub mod predict;
+pub mod torque_constants;
 pub mod unmounted;
 
 /// The final fit: the named effects, their uncertainty, and the residuals.

@@ -41,6 +41,38 @@ fn a_drive_that_makes_up_for_light_links_is_named_with_them() {
     assert!(found.iter().all(|(effect, _)| !effect.contains("link")), "{found:?}");
 }
 
+/// Torque constants are good to a few per cent. One that is off by more is named, and the others stay in the background; where
+/// all others are exact, a smaller deviation counts, too.
+#[test]
+fn a_torque_constant_beyond_the_tolerance_of_the_others_is_named() {
+    for (factors, expected) in [
+        ([1.05, 0.84, 0.95], Some(0.84)),
+        ([1.0, 0.95, 1.0], Some(0.95)),
+        ([1.05, 1.04, 0.95], None),
+    ] {
+        let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+            baseline_friction(motion, tau);
+            tau.iter_mut().zip(factors).for_each(|(tau, factor)| *tau *= factor);
+        };
+        let diagnosis = diagnosed(&trio(), &trio(), &concealed, Vec::new());
+        let scales: Vec<_> = diagnosis
+            .report
+            .findings
+            .iter()
+            .filter(|f| f.effect == "torque_scale")
+            .collect();
+        let named: Vec<_> = scales.iter().filter_map(|finding| finding.joint.as_deref()).collect();
+        assert_eq!(named, Vec::from_iter(expected.map(|_| "shoulder")), "{factors:?}");
+        for (finding, factor) in scales.iter().zip(expected) {
+            let found = &finding.parameters["factor"];
+            assert!(
+                (found.value / factor - 1.0).abs() < 0.03,
+                "{found:?} instead of {factor}"
+            );
+        }
+    }
+}
+
 /// A centre of mass that is 3 cm from where the URDF has it, on the upper arm or on the forearm, is that link's, and nothing
 /// else: no spring, no counterbalance, no zero of an encoder.
 #[test]

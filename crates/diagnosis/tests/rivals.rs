@@ -244,7 +244,7 @@ fn a_large_constant_beside_friction_has_its_alternative() {
         &trio(),
         &|motion, tau| {
             baseline_friction(motion, tau);
-            tau[TURN] += 2.5 * motion.qd[TURN].signum() + 2.0;
+            tau[TURN] += 2.5 * motion.qd[TURN].signum() + 1.5;
         },
         Vec::new(),
     );

@@ -17,7 +17,7 @@ use crate::regression::fit::Products;
 use crate::search::study::{About, Study};
 use crate::selection::judge::Selection;
 use crate::selection::predict::{augmented, deviation, errors};
-use crate::thresholds::{LINK_STANDS_OUT, LISTED_SHARE, PARTLY, SYSTEMATIC};
+use crate::thresholds::{LEAST_WRONG_EVERYWHERE, LINK_STANDS_OUT, LISTED_SHARE, PARTLY, SYSTEMATIC};
 
 /// The estimate of a link's inertial parameters.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -224,7 +224,7 @@ pub fn inertials(
             .unwrap_or_default();
         add(Some(link), &shares[link], parameters);
     }
-    if common > 0.0 {
+    if common >= LEAST_WRONG_EVERYWHERE {
         let (low, high) = strengths.around_common();
         let relative = Parameter {
             value: common,

@@ -28,6 +28,8 @@ pub struct Strengths {
     pub friction: f64,
     /// The torque constants, relative to their prior.
     pub gain: f64,
+    /// The joints whose torque constant is a named effect, so that it is not in the background.
+    pub named_constants: Vec<usize>,
 }
 
 impl fmt::Display for Strengths {
@@ -50,6 +52,7 @@ impl Strengths {
             links: vec![0.0; links],
             friction: 0.0,
             gain: 0.0,
+            named_constants: Vec::new(),
         }
     }
 
@@ -212,6 +215,7 @@ impl Stated {
             links: vec![self.links.unwrap_or(0.0); links],
             friction: 0.0,
             gain: self.gain.map_or(0.0, |gain| gain / GAIN_PRIOR),
+            named_constants: Vec::new(),
         }
     }
 
@@ -290,6 +294,12 @@ impl Prior {
         self.deviations.push(deviation);
     }
 
+    /// The column of a joint's torque constant; `None` if the joint does not move.
+    pub fn torque_constant(&self, joint: usize) -> Option<usize> {
+        let constant = Term::on(&GAIN_LAW, joint);
+        self.terms.iter().position(|term| *term == constant)
+    }
+
     /// The terms of its columns, in the table's order.
     pub fn terms(&self) -> &[Term] {
         &self.terms
@@ -308,10 +318,18 @@ impl Prior {
         }
         let strength = |column: usize| match self.terms[column] {
             term if term.is(&INERTIAL_PARAMETER) => strengths.links[term.of[0]],
-            term if term.is(&GAIN_LAW) => strengths.gain,
+            term if term.is(&GAIN_LAW) => {
+                let is_named = term
+                    .joint
+                    .is_some_and(|joint| strengths.named_constants.contains(&joint));
+                if is_named { 0.0 } else { strengths.gain }
+            }
             _ => strengths.friction,
         };
         let columns: Vec<usize> = (0..self.terms.len()).filter(|&column| strength(column) > 0.0).collect();
+        if columns.is_empty() {
+            return None;
+        }
         let entry = |&a: &usize, &b: &usize| {
             let (one, other) = (self.terms[a], self.terms[b]);
             let are_inertial = one.is(&INERTIAL_PARAMETER) && other.is(&INERTIAL_PARAMETER);

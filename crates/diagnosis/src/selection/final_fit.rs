@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use effects::sensor::TorqueScale;
 use effects::{Effect, Spec};
 use torque::Corrected;
 
@@ -16,13 +17,17 @@ use crate::search::study::Study;
 use crate::selection::judge::{self, Selection};
 use crate::selection::naming::{Named, name};
 use crate::selection::predict::{augmented, errors};
+use crate::selection::torque_constants;
+
 use crate::thresholds::{HOPELESS, LEAST_FINAL_SHARE, LEAST_UNDECIDED, PARTLY, UNDECIDED_NATS};
 
 /// Fits the named effects about the arm with them, with the rows near reversals. Removes effects that increase a joint's
 /// held-out error, that do not reduce it, or whose size may be zero.
 pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
+    let mut constants_tried = Vec::new();
     loop {
         settle(study, judged, false);
+        torque_constants::name_those_beyond_tolerance(study, judged, &mut constants_tried);
         make_possible(study, judged);
         let before = judged.named.set.len();
 
@@ -59,7 +64,8 @@ pub fn as_given(study: &mut Study, judged: &mut Selection) -> Resampled {
 }
 
 /// Removes one name, or replaces it by the simpler effect that it generalises, and fits the others again.
-fn drop_name(study: &Study, judged: &mut Selection, candidate: usize, rule: &'static str) {
+fn drop_name(study: &mut Study, judged: &mut Selection, candidate: usize, rule: &'static str) {
+    torque_constants::keep_named_ones(study, &judged.named.others(candidate));
     let products = study.training_products();
     let problem = study.problem(&products);
     let next = problem.without(&judged.named, candidate);
@@ -83,6 +89,7 @@ fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Selection, set: Vec<
 fn settle(study: &mut Study, judged: &mut Selection, as_given: bool) {
     let kept = study.settle(&judged.named.fit, &judged.candidates());
     let named = judged.named.set.len();
+    torque_constants::keep_named_ones(study, &kept[..named]);
     let products = study.training_products();
     let refitted = study
         .problem(&products)
@@ -100,20 +107,21 @@ fn settle(study: &mut Study, judged: &mut Selection, as_given: bool) {
 }
 
 /// Removes names that became impossible, until there are none.
-fn make_possible(study: &Study, judged: &mut Selection) {
-    let products = study.training_products();
-    let problem = study.problem(&products);
-    let impossible = |named: &Chosen| named.set.iter().copied().find(|&c| !problem.is_possible(c, &named.fit));
-    while let Some(candidate) = impossible(&judged.named) {
+fn make_possible(study: &mut Study, judged: &mut Selection) {
+    let impossible = |study: &Study, named: &Chosen| {
+        let products = study.training_products();
+        let problem = study.problem(&products);
+        named.set.iter().copied().find(|&c| !problem.is_possible(c, &named.fit))
+    };
+    while let Some(candidate) = impossible(study, &judged.named) {
         drop_name(study, judged, candidate, IMPOSSIBLE);
     }
 }
 
 /// Removes names that do not improve the prediction of recordings they were not fitted to, until there are none.
-fn prove(study: &Study, judged: &mut Selection) {
+fn prove(study: &mut Study, judged: &mut Selection) {
     let Some(held) = study.held_products() else { return };
-    let products = study.training_products();
-    while let Some(useless) = useless(study, &products, &held, judged) {
+    while let Some(useless) = useless(study, &study.training_products(), &held, judged) {
         drop_name(
             study,
             judged,
@@ -153,6 +161,7 @@ fn unclear(study: &Study, judged: &Selection, resampled: &Resampled) -> Option<(
     let names = |member: &judge::Member| name(study, resampled, member.candidate);
     let all = judged.members.iter().flat_map(names).map(|named| named.effect);
     let all: Vec<Effect> = all.collect();
+    let accuracy = torque_constants::accuracy(study, &judged.named.set);
     let contradicted = |member: &judge::Member| {
         let named = name(study, resampled, member.candidate);
         // With its sizes corrected it may be impossible, such as a negative level.
@@ -161,8 +170,7 @@ fn unclear(study: &Study, judged: &Selection, resampled: &Resampled) -> Option<(
         let is_contradicted = |named: &Named| {
             let interval = |key: &str| named.parameters.get(key).map(|parameter| parameter.ci95);
             let kind = named.effect.kind().get();
-            !kind.is_certain(&named.effect, &interval, study.stated.torque_accuracy())
-                || kind.is_contradicted(&named.effect, &all)
+            !kind.is_certain(&named.effect, &interval, accuracy) || kind.is_contradicted(&named.effect, &all)
         };
         named.iter().any(|named| is_impossible(named) || is_contradicted(named))
     };
@@ -195,7 +203,7 @@ fn undecided(study: &mut Study, judged: &Selection) -> Option<(usize, &'static s
         // Some payload or factor on inertials fits any wrong inertials better than nothing.
         let is_small = !hypothesis.is_friction() && member.share() < LEAST_UNDECIDED;
         let margin = || standing(study, &study.problem(&products), &judged.named, member.candidate).margin;
-        if (is_small || hypothesis.is_wrong_mass()) && margin() < UNDECIDED_NATS {
+        if (is_small || hypothesis.is_wrong_mass() || hypothesis.is(&TorqueScale)) && margin() < UNDECIDED_NATS {
             return Some("another effect explains nearly as much in its place");
         }
         // Where most links are as the URDF says, one wrong link is the less likely explanation.

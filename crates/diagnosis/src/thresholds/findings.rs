@@ -14,6 +14,9 @@ pub const HIDDEN: f64 = 0.06;
 pub const BEYOND: f64 = 3.0;
 /// A link's strength must be this multiple of that of most links to be named for itself.
 pub const LINK_STANDS_OUT: f64 = 2.0;
+/// The relative error of all links from which the URDF is said to be wrong: no CAD model is better, and what a smaller correction
+/// explains may be anything else. Source: 240 simulated cases; 0.05 and more where URDFs are wrong by 3 %, and 0.014 where one is exact.
+pub const LEAST_WRONG_EVERYWHERE: f64 = 0.02;
 /// A burst exceeds the median of all windows of its length, and the residual of the model itself, by this factor.
 pub const OVER_THE_REST: f64 = 6.0;
 /// One force on the tool must explain this part of a burst's power, on pieces it was not fitted to.

@@ -48,6 +48,9 @@ pub static ABS_SIGN: Law = Law {
 /// The least asymmetry, half the difference between the directions over their mean, that is named: a smaller one is named as a
 /// torque offset, which has the same torque in motion.
 const LEAST_PART: f64 = 0.12;
+/// The largest asymmetry that is named: friction four times as large in one direction as in the other. Beyond, the drive's current
+/// or torque sensor has an offset.
+const MOST_PART: f64 = 0.6;
 
 impl EffectKind for FrictionAsymmetry {
     fn spec(&self) -> &'static Spec {
@@ -63,9 +66,9 @@ impl EffectKind for FrictionAsymmetry {
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        // No motion distinguishes a small asymmetry from a torque offset, which every sensor has.
+        // No motion distinguishes an asymmetry from a torque offset, which every sensor has: its size decides.
         let part = fitted.value(1).abs() / fitted.value(0);
-        fitted.value(0) > 0.0 && (LEAST_PART..1.0).contains(&part)
+        fitted.value(0) > 0.0 && (LEAST_PART..MOST_PART).contains(&part)
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {

@@ -3,6 +3,9 @@
 use super::coulomb_friction::Level;
 use super::prelude::*;
 
+/// The largest asymmetry, half the difference between the directions over their mean.
+const MOST_PART: f64 = 0.5;
+
 pub(super) const FAULT: Fault = Fault {
     name: "friction_asymmetry",
     leaves: Leaves::DryFriction,
@@ -10,13 +13,15 @@ pub(super) const FAULT: Fault = Fault {
     draw: |bare, at, random| {
         let (coulomb, _) = at.dry_friction(random);
         let coulomb = coulomb.max(at.spread() * random.random_range(0.1..0.3));
-        let half = coulomb * random.random_range(0.15..0.5) * sign(random);
+        let half = coulomb * random.random_range(0.15..MOST_PART) * sign(random);
         bare.with("positive", coulomb + half).with("negative", coulomb - half)
     },
     size: Size::Changed(|injected, factor| {
         let [positive, negative] = ["positive", "negative"].map(|name| injected.number(name).unwrap_or(0.0));
         let mean = 0.5 * (positive + negative);
-        let half = (factor * (positive - mean)).clamp(-0.95 * mean, 0.95 * mean);
+        let half = factor * (positive - mean);
+        // A larger difference comes with more friction: no bearing drags ten times as much forwards as backwards.
+        let mean = mean.max(half.abs() / MOST_PART);
         vec![("positive", json!(mean + half)), ("negative", json!(mean - half))]
     }),
     read: |reader| {

@@ -38,6 +38,11 @@ pub fn moved(motions: &Motions, scales: &Scales) -> Vec<Vec<usize>> {
 }
 
 impl Study {
+    /// The column of a joint's torque constant in the background; `None` if the joint does not move.
+    pub fn torque_constant(&self, joint: usize) -> Option<usize> {
+        self.prior.torque_constant(joint)
+    }
+
     /// The prior variances of a link's ten inertial parameters, at the strength chosen by evidence.
     pub fn prior_variances(&self, link: usize) -> [f64; PER_LINK] {
         self.prior.variances(link, self.strengths.links[link])

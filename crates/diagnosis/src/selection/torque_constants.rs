@@ -1,0 +1,84 @@
+//! Torque constants that deserve a name: the background corrects all of them a little, and one that deviates much is an effect.
+
+use effects::sensor::TorqueScale;
+
+use crate::regression::bootstrap::resample;
+use crate::search::problem::Chosen;
+use crate::search::study::Study;
+use crate::selection::judge::{self, Selection};
+use crate::thresholds::{LEAST_TORQUE_ACCURACY, SYSTEMATIC, TOLERANCE};
+
+/// The relative standard deviation of the torque constants: stated, or by what the recordings need beside the effects of `set`.
+pub fn accuracy(study: &Study, set: &[usize]) -> f64 {
+    let strengths = &study.strengths;
+    let all_are_exact = strengths.gain == 0.0 && strengths.links.iter().all(|&rho| rho == 0.0);
+    let is_one_named = set.iter().filter(|&&c| names(study, c).is_some()).count() <= 1;
+    if study.stated.gain.is_none() && all_are_exact && is_one_named {
+        // The inertials and all other torque constants are exact.
+        return LEAST_TORQUE_ACCURACY;
+    }
+    study.stated.torque_accuracy()
+}
+
+/// The joint whose torque constant a candidate names, for all times.
+fn names(study: &Study, candidate: usize) -> Option<usize> {
+    let is_scale = study.candidates[candidate].hypothesis.is(&TorqueScale);
+    let always = study.terms(candidate).iter().all(|term| term.onset().is_none());
+    study.candidates[candidate].joint.filter(|_| is_scale && always)
+}
+
+/// Keeps the torque constants that `set` names out of the background: else a name would explain only what the background leaves.
+pub fn keep_named_ones(study: &mut Study, set: &[usize]) {
+    study.strengths.named_constants = set.iter().filter_map(|&c| names(study, c)).collect();
+}
+
+/// Adds a torque scale on each joint, except those `tried`, whose torque constant deviates in the background by more than such
+/// constants usually do, and clearly from one. They are added one by one, the farthest first: what it explains is then no longer
+/// spread over the others.
+pub fn name_those_beyond_tolerance(study: &mut Study, judged: &mut Selection, tried: &mut Vec<usize>) {
+    while let Some((joint, scale)) = farthest(study, judged, tried) {
+        tried.push(joint);
+        let set = [&judged.named.set[..], &[scale]].concat();
+        keep_named_ones(study, &set);
+        let products = study.training_products();
+        let next = study.problem(&products).choose(set, &judged.named.fit.weights);
+        // Wrong inertials of all links and the constants of all drives imitate each other.
+        if is_clear(study, &next, scale) {
+            study.note(
+                "its torque constant is beyond the usual tolerance",
+                &judged.named,
+                &next,
+            );
+            judged.members = judge::describe(study, &study.problem(&products), &next);
+            judged.named = next;
+        } else {
+            keep_named_ones(study, &judged.named.set);
+        }
+    }
+}
+
+/// The joint whose torque constant deviates most beyond tolerance, with the candidate that names it.
+fn farthest(study: &Study, judged: &Selection, tried: &[usize]) -> Option<(usize, usize)> {
+    let least = TOLERANCE * accuracy(study, &judged.named.set);
+    let allowed = study.allowed();
+    let deviation = |joint: usize| {
+        let column = study.torque_constant(joint)?;
+        Some(judged.named.fit.coefficient(column).abs()).filter(|deviation| *deviation >= least)
+    };
+    let scale = |joint: usize| allowed.iter().copied().find(|&c| names(study, c) == Some(joint));
+    (0..study.motions.dof)
+        .filter(|joint| !tried.contains(joint))
+        .filter_map(|joint| Some((deviation(joint)?, joint, scale(joint)?)))
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, joint, scale)| (joint, scale))
+}
+
+/// Whether the interval of a torque scale of `chosen` excludes one.
+fn is_clear(study: &mut Study, chosen: &Chosen, scale: usize) -> bool {
+    let column = study.candidates[scale].columns[0];
+    let resampled = resample(study, chosen);
+    resampled.column(column).is_some_and(|at| {
+        let (_, [low, high]) = resampled.interval_within(SYSTEMATIC, |draw| draw[at]);
+        low > 0.0 || high < 0.0
+    })
+}
