@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::RecordingError;
 use crate::Warning;
-use crate::bag_order::{Latest, Order};
+use crate::bag_order::{Latest, Order, set_back};
 use crate::bag_windows::BagWindows;
 use crate::bytes::Bytes;
 use crate::input::Input;
@@ -133,12 +133,14 @@ impl JointStates {
             return Ok(());
         };
         let known: Vec<usize> = message.names.iter().enumerate().map(|at| place(joints, at)).collect();
-        let late = known.iter().map(|&known| {
-            let latest = &mut joints[known].latest;
-            latest.lateness(time, message.stamp != 0)
-        });
-        let late = late.max().unwrap_or(0);
-        self.order.count(late, (number, time), topic)?;
+        let mut late = None;
+        for &known in &known {
+            let lateness = joints[known].latest.lateness((number, time), message.stamp != 0);
+            late = late.max(lateness.map_err(|first| set_back(first, topic))?);
+        }
+        if let Some(late) = late {
+            self.order.count(late, topic);
+        }
         if let Some(windows) = &mut self.windows {
             let topics = &mut self.topics;
             let give_up = |windows: &BagWindows| {

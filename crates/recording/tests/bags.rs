@@ -116,6 +116,7 @@ fn messages_a_little_out_of_order_are_used_and_counted() {
 #[test]
 fn a_clock_that_is_set_back_is_refused_with_its_place() {
     for (seconds, at, by) in [
+        (60, 40.0, 0.7),
         (60, 40.0, 20.0),
         (60, 40.0, 1.5),
         (900, 500.0, 300.0),
