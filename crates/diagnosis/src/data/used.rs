@@ -48,9 +48,13 @@ pub fn worth_using(recorded: &[f64]) -> Vec<f64> {
         }
     }
     let mut left = LONG_SECONDS;
-    for (at, others) in order[short..].iter().zip((1..=order.len() - short).rev()) {
-        worth[*at] = recorded[*at].min(left / others as f64);
-        left -= worth[*at];
+    for place in short..order.len() {
+        let part = left / (order.len() - place) as f64;
+        if recorded[order[place]] >= part {
+            order[place..].iter().for_each(|&at| worth[at] = part);
+            break;
+        }
+        left -= recorded[order[place]];
     }
     worth
 }
