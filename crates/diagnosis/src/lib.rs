@@ -14,7 +14,7 @@ mod thresholds;
 mod trace;
 
 pub use data::motion::Input;
-pub use data::used::{WORTH_HOLDING, worth_holding};
+pub use data::used::{WORTH_HOLDING, worth_using};
 pub use diagnose::{Diagnosis, Options, Step, diagnose};
 pub use error::DiagnosisError;
 pub use excitation::{

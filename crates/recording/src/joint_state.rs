@@ -1,13 +1,14 @@
 //! Messages `sensor_msgs/msg/JointState` of ROS 2, in CDR, and the table that the messages of a bag make.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use crate::RecordingError;
 use crate::Warning;
-use crate::bag_windows::{BagWindows, is_in};
+use crate::bag_order::{Latest, Order, set_back};
+use crate::bag_windows::BagWindows;
 use crate::bytes::Bytes;
 use crate::input::Input;
+use crate::series::{Series, at};
 use crate::table::{Column, Table};
 
 /// The type's names: of ROS 2, and of an older form.
@@ -16,11 +17,6 @@ const FIELDS: [&str; 3] = ["position", "velocity", "effort"];
 const NANOS: i64 = 1_000_000_000;
 /// A topic is joined with another one if it covers this share of its time.
 const COVERED: f64 = 0.9;
-/// Values are not interpolated over gaps of more periods.
-const GAP: i64 = 10;
-
-/// Values with their times (ns).
-type Series = Vec<(i64, f64)>;
 
 /// One message.
 #[derive(Debug, PartialEq)]
@@ -94,6 +90,7 @@ fn decode_body(mut body: Bytes<'_>) -> Option<JointState<'_>> {
 pub struct JointStates {
     topics: BTreeMap<String, Vec<Joint>>,
     messages: u64,
+    order: Order,
     /// The windows that are kept, if not everything is.
     windows: Option<BagWindows>,
 }
@@ -102,6 +99,7 @@ pub struct JointStates {
 struct Joint {
     name: String,
     fields: [Series; 3],
+    latest: Latest,
 }
 
 impl JointStates {
@@ -128,36 +126,36 @@ impl JointStates {
         let message =
             decode(data).map_err(|reason| format!("message {number} of joint states, in {topic}: {reason}"))?;
         let time = if message.stamp == 0 { logged } else { message.stamp };
-        if let Some(windows) = &mut self.windows {
-            let topics = &mut self.topics;
-            let keep = |spans: &[Range<i64>]| {
-                for series in topics.values_mut().flatten().flat_map(|joint| &mut joint.fields) {
-                    series.retain(|(time, _)| is_in(spans, *time));
-                }
-            };
-            if !windows.wants(time, keep) {
-                return Ok(());
-            }
-        }
         if !self.topics.contains_key(topic) {
             self.topics.insert(topic.to_owned(), Vec::new());
         }
         let Some(joints) = self.topics.get_mut(topic) else {
             return Ok(());
         };
-        for (index, name) in message.names.iter().enumerate() {
-            // The order of the joints rarely changes.
-            let known = match joints.get(index) {
-                Some(joint) if joint.name == *name => Some(index),
-                _ => joints.iter().position(|joint| joint.name == *name),
+        let known: Vec<usize> = message.names.iter().enumerate().map(|at| place(joints, at)).collect();
+        let mut late = None;
+        for &known in &known {
+            let lateness = joints[known].latest.lateness((number, time), message.stamp != 0);
+            late = late.max(lateness.map_err(|first| set_back(first, topic))?);
+        }
+        if let Some(late) = late {
+            self.order.count(late, topic);
+        }
+        if let Some(windows) = &mut self.windows {
+            let topics = &mut self.topics;
+            let give_up = |windows: &BagWindows| {
+                for series in topics.values_mut().flatten().flat_map(|joint| &mut joint.fields) {
+                    series.retain(|(time, _)| windows.takes(*time));
+                }
             };
-            let known = known.unwrap_or_else(|| {
-                joints.push(Joint {
-                    name: (*name).to_owned(),
-                    fields: [const { Vec::new() }; 3],
-                });
-                joints.len() - 1
-            });
+            if !windows.wants(time, give_up) {
+                return Ok(());
+            }
+        }
+        let Some(joints) = self.topics.get_mut(topic) else {
+            return Ok(());
+        };
+        for (index, known) in known.into_iter().enumerate() {
             for (series, values) in joints[known].fields.iter_mut().zip(&message.fields) {
                 if let Some(value) = values.get(index) {
                     series.push((time, *value));
@@ -198,7 +196,7 @@ impl JointStates {
         };
         let times: Vec<i64> = most.fields[0].iter().map(|(time, _)| *time).collect();
         let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
-        let mut warnings = Vec::new();
+        let mut warnings = self.order.warnings();
         let mut keeps = vec![true; times.len()];
         for (topic, joints) in &self.topics {
             if *topic != base && !chosen.contains(topic) && adds_nothing(joints, &self.topics[&base]) {
@@ -224,6 +222,23 @@ impl JointStates {
         table.left_out = self.windows.as_ref().map_or(0.0, BagWindows::left_out);
         Ok(table)
     }
+}
+
+/// The place in `joints` of the joint that has this index and name in a message; it is added if it is new.
+fn place(joints: &mut Vec<Joint>, (index, name): (usize, &&str)) -> usize {
+    // The order of the joints rarely changes.
+    let known = match joints.get(index) {
+        Some(joint) if joint.name == *name => Some(index),
+        _ => joints.iter().position(|joint| joint.name == *name),
+    };
+    known.unwrap_or_else(|| {
+        joints.push(Joint {
+            name: (*name).to_owned(),
+            fields: [const { Vec::new() }; 3],
+            latest: Latest::default(),
+        });
+        joints.len() - 1
+    })
 }
 
 /// Whether the base topic has positions and efforts of all `joints`, each of which lacks one or the other.
@@ -278,34 +293,6 @@ fn join(
             left_out,
         });
     }
-}
-
-/// The values of `series` at `times` (ns), interpolated linearly between samples, and the number of interpolated ones;
-/// NaN outside its time span and in its gaps.
-fn at(series: &[(i64, f64)], times: &[i64]) -> (Vec<Option<f64>>, usize) {
-    let mut steps: Vec<i64> = series.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
-    let middle = steps.len() / 2;
-    let longest = match steps.is_empty() {
-        true => 0,
-        false => GAP * *steps.select_nth_unstable(middle).1,
-    };
-    let mut between = 0;
-    let values = times.iter().map(|&time| {
-        let next = series.partition_point(|(stamp, _)| *stamp < time);
-        let &(after, upper) = series.get(next)?;
-        if after == time {
-            return Some(upper);
-        }
-        let &(before, lower) = series.get(next.checked_sub(1)?)?;
-        if after - before > longest {
-            return None;
-        }
-        between += 1;
-        let share = (time - before) as f64 / (after - before) as f64;
-        Some(lower + share * (upper - lower))
-    });
-    let values = values.collect();
-    (values, between)
 }
 
 #[cfg(test)]
@@ -383,13 +370,5 @@ mod tests {
                 let _ = decode(&damaged);
             }
         }
-    }
-
-    #[test]
-    fn values_between_two_are_interpolated_and_none_in_a_gap() {
-        let series = [(0, 0.0), (10, 1.0), (20, 2.0), (30, 3.0), (500, 50.0)];
-        let (values, between) = at(&series, &[-5, 0, 5, 30, 100, 500, 600]);
-        assert_eq!(values, [None, Some(0.0), Some(0.5), Some(3.0), None, Some(50.0), None]);
-        assert_eq!(between, 1);
     }
 }

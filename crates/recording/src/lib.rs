@@ -5,6 +5,7 @@
 //! which the drive sampled; [`Quality`] describes the recording before anything is fitted to it.
 
 mod arrays;
+mod bag_order;
 mod bag_windows;
 mod bytes;
 mod clock;
@@ -26,6 +27,7 @@ mod parts;
 mod quality;
 mod regular;
 mod rows;
+mod series;
 mod spikes;
 mod stamp;
 mod table;

@@ -82,7 +82,7 @@ impl RegularRecording {
                 std::iter::once(one.start + quarter..one.end - quarter).collect()
             }
             _ => {
-                let taken = |(number, _): &(usize, &Range<usize>)| is_taken(*number as u64, 1);
+                let taken = |(number, _): &(usize, &Range<usize>)| is_taken(*number as f64, 1);
                 let kept = windows.iter().enumerate().filter(taken);
                 kept.map(|(_, window)| window.clone()).collect()
             }

@@ -124,6 +124,17 @@ pub enum Warning {
         /// The number of rows before their first and after their last sample, which were omitted.
         left_out: usize,
     },
+    /// Messages of a bag are earlier than ones before them; all were sorted by time.
+    OutOfOrder {
+        /// Their topic.
+        topic: String,
+        /// The first (the number of the message in the bag).
+        line: Place,
+        /// Their number.
+        messages: u64,
+        /// By how much they are earlier, at most (s).
+        largest: f64,
+    },
     /// Something that is not used was omitted.
     LeftOut {
         /// Its description, with the reason.
@@ -269,6 +280,24 @@ impl fmt::Display for Warning {
                 write!(
                     f,
                     "{interpolated} rows interpolated, {left_out} left out where there is none"
+                )
+            }
+            Self::OutOfOrder {
+                topic,
+                line,
+                messages,
+                largest,
+            } => {
+                let (Place::Line(first) | Place::Row(first)) = line;
+                let (are, were) = match messages {
+                    1 => ("message is", "was"),
+                    _ => ("messages are", "were"),
+                };
+                write!(
+                    f,
+                    "{topic}: {messages} {are} earlier than one before of the same joints, by {largest:.4} s at most (the first is \
+                     joint-state message {first} of the bag), and {were} put in order of time; if a clock was set back there, cut \
+                     the bag"
                 )
             }
             Self::LeftOut { what } => write!(f, "{what}"),

@@ -5,8 +5,10 @@
 
 /// The length of a window (s).
 const WINDOW: f64 = 20.0;
-/// Rows that are further apart (s) are no drive's: there is a pause between them, which does not count.
+/// Rows that are further apart (s) have a pause between them, which does not count, unless the step before was about as long.
 const LONGEST_STEP: f64 = 0.15;
+/// Steps up to this multiple of the step before are no pauses: the rows are slow.
+const ALIKE: f64 = 3.0;
 /// The golden ratio. The fractional parts of its multiples are spread evenly, so that the windows are not in step with a
 /// motion that is repeated.
 const GOLDEN: f64 = 0.618_033_988_749_895;
@@ -22,6 +24,8 @@ pub struct Windows {
     number: u64,
     covered: f64,
     last: Option<f64>,
+    /// The step to the last row (s).
+    step: f64,
     /// The complete windows that are held, with their time (s).
     held: Vec<(u64, f64)>,
     /// The time of all complete windows (s).
@@ -46,6 +50,7 @@ impl Windows {
             number: 0,
             covered: 0.0,
             last: None,
+            step: 0.0,
             held: Vec::new(),
             all: 0.0,
         }
@@ -58,7 +63,9 @@ impl Windows {
             return Next::Begins(self.number);
         };
         let step = time - last;
-        self.covered += if (0.0..LONGEST_STEP).contains(&step) { step } else { 0.0 };
+        let before = std::mem::replace(&mut self.step, step);
+        let is_pause = step >= LONGEST_STEP && step > ALIKE * before;
+        self.covered += if is_pause { 0.0 } else { step.max(0.0) };
         self.last = Some(time.max(last));
         if self.covered < WINDOW && !is_large {
             return Next::SameWindow;
@@ -81,7 +88,7 @@ impl Windows {
     pub fn thin(&mut self) {
         self.level += 1;
         let level = self.level;
-        self.held.retain(|(number, _)| is_taken(*number, level));
+        self.held.retain(|(number, _)| is_taken(*number as f64, level));
     }
 
     fn time_held(&self) -> f64 {
@@ -96,7 +103,7 @@ impl Windows {
 
     /// Whether the window with this number is held.
     pub fn takes(&self, number: u64) -> bool {
-        is_taken(number, self.level)
+        is_taken(number as f64, self.level)
     }
 
     /// Whether the present window is held.
@@ -105,9 +112,9 @@ impl Windows {
     }
 }
 
-/// Whether a window is one of the 2^−`level` that are taken.
-pub fn is_taken(number: u64, level: i32) -> bool {
-    (GOLDEN * number as f64).fract() < 0.5_f64.powi(level)
+/// Whether the window with this whole number, which may be negative, is one of the 2^−`level` that are taken.
+pub fn is_taken(number: f64, level: i32) -> bool {
+    (GOLDEN * number).rem_euclid(1.0) < 0.5_f64.powi(level)
 }
 
 #[cfg(test)]
@@ -116,10 +123,15 @@ mod tests {
 
     /// The windows that are held of `seconds` at 100 Hz.
     fn held(seconds: u64, most: f64) -> Vec<u64> {
+        held_at(100, seconds, most).0
+    }
+
+    /// The windows that are held of `seconds` at `rate` (Hz), and the time of the rest (s).
+    fn held_at(rate: u64, seconds: u64, most: f64) -> (Vec<u64>, f64) {
         let mut windows = Windows::new(most);
         let mut held = Vec::new();
-        for row in 0..100 * seconds {
-            if let Next::Begins(number) = windows.next(row as f64 * 0.01, false) {
+        for row in 0..rate * seconds {
+            if let Next::Begins(number) = windows.next(row as f64 / rate as f64, false) {
                 while windows.is_full() {
                     windows.thin();
                     held.retain(|&number| windows.takes(number));
@@ -129,7 +141,18 @@ mod tests {
                 }
             }
         }
-        held
+        (held, windows.left_out())
+    }
+
+    /// A day at 1 to 8 Hz is read in windows as one at 100 Hz is.
+    #[test]
+    fn slow_rows_are_time() {
+        for rate in [1, 2, 5, 6, 8] {
+            let (held, left_out) = held_at(rate, 86_400, 1000.0);
+            assert!((23..=53).contains(&held.len()), "{rate} Hz: {}", held.len());
+            let all = 20.0 * held.len() as f64 + left_out;
+            assert!((all - 86_400.0).abs() < 25.0, "{rate} Hz: {all}");
+        }
     }
 
     #[test]
@@ -170,5 +193,7 @@ mod tests {
         let mut windows = Windows::new(1000.0);
         windows.next(0.0, false);
         assert_eq!(windows.next(5000.0, false), Next::SameWindow);
+        assert_eq!(windows.next(5000.01, false), Next::SameWindow);
+        assert_eq!(windows.next(9000.0, false), Next::SameWindow);
     }
 }

@@ -63,7 +63,7 @@ pub fn column_map(misfits: &[Misfit], recording: &Recording) -> Option<String> {
 /// The contradictions between `regular` and `arm`.
 pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Misfit> {
     let mut misfits = names(arm, regular);
-    if let Some(misfit) = positions::of_time(quality) {
+    if let Some(misfit) = positions::of_time(arm, quality) {
         // Speeds and accelerations say nothing then.
         misfits.push(misfit);
         return misfits;

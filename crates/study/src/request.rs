@@ -107,6 +107,7 @@ impl Request {
             let names = RecordingNames {
                 train: names(false),
                 held_out: names(true),
+                used_in_part: Vec::new(),
             };
             return Ok(Diagnosed {
                 diagnosis: Diagnosis::units_first(arm.name(), names, doubts),

@@ -99,6 +99,8 @@ pub struct SourceRecording {
     pub name: String,
     /// Whether it is held out: not to be fitted.
     pub held_out: bool,
+    /// The duration that is used and the whole one (s), if it is not used whole.
+    pub part: Option<[f64; 2]>,
     /// The time of the diagnosis' clock minus that of the recording's own (s).
     pub shift: f64,
     /// Noise of the filtered torque, one per joint (N m or N).
@@ -215,7 +217,8 @@ impl Motions {
             // Pauses, and what is left out between windows, are time, too.
             end += recording.time(recording.len() - 1) - recording.time(0) + recording.period + BETWEEN;
             motions.begins = motions.begins.min(shift + recording.time(0));
-            motions.add(index, (input, &white[index]), &used.sections(input), thin, shift);
+            motions.add(index, (input, &white[index]), &used.sections(index, input), thin, shift);
+            motions.sources[index].part = used.part(index, input);
         }
         motions.tempo = motions.tempo();
         motions
@@ -309,6 +312,7 @@ impl Motions {
         self.sources.push(SourceRecording {
             name: input.name.to_owned(),
             held_out: input.held_out,
+            part: None,
             shift,
             torque_noise: white.tau.iter().map(|noise| smooth * noise).collect(),
             acceleration_noise: acceleration

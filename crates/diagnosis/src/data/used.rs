@@ -18,27 +18,60 @@ const SHORTEST: f64 = 2.0;
 /// The longest chunk where all is used (s); longer ones are cut, so that memory is bounded.
 const LONGEST: f64 = 60.0;
 
+/// The number of recordings that a sentence names.
+const MOST_NAMED: usize = 4;
+
 /// Of one recording, no more than this needs to be held (s): windows that are spread evenly, and half of it at least.
 pub const WORTH_HOLDING: f64 = 1000.0;
 
-/// Of all recordings of a role, which are `recorded` (s) long together, no more than this needs to be held (s).
-pub fn worth_holding(recorded: f64) -> f64 {
-    if recorded > MOST_SECONDS {
-        2.0 * LONG_SECONDS
-    } else {
-        WORTH_HOLDING
+/// Recordings are short beside others that are at least so many times as long.
+const SHORT: f64 = 4.0;
+
+/// The time that is used of each recording of a role (s), which are `recorded` (s) long.
+///
+/// All of them, if they are not longer than 900 s together. If they are, short ones are still used whole, if they are not longer
+/// than 660 s together; of the others, 240 s are used in equal parts, or all of one that is shorter than its part. Of what is used
+/// whole here, all is used also if fewer of the recordings are given.
+pub fn worth_using(recorded: &[f64]) -> Vec<f64> {
+    let mut worth = recorded.to_vec();
+    if recorded.iter().sum::<f64>() <= MOST_SECONDS {
+        return worth;
     }
+    let mut order: Vec<usize> = (0..recorded.len()).collect();
+    order.sort_by(|&a, &b| recorded[a].total_cmp(&recorded[b]));
+    let (mut short, mut together) = (0, 0.0);
+    for (count, pair) in (1..).zip(order.windows(2)) {
+        let [last, next] = [pair[0], pair[1]].map(|at| recorded[at]);
+        together += last;
+        if together <= MOST_SECONDS - LONG_SECONDS && next >= SHORT * last {
+            short = count;
+        }
+    }
+    let mut left = LONG_SECONDS;
+    for place in short..order.len() {
+        let part = left / (order.len() - place) as f64;
+        if recorded[order[place]] >= part {
+            order[place..].iter().for_each(|&at| worth[at] = part);
+            break;
+        }
+        left -= recorded[order[place]];
+    }
+    worth
 }
 
-/// Durations by role, of training and of held-out recordings.
+/// What is used of the recordings.
 #[derive(Debug)]
 pub struct Used {
-    /// That was recorded (s).
+    /// Durations by role, of training and of held-out recordings, that were recorded (s).
     recorded: [f64; 2],
-    /// The part of what is held that is to be used.
-    share: [f64; 2],
-    /// The duration that is used (s).
+    /// The duration that is used, by role (s).
     used: [f64; 2],
+    /// The part of what is held of each recording that is to be used.
+    shares: Vec<f64>,
+    /// The duration that is used of each recording (s).
+    seconds: Vec<f64>,
+    /// The names of the recordings that are used whole beside ones that are not, by role.
+    whole: [Vec<String>; 2],
 }
 
 /// A section of a recording, and how many of its ticks are used.
@@ -53,41 +86,44 @@ pub struct Section {
 impl Used {
     /// The part that is used of `inputs`.
     pub fn of(inputs: &[Input<'_>]) -> Self {
-        let sum = |duration: fn(&Input<'_>) -> f64| {
-            // An empty sum is −0, and a division by it gives −∞.
-            [false, true].map(|role| {
-                let of_role = inputs.iter().filter(|input| input.held_out == role);
-                0.0 + of_role.map(duration).sum::<f64>()
-            })
-        };
-        let recorded = sum(|input| input.recording.recorded());
-        let held = sum(|input| input.recording.held());
-        let most = recorded.map(|seconds| {
-            if seconds > MOST_SECONDS {
-                LONG_SECONDS
-            } else {
-                MOST_SECONDS
-            }
+        let roles = [false, true].map(|role| {
+            let of_role = inputs.iter().enumerate().filter(|(_, input)| input.held_out == role);
+            of_role.map(|(index, _)| index).collect::<Vec<usize>>()
         });
-        let mut used = Self {
-            recorded,
-            share: [0, 1].map(|role| (most[role] / held[role]).min(1.0)),
-            used: held,
+        let held: Vec<f64> = inputs.iter().map(|input| input.recording.held()).collect();
+        let recorded: Vec<f64> = inputs.iter().map(|input| input.recording.recorded()).collect();
+        // An empty sum is −0.
+        let sums = |seconds: &[f64]| {
+            let sum = |indices: &Vec<usize>| 0.0 + indices.iter().map(|&index| seconds[index]).sum::<f64>();
+            [sum(&roles[0]), sum(&roles[1])]
         };
-        for role in [0, 1].into_iter().filter(|&role| used.share[role] < 1.0) {
-            let of_role = inputs.iter().filter(|input| usize::from(input.held_out) == role);
-            let seconds = of_role.map(|input| {
-                let sections = used.sections(input);
-                sections.iter().map(|section| section.used).sum::<usize>() as f64 * input.recording.period
-            });
-            used.used[role] = seconds.sum();
+        let mut used = Self {
+            recorded: sums(&recorded),
+            used: [0.0; 2],
+            shares: vec![1.0; inputs.len()],
+            seconds: held.clone(),
+            whole: [const { Vec::new() }; 2],
+        };
+        for (role, indices) in roles.iter().enumerate() {
+            let of_role: Vec<f64> = indices.iter().map(|&index| recorded[index]).collect();
+            for (&index, worth) in indices.iter().zip(worth_using(&of_role)) {
+                used.shares[index] = (worth / held[index]).min(1.0);
+                if used.shares[index] < 1.0 {
+                    let sections = used.sections(index, &inputs[index]);
+                    let ticks = sections.iter().map(|section| section.used).sum::<usize>();
+                    used.seconds[index] = ticks as f64 * inputs[index].recording.period;
+                } else if used.recorded[role] > MOST_SECONDS {
+                    used.whole[role].push(inputs[index].name.to_owned());
+                }
+            }
         }
+        used.used = sums(&used.seconds);
         used
     }
 
-    /// The sections of a recording, with a window in each.
-    pub fn sections(&self, input: &Input<'_>) -> Vec<Section> {
-        let share = self.share[usize::from(input.held_out)];
+    /// The sections of a recording, with a window in each. `index` is its place among the inputs.
+    pub fn sections(&self, index: usize, input: &Input<'_>) -> Vec<Section> {
+        let share = self.shares[index];
         let longest = if share < 1.0 { WINDOW / share } else { LONGEST };
         let RegularRecording { segments, period, .. } = input.recording;
         let most = ((longest / period) as usize).max(1);
@@ -114,17 +150,127 @@ impl Used {
         self.used.iter().sum()
     }
 
+    /// The duration that is used of a recording (s), and its whole duration (s), if it is not used whole.
+    pub fn part(&self, index: usize, input: &Input<'_>) -> Option<[f64; 2]> {
+        let is_part = self.shares[index] < 1.0 || input.recording.left_out > 0.0;
+        is_part.then(|| [self.seconds[index], input.recording.recorded()])
+    }
+
     /// What is omitted, in sentences.
     pub fn remarks(&self) -> Vec<String> {
         let long = ["training", "held-out"].into_iter().enumerate();
         long.filter(|&(role, _)| self.recorded[role] > MOST_SECONDS)
             .map(|(role, what)| {
+                let whole = match &self.whole[role][..] {
+                    [] => String::new(),
+                    [name] => format!("; {name} is used whole"),
+                    [first, .., last] if self.whole[role].len() > MOST_NAMED => {
+                        format!("; {} of them are used whole, {first} to {last}", self.whole[role].len())
+                    }
+                    [names @ .., last] => format!("; {} and {last} are used whole", names.join(", ")),
+                };
                 format!(
-                    "of the {:.0} s of {what} recordings, about {:.0} s are used, in windows of at most {WINDOW:.0} s that are spread evenly",
-                    self.recorded[role],
-                    self.used[role]
+                    "of the {:.0} s of {what} recordings, about {:.0} s are used, in windows of at most {WINDOW:.0} s that are spread \
+                     evenly{whole}",
+                    self.recorded[role], self.used[role]
                 )
             })
             .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use recording::Segment;
+
+    use super::*;
+
+    fn recording(seconds: usize) -> RegularRecording {
+        let ticks = 100 * seconds;
+        RegularRecording {
+            period: 0.01,
+            segments: vec![Segment {
+                ticks: 0..ticks,
+                start: 0.0,
+            }],
+            present: vec![true; ticks],
+            ..RegularRecording::default()
+        }
+    }
+
+    #[test]
+    fn up_to_900_s_all_is_used() {
+        assert_eq!(worth_using(&[600.0, 10.0, 290.0]), [600.0, 10.0, 290.0]);
+        assert_eq!(worth_using(&[]), [0.0; 0]);
+    }
+
+    #[test]
+    fn long_recordings_have_equal_parts() {
+        assert_eq!(worth_using(&[3600.0]), [240.0]);
+        assert_eq!(worth_using(&[1800.0, 1800.0]), [120.0, 120.0]);
+        assert_eq!(worth_using(&[15.0; 100]), [2.4; 100]);
+        // What one that is shorter than its part leaves goes to the others.
+        assert_eq!(worth_using(&[900.0, 500.0, 150.0, 48.0]), [64.0, 64.0, 64.0, 48.0]);
+    }
+
+    #[test]
+    fn short_recordings_beside_long_ones_are_used_whole() {
+        assert_eq!(worth_using(&[10.0, 86_400.0]), [10.0, 240.0]);
+        assert_eq!(worth_using(&[3600.0, 30.0, 3600.0, 60.0]), [120.0, 30.0, 120.0, 60.0]);
+        // As long as they are not too much together.
+        assert!(worth_using(&[&[30.0; 22][..], &[3600.0]].concat()).starts_with(&[30.0; 22]));
+        let many = worth_using(&[&[30.0; 23][..], &[3600.0]].concat());
+        assert!(many.iter().all(|seconds| *seconds == 10.0), "{many:?}");
+    }
+
+    /// What is thinned while further recordings are still to be read cannot be used whole with them.
+    #[test]
+    fn what_is_whole_among_more_is_whole_among_fewer() {
+        let mut state = 1_u64;
+        for _ in 0..2000 {
+            let mut random = || {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                (state >> 33) as f64 / f64::from(1_u32 << 31)
+            };
+            let count = 2 + (8.0 * random()) as usize;
+            let all: Vec<f64> = (0..count).map(|_| (10.0 * random()).exp()).collect();
+            let worth = worth_using(&all);
+            for fewer in 1..count {
+                for (at, of_fewer) in worth_using(&all[..fewer]).into_iter().enumerate() {
+                    assert!(worth[at] < all[at] || of_fewer == all[at], "{all:?} {fewer}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_used_in_part_is_said() {
+        let recordings = [recording(10), recording(2000), recording(50)];
+        let input = |(name, recording), held_out| Input {
+            name,
+            recording,
+            held_out,
+            before: false,
+        };
+        let inputs = [
+            input(("short.csv", &recordings[0]), false),
+            input(("long.csv", &recordings[1]), false),
+            input(("held.csv", &recordings[2]), true),
+        ];
+        let used = Used::of(&inputs);
+        assert_eq!(used.part(0, &inputs[0]), None);
+        let [seconds, of] = used.part(1, &inputs[1]).expect("a part");
+        assert!(
+            (seconds - 240.0).abs() < 2.0 && (of - 2000.0).abs() < 1e-6,
+            "{seconds} {of}"
+        );
+        assert_eq!(used.part(2, &inputs[2]), None);
+        assert_eq!(
+            used.remarks(),
+            [
+                "of the 2010 s of training recordings, about 250 s are used, in windows of at most 20 s that are spread evenly; \
+              short.csv is used whole"
+            ]
+        );
     }
 }

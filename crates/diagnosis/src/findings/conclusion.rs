@@ -10,11 +10,13 @@ use super::found::findings;
 use super::inertials::{Inertials, inertials};
 use super::locate::locate;
 use super::observability::unseen;
-use super::report::{Finding, JointFit, Located, NotObservable, RecordingNames, Report, SCHEMA, Traces, Unexplained};
+use super::report::{
+    Finding, JointFit, Located, NotObservable, RecordingNames, Report, SCHEMA, Traces, Unexplained, UsedPart,
+};
 use super::traces::traces;
 use super::verdict::{not_enough, only_located, poorly_predicted, unexplained, verdict};
 use super::{dual_sensor, sentences, transients};
-use crate::data::motion::Input;
+use crate::data::motion::{Input, SourceRecording};
 use crate::diagnose::{Diagnosis, Options, Step};
 use crate::error::DiagnosisError;
 use crate::next::{self, Next};
@@ -163,6 +165,7 @@ impl Conclusion {
             recordings: RecordingNames {
                 train: names(false),
                 held_out: names(true),
+                used_in_part: used_in_part(&study.motions.sources),
             },
             doubts: Vec::new(),
             verdict: verdict(&findings, &self.unexplained, &self.not_enough_data),
@@ -186,6 +189,20 @@ impl Conclusion {
             trace: study.trace.take(),
         }
     }
+}
+
+/// The recordings that are not used whole.
+fn used_in_part(sources: &[SourceRecording]) -> Vec<UsedPart> {
+    let parts = sources.iter().filter_map(|source| {
+        let [used_seconds, of_seconds] = source.part?.map(|seconds| (seconds * 1e3).round() / 1e3);
+        let recording = source.name.clone();
+        Some(UsedPart {
+            recording,
+            used_seconds,
+            of_seconds,
+        })
+    });
+    parts.collect()
 }
 
 /// The effects of `list` that no finding names: a second encoder or a motor current shows what the torque alone does not.

@@ -1,7 +1,8 @@
 //! Bags of ROS 2: a folder of files, and the files of the storage sqlite3.
 
+use std::collections::HashMap;
 use std::io::{Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use rusqlite::limits::Limit;
 use rusqlite::{Connection, OpenFlags};
@@ -48,7 +49,7 @@ impl Format for Rosbag2 {
                 files.push(path);
             }
         }
-        files.sort();
+        files.sort_by_key(|path| part_number(path));
         if files.is_empty() {
             return Err(input.error(NAME, no_bag(&input.path)));
         }
@@ -67,6 +68,17 @@ impl Format for Rosbag2 {
     }
 }
 
+/// What a bag's files are sorted by: NAME_2.db3 comes before NAME_10.db3.
+fn part_number(path: &Path) -> (String, u64, PathBuf) {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let stem = [".zstd", ".db3", ".mcap"]
+        .iter()
+        .fold(&*name, |name, end| name.strip_suffix(end).unwrap_or(name));
+    let start = stem.trim_end_matches(|letter: char| letter.is_ascii_digit());
+    let number = stem[start.len()..].parse().unwrap_or(0);
+    (start.to_owned(), number, path.to_owned())
+}
+
 /// The remedy for a folder that is not a bag; it names a recording below the folder if there is one.
 fn no_bag(folder: &Path) -> String {
     const DEPTH: usize = 4;
@@ -81,7 +93,7 @@ fn no_bag(folder: &Path) -> String {
             .filter_map(|entry| Some(entry.ok()?.path()))
             .collect();
         entries.sort();
-        let has_end = |path: &&std::path::PathBuf| {
+        let has_end = |path: &&PathBuf| {
             let name = path.to_string_lossy();
             [".parquet", ".db3", ".mcap", ".csv", ".npz", ".mat"]
                 .iter()
@@ -186,16 +198,22 @@ fn messages(path: &Path, most: u64, options: &Options<'_>, states: &mut JointSta
         ))
     })?;
     let topics = topics.collect::<Result<Vec<_>, _>>()?;
-    let mut query = database.prepare("SELECT timestamp, data FROM messages WHERE topic_id = ?1")?;
-    let mut room = most;
-    for (id, topic, kind, encoding) in &topics {
+    let is_wanted = |(_, topic, kind, encoding): &&(i64, String, String, String)| {
         let is_chosen = options.topics.is_empty() || options.topics.contains(topic);
-        if !TYPES.contains(&kind.as_str()) || encoding != "cdr" || !is_chosen {
-            continue;
-        }
-        let mut rows = query.query([id])?;
-        while let Some(row) = rows.next()? {
-            let (logged, data) = (row.get::<_, i64>(0)?, row.get_ref(1)?);
+        TYPES.contains(&kind.as_str()) && encoding == "cdr" && is_chosen
+    };
+    let wanted: HashMap<i64, &str> = topics
+        .iter()
+        .filter(is_wanted)
+        .map(|(id, topic, ..)| (*id, topic.as_str()))
+        .collect();
+    // In the order in which they were recorded, all topics together.
+    let mut query = database.prepare("SELECT topic_id, timestamp, data FROM messages")?;
+    let mut room = most;
+    let mut rows = query.query([])?;
+    while let Some(row) = rows.next()? {
+        if let Some(topic) = wanted.get(&row.get::<_, i64>(0)?) {
+            let (logged, data) = (row.get::<_, i64>(1)?, row.get_ref(2)?);
             let data = data
                 .as_blob()
                 .map_err(|_| Failure::Message(format!("a message of {topic} is no blob")))?;
@@ -208,6 +226,7 @@ fn messages(path: &Path, most: u64, options: &Options<'_>, states: &mut JointSta
             }
         }
     }
+    drop(rows);
     Ok(topics.into_iter().map(|(_, topic, _, _)| topic).collect())
 }
 

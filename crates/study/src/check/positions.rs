@@ -22,7 +22,7 @@ const LEAD: f64 = 0.5;
 pub type Pair<'a> = (&'a Joint, &'a JointQuality);
 
 /// The unit of the time stamps, where rows are too far apart for a drive.
-pub fn of_time(quality: &Quality) -> Option<Misfit> {
+pub fn of_time(arm: &Arm, quality: &Quality) -> Option<Misfit> {
     let period = 1.0 / quality.rate;
     if period <= SLOWEST_PERIOD {
         return None;
@@ -37,10 +37,27 @@ pub fn of_time(quality: &Quality) -> Option<Misfit> {
         let unit = |name: &str| finding.text.contains(&format!("are in {name};"));
         units.into_iter().find(|(name, _)| unit(name))
     });
-    let (unit, seconds) = by_velocity.or_else(|| {
+    let found = by_velocity.or_else(|| {
         let is_close = |(_, seconds): &(&str, f64)| period * seconds <= SLOWEST_PERIOD;
-        units.into_iter().find(is_close)
-    })?;
+        units.into_iter().find(is_close).filter(|(_, seconds)| {
+            let is_possible = |joint: &Joint| {
+                let measured = quality.joints.iter().find(|measured| measured.joint == joint.name);
+                let speed = measured.map_or(0.0, |measured| measured.speed_max / seconds);
+                joint.limits.velocity <= 0.0 || speed <= BEYOND * joint.limits.velocity
+            };
+            arm.joints().iter().all(is_possible)
+        })
+    });
+    let Some((unit, seconds)) = found else {
+        let text = format!(
+            "its rows are {period:.3} s apart, too far for velocities and accelerations (and in no other unit of time the speeds \
+             would be possible): record at 100 Hz or more"
+        );
+        return Some(Misfit {
+            spoils: true,
+            ..Misfit::new(None, text, Vec::new())
+        });
+    };
     let text = format!(
         "its rows are {period:.3} s apart; are its stamps in {unit}? Give the unit in a column map (--map: unit = \"{unit}\" \
          under [time]), or record at 100 Hz or more"

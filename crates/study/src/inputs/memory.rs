@@ -1,6 +1,6 @@
 //! The memory that recordings take, however long and many they are.
 
-use diagnosis::worth_holding;
+use diagnosis::worth_using;
 use recording::RegularRecording;
 
 use super::Prepared;
@@ -14,35 +14,25 @@ pub(super) fn without_unused(mut recording: RegularRecording) -> RegularRecordin
     recording
 }
 
-/// Leaves windows of the recordings of each role, if they are longer than a diagnosis uses; most is taken from those of which most
-/// is held.
+/// Of a recording of which a part is used, at most so many times that part is held, so that its windows can be chosen.
+const HELD: f64 = 2.0;
+
+/// Leaves windows of the recordings of each role, if they are longer than a diagnosis uses.
 pub(super) fn bound(list: &mut [Prepared]) {
     for is_fitted in [true, false] {
-        let mut recordings: Vec<&mut RegularRecording> = list
+        let recordings = list
             .iter_mut()
             .filter(|prepared| prepared.role.is_fitted() == is_fitted)
-            .map(|prepared| &mut prepared.regular)
-            .collect();
-        let recorded = recordings.iter().map(|recording| recording.recorded()).sum();
-        bound_together(&mut recordings, worth_holding(recorded));
+            .map(|prepared| &mut prepared.regular);
+        bound_together(recordings.collect());
     }
 }
 
-/// Thins `recordings` until they hold `most` (s) together, or none can be thinned.
-fn bound_together(recordings: &mut [&mut RegularRecording], most: f64) {
-    let mut can_be: Vec<usize> = (0..recordings.len()).collect();
-    while recordings.iter().map(|recording| recording.held()).sum::<f64>() > most {
-        let share = |&at: &usize| recordings[at].held() / recordings[at].recorded();
-        // Of equal ones, the first.
-        let next = can_be
-            .iter()
-            .copied()
-            .rev()
-            .max_by(|a, b| share(a).total_cmp(&share(b)));
-        let Some(next) = next else { return };
-        if !recordings[next].thin() {
-            can_be.retain(|&at| at != next);
-        }
+/// Thins the `recordings` of one role until little more is held than is used of them, or none can be thinned.
+fn bound_together(recordings: Vec<&mut RegularRecording>) {
+    let recorded: Vec<f64> = recordings.iter().map(|recording| recording.recorded()).collect();
+    for (recording, worth) in recordings.into_iter().zip(worth_using(&recorded)) {
+        while recording.held() > HELD * worth && recording.thin() {}
     }
 }
 
@@ -65,33 +55,39 @@ mod tests {
         }
     }
 
-    fn held(seconds: &[usize], most: f64) -> Vec<f64> {
+    fn held(seconds: &[usize]) -> Vec<f64> {
         let mut recordings: Vec<RegularRecording> = seconds.iter().map(|&seconds| recording(seconds)).collect();
-        let mut all: Vec<&mut RegularRecording> = recordings.iter_mut().collect();
-        bound_together(&mut all, most);
+        bound_together(recordings.iter_mut().collect());
         recordings.iter().map(RegularRecording::held).collect()
     }
 
     #[test]
     fn what_is_short_together_stays() {
-        assert_eq!(held(&[500, 300], 1000.0), [500.0, 300.0]);
+        assert_eq!(held(&[500, 300]), [500.0, 300.0]);
     }
 
     #[test]
-    fn long_recordings_share_what_is_held() {
-        let held = held(&[3600, 3600, 900], 1000.0);
-        let total: f64 = held.iter().sum();
-        assert!((450.0..=1000.0).contains(&total), "{held:?}");
-        let shares: Vec<f64> = held
-            .iter()
-            .zip([3600.0, 3600.0, 900.0])
-            .map(|(held, all)| held / all)
-            .collect();
-        assert!(shares.iter().all(|share| (0.04..0.3).contains(share)), "{shares:?}");
+    fn long_recordings_have_equal_parts() {
+        let held = held(&[3600, 3600, 1000]);
+        assert!(held.iter().all(|held| (80.0..=160.0).contains(held)), "{held:?}");
+    }
+
+    /// Also where it is read before the long one.
+    #[test]
+    fn a_short_recording_beside_a_long_one_stays_whole() {
+        for others in [vec![86_400], vec![3600, 3600]] {
+            for at in 0..=others.len() {
+                let mut seconds = others.clone();
+                seconds.insert(at, 10);
+                let held = held(&seconds);
+                assert_eq!(held[at], 10.0, "{seconds:?}");
+                assert!(held.iter().sum::<f64>() <= 490.0, "{held:?}");
+            }
+        }
     }
 
     #[test]
     fn many_short_ones_stay_long_enough_to_be_filtered() {
-        assert!(held(&[15; 100], 100.0).iter().all(|seconds| *seconds > 4.0));
+        assert!(held(&[15; 100]).iter().all(|seconds| *seconds > 4.0));
     }
 }

@@ -123,6 +123,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
         recordings: RecordingNames {
             train: traces.recordings[..2].iter().map(|trace| trace.name.clone()).collect(),
             held_out: vec![traces.recordings[2].name.clone()],
+            used_in_part: Vec::new(),
         },
         next_experiment: None,
         verdict: match plot {
