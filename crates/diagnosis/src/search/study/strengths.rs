@@ -239,25 +239,29 @@ impl Study {
         chosen
     }
 
-    /// The evidence for `member` of `chosen` beside the background that is best without it (nats): an effect that wrong inertials
+    /// The evidence for `member` of `chosen`, each with the background that is best for it (nats): an effect that wrong inertials
     /// resemble lets the background be smaller, which must not speak for it.
     pub fn evidence_beside_best_background(&mut self, chosen: &Chosen, member: usize) -> f64 {
         let bare = self.bare_products(|r| self.fitted[r]);
         let kept = self.strengths.clone();
         let products = bare.with_background(self.background());
-        let mut without = self.problem(&products).without(chosen, member);
-        for _ in 0..MOST_MOVES {
-            let mut neighbours = self.strengths.neighbours();
-            // Friction of its own in each recording is another matter, and explains little elsewhere.
-            neighbours.retain(|next| next.friction == kept.friction);
-            let Some((strengths, next)) = self.strengthened(&bare, &without, neighbours) else {
-                break;
-            };
-            self.strengths = strengths;
-            without = next;
-        }
-        self.strengths = kept;
-        without.score - chosen.score
+        let without = self.problem(&products).without(chosen, member);
+        // Held-out recordings may have asked for a smaller background than the evidence.
+        let mut best = |mut fit: Chosen| {
+            for _ in 0..MOST_MOVES {
+                let mut neighbours = self.strengths.neighbours();
+                // Friction of its own in each recording is another matter, and explains little elsewhere.
+                neighbours.retain(|next| next.friction == kept.friction);
+                let Some((strengths, next)) = self.strengthened(&bare, &fit, neighbours) else {
+                    break;
+                };
+                self.strengths = strengths;
+                fit = next;
+            }
+            self.strengths = kept.clone();
+            fit.score
+        };
+        best(without) - best(chosen.clone())
     }
 
     /// `chosen` with another body of a link in the place of the effects on its joint that may together imitate it: a scale of
