@@ -227,7 +227,7 @@ fn may_be_nothing(spec: &Spec, parameters: &BTreeMap<&'static str, Parameter>) -
     sizes.clone().next().is_some() && sizes.into_iter().all(holds_nothing)
 }
 
-/// Whether it is a constant or a rotor inertia no larger than the residual structure beside it.
+/// Whether it is an effect that hardly exceeds the residual structure beside it, of a kind that may be a part of that structure.
 fn is_part_of_the_rest(study: &Study, judged: &Selection, member: &judge::Member) -> bool {
     let candidate = &study.candidates[member.candidate];
     let Some(factor) = candidate.hypothesis.spec().least_beside_residual else {

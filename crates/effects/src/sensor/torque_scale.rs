@@ -26,6 +26,8 @@ static SPEC: Spec = Spec {
     may_set_in: true,
     is_certain_in_form: true,
     may_be_inertial: true,
+    // Structure that the catalogue lacks resembles some factor on the load.
+    least_beside_residual: Some(1.5),
     // Both are a gain on the load. They differ only in form: one has the load of the drive, the other that of the link.
     least_beside: &[("load_dependent_friction", 0.3)],
     against: Against::Load,
