@@ -5,7 +5,7 @@ mod support;
 use arm::{Arm, Workspace};
 use diagnosis::{Input, Options, diagnose};
 use recording::RegularRecording;
-use support::{Concealed, Motion, baseline_friction, diagnosed, regular, sentences, start, trio};
+use support::{Concealed, Motion, baseline_friction, diagnosed, diagnosed_with, regular, sentences, start, trio};
 
 /// What is named beside plain friction: effect and joint.
 fn named(robot: &Arm, concealed: Concealed<'_>) -> Vec<(String, Option<String>)> {
@@ -71,6 +71,26 @@ fn a_torque_constant_beyond_the_tolerance_of_the_others_is_named() {
             );
         }
     }
+}
+
+/// Torque constants that are stated to be exact leave nothing to a background, and no name stands twice.
+#[test]
+fn exact_torque_constants_name_each_scale_once() {
+    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        baseline_friction(motion, tau);
+        tau[1] *= 0.95;
+    };
+    let options = Options {
+        torque_accuracy: Some(0.0),
+        ..Options::default()
+    };
+    let diagnosis = diagnosed_with(&trio(), &trio(), &concealed, &options).expect("it can be diagnosed");
+    assert_eq!(
+        support::named(&diagnosis),
+        [("torque_scale", Some("shoulder"))],
+        "{:?}",
+        sentences(&diagnosis)
+    );
 }
 
 /// A centre of mass that is 3 cm from where the URDF has it, on the upper arm or on the forearm, is that link's, and nothing

@@ -40,7 +40,10 @@ impl Latest {
         let message = Late { number, time, late };
         let (first, count) = self.1.get_or_insert((message, 0));
         *count += 1;
-        if late > LATEST || *count > MOST_LATE {
+        if late > LATEST {
+            return Err(message);
+        }
+        if *count > MOST_LATE {
             return Err(*first);
         }
         Ok(Some(message))

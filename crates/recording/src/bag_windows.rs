@@ -1,7 +1,7 @@
 //! The windows of a bag, whose messages come from several topics and in any order.
 //!
 //! Each window is the same stretch of time, whatever messages come when: a message is kept if its time lies in a window that is
-//! taken. So what is kept does not depend on the messages' order, and is the same time of all topics.
+//! taken. So what is kept depends on the first message's time only, not on the order of the others, and is the same time of all topics.
 
 use std::collections::BTreeMap;
 

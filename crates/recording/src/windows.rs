@@ -9,6 +9,8 @@ const WINDOW: f64 = 20.0;
 const LONGEST_STEP: f64 = 0.15;
 /// Steps up to this multiple of the step before are no pauses: the rows are slow.
 const ALIKE: f64 = 3.0;
+/// A longer step is a pause, whatever the step before (s): a row alone between two pauses makes none of them time.
+const SLOWEST_STEP: f64 = 10.0;
 /// The golden ratio. The fractional parts of its multiples are spread evenly, so that the windows are not in step with a
 /// motion that is repeated.
 const GOLDEN: f64 = 0.618_033_988_749_895;
@@ -64,7 +66,7 @@ impl Windows {
         };
         let step = time - last;
         let before = std::mem::replace(&mut self.step, step);
-        let is_pause = step >= LONGEST_STEP && step > ALIKE * before;
+        let is_pause = step >= LONGEST_STEP && (step > ALIKE * before || step > SLOWEST_STEP);
         self.covered += if is_pause { 0.0 } else { step.max(0.0) };
         self.last = Some(time.max(last));
         if self.covered < WINDOW && !is_large {
@@ -195,5 +197,7 @@ mod tests {
         assert_eq!(windows.next(5000.0, false), Next::SameWindow);
         assert_eq!(windows.next(5000.01, false), Next::SameWindow);
         assert_eq!(windows.next(9000.0, false), Next::SameWindow);
+        // A row alone between two pauses does not make the second one time.
+        assert_eq!(windows.next(13_000.0, false), Next::SameWindow);
     }
 }

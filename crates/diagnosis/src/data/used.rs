@@ -112,7 +112,7 @@ impl Used {
                     let sections = used.sections(index, &inputs[index]);
                     let ticks = sections.iter().map(|section| section.used).sum::<usize>();
                     used.seconds[index] = ticks as f64 * inputs[index].recording.period;
-                } else if used.recorded[role] > MOST_SECONDS {
+                } else if used.recorded[role] > MOST_SECONDS && inputs[index].recording.left_out == 0.0 {
                     used.whole[role].push(inputs[index].name.to_owned());
                 }
             }

@@ -264,6 +264,7 @@ fn guard(study: &mut Study, judged: &mut Selection) {
                 break;
             };
             study.note(judge::HARMS, &judged.named, &next);
+            torque_constants::keep_named_ones(study, &next.set);
             judged.named = next;
         }
         let products = study.training_products();

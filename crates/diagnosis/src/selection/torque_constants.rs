@@ -59,6 +59,10 @@ pub fn name_those_beyond_tolerance(study: &mut Study, judged: &mut Selection, tr
 
 /// The joint whose torque constant deviates most beyond tolerance, with the candidate that names it.
 fn farthest(study: &Study, judged: &Selection, tried: &[usize]) -> Option<(usize, usize)> {
+    // Without a background of torque constants, none deviates there.
+    if study.strengths.gain == 0.0 {
+        return None;
+    }
     let least = TOLERANCE * accuracy(study, &judged.named.set);
     let allowed = study.allowed();
     let deviation = |joint: usize| {
@@ -67,7 +71,7 @@ fn farthest(study: &Study, judged: &Selection, tried: &[usize]) -> Option<(usize
     };
     let scale = |joint: usize| allowed.iter().copied().find(|&c| names(study, c) == Some(joint));
     (0..study.motions.dof)
-        .filter(|joint| !tried.contains(joint))
+        .filter(|joint| !tried.contains(joint) && !study.strengths.named_constants.contains(joint))
         .filter_map(|joint| Some((deviation(joint)?, joint, scale(joint)?)))
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, joint, scale)| (joint, scale))
