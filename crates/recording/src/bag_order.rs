@@ -91,7 +91,8 @@ impl Order {
 pub fn set_back(Late { number, time, late }: Late, topic: &str) -> String {
     format!(
         "message {number} of joint states, in {topic}: time runs back by {:.3} s, to {:.3} s, within the same joints: was the clock \
-         set back? Cut the bag before this message, sort its messages by time, or leave the topic out (`topics` in a column map)",
+         set back, or is a message before it stamped too late? Cut the bag here or leave that message out, sort the messages by \
+         time, or leave the topic out (`topics` in a column map)",
         late as f64 * 1e-9,
         time as f64 * 1e-9
     )

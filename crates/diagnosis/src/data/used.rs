@@ -30,8 +30,8 @@ const SHORT: f64 = 4.0;
 /// The time that is used of each recording of a role (s), which are `recorded` (s) long.
 ///
 /// All of them, if they are not longer than 900 s together. If they are, short ones are still used whole, if they are not longer
-/// than 660 s together; of the others, 240 s are used in equal parts, or all of one that is shorter than its part. Of what is used
-/// whole here, all is used also if fewer of the recordings are given.
+/// than 660 s together; of the others, 240 s are used in equal parts, or all of one that is shorter than its part. A
+/// recording that is used whole among all of them is used whole among any first few of them, too.
 pub fn worth_using(recorded: &[f64]) -> Vec<f64> {
     let mut worth = recorded.to_vec();
     if recorded.iter().sum::<f64>() <= MOST_SECONDS {

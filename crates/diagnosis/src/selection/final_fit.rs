@@ -246,7 +246,7 @@ fn is_part_of_the_rest(study: &Study, judged: &Selection, member: &judge::Member
 /// Reduces the background, and removes findings, until no joint's held-out error is larger than the nominal model's.
 fn guard(study: &mut Study, judged: &mut Selection) {
     while let Some(joint) = harmed(study, &judged.named) {
-        if let Some((strengths, next)) = likelier_outside(study, &judged.named) {
+        if let Some((strengths, next)) = better_outside(study, &judged.named) {
             study.strengths = strengths;
             study.note_strengths(judge::HARMS, &judged.named, &next);
             judged.named = next;
@@ -288,7 +288,7 @@ fn harmed(study: &Study, chosen: &Chosen) -> Option<usize> {
 
 /// The smaller background with the smallest held-out errors of all joints together, if they are smaller than now. Errors at rest
 /// count, too: wrong links that explain the motions of some joints are felt as weight on joints that stand still.
-fn likelier_outside(study: &Study, chosen: &Chosen) -> Option<(Strengths, Chosen)> {
+fn better_outside(study: &Study, chosen: &Chosen) -> Option<(Strengths, Chosen)> {
     let loss = |chosen: &Chosen| {
         let errors = (0..study.motions.dof).filter_map(|joint| held_out(study, chosen, joint).1);
         errors.map(|error| error.max(f64::MIN_POSITIVE).ln()).sum::<f64>()
