@@ -62,7 +62,9 @@ impl Strengths {
         let common = self.common();
         let apart = self.links.iter().filter(|&&rho| rho != common).count();
         let unlikely = 0.5 * (common / USUAL_STRENGTH).powi(2);
-        part(self.friction) + part(self.gain) + part(common) + unlikely + PER_LINK_APART * apart as f64
+        // Several wrong links among links that are exact are less likely than links that are all somewhat wrong.
+        let several = if common == 0.0 { apart.saturating_sub(1) } else { 0 };
+        part(self.friction) + part(self.gain) + part(common) + unlikely + PER_LINK_APART * (apart + several) as f64
     }
 
     /// The strengths that are tried for one link, below and above that of most links.
@@ -185,9 +187,14 @@ impl Strengths {
         list
     }
 
+    /// Whether friction curves or torque constants differ from the model's.
+    pub fn is_of_joints(&self) -> bool {
+        self.friction > 0.0 || self.gain > 0.0
+    }
+
     /// Whether there is no background.
     pub fn is_none(&self) -> bool {
-        self.friction == 0.0 && self.gain == 0.0 && self.links.iter().all(|&rho| rho == 0.0)
+        !self.is_of_joints() && self.links.iter().all(|&rho| rho == 0.0)
     }
 }
 

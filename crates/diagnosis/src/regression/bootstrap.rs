@@ -10,7 +10,7 @@ use crate::data::statistics::NORMAL_95;
 use crate::search::problem::Chosen;
 use crate::search::refine::{sizes, varied};
 use crate::search::study::Study;
-use crate::thresholds::{BLOCK, INFLATION, UNEVEN};
+use crate::thresholds::{BLOCK, INFLATION, INFLATION_IN_DRIVES, UNEVEN};
 
 /// The number of resamplings.
 const DRAWS: usize = 120;
@@ -32,6 +32,8 @@ pub struct Resampled {
     even: Vec<Vec<f64>>,
     /// The candidate and the size of each correction, in order.
     pub sizes: Vec<(usize, Size)>,
+    /// The factor on the standard deviation of the draws.
+    inflation: f64,
 }
 
 impl Resampled {
@@ -52,7 +54,7 @@ impl Resampled {
         // Half the interquartile range of a normal distribution is 0.6745 of its standard deviation.
         let at = |share: f64| draws[(share * (draws.len() - 1) as f64).round() as usize];
         let spread = (at(0.75) - at(0.25)) / (2.0 * 0.6745);
-        let half = INFLATION * NORMAL_95 * spread + systematic * value.abs();
+        let half = self.inflation * NORMAL_95 * spread + systematic * value.abs();
         (value, [value - half, value + half])
     }
 
@@ -61,6 +63,7 @@ impl Resampled {
     pub fn evenly(&self) -> Self {
         Self {
             draws: self.even.clone(),
+            inflation: INFLATION,
             ..self.clone()
         }
     }
@@ -128,6 +131,11 @@ pub fn resample(study: &mut Study, chosen: &Chosen) -> Resampled {
         draws,
         even,
         sizes: all,
+        inflation: if study.strengths.is_of_joints() {
+            INFLATION_IN_DRIVES
+        } else {
+            INFLATION
+        },
     }
 }
 

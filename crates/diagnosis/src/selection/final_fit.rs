@@ -19,7 +19,9 @@ use crate::selection::naming::{Named, name};
 use crate::selection::predict::{augmented, errors};
 use crate::selection::torque_constants;
 
-use crate::thresholds::{HOPELESS, LEAST_FINAL_SHARE, LEAST_UNDECIDED, PARTLY, UNDECIDED_NATS};
+use crate::thresholds::{
+    CLEAR_THOUGH_UNDETERMINED, HOPELESS, LEAST_FINAL_SHARE, LEAST_UNDECIDED, PARTLY, UNDECIDED_NATS,
+};
 
 /// Fits the named effects about the arm with them, with the rows near reversals. Removes effects that increase a joint's
 /// held-out error, that do not reduce it, or whose size may be zero.
@@ -156,8 +158,10 @@ fn give_up(study: &Study, judged: &mut Selection) {
 }
 
 /// The weakest name whose size may be zero or is physically impossible, and whether it is impossible.
-fn unclear(study: &Study, judged: &Selection, resampled: &Resampled) -> Option<(usize, bool)> {
+fn unclear(study: &mut Study, judged: &Selection, resampled: &Resampled) -> Option<(usize, bool)> {
     let resampled = &resampled.evenly();
+    let nothing = nothing(study, judged, resampled);
+    let study = &*study;
     let names = |member: &judge::Member| name(study, resampled, member.candidate);
     let all = judged.members.iter().flat_map(names).map(|named| named.effect);
     let all: Vec<Effect> = all.collect();
@@ -178,14 +182,28 @@ fn unclear(study: &Study, judged: &Selection, resampled: &Resampled) -> Option<(
         if contradicted(member) || is_part_of_the_rest(study, judged, member) {
             return true;
         }
-        let named = name(study, resampled, member.candidate);
-        named
-            .first()
-            .is_some_and(|named| may_be_nothing(named.effect.spec(), &named.parameters))
+        nothing.contains(&member.candidate)
     };
     let unclear = judged.members.iter().filter(is_unclear);
     let weakest = unclear.min_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
     Some((weakest.candidate, contradicted(weakest)))
+}
+
+/// The members whose main parameters may be those of no effect. With much evidence beside the background that is best without it, an
+/// effect is not nothing although its size is undetermined: wrong inertials of the last links leave a payload's mass undetermined
+/// while its moments are clear, and drift relative to a low level of friction is as uncertain as that level.
+fn nothing(study: &mut Study, judged: &Selection, resampled: &Resampled) -> Vec<usize> {
+    let may_be = |study: &Study, member: usize| {
+        let named = name(study, resampled, member);
+        let first = named.first();
+        first.is_some_and(|named| may_be_nothing(named.effect.spec(), &named.parameters))
+    };
+    let mut list = judged.named.set.clone();
+    list.retain(|&member| {
+        may_be(study, member)
+            && study.evidence_beside_best_background(&judged.named, member) < CLEAR_THOUGH_UNDETERMINED
+    });
+    list
 }
 
 /// The weakest effect whose name is as likely wrong as right: a small one in whose place another explains nearly as much; one that

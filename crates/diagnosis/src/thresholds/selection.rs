@@ -45,6 +45,9 @@ pub const ABOVE_THE_REST: f64 = 2.5;
 pub const CLEAR_DRIVE: f64 = 20.0;
 /// The least share of an effect in the joint's torque in the final fit, where the background may have taken most of it.
 pub const LEAST_FINAL_SHARE: f64 = 0.01;
+/// The evidence of an effect, beside the background that is best without it, with which it is named although its main parameter may
+/// be that of no effect (nats).
+pub const CLEAR_THOUGH_UNDETERMINED: f64 = 20.0;
 /// No further search is made once so many names were refused by the final fit.
 pub const MOST_REFUSED: usize = 3;
 /// A time for whose sake the fit is so much worse is outside the 95 % interval of an onset (nats). Source: half the square of

@@ -132,7 +132,7 @@ impl EffectKind for ExternalContact {
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let [from, to] = window(estimate.terms().first()?)?;
         let (x, y, z) = (estimate.place(0)?, estimate.place(1)?, estimate.place(2)?);
-        estimate.note("force", |draw| {
+        estimate.note_within(Systematic::OfForm, "force", &|draw| {
             (draw[x].powi(2) + draw[y].powi(2) + draw[z].powi(2)).sqrt()
         });
         estimate.start(from, to - from);
