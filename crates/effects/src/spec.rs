@@ -258,8 +258,8 @@ pub struct Spec {
     pub is_simple: bool,
     /// Whether its form is certain, because it follows from rigid-body dynamics.
     pub is_certain_in_form: bool,
-    /// The evidence that it must bring beside the correction of all inertial parameters that is best without it (nats), where the
-    /// URDF is wrong everywhere; `None` if that is not asked.
+    /// The evidence that it must bring beside the correction of all inertial parameters that is best without it (nats),
+    /// where the URDF is wrong everywhere; `None` for an effect without this test.
     pub least_beside_inertials: Option<f64>,
     /// Whether it may be present in one recording only.
     pub is_passing: bool,

@@ -86,7 +86,8 @@ fn stop(mass: f64, hertz: f64) -> f64 {
     mass * (2.0 * std::f64::consts::PI * hertz).powi(2)
 }
 
-/// A gap with rigid ends, as gaps with each of the stiffnesses that are tried first.
+/// The forms of a gap with compliant ends that are tried in place of a gap with rigid ends, for a link of inertia `mass`
+/// (kg m² or kg).
 fn softened(term: &Term, mass: f64) -> Vec<Term> {
     let [halfgap, rigid, ..] = term.sizes;
     if rigid.is_finite() {
@@ -154,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_that_is_none_adds_nothing() {
+    fn a_gap_of_zero_adds_nothing() {
         let (none, _) = column(&Term::about(&GAP, 0).sized([0.0, f64::INFINITY, 1.0]), 0);
         assert!(none.iter().all(|torque| *torque == 0.0), "{none:?}");
     }

@@ -78,7 +78,8 @@ impl EffectKind for LoadDependentFriction {
         Some(effect.with("coulomb", coulomb).with("gain", gain))
     }
 
-    /// Where another dry friction of the joint states the Coulomb level, this one has none of its own.
+    /// If another dry friction of the joint states the Coulomb level, this one states only the part that grows with the
+    /// load.
     fn sentence(&self, effect: &Effect) -> &'static str {
         if effect.number("coulomb") == 0.0 {
             "dry friction of {gain} times the load torque"
