@@ -98,8 +98,8 @@ impl RealLife {
             .cloned()
     }
 
-    /// The entry in the ground truth.
-    pub(super) fn told(&self, own_clocks: bool) -> Lifelike {
+    /// The properties as an entry of the ground truth.
+    pub(super) fn entry(&self, own_clocks: bool) -> Lifelike {
         Lifelike {
             friction: self.friction.clone(),
             noise_time: self.noise_time,
