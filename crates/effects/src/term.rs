@@ -90,7 +90,7 @@ pub struct Law {
 }
 
 impl Law {
-    /// A law with nothing but a column: the defaults for the other fields.
+    /// A law that has only a column: the defaults for the other fields.
     pub const PLAIN: Self = Self {
         name: "",
         column: |_, _, _| None,

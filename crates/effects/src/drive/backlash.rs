@@ -5,8 +5,8 @@ use crate::compliance::{Behind, gap, sprung};
 use crate::fitted::is_near_one;
 use crate::laws::ACCELERATION;
 use crate::{
-    Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range, Signals,
-    Size, Spec, Systematic, Term, Turn, Unseen,
+    Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
+    Range, Signals, Size, Spec, Systematic, Term, Turn,
 };
 
 /// The rotor drives the link through a gap of ± `halfgap`; q is the rotor's position.
@@ -27,12 +27,12 @@ static SPEC: Spec = Spec {
     prior: 8.0,
     is_simulated: true,
     experiment: Some(SECOND_ENCODER),
-    unseen: Unseen::Sized {
+    detectability: Detectability::Sized {
         because: "a smaller gap is crossed too quickly to be detected",
         if_none: "the load on the joint does not change its sign, so that a gap is never crossed",
         is_seen_below: false,
     },
-    unseen_turn: 3,
+    not_testable_turn: 3,
     ..Spec::EMPTY
 };
 

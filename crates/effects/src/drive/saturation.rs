@@ -3,8 +3,8 @@
 use ::arm::JointKind;
 
 use crate::{
-    Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range, Size, Spec,
-    Systematic, Term, Turn, Unseen,
+    Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
+    Range, Size, Spec, Systematic, Term, Turn,
 };
 
 /// The torque applied is the commanded one, clipped at ± limit.
@@ -21,10 +21,10 @@ static SPEC: Spec = Spec {
     parameters: &[Parameter::new("limit", Quantity::Torque).within(Range::Positive)],
     main: &["limit"],
     is_simulated: true,
-    unseen: Unseen::Limit {
+    detectability: Detectability::Limit {
         because: "no torque limit was reached",
     },
-    unseen_turn: 2,
+    not_testable_turn: 2,
     ..Spec::EMPTY
 };
 

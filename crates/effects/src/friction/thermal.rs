@@ -3,8 +3,8 @@
 use super::asymmetry::ABS_SIGN;
 use crate::laws::SIGN;
 use crate::{
-    Against, Circumstance, Cone, Dry, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine,
-    Parameter, Place, Quantity, Range, Size, Spec, Systematic, Term, Turn, Unseen,
+    Against, Circumstance, Cone, Detectability, Dry, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds,
+    Law, Machine, Parameter, Place, Quantity, Range, Size, Spec, Systematic, Term, Turn,
 };
 
 /// Dry friction coulomb (1 + amplitude e^(−(t − start)/time_constant)) sgn q̇, t on the recordings' own clock.
@@ -42,12 +42,12 @@ static SPEC: Spec = Spec {
         rank: 3,
         text: "record the same motion with the cold and with the warm drive, on one clock",
     }),
-    unseen: Unseen::Linear {
+    detectability: Detectability::Linear {
         if_no_form: Some("the recordings are shorter than the time that a drive takes to warm up"),
         is_of_first: true,
         is_of_all_torque: false,
     },
-    unseen_turn: 8,
+    not_testable_turn: 8,
     ..Spec::EMPTY
 };
 

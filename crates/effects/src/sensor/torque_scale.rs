@@ -3,8 +3,8 @@
 use super::torque_offset::KNOWN_LOAD;
 use crate::laws::RIGID;
 use crate::{
-    Against, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity, Range, Scaled,
-    SetsIn, Spec, Term, Turn, Unseen,
+    Against, Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity,
+    Range, Scaled, SetsIn, Spec, Term, Turn,
 };
 
 /// The measured torque is `factor` times the true one.
@@ -34,12 +34,12 @@ static SPEC: Spec = Spec {
     experiment: Some(KNOWN_LOAD),
     experiments_against: &[("inertial_scale", KNOWN_BODY), ("link_inertial_error", KNOWN_BODY)],
     // The rigid torque alone determines it, but it is a part of the joint's whole torque.
-    unseen: Unseen::Linear {
+    detectability: Detectability::Linear {
         if_no_form: None,
         is_of_first: false,
         is_of_all_torque: true,
     },
-    unseen_turn: 10,
+    not_testable_turn: 10,
     ..Spec::EMPTY
 };
 
