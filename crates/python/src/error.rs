@@ -8,7 +8,7 @@ create_exception!(
     jointwise,
     JointwiseError,
     PyValueError,
-    "An input that cannot be used: where it is, what was found, and how to mend it."
+    "An input that cannot be used: where it is, what was found, and the remedy."
 );
 
 /// Flags of the command line in messages, each with its replacement; longer flags come first.

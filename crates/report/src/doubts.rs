@@ -5,7 +5,7 @@ use diagnosis::{Doubt, Report};
 use crate::words;
 
 /// How a column map is used.
-pub const USE: &str = "A column map that mends it: save it as `map.toml`, and add `--map map.toml` to the command.";
+pub const USE: &str = "A column map that corrects it: save it as `map.toml`, and add `--map map.toml` to the command.";
 
 /// The doubts about recordings that have the same column map.
 pub struct Group<'a> {

@@ -25,7 +25,7 @@ pub struct Plain {
     pub found: usize,
     /// Injected effects that are found, or are an alternative of a finding.
     pub covered: usize,
-    /// Cases with nothing but baseline effects.
+    /// Cases with only baseline effects.
     pub empty: usize,
     /// Cases with only baseline effects in which no other effect is named.
     pub clean: usize,

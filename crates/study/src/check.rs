@@ -34,7 +34,7 @@ pub struct Misfit {
     pub text: String,
     /// Whether it must be corrected before the robot can be diagnosed.
     #[serde(skip)]
-    pub spoils: bool,
+    pub prevents_diagnosis: bool,
     /// The keys of a column map that correct it.
     #[serde(skip)]
     pub changes: Vec<Change>,
@@ -45,7 +45,7 @@ impl Misfit {
         Self {
             joint: joint.map(str::to_owned),
             text: text.into(),
-            spoils: false,
+            prevents_diagnosis: false,
             changes,
         }
     }
@@ -186,9 +186,9 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
     let names: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
     let as_it_is = fit(arm, smooth, Supposition::AsItIs);
     if let Some((text, changes)) = torque_unit::of(&names, moves, &as_it_is) {
-        let spoils = true;
+        let prevents_diagnosis = true;
         return vec![Misfit {
-            spoils,
+            prevents_diagnosis,
             ..Misfit::new(None, text, changes)
         }];
     }
@@ -199,8 +199,11 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
         // a quarter of a turn. The same holds for inverted signs of all joints if the heavy links explain the torque of
         // most joints without the inversion: the light links alone fit a mirrored arm as well.
         let is_changed = |name: &&str| misfit.changes.iter().any(|change| change.is_of(name));
-        let spoils = names.iter().all(is_changed) && !as_it_is.explains_most(moves);
-        return vec![Misfit { spoils, ..misfit }];
+        let prevents_diagnosis = names.iter().all(is_changed) && !as_it_is.explains_most(moves);
+        return vec![Misfit {
+            prevents_diagnosis,
+            ..misfit
+        }];
     }
     let mut misfits = Vec::new();
     for (joint, &factor) in as_it_is.factor.iter().enumerate() {

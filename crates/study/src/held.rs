@@ -49,7 +49,7 @@ pub fn level(effect: &Effect) -> Option<(f64, Held)> {
     }
 }
 
-/// The part of an effect that URDF and MJCF can both hold: damping, one level of dry friction, bodies.
+/// The part of an effect that URDF and MJCF can both hold: damping, one level of dry friction, bodies, rotor inertias.
 pub fn in_common(effect: &Effect) -> Held {
     if effect.onset().is_some() {
         Held::Nothing

@@ -171,7 +171,7 @@ pub fn read(
             && prepared.doubts.is_empty()
             && list.iter().all(|other| other.column_map.as_ref() != Some(map))
         {
-            let text = format!("a column map that mends it; save it as map.toml, and add --map map.toml:\n{map}");
+            let text = format!("a column map that corrects it; save it as map.toml, and add --map map.toml:\n{map}");
             notes.add("note", &prepared.name, text);
         }
         // The same samples under another name.
@@ -270,11 +270,11 @@ fn prepare(
         };
         notes.add(weight, &name, about(&finding.joint, &finding.text));
     }
-    for misfit in misfits.iter().filter(|misfit| !misfit.spoils) {
+    for misfit in misfits.iter().filter(|misfit| !misfit.prevents_diagnosis) {
         notes.add("warning", &name, about(&misfit.joint, &misfit.text));
     }
-    let spoils = misfits.into_iter().filter(|misfit| misfit.spoils);
-    let doubts = spoils
+    let prevents_diagnosis = misfits.into_iter().filter(|misfit| misfit.prevents_diagnosis);
+    let doubts = prevents_diagnosis
         .map(|misfit| Doubt {
             recording: name.clone(),
             joint: misfit.joint,

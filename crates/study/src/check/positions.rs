@@ -55,7 +55,7 @@ pub fn of_time(arm: &Arm, quality: &Quality) -> Option<Misfit> {
              would be possible): record at 100 Hz or more"
         );
         return Some(Misfit {
-            spoils: true,
+            prevents_diagnosis: true,
             ..Misfit::new(None, text, Vec::new())
         });
     };
@@ -64,7 +64,7 @@ pub fn of_time(arm: &Arm, quality: &Quality) -> Option<Misfit> {
          under [time]), or record at 100 Hz or more"
     );
     Some(Misfit {
-        spoils: true,
+        prevents_diagnosis: true,
         ..Misfit::new(None, text, vec![Change::time(unit, seconds)])
     })
 }
@@ -121,7 +121,7 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
             joint.limits.lower, joint.limits.upper
         );
         return vec![Misfit {
-            spoils: true,
+            prevents_diagnosis: true,
             ..Misfit::new(None, text, Vec::new())
         }];
     };
@@ -154,7 +154,7 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
         }
     }
     vec![Misfit {
-        spoils: true,
+        prevents_diagnosis: true,
         ..Misfit::new(None, text, changes)
     }]
 }
@@ -229,7 +229,7 @@ pub fn of_speeds(pairs: &[Pair<'_>]) -> Option<Misfit> {
         rounded(most, 2)
     );
     Some(Misfit {
-        spoils: true,
+        prevents_diagnosis: true,
         ..Misfit::new(None, text, Vec::new())
     })
 }
