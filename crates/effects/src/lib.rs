@@ -3,7 +3,7 @@
 //! A file holds all that the program knows of an effect, behind the trait [`EffectKind`]: its [`Spec`] (name, parameters,
 //! relations, words), the forms to try, the law of its columns, what physics allows, how its parameters are read from an
 //! estimate, and how it is put into a [`Machine`]. The fit of a diagnosis and the feed-forward of a corrected model come
-//! from the same file. [`spec`] gives what is known of a name.
+//! from the same file. [`spec`](spec()) gives what is known of a name.
 
 pub mod background;
 mod compliance;
