@@ -1,4 +1,4 @@
-//! On macOS a module may only be linked without an interpreter if its symbols are looked up when it is loaded.
+//! On macOS, an extension module is linked without the interpreter only if its symbols are resolved when it is loaded.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

@@ -21,7 +21,7 @@ pub(crate) struct LinkMotion<T> {
     /// ω, ω̇ (rad/s, rad/s²).
     pub angular_velocity: Vec3<T>,
     pub angular_acceleration: Vec3<T>,
-    /// [ω̇]× + [ω]×²: times the position r of a point, this is its acceleration relative to the origin (1/s²).
+    /// \[ω̇\]× + \[ω\]×²: times the position r of a point, this is its acceleration relative to the origin (1/s²).
     pub field: Mat3<T>,
     /// v̇ of the frame's origin minus gravity (m/s²).
     pub linear_acceleration: Vec3<T>,
@@ -154,7 +154,7 @@ impl Arm {
 
     /// Tip to base: the wrench that each joint transmits, and its component along the joint's axis.
     ///
-    /// A point r of a link accelerates by v̇ + W r, W = [ω̇]× + [ω]×²: its inertial force is m v̇ + W ∫ r dm, its moment
+    /// A point r of a link accelerates by v̇ + W r, W = \[ω̇\]× + \[ω\]×²: its inertial force is m v̇ + W ∫ r dm, its moment
     /// ∫ r × (v̇ + W r) dm, linear in the moments of its mass (Balafoutis and Patel 1991).
     #[inline(always)]
     fn propagate_wrenches<T: Real>(&self, context: T::Context, scratch: &mut Scratch<T>, qdd: &[T], tau: &mut [T]) {

@@ -173,7 +173,7 @@ pub struct Joint {
     pub inertia: Inertia,
     /// The moments of that inertia; [`Self::set_inertia`] updates them.
     pub(crate) moments: Moments,
-    /// R₀, R₀[a]×, R₀[a]×²: the rotation is R₀ + sin q R₀[a]× + (1 − cos q) R₀[a]×² (Rodrigues).
+    /// R₀, R₀\[a\]×, R₀\[a\]×²: the rotation is R₀ + sin q R₀\[a\]× + (1 − cos q) R₀\[a\]×² (Rodrigues).
     pub(crate) rotation_terms: [Matrix3<f64>; 3],
     /// R₀ a, the sliding direction in the parent's frame.
     pub(crate) axis_in_parent: Vector3<f64>,

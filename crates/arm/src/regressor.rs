@@ -87,7 +87,7 @@ impl Arm {
 }
 
 /// The power of the twist (`angular`, `linear`) with the inertial wrench of one link, per unit of each of its ten
-/// parameters. With a = v̇ of the origin minus gravity and W = [ω̇]× + [ω]×²: f = m a + W mc, n = mc × a + I ω̇ + ω ×
+/// parameters. With a = v̇ of the origin minus gravity and W = \[ω̇\]× + \[ω\]×²: f = m a + W mc, n = mc × a + I ω̇ + ω ×
 /// I ω.
 #[inline(always)]
 fn wrench_row<T: Real>(link: &LinkMotion<T>, angular: &Vec3<T>, linear: &Vec3<T>) -> [T; PARAMETERS_PER_LINK] {

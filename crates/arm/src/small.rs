@@ -300,7 +300,7 @@ pub(crate) fn cross_columns<T: Real>(v: &Vec3<T>, m: &Mat3<T>) -> Mat3<T> {
     )
 }
 
-/// [ω̇]× + [ω]× [ω]×: times r, this is the acceleration of point r of a body relative to that of its origin.
+/// \[ω̇\]× + \[ω\]× \[ω\]×: times r, this is the acceleration of point r of a body relative to that of its origin.
 #[inline(always)]
 pub(crate) fn acceleration_tensor<T: Real>(w: &Vec3<T>, wd: &Vec3<T>) -> Mat3<T> {
     let (xx, yy, zz) = (w.x * w.x, w.y * w.y, w.z * w.z);

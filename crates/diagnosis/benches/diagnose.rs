@@ -1,4 +1,4 @@
-//! Time of a diagnosis: four recordings of 25 s at 250 Hz, seven joints; and of ten times as long, which must take ten times.
+//! The time of a diagnosis of seven joints with four recordings at 250 Hz: of 25 s each, and ten times as long.
 
 #[path = "../tests/support/mod.rs"]
 mod support;
@@ -12,7 +12,7 @@ use divan::Bencher;
 use recording::RegularRecording;
 use support::{Motion, recorded, regular};
 
-/// Seven joints as robot arms have them: turning and bending in turns.
+/// An arm of seven joints that alternately turn and bend.
 fn seven() -> Arm {
     let mut text = "<robot name=\"seven\"><link name=\"link0\"/>".to_owned();
     for joint in 1..=7 {
@@ -39,7 +39,7 @@ fn seven() -> Arm {
 }
 
 /// Friction on every joint and a spring on the second.
-fn concealed(motion: &mut Motion, tau: &mut [f64]) {
+fn injected(motion: &mut Motion, tau: &mut [f64]) {
     for (tau, speed) in tau.iter_mut().zip(&motion.qd) {
         *tau += 1.2 * speed.signum() + 0.7 * speed;
     }
@@ -49,7 +49,7 @@ fn concealed(motion: &mut Motion, tau: &mut [f64]) {
 fn bench(bencher: Bencher, seconds: f64) {
     let arm = seven();
     let recordings: Vec<RegularRecording> = (0..4)
-        .map(|variant| regular(&recorded(&arm, variant, seconds, &concealed)))
+        .map(|variant| regular(&recorded(&arm, variant, seconds, &injected)))
         .collect();
     let inputs: Vec<Input<'_>> = ["a", "b", "c", "d"]
         .into_iter()

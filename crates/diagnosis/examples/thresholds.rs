@@ -17,7 +17,7 @@ use scoring::{Tried, Truth, score};
 
 mod support;
 
-/// A case that is diagnosed again and again.
+/// A case that is diagnosed with varied thresholds.
 struct Case {
     arm: Arm,
     recordings: Vec<(RegularRecording, bool)>,

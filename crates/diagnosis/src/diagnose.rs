@@ -21,10 +21,10 @@ use crate::trace::Decision;
 /// Options of a diagnosis.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// The half-power frequency of the low-pass filter (Hz); `None` lets the data decide.
+    /// The half-power frequency of the low-pass filter (Hz); `None` derives it from the recordings.
     pub cutoff: Option<f64>,
-    /// The relative error of the URDF's masses, centres of mass and inertias, as a part of each link's own (0.1: ten per cent);
-    /// `None` lets the recordings decide.
+    /// The relative error of the URDF's masses, centres of mass and inertias, as a part of each link's own (0.1: ten per
+    /// cent); `None` estimates it from the recordings.
     pub urdf_accuracy: Option<f64>,
     /// The relative standard deviation of each joint's torque constant; `None` if it is unknown.
     pub torque_accuracy: Option<f64>,
@@ -56,7 +56,7 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// The answer where recordings do not fit the robot `robot` as they were read: `doubts`, and no effect.
+    /// The diagnosis of recordings that contradict the URDF of `robot`: it contains the `doubts` and no effects.
     pub fn units_first(robot: &str, recordings: RecordingNames, doubts: Vec<Doubt>) -> Self {
         let report = Report {
             schema: SCHEMA,

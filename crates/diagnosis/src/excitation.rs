@@ -39,7 +39,7 @@ const LONGEST_PERIOD: f64 = 37.5;
 /// The highest frequency (Hz), and the fewest and the most harmonics of a period.
 const HIGHEST: f64 = 0.8;
 const HARMONICS: (usize, usize) = (5, 20);
-/// How often a motion is scaled down to bring it within the limits, before the search fails.
+/// The number of times that a motion is scaled down to bring it within the limits before the search fails.
 const SHRUNK: usize = 400;
 
 /// The request for a motion.

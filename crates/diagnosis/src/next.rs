@@ -1,4 +1,4 @@
-//! The next experiment: the motion within the robot's limits that best distinguishes the remaining alternatives.
+//! The next experiment: the motion within the robot's limits that best distinguishes findings from their alternatives.
 //!
 //! A motion that has not been recorded is added to the recordings by prediction: the torque that it needs by the findings, the
 //! columns of the findings and of their alternatives along it, and an error as large as the recordings'. The alternatives are
@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 
 use arm::Arm;
-use effects::{Effect, Unseen};
+use effects::{Detectability, Effect};
 use rayon::prelude::*;
 use torque::Reference;
 
@@ -81,8 +81,9 @@ struct Tried {
     worth: f64,
 }
 
-/// Proposes a motion for what `findings`, each with its candidate, and `hidden` effects leave open. It predicts nothing for
-/// joints that are `unexplained`. `effects` are all effects that are known or found, in addition to the model `arm`.
+/// Proposes a motion for the confusions of `findings` (each with its candidate) and for the effects `hidden`, which are not
+/// testable yet. It predicts nothing for joints that are `unexplained`. `effects` are all effects that are known or found,
+/// in addition to the model `arm`.
 ///
 /// # Errors
 /// If the effects cannot be added to the model.
@@ -211,7 +212,8 @@ fn shows(prospect: &Prospect<'_>, outlook: &Outlook, hidden: &[Hidden<'_>]) -> V
     hidden.iter().map(size).collect()
 }
 
-/// The alternatives of each finding, as sets of columns. Findings without columns (a contact, a second encoder) are left out.
+/// The alternatives of each finding, as sets of columns. Findings without columns (a contact, a second encoder) are
+/// omitted.
 fn confusions(
     study: &Study,
     chosen: &Chosen,
@@ -241,7 +243,7 @@ fn confusions(
             let is_alias =
                 alias.is_some_and(|(hypothesis, place)| hypothesis.name() == Some(rival.effect) && place == joint);
             let instead: Vec<(Vec<usize>, Vec<usize>)> = if is_alias {
-                // Fitted in the finding's place, it is the finding itself.
+                // In the finding's place, this alternative would be the finding itself.
                 vec![(chosen.fit.columns.clone(), Vec::new())]
             } else if this.hypothesis.spec().same_on_all_joints == Some(rival.effect) {
                 let is_factor = |c: &usize| study.candidates[*c].hypothesis.name() == Some(rival.effect);
@@ -264,8 +266,8 @@ fn confusions(
                 },
                 rival: rival.clone(),
                 pair,
-                is_explained: !unexplained.iter().any(|left| {
-                    let on = |joint: &Option<String>| joint.as_ref().is_none_or(|joint| *joint == left.joint);
+                is_explained: !unexplained.iter().any(|open| {
+                    let on = |joint: &Option<String>| joint.as_ref().is_none_or(|joint| *joint == open.joint);
                     on(&finding.joint) || on(&rival.joint)
                 }),
                 joints: this.joint.into_iter().chain(joint).collect(),
@@ -281,7 +283,7 @@ fn visible<'a>(study: &Study, chosen: &Chosen, hidden: &'a [NotObservable]) -> V
         let name = entry.joint.as_deref()?;
         let joint = study.arm.joints().iter().position(|joint| joint.name == name)?;
         let spec = effects::spec(entry.effect)?;
-        if matches!(spec.unseen, Unseen::Limit { .. }) {
+        if matches!(spec.detectability, Detectability::Limit { .. }) {
             let (parameter, before) = entry.would_be_seen_below.iter().next()?;
             return Some(Hidden {
                 entry,
@@ -291,7 +293,7 @@ fn visible<'a>(study: &Study, chosen: &Chosen, hidden: &'a [NotObservable]) -> V
                 column: None,
             });
         }
-        if !matches!(spec.unseen, Unseen::Linear { .. }) {
+        if !matches!(spec.detectability, Detectability::Linear { .. }) {
             return None;
         }
         let parameter = *spec.main.first()?;
@@ -330,7 +332,7 @@ fn described(
         let barred = if !confusion.is_explained {
             Some(Obstacle::Unexplained)
         } else {
-            // A pair that is already distinguished is no confusion.
+            // A pair that the recordings already distinguish is not a confusion.
             (before[k][0] >= before[k][1].min(needed)).then_some(Obstacle::NotForetold)
         };
         if after >= SURE * needed && barred.is_none() {
@@ -346,7 +348,13 @@ fn described(
         let all = list.iter().map(|tried| tried.separations[k]);
         let furthest = all.max_by(|a, b| (a[0] / a[1]).total_cmp(&(b[0] / b[1])));
         let furthest = furthest.unwrap_or([after, needed]);
-        not_separated.push(advice::untold(finding, rival, furthest, SURE * furthest[1], barred));
+        not_separated.push(advice::not_separated(
+            finding,
+            rival,
+            furthest,
+            SURE * furthest[1],
+            barred,
+        ));
     }
     let shows: Vec<Shows> = hidden
         .iter()

@@ -1,4 +1,4 @@
-//! Every number that decides on a name, in the order of the phases.
+//! All thresholds that decide on names, in the order of the phases.
 //!
 //! A threshold without a source was chosen on simulated cases with known ground truth. Limits of iterations, guards against
 //! rounding and the design of the filters do not decide on a name; they are beside their code. The physical limits of an effect
@@ -53,7 +53,7 @@ decisive! {
     tolerance: 0.006,
     /// The evidence that each coefficient must bring (nats).
     per_coefficient: 2.5,
-    /// The evidence that an onset must bring (nats): it was looked for at some hundred times.
+    /// The evidence that an onset must bring (nats), because it is searched at some hundred times.
     per_onset: 6.0,
     /// The standard deviation of the logarithm of a coefficient that should be one.
     unit_spread: 0.1,
@@ -65,9 +65,10 @@ decisive! {
     least_share: 0.012,
     /// The evidence that a named effect must bring (nats).
     least_evidence: 25.0,
-    /// The evidence that a named effect must bring over the simpler effect that it is a form of (nats).
+    /// The evidence that a named effect must bring beyond the simpler effect that it generalises (nats).
     least_beyond: 15.0,
-    /// The part of a larger effect on the same joint that an effect must exceed: what is smaller may be an error of that one's form.
+    /// The part of a larger effect on the same joint that an effect must exceed: a smaller effect may be an error of the
+    /// larger one's form.
     beside_a_larger: 0.1,
     /// The part of a larger effect of certain form on the same joint that an effect must exceed.
     beside_a_certain: 0.05,

@@ -1,4 +1,5 @@
-//! The record of a diagnosis: what was tried, taken and dropped, by which rule, with the evidence that decided (nats).
+//! The record of a diagnosis: effects that were tried, taken and dropped, with the rule and the evidence that decided
+//! (nats).
 
 use std::fmt;
 use std::sync::Mutex;

@@ -1,21 +1,23 @@
-//! Each effect of the catalogue, concealed alone beside a little friction, is named on its joint with its size, and nothing else is.
+//! Each effect of the catalogue, injected alone beside small friction, is named on its joint with its size, and no other
+//! effect is named.
 
 mod support;
 
 use arm::{Arm, Vector3};
 use diagnosis::{Diagnosis, Verdict};
-use support::{Concealed, ELBOW, Motion, SHOULDER, baseline_friction, diagnosed, motion, sentences, trio};
+use support::{ELBOW, Injected, Motion, SHOULDER, baseline_friction, diagnosed, motion, sentences, trio};
 
-/// What is found beside plain friction must be `effect` on `joint`, with parameters within a part `tolerance` of the truth.
+/// Checks that `effect` on `joint` is the only finding beside plain friction, with parameters within the relative
+/// `tolerance` of the truth.
 fn check(
     robot: &Arm,
-    concealed: Concealed<'_>,
+    injected: Injected<'_>,
     effect: &str,
     joint: Option<&str>,
     truth: &[(&str, f64)],
     tolerance: f64,
 ) {
-    let diagnosis = diagnosed(&trio(), robot, concealed, Vec::new());
+    let diagnosis = diagnosed(&trio(), robot, injected, Vec::new());
     let report = &diagnosis.report;
     let plain = ["viscous_friction", "coulomb_friction"];
     let special: Vec<_> = report
@@ -49,8 +51,8 @@ fn check(
         "{:?}",
         finding.held_out_gain
     );
-    // What is found, taken as known, leaves nothing to find.
-    let again = diagnosed(&trio(), robot, concealed, diagnosis.effects.clone());
+    // With the findings as known effects, nothing is found.
+    let again = diagnosed(&trio(), robot, injected, diagnosis.effects.clone());
     assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
     for (joint, fit) in &again.report.fit {
         assert_eq!(
@@ -65,8 +67,8 @@ fn check(
     }
 }
 
-/// The exported effects, taken as known, leave the error that was reported for them: exported laws are the fitted ones. What
-/// depends on the past of the motion is simulated, not taken off.
+/// Checks that the error with the exported effects as known effects is the reported one, because exported laws are the
+/// fitted ones. Effects that depend on the past of the motion are simulated instead of subtracted.
 fn exports_what_it_reports(diagnosis: &Diagnosis, again: &Diagnosis) {
     if diagnosis.effects.iter().any(|effect| effect.spec().is_simulated) {
         return;
@@ -81,20 +83,20 @@ fn exports_what_it_reports(diagnosis: &Diagnosis, again: &Diagnosis) {
     }
 }
 
-/// Two errors (NRMSE) are the same when they differ by less: the sign of a velocity near a reversal, which the fit takes from the
-/// filtered motion and the exported law from each sample, makes that much.
+/// Two errors (NRMSE) count as equal if they differ by less, because the fit takes the sign of a velocity near a reversal
+/// from the filtered motion, and the exported law from each sample.
 const SAME_ERROR: f64 = 0.002;
 
-/// With a torque scale, friction and whatever else acts on the joint are told in true newton metres, which the scale then
+/// Beside a torque scale, friction and the other effects on the joint are stated in true newton metres, which the scale
 /// multiplies.
 #[test]
 fn a_torque_scale_multiplies_the_friction_beside_it() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         tau[ELBOW] += 1.5 * motion.qd[ELBOW].signum() + 1.1 * motion.qd[ELBOW];
         tau[ELBOW] *= 1.3;
     };
-    let diagnosis = diagnosed(&trio(), &trio(), &concealed, Vec::new());
+    let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
     let parameter = |effect: &str, name: &str| {
         let is_wanted = |f: &&diagnosis::Finding| f.effect == effect && f.joint.as_deref() == Some("elbow");
         let finding = diagnosis.report.findings.iter().find(is_wanted);
@@ -107,7 +109,7 @@ fn a_torque_scale_multiplies_the_friction_beside_it() {
     is_near(parameter("torque_scale", "factor"), 1.3);
     is_near(parameter("coulomb_friction", "level"), 2.1);
     is_near(parameter("viscous_friction", "coefficient"), 1.5);
-    let again = diagnosed(&trio(), &trio(), &concealed, diagnosis.effects.clone());
+    let again = diagnosed(&trio(), &trio(), &injected, diagnosis.effects.clone());
     exports_what_it_reports(&diagnosis, &again);
 }
 
@@ -115,11 +117,11 @@ fn a_torque_scale_multiplies_the_friction_beside_it() {
 fn added(effect: &str, joint: usize, torque: impl Fn(&Motion) -> f64, truth: &[(&str, f64)], tolerance: f64) {
     let arm = trio();
     let name = arm.joints()[joint].name.clone();
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         tau[joint] += torque(motion);
     };
-    check(&arm, &concealed, effect, Some(&name), truth, tolerance);
+    check(&arm, &injected, effect, Some(&name), truth, tolerance);
 }
 
 #[test]
@@ -193,14 +195,14 @@ fn spring() {
 
 #[test]
 fn load_dependent_friction() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         let load = tau[SHOULDER].abs();
         baseline_friction(motion, tau);
         tau[SHOULDER] += 0.15 * load * motion.qd[SHOULDER].signum();
     };
     check(
         &trio(),
-        &concealed,
+        &injected,
         "load_dependent_friction",
         Some("shoulder"),
         &[("gain", 0.15)],
@@ -210,13 +212,13 @@ fn load_dependent_friction() {
 
 /// Gears that turn the elbow's drive and another's together act on both.
 fn coupled(other: usize) {
-    let concealed = move |motion: &mut Motion, tau: &mut [f64]| {
+    let injected = move |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         tau[ELBOW] += 1.1 * motion.qd[other] + 0.12 * motion.qdd[other];
         tau[other] += 1.1 * motion.qd[ELBOW] + 0.12 * motion.qdd[ELBOW];
     };
     let truth = [("viscous", 1.1), ("inertia", 0.12)];
-    check(&trio(), &concealed, "transmission_coupling", Some("elbow"), &truth, 0.1);
+    check(&trio(), &injected, "transmission_coupling", Some("elbow"), &truth, 0.1);
 }
 
 #[test]
@@ -231,13 +233,13 @@ fn transmission_coupling_of_joints_one_apart() {
 
 #[test]
 fn torque_scale() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         tau[SHOULDER] *= 1.15;
     };
     check(
         &trio(),
-        &concealed,
+        &injected,
         "torque_scale",
         Some("shoulder"),
         &[("factor", 1.15)],
@@ -245,7 +247,7 @@ fn torque_scale() {
     );
 }
 
-/// Torques as they are commanded, `delay` before they are needed, on the shoulder.
+/// The torques of the shoulder as they are commanded, `delay` (s) before they act.
 fn delayed(delay: f64) -> impl Fn(&mut Motion, &mut [f64]) {
     let arm = trio();
     move |now: &mut Motion, tau: &mut [f64]| {
@@ -283,13 +285,13 @@ fn actuation_delay_has_its_size() {
 
 #[test]
 fn encoder_offset() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         motion.q[ELBOW] += 0.06;
     };
     check(
         &trio(),
-        &concealed,
+        &injected,
         "encoder_offset",
         Some("elbow"),
         &[("offset", 0.06)],
@@ -325,14 +327,14 @@ fn gravity_misalignment() {
 
 #[test]
 fn joint_elasticity() {
-    // The link follows the motion; the drive, which is what the encoder sees, is ahead by the spring's deflection.
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+    // The link follows the motion. The drive, whose position the encoder reports, leads by the spring's deflection.
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         motion.q[ELBOW] += tau[ELBOW] / 250.0;
         baseline_friction(motion, tau);
     };
     check(
         &trio(),
-        &concealed,
+        &injected,
         "joint_elasticity",
         Some("elbow"),
         &[("stiffness", 250.0)],
@@ -356,14 +358,14 @@ fn plain_friction_on_every_joint_and_nothing_else() {
     assert_eq!(report.verdict, Verdict::Explained);
 }
 
-/// A dead channel is left out, and says nothing of the others.
+/// A dead channel is omitted and does not affect the other joints.
 #[test]
-fn a_constant_torque_is_no_torque() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+fn a_dead_channel_is_omitted() {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         tau[ELBOW] = 0.3;
     };
-    let diagnosis = diagnosed(&trio(), &trio(), &concealed, Vec::new());
+    let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
     let report = &diagnosis.report;
     for finding in &report.findings {
         assert_ne!(finding.joint.as_deref(), Some("elbow"), "{}", finding.sentence);
@@ -377,17 +379,17 @@ fn a_constant_torque_is_no_torque() {
     );
 }
 
-/// Torques that have nothing to do with the motion get no names.
+/// Torques that do not depend on the motion are not named.
 #[test]
-fn unrelated_torques_get_no_names() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+fn unrelated_torques_are_not_named() {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         for (joint, tau) in tau.iter_mut().enumerate() {
-            // A hash of the time: neither the model's torque nor anything of the catalogue's.
+            // A hash of the time, which neither the model nor the catalogue explains.
             let phase = (motion.time * 1e4 + joint as f64 * 0.37).sin() * 43_758.545_3;
             *tau = 8.0 * (phase - phase.floor() - 0.5);
         }
     };
-    let report = diagnosed(&trio(), &trio(), &concealed, Vec::new()).report;
+    let report = diagnosed(&trio(), &trio(), &injected, Vec::new()).report;
     let named: Vec<&str> = report
         .findings
         .iter()

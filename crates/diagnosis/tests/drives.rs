@@ -1,4 +1,5 @@
-//! Friction and a rotor inertia on one joint: what is exported is what was fitted, and taken as known it leaves nothing.
+//! Friction and a rotor inertia on one joint: the exported effects are the fitted ones, and with them as known effects
+//! nothing is found.
 
 mod support;
 
@@ -7,7 +8,7 @@ use diagnosis::{Diagnosis, Options, Verdict, diagnose};
 use effects::Effect;
 use effects::drive::RotorInertia;
 use recording::RegularRecording;
-use support::{Concealed, ELBOW, Motion, SHOULDER, inputs, recorded, regular, sentences, start, trio};
+use support::{ELBOW, Injected, Motion, SHOULDER, inputs, recorded, regular, sentences, start, trio};
 
 /// The rotor inertias of the true arm (kg m²).
 const ROTORS: [f64; 3] = [0.0, 0.9, 0.25];
@@ -30,13 +31,14 @@ fn rotors() -> Vec<Effect> {
 /// warms up needs.
 const APART: f64 = 20.0;
 
-/// Diagnoses the arm and what is `known` on four recordings, one of them held out, of the driven arm with what is `concealed`.
-fn diagnosed(concealed: Concealed<'_>, known: Vec<Effect>) -> Diagnosis {
+/// Diagnoses the arm with the `known` effects on four recordings, one of them held out, of the driven arm with the torques
+/// `injected`.
+fn diagnosed(injected: Injected<'_>, known: Vec<Effect>) -> Diagnosis {
     let one = |variant: usize| -> RegularRecording {
         let later = APART * variant as f64 - start(variant);
         let at = |motion: &mut Motion, tau: &mut [f64]| {
             motion.clock += later;
-            concealed(motion, tau);
+            injected(motion, tau);
         };
         let mut recording = recorded(&driven(), variant, 16.0, &at);
         recording.time.iter_mut().for_each(|time| *time += later);
@@ -61,16 +63,16 @@ fn friction(level: impl Fn(f64, f64, f64) -> f64) -> impl Fn(&mut Motion, &mut [
     }
 }
 
-/// The effects of a diagnosis beside those that were known.
+/// The known effects and those of a diagnosis.
 fn all(known: &[Effect], found: &Diagnosis) -> Vec<Effect> {
     known.iter().chain(&found.effects).cloned().collect()
 }
 
-/// `effect` is found on the shoulder with its main size, whether the rotors are known or found beside it. In both cases, the
-/// exported effects have the error that was reported, and leave nothing when they are known.
-fn check(concealed: Concealed<'_>, effect: &str, (parameter, truth): (&str, f64)) {
+/// Checks that `effect` is found on the shoulder with its main size, whether the rotors are known or found. In both cases,
+/// the exported effects have the reported error, and with them as known effects nothing is found.
+fn check(injected: Injected<'_>, effect: &str, (parameter, truth): (&str, f64)) {
     for known in [Vec::new(), rotors()] {
-        let diagnosis = diagnosed(concealed, known.clone());
+        let diagnosis = diagnosed(injected, known.clone());
         let said = sentences(&diagnosis);
         let report = &diagnosis.report;
         assert_eq!(report.verdict, Verdict::Explained, "{said:?} {:?}", report.unexplained);
@@ -85,7 +87,7 @@ fn check(concealed: Concealed<'_>, effect: &str, (parameter, truth): (&str, f64)
         let finds_rotors = report.findings.iter().any(|finding| finding.effect == "rotor_inertia");
         assert_eq!(finds_rotors, known.is_empty(), "{said:?}");
 
-        let again = diagnosed(concealed, all(&known, &diagnosis));
+        let again = diagnosed(injected, all(&known, &diagnosis));
         assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
         assert_eq!(
             again.report.verdict,
@@ -104,36 +106,36 @@ fn check(concealed: Concealed<'_>, effect: &str, (parameter, truth): (&str, f64)
     }
 }
 
-/// Two errors (NRMSE) are the same when they differ by less, because the fit takes the sign of a velocity near a reversal from
-/// the filtered motion, and the exported law from each sample.
+/// Two errors (NRMSE) count as equal if they differ by less, because the fit takes the sign of a velocity near a reversal
+/// from the filtered motion, and the exported law from each sample.
 const SAME_ERROR: f64 = 0.002;
 
 #[test]
 fn coulomb_friction() {
-    let concealed = friction(|_, _, _| 2.0);
-    check(&concealed, "coulomb_friction", ("level", 2.0));
+    let injected = friction(|_, _, _| 2.0);
+    check(&injected, "coulomb_friction", ("level", 2.0));
 }
 
 #[test]
 fn friction_asymmetry() {
-    let concealed = friction(|speed, _, _| if speed > 0.0 { 3.0 } else { 1.5 });
-    check(&concealed, "friction_asymmetry", ("positive", 3.0));
+    let injected = friction(|speed, _, _| if speed > 0.0 { 3.0 } else { 1.5 });
+    check(&injected, "friction_asymmetry", ("positive", 3.0));
 }
 
 #[test]
 fn stribeck_friction() {
-    let concealed = friction(|speed, _, _| 1.0 + 4.0 * (-(speed / 0.12).powi(2)).exp());
-    check(&concealed, "stribeck_friction", ("coulomb", 1.0));
+    let injected = friction(|speed, _, _| 1.0 + 4.0 * (-(speed / 0.12).powi(2)).exp());
+    check(&injected, "stribeck_friction", ("coulomb", 1.0));
 }
 
 #[test]
 fn load_dependent_friction() {
-    let concealed = friction(|_, load, _| 0.5 + 0.2 * load.abs());
-    check(&concealed, "load_dependent_friction", ("gain", 0.2));
+    let injected = friction(|_, load, _| 0.5 + 0.2 * load.abs());
+    check(&injected, "load_dependent_friction", ("gain", 0.2));
 }
 
 #[test]
 fn thermal_drift() {
-    let concealed = friction(|_, _, clock| 2.0 + 2.4 * (-clock / 25.0).exp());
-    check(&concealed, "thermal_drift", ("coulomb", 2.0));
+    let injected = friction(|_, _, clock| 2.0 + 2.4 * (-clock / 25.0).exp());
+    check(&injected, "thermal_drift", ("coulomb", 2.0));
 }

@@ -1,4 +1,4 @@
-//! Friction curves as drives have them: neither their form nor their change between recordings is another effect.
+//! Friction curves of real drives: neither their form nor their change between recordings is named as another effect.
 
 mod support;
 
@@ -6,15 +6,15 @@ use support::{ELBOW, Motion, baseline_friction, diagnosed, sentences, trio};
 
 /// Friction that only reaches its level at some speed is not larger at standstill.
 #[test]
-fn friction_that_grows_gradually_is_no_stribeck_friction() {
+fn friction_that_grows_gradually_is_not_stribeck_friction() {
     for (reached, level) in [(0.2, 0.5), (0.3, 1.0), (0.4, 0.5)] {
         // Linear up to the speed at which it slides.
-        let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        let injected = |motion: &mut Motion, tau: &mut [f64]| {
             for (tau, &speed) in tau.iter_mut().zip(&motion.qd) {
                 *tau += level * (speed / reached).clamp(-1.0, 1.0) + 0.15 * level * speed;
             }
         };
-        let diagnosis = diagnosed(&trio(), &trio(), &concealed, Vec::new());
+        let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
         let is_stribeck = |finding: &diagnosis::Finding| finding.effect == "stribeck_friction";
         assert!(
             !diagnosis.report.findings.iter().any(is_stribeck),
@@ -24,10 +24,10 @@ fn friction_that_grows_gradually_is_no_stribeck_friction() {
     }
 }
 
-/// Friction that is larger throughout the held-out recording is no burst in it.
+/// Friction that is larger throughout the held-out recording is not a burst.
 #[test]
-fn more_friction_in_the_held_out_recording_is_no_burst() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+fn more_friction_in_the_held_out_recording_is_not_a_burst() {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         if motion.clock >= support::start(2) {
             for (tau, &speed) in tau.iter_mut().zip(&motion.qd) {
@@ -35,7 +35,7 @@ fn more_friction_in_the_held_out_recording_is_no_burst() {
             }
         }
     };
-    let diagnosis = diagnosed(&trio(), &trio(), &concealed, Vec::new());
+    let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
     let left = &diagnosis.report.unexplained;
     assert!(left.iter().all(|left| left.time.is_empty()), "{left:?}");
 }
@@ -43,13 +43,13 @@ fn more_friction_in_the_held_out_recording_is_no_burst() {
 /// Two dry frictions on one joint share one Coulomb level, which only one of them states: their torques add up.
 #[test]
 fn two_dry_frictions_on_a_joint_add_up() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         let speed = motion.qd[ELBOW];
         let directional = if speed > 0.0 { 3.0 } else { -1.0 };
         tau[ELBOW] += directional + 3.0 * (-(speed / 0.12).powi(2)).exp() * speed.signum();
     };
-    let diagnosis = diagnosed(&trio(), &trio(), &concealed, Vec::new());
+    let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
     let number = |effect: &str, key: &str| {
         let mut effects = diagnosis.effects.iter();
         let found = effects.find(|found| found.spec().name == effect && found.joint() == Some("elbow"));
@@ -67,7 +67,7 @@ fn two_dry_frictions_on_a_joint_add_up() {
     };
     assert!(said.iter().any(|said| larger(&said)), "{said:?}");
     assert!((number("stribeck_friction", "breakaway") / 3.0 - 1.0).abs() < 0.25);
-    let again = diagnosed(&trio(), &trio(), &concealed, diagnosis.effects.clone());
+    let again = diagnosed(&trio(), &trio(), &injected, diagnosis.effects.clone());
     assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
     // The rows near reversals are above the noise. Twice the Coulomb level would leave a third of the torque.
     let left = &again.report.unexplained;

@@ -1,4 +1,4 @@
-//! Effects that were asked for are fitted as they are, the right ones well and the wrong ones badly, and nothing else is named.
+//! Requested effects are fitted as they are, right ones well and wrong ones badly, and no other effect is named.
 
 mod support;
 
@@ -6,7 +6,7 @@ use diagnosis::{Diagnosis, DiagnosisError, Options, Wanted};
 use support::{ELBOW, Motion, SHOULDER, diagnosed_with, trio};
 
 /// Friction on the shoulder, a stiction curve on the elbow, and a ripple there.
-fn concealed(motion: &mut Motion, tau: &mut [f64]) {
+fn injected(motion: &mut Motion, tau: &mut [f64]) {
     let speed = motion.qd[SHOULDER];
     tau[SHOULDER] += 2.5 * speed.signum() + 1.8 * speed;
     let speed = motion.qd[ELBOW];
@@ -29,7 +29,7 @@ fn tried(list: &[(&str, Option<&str>)]) -> Result<Diagnosis, DiagnosisError> {
         only: Some(wanted(list)),
         ..Options::default()
     };
-    diagnosed_with(&trio(), &trio(), &concealed, &options)
+    diagnosed_with(&trio(), &trio(), &injected, &options)
 }
 
 fn error(diagnosis: &Diagnosis, joint: &str) -> [f64; 2] {
@@ -91,7 +91,7 @@ fn wrong_effects_are_fitted_too_and_explain_little() {
 }
 
 #[test]
-fn nothing_asked_for_is_the_nominal_model() {
+fn an_empty_hypothesis_is_the_nominal_model() {
     let diagnosis = tried(&[]).expect("it can be fitted");
     assert!(diagnosis.report.findings.is_empty());
     let [nominal, augmented] = error(&diagnosis, "shoulder");
@@ -99,7 +99,7 @@ fn nothing_asked_for_is_the_nominal_model() {
 }
 
 #[test]
-fn what_is_not_in_the_catalogue_or_on_the_arm_is_refused() {
+fn unknown_effects_and_joints_are_refused() {
     for (list, part) in [
         (
             vec![("stiction", Some("elbow"))],

@@ -1,15 +1,15 @@
-//! Wrong masses in company of a drive that hides them.
+//! Wrong masses, also beside a drive that hides them.
 
 mod support;
 
 use arm::{Arm, Workspace};
 use diagnosis::{Input, Options, diagnose};
 use recording::RegularRecording;
-use support::{Concealed, Motion, baseline_friction, diagnosed, diagnosed_with, regular, sentences, start, trio};
+use support::{Injected, Motion, baseline_friction, diagnosed, diagnosed_with, regular, sentences, start, trio};
 
-/// What is named beside plain friction: effect and joint.
-fn named(robot: &Arm, concealed: Concealed<'_>) -> Vec<(String, Option<String>)> {
-    let diagnosis = diagnosed(&trio(), robot, concealed, Vec::new());
+/// The findings beside plain friction: effect and joint.
+fn named(robot: &Arm, injected: Injected<'_>) -> Vec<(String, Option<String>)> {
+    let diagnosis = diagnosed(&trio(), robot, injected, Vec::new());
     let owned = |(effect, joint)| of(effect, joint);
     let mut special: Vec<_> = support::named(&diagnosis).into_iter().map(owned).collect();
     special.sort();
@@ -21,10 +21,10 @@ fn of(effect: &str, joint: Option<&str>) -> (String, Option<String>) {
     (effect.to_owned(), joint.map(str::to_owned))
 }
 
-/// About the base axis a drive's inertia weighs as much as the links are too light: the model is right there as it is, and
-/// wrong in both.
+/// About the base axis, the inertia of a drive equals the missing inertia of the links, which are too light. The model's
+/// torque is right there although both are wrong.
 #[test]
-fn a_drive_that_makes_up_for_light_links_is_named_with_them() {
+fn a_drive_that_compensates_light_links_is_named_with_them() {
     let light = trio().with_scaled_inertias(0.8);
     let mut workspace = Workspace::new(&light);
     let mut torque = |robot: &Arm, qdd: f64| {
@@ -41,8 +41,8 @@ fn a_drive_that_makes_up_for_light_links_is_named_with_them() {
     assert!(found.iter().all(|(effect, _)| !effect.contains("link")), "{found:?}");
 }
 
-/// Torque constants are good to a few per cent. One that is off by more is named, and the others stay in the background; where
-/// all others are exact, a smaller deviation counts, too.
+/// Torque constants are accurate to a few per cent. One that deviates by more is named, and the others are in the
+/// background. If all others are exact, a smaller deviation is also named.
 #[test]
 fn a_torque_constant_beyond_the_tolerance_of_the_others_is_named() {
     for (factors, expected) in [
@@ -50,11 +50,11 @@ fn a_torque_constant_beyond_the_tolerance_of_the_others_is_named() {
         ([1.0, 0.95, 1.0], Some(0.95)),
         ([1.05, 1.04, 0.95], None),
     ] {
-        let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        let injected = |motion: &mut Motion, tau: &mut [f64]| {
             baseline_friction(motion, tau);
             tau.iter_mut().zip(factors).for_each(|(tau, factor)| *tau *= factor);
         };
-        let diagnosis = diagnosed(&trio(), &trio(), &concealed, Vec::new());
+        let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
         let scales: Vec<_> = diagnosis
             .report
             .findings
@@ -73,10 +73,10 @@ fn a_torque_constant_beyond_the_tolerance_of_the_others_is_named() {
     }
 }
 
-/// Torque constants that are stated to be exact leave nothing to a background, and no name stands twice.
+/// With torque constants that are stated to be exact, the background contains none, and each scale is named once.
 #[test]
 fn exact_torque_constants_name_each_scale_once() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         tau[1] *= 0.95;
     };
@@ -84,7 +84,7 @@ fn exact_torque_constants_name_each_scale_once() {
         torque_accuracy: Some(0.0),
         ..Options::default()
     };
-    let diagnosis = diagnosed_with(&trio(), &trio(), &concealed, &options).expect("it can be diagnosed");
+    let diagnosis = diagnosed_with(&trio(), &trio(), &injected, &options).expect("it can be diagnosed");
     assert_eq!(
         support::named(&diagnosis),
         [("torque_scale", Some("shoulder"))],
@@ -93,8 +93,8 @@ fn exact_torque_constants_name_each_scale_once() {
     );
 }
 
-/// A centre of mass that is 3 cm from where the URDF has it, on the upper arm or on the forearm, is that link's, and nothing
-/// else: no spring, no counterbalance, no zero of an encoder.
+/// A centre of mass that is 3 cm from where the URDF has it, on the upper arm or on the forearm, is named on that link, and
+/// not as a spring, a counterbalance or an encoder offset.
 #[test]
 fn a_centre_of_mass_off_is_named_on_its_link() {
     for (link, off) in [(1, [0.0, 0.0, 0.03]), (1, [0.03, 0.0, 0.0]), (2, [0.0, 0.0, 0.03])] {
@@ -130,7 +130,8 @@ fn a_centre_of_mass_off_is_named_on_its_link() {
     }
 }
 
-/// All links too heavy is the two that carry the load too heavy: a pair of wrong links is an alternative, though neither alone is.
+/// That all links are too heavy resembles two links that are too heavy: a pair of wrong links is an alternative, although
+/// neither link alone is.
 #[test]
 fn a_common_factor_has_a_pair_of_links_as_its_alternative() {
     let robot = trio().with_scaled_inertias(0.8);
@@ -153,8 +154,8 @@ fn a_common_factor_has_a_pair_of_links_as_its_alternative() {
     );
 }
 
-/// The payload of 1.2 kg that is found since the recordings from before, of which each has a `pause` (s), on a robot whose torques
-/// are recorded with these `factors`, and nothing else that changed.
+/// The mass of a payload of 1.2 kg that was added after the recordings from before, on a robot whose torques are recorded
+/// with these `factors`. Each recording has a `pause` (s). Checks that no other change is found.
 fn new_payload(factors: [f64; 3], pause: f64) -> diagnosis::Parameter {
     let body = arm::Inertia {
         mass: 1.2,
@@ -162,7 +163,7 @@ fn new_payload(factors: [f64; 3], pause: f64) -> diagnosis::Parameter {
         tensor: arm::Matrix3::identity() * 2e-3,
     };
     let loaded = trio().with_payload(&body);
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         if motion.clock >= start(2) {
             let mut workspace = Workspace::new(&loaded);
             loaded.inverse_dynamics(&mut workspace, &motion.q, &motion.qd, &motion.qdd, tau);
@@ -173,7 +174,7 @@ fn new_payload(factors: [f64; 3], pause: f64) -> diagnosis::Parameter {
         }
     };
     let recording = |variant: usize| {
-        let mut recording = support::recorded(&trio(), variant, 16.0, &concealed);
+        let mut recording = support::recorded(&trio(), variant, 16.0, &injected);
         let second_half = recording.time.len() / 2;
         recording
             .time
@@ -199,15 +200,15 @@ fn new_payload(factors: [f64; 3], pause: f64) -> diagnosis::Parameter {
     payload.parameters["mass"]
 }
 
-/// Torque constants that are wrong by a few per cent are so for the torque of a new payload as well, so that no joint's torque
-/// constant has changed, and the mass is as uncertain as they are.
+/// Torque constants that are wrong by a few per cent also apply to the torque of a new payload. Therefore no torque scale
+/// is found to have changed, and the mass is as uncertain as the constants.
 #[test]
-fn torque_constants_hold_for_a_new_payload_too() {
+fn torque_constants_also_apply_to_a_new_payload() {
     let [low, high] = new_payload([1.05, 0.94, 1.08], 0.0).ci95;
     assert!(low <= 1.2 && 1.2 <= high, "{low} … {high}");
 }
 
-/// The time of a pause in a recording from before is before the change, too.
+/// Pauses in recordings from before also count as time before the change.
 #[test]
 fn pauses_of_recordings_from_before_are_before_the_change() {
     let mass = new_payload([1.0; 3], 100.0);

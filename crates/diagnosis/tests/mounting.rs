@@ -1,4 +1,4 @@
-//! A base on a slope, on a wall, on the ceiling; a body that the URDF draws and that is not mounted; what is no torque.
+//! A base on a slope, on a wall or on the ceiling, and channels without torque.
 
 mod support;
 
@@ -44,9 +44,9 @@ fn a_base_on_a_slope_a_wall_or_the_ceiling_is_found() {
     }
 }
 
-/// The corrected model is as good as the report says of the fit: gravity is as large on the wall.
+/// The corrected model has the reported error, because gravity has its magnitude on a wall as well.
 #[test]
-fn what_is_known_of_a_wall_is_not_found_again() {
+fn a_known_wall_is_not_found_again() {
     let robot = trio().with_turned_base(Vector3::new(0.6, 0.8, 0.0), 90.0_f64.to_radians());
     let known = mounted(90.0).effects;
     let again = diagnosed(&trio(), &robot, &|motion, tau| baseline_friction(motion, tau), known);
@@ -60,11 +60,11 @@ fn what_is_known_of_a_wall_is_not_found_again() {
     assert!(worst < 0.02, "{worst}");
 }
 
-/// A channel that shows zero most of the time, as one that shows another quantity, costs the other joints nothing.
+/// A channel that shows zero most of the time, or another quantity, does not affect the other joints.
 #[test]
-fn channels_without_torque_are_left_out() {
+fn channels_without_torque_are_omitted() {
     let robot = trio();
-    let concealed = |motion: &Motion, tau: &mut [f64]| {
+    let injected = |motion: &Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         tau[2] = 0.0;
     };
@@ -72,8 +72,8 @@ fn channels_without_torque_are_left_out() {
         .into_iter()
         .enumerate()
         .map(|(variant, seconds)| {
-            let mut recording = recorded(&robot, variant, seconds, &|motion, tau| concealed(motion, tau));
-            // Now and then something else is written.
+            let mut recording = recorded(&robot, variant, seconds, &|motion, tau| injected(motion, tau));
+            // The other samples have another value.
             for (k, tau) in recording.tau[2].iter_mut().enumerate() {
                 *tau = if k % 97 < 15 { 0.3 * (k as f64).sin() } else { 0.0 };
             }

@@ -1,4 +1,5 @@
-//! The next experiment: a motion within limits that tells what the recordings do not, and none where none does.
+//! The next experiment: a motion within the limits that distinguishes what the recordings do not, and no motion if none
+//! does.
 
 mod support;
 
@@ -9,17 +10,17 @@ use recording::{Recording, RegularRecording};
 use support::{ELBOW, Motion, SHOULDER, diagnosed_with, inputs, recorded, regular, trio};
 use torque::Reference;
 
-fn proposed(concealed: support::Concealed<'_>) -> (Diagnosis, NextExperiment) {
+fn proposed(injected: support::Injected<'_>) -> (Diagnosis, NextExperiment) {
     let options = Options {
         next: true,
         ..Options::default()
     };
-    let diagnosis = diagnosed_with(&trio(), &trio(), concealed, &options).expect("it can be diagnosed");
+    let diagnosis = diagnosed_with(&trio(), &trio(), injected, &options).expect("it can be diagnosed");
     let next = diagnosis.report.next_experiment.clone().expect("it was asked for");
     (diagnosis, next)
 }
 
-/// Friction that is told from drag by nothing but a wider range of speeds.
+/// Friction that only a wider range of speeds distinguishes from drag.
 fn friction(motion: &mut Motion, tau: &mut [f64]) {
     for (joint, level, coefficient) in [(SHOULDER, 0.8, 0.18), (ELBOW, 0.4, 0.084)] {
         let speed = motion.qd[joint];
@@ -32,8 +33,8 @@ fn is_confused(diagnosis: &Diagnosis, effect: &str, rival: &str) -> bool {
     findings.any(|f| f.effect == effect && f.confusable_with.iter().any(|other| other.effect == rival))
 }
 
-/// A recording of the arm with what is concealed along `reference`.
-fn made(reference: &Reference, seconds: f64, concealed: support::Concealed<'_>) -> Recording {
+/// A recording of the arm with the torques `injected` along `reference`.
+fn made(reference: &Reference, seconds: f64, injected: support::Injected<'_>) -> Recording {
     let along = |motion: &mut Motion, tau: &mut [f64]| {
         let mut wanted = torque::Motion::new(3);
         reference.at(motion.time, &mut wanted);
@@ -47,13 +48,13 @@ fn made(reference: &Reference, seconds: f64, concealed: support::Concealed<'_>) 
         let arm = trio();
         let mut workspace = arm::Workspace::new(&arm);
         arm.inverse_dynamics(&mut workspace, &motion.q, &motion.qd, &motion.qdd, tau);
-        concealed(motion, tau);
+        injected(motion, tau);
     };
     recorded(&trio(), 3, seconds, &along)
 }
 
 #[test]
-fn a_faster_motion_tells_viscous_friction_from_drag() {
+fn a_faster_motion_distinguishes_viscous_friction_from_drag() {
     let (diagnosis, next) = proposed(&friction);
     assert!(
         is_confused(&diagnosis, "viscous_friction", "quadratic_drag"),
@@ -67,7 +68,7 @@ fn a_faster_motion_tells_viscous_friction_from_drag() {
     for pair in told {
         assert!(pair.after > pair.needed && pair.after > pair.before, "{pair:?}");
     }
-    // What was predicted comes true.
+    // The prediction is correct.
     let motion = diagnosis.next.expect("a motion");
     let seconds = next.duration.expect("a duration");
     let mut recordings: Vec<RegularRecording> = [16.0, 16.0, 10.0]
@@ -126,7 +127,7 @@ fn a_motion_stays_within_the_limits() {
         motion.at(time, &mut at);
         assert!(at.qd.iter().chain(&at.qdd).all(|&v| v == 0.0));
     }
-    // A weak and slow arm gets a motion that it can make.
+    // For a weak and slow arm, a motion that it can perform is proposed.
     let weak = support::TRIO.replace("effort=\"200\" velocity=\"5\"", "effort=\"45\" velocity=\"1.5\"");
     let weak = arm::Arm::from_urdf_text(&weak, "weak.urdf").expect("it is an arm");
     let options = Options {
@@ -141,7 +142,7 @@ fn a_motion_stays_within_the_limits() {
 }
 
 #[test]
-fn what_no_motion_tells_gets_advice_instead() {
+fn effects_that_no_motion_distinguishes_have_advice() {
     let asymmetric = |motion: &mut Motion, tau: &mut [f64]| {
         let speed = motion.qd[ELBOW];
         tau[ELBOW] += if speed > 0.0 { 2.2 } else { -1.1 };
@@ -153,13 +154,13 @@ fn what_no_motion_tells_gets_advice_instead() {
         diagnosis.report.findings
     );
     assert!(!next.separates.iter().any(|pair| pair.rival.effect == "torque_offset"));
-    let untold = next
+    let pair = next
         .not_separated
         .iter()
-        .find(|untold| untold.rival.effect == "torque_offset");
-    let untold = untold.expect("it is said");
-    assert_eq!(untold.kind, Obstacle::SameTorque);
-    assert!(untold.instead.contains("brake"), "{}", untold.instead);
+        .find(|pair| pair.rival.effect == "torque_offset");
+    let pair = pair.expect("it is said");
+    assert_eq!(pair.kind, Obstacle::SameTorque);
+    assert!(pair.instead.contains("brake"), "{}", pair.instead);
 }
 
 #[test]
@@ -174,9 +175,10 @@ fn the_proposal_does_not_depend_on_the_threads() {
     assert_eq!(of(1), of(3));
 }
 
-/// Friction that sets in with a direction is an offset that sets in, in every motion: nothing is promised of the two.
+/// An onset of direction-dependent friction equals an onset of an offset in every motion, so that no motion is promised to
+/// distinguish them.
 #[test]
-fn no_motion_is_promised_to_tell_an_offset_that_sets_in() {
+fn no_motion_is_promised_for_an_offset_with_an_onset() {
     let later = |motion: &mut Motion, tau: &mut [f64]| {
         support::baseline_friction(motion, tau);
         if motion.clock >= 1006.0 {
@@ -193,16 +195,16 @@ fn no_motion_is_promised_to_tell_an_offset_that_sets_in() {
         support::sentences(&diagnosis)
     );
     assert!(!next.separates.iter().any(|pair| is_it(&pair.finding, &pair.rival)));
-    let untold = next.not_separated.iter().find(|pair| is_it(&pair.finding, &pair.rival));
-    let untold = untold.expect("it is said");
-    assert_eq!((untold.kind, untold.best), (Obstacle::SameTorque, 0.0));
-    // And of nothing else that is told already.
+    let pair = next.not_separated.iter().find(|pair| is_it(&pair.finding, &pair.rival));
+    let pair = pair.expect("it is said");
+    assert_eq!((pair.kind, pair.best), (Obstacle::SameTorque, 0.0));
+    // No pair that is already distinguished is listed.
     for pair in &next.separates {
         assert!(pair.before < pair.needed, "{pair:?}");
     }
 }
 
-/// A torque limit that was found bounds the motion, and is no part of what the motion is predicted to need.
+/// A torque limit that was found bounds the motion, and is not a part of the predicted torque.
 #[test]
 fn a_motion_stays_within_a_torque_limit_that_was_found() {
     let (_, unlimited) = proposed(&friction);

@@ -1,4 +1,4 @@
-//! Effects that set in halfway, with their onset.
+//! Effects with an onset within the recordings.
 
 mod support;
 
@@ -6,9 +6,9 @@ use arm::Vector3;
 use diagnosis::{Options, Wanted};
 use support::{ELBOW, Motion, baseline_friction, diagnosed, diagnosed_with, sentences, trio};
 
-/// What sets in halfway is named with its onset, whatever it is.
+/// Effects that begin within the recordings are named with their onset.
 #[test]
-fn what_sets_in_has_its_onset() {
+fn an_effect_with_an_onset_is_named_with_it() {
     let name = trio().joints()[ELBOW].name.clone();
     let onset = 1006.0;
     let offset = |_: &Motion| 1.5;
@@ -16,29 +16,29 @@ fn what_sets_in_has_its_onset() {
     type Torque<'a> = &'a dyn Fn(&Motion) -> f64;
     let effects: [(&str, Torque<'_>); 2] = [("torque_offset", &offset), ("spring", &spring)];
     for (effect, torque) in effects {
-        let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+        let injected = |motion: &mut Motion, tau: &mut [f64]| {
             baseline_friction(motion, tau);
             if motion.clock >= onset {
                 tau[ELBOW] += torque(motion);
             }
         };
-        let diagnosis = diagnosed(&trio(), &trio(), &concealed, Vec::new());
+        let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
         let finding = diagnosis.report.findings.iter().find(|f| f.effect == effect);
         let left = &diagnosis.report.unexplained;
         let finding = finding.unwrap_or_else(|| panic!("{effect}: {:?} {left:?}", sentences(&diagnosis)));
         assert_eq!(finding.joint.as_deref(), Some(name.as_str()));
         let found = &finding.parameters["onset"];
         assert!((found.value - onset).abs() < 0.1, "{effect}: {found:?}");
-        // What the recordings say of the time, not a part of the clock.
+        // The interval is that of the recordings, and not a part of the absolute time.
         let [low, high] = found.ci95;
         assert!(low <= onset && onset <= high && high - low < 1.0, "{effect}: {found:?}");
         assert!(finding.sentence.contains("from 1006 s on"), "{}", finding.sentence);
-        let again = diagnosed(&trio(), &trio(), &concealed, diagnosis.effects.clone());
+        let again = diagnosed(&trio(), &trio(), &injected, diagnosis.effects.clone());
         assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
     }
 }
 
-/// A payload picked up halfway is one payload, not what it does to each joint.
+/// A payload that is picked up within the recordings is named as one payload, and not as effects on each joint.
 #[test]
 fn a_payload_picked_up_has_its_onset() {
     let body = arm::Inertia {
@@ -47,7 +47,7 @@ fn a_payload_picked_up_has_its_onset() {
         tensor: arm::Matrix3::identity() * 2e-3,
     };
     let (empty, loaded) = (trio(), trio().with_payload(&body));
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         if motion.clock >= 1006.0 {
             loaded.inverse_dynamics(
                 &mut arm::Workspace::new(&loaded),
@@ -59,7 +59,7 @@ fn a_payload_picked_up_has_its_onset() {
         }
         baseline_friction(motion, tau);
     };
-    let diagnosis = diagnosed(&empty, &empty, &concealed, Vec::new());
+    let diagnosis = diagnosed(&empty, &empty, &injected, Vec::new());
     let plain = ["viscous_friction", "coulomb_friction"];
     let special = diagnosis.report.findings.iter().filter(|f| !plain.contains(&f.effect));
     let special: Vec<_> = special.collect();
@@ -68,14 +68,14 @@ fn a_payload_picked_up_has_its_onset() {
     let parameters = &special[0].parameters;
     assert!((parameters["mass"].value - 1.2).abs() < 0.03, "{parameters:?}");
     assert!((parameters["onset"].value - 1006.0).abs() < 0.1, "{parameters:?}");
-    let again = diagnosed(&empty, &empty, &concealed, diagnosis.effects.clone());
+    let again = diagnosed(&empty, &empty, &injected, diagnosis.effects.clone());
     assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
 }
 
-/// An effect that is wanted as one that sets in halfway is fitted so, and not as always acting.
+/// An effect that is requested with an onset is fitted with an onset.
 #[test]
-fn what_is_wanted_from_an_onset_on_is_fitted_so() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+fn an_effect_requested_with_an_onset_is_fitted_with_it() {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         if motion.clock >= 1006.0 {
             tau[ELBOW] += 1.5;
         }
@@ -91,7 +91,7 @@ fn what_is_wanted_from_an_onset_on_is_fitted_so() {
             only: Some(vec![offset]),
             ..Options::default()
         };
-        let diagnosis = diagnosed_with(&trio(), &trio(), &concealed, &options).expect("it can be fitted");
+        let diagnosis = diagnosed_with(&trio(), &trio(), &injected, &options).expect("it can be fitted");
         let parameters = diagnosis.report.findings[0].parameters.clone();
         let onset = parameters.get("onset").map(|onset| onset.value);
         (onset, parameters["offset"].value)

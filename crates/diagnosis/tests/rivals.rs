@@ -1,4 +1,4 @@
-//! Effects against their nearest rivals: each is found where it is, and not named where the rival is.
+//! Effects and their nearest rivals: each is found if it is injected, and not named if the rival is injected.
 
 mod support;
 
@@ -6,18 +6,19 @@ use arm::{Matrix6xX, Workspace};
 use diagnosis::{Options, diagnose};
 use recording::RegularRecording;
 use support::{
-    Concealed, ELBOW, Motion, SHOULDER, TURN, baseline_friction, diagnosed, inputs, recorded, regular, sentences, trio,
+    ELBOW, Injected, Motion, SHOULDER, TURN, baseline_friction, diagnosed, inputs, recorded, regular, sentences, trio,
 };
 
-/// What was found beside baseline friction of the expected sizes: effects and joints.
+/// The findings beside baseline friction of the expected sizes: effects and joints.
 fn names(diagnosis: &diagnosis::Diagnosis) -> Vec<(&str, &str)> {
     let place = |(effect, joint): (_, Option<_>)| (effect, joint.unwrap_or("the whole arm"));
     support::named(diagnosis).into_iter().map(place).collect()
 }
 
-/// What is found of `concealed` must be these names, and nothing may stay unexplained; the diagnosis.
-fn check(concealed: Concealed<'_>, expected: &[(&str, &str)]) -> diagnosis::Diagnosis {
-    let diagnosis = diagnosed(&trio(), &trio(), concealed, Vec::new());
+/// Checks that the findings of the diagnosis of `injected` are `expected` and nothing is unexplained; returns the
+/// diagnosis.
+fn check(injected: Injected<'_>, expected: &[(&str, &str)]) -> diagnosis::Diagnosis {
+    let diagnosis = diagnosed(&trio(), &trio(), injected, Vec::new());
     let unexplained = &diagnosis.report.unexplained;
     assert_eq!(names(&diagnosis), expected, "{:?}", sentences(&diagnosis));
     assert!(unexplained.is_empty(), "{unexplained:#?}");
@@ -40,11 +41,11 @@ fn is_sized(diagnosis: &diagnosis::Diagnosis, effect: &str, truth: &[(&str, f64)
 /// A counterbalance of the shoulder, which carries half of its weight.
 #[test]
 fn gravity_compensator() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         tau[SHOULDER] += 14.0 * (motion.q[SHOULDER] + 1.5).sin();
     };
-    let diagnosis = check(&concealed, &[("gravity_compensator", "shoulder")]);
+    let diagnosis = check(&injected, &[("gravity_compensator", "shoulder")]);
     is_sized(
         &diagnosis,
         "gravity_compensator",
@@ -53,20 +54,20 @@ fn gravity_compensator() {
     );
 }
 
-/// A straight spring that pulls the same way stays a spring.
+/// A linear spring that carries a part of the weight is named as a spring.
 #[test]
-fn a_spring_against_the_weight_is_no_gravity_compensator() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+fn a_spring_against_the_weight_is_not_a_gravity_compensator() {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         tau[SHOULDER] += 9.0 * (motion.q[SHOULDER] + 1.5);
     };
-    let diagnosis = check(&concealed, &[("spring", "shoulder")]);
+    let diagnosis = check(&injected, &[("spring", "shoulder")]);
     is_sized(&diagnosis, "spring", &[("stiffness", 9.0)], 0.06);
 }
 
-/// A body at the tool is weight, too, and is none of the shoulder's alone.
+/// A body at the tool is also a weight, but not one of the shoulder alone.
 #[test]
-fn a_payload_is_no_gravity_compensator() {
+fn a_payload_is_not_a_gravity_compensator() {
     let body = arm::Inertia {
         mass: 1.0,
         com: arm::Vector3::new(0.05, 0.0, 0.02),
@@ -89,11 +90,11 @@ fn a_payload_is_no_gravity_compensator() {
 }
 
 /// Recordings that follow each other closely, as a drive that warms up needs: 16 s of every 20.
-fn in_a_row(concealed: impl Fn(f64, &mut Motion, &mut [f64])) -> diagnosis::Diagnosis {
+fn in_a_row(injected: impl Fn(f64, &mut Motion, &mut [f64])) -> diagnosis::Diagnosis {
     let arm = trio();
     let one = |variant: usize| -> RegularRecording {
         let begins = 20.0 * variant as f64;
-        let at = |motion: &mut Motion, tau: &mut [f64]| concealed(begins + motion.time, motion, tau);
+        let at = |motion: &mut Motion, tau: &mut [f64]| injected(begins + motion.time, motion, tau);
         let mut recording = recorded(&arm, variant, 16.0, &at);
         for time in &mut recording.time {
             *time -= support::start(variant) - begins;
@@ -116,7 +117,7 @@ fn thermal_drift() {
         "{:?}",
         sentences(&diagnosis)
     );
-    // With the baseline 0.6 N m beneath.
+    // The level contains the baseline of 0.6 N m.
     is_sized(
         &diagnosis,
         "thermal_drift",
@@ -125,9 +126,9 @@ fn thermal_drift() {
     );
 }
 
-/// Dry friction that is as large when warm is no warming of a drive.
+/// Dry friction that does not change with time is not a thermal drift.
 #[test]
-fn dry_friction_that_stays_is_no_thermal_drift() {
+fn constant_dry_friction_is_not_a_thermal_drift() {
     let diagnosis = in_a_row(|_, motion, tau| {
         baseline_friction(motion, tau);
         tau[SHOULDER] += 3.0 * motion.qd[SHOULDER].signum();
@@ -135,8 +136,8 @@ fn dry_friction_that_stays_is_no_thermal_drift() {
     assert!(names(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
 }
 
-/// What is recorded is commanded. Where the drive gives no more than −`limit`, a position loop asks for far more than the motion
-/// needs.
+/// The commanded torque is recorded. While the drive is limited to −`limit`, a position loop commands far more than the
+/// motion needs.
 fn wind_up(tau: &mut f64, limit: f64) {
     let missing = *tau + limit;
     if missing < 0.0 {
@@ -146,64 +147,65 @@ fn wind_up(tau: &mut f64, limit: f64) {
 
 #[test]
 fn torque_saturation() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         wind_up(&mut tau[SHOULDER], 30.0);
     };
-    let diagnosis = check(&concealed, &[("torque_saturation", "shoulder")]);
+    let diagnosis = check(&injected, &[("torque_saturation", "shoulder")]);
     is_sized(&diagnosis, "torque_saturation", &[("limit", 30.0)], 0.05);
 }
 
-/// The limit is reached for less than a second, and hardly at another time, so that neither the held-out recording nor every other
-/// piece of two seconds tests it.
+/// The limit is reached for less than a second, so that neither the held-out recording nor every other piece of two seconds
+/// tests it.
 #[test]
 fn a_torque_limit_that_is_hardly_reached() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         let begins = [10.0, 1006.0].iter();
         if begins.clone().any(|from| (0.0..2.0).contains(&(motion.clock - from))) {
             wind_up(&mut tau[SHOULDER], 32.0);
         }
     };
-    let diagnosis = check(&concealed, &[("torque_saturation", "shoulder")]);
+    let diagnosis = check(&injected, &[("torque_saturation", "shoulder")]);
     is_sized(&diagnosis, "torque_saturation", &[("limit", 32.0)], 0.02);
 }
 
-/// A constant in the torque is no friction that depends on the direction, unless it is large beside the friction.
+/// A constant torque is named as friction that depends on the direction only if it is large in comparison with the
+/// friction.
 #[test]
-fn a_small_torque_offset_is_no_asymmetric_friction() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+fn a_small_torque_offset_is_not_asymmetric_friction() {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         tau[TURN] += 3.0 * motion.qd[TURN].signum() + 0.3;
     };
-    check(&concealed, &[("torque_offset", "turn")]);
+    check(&injected, &[("torque_offset", "turn")]);
 }
 
-/// A torque that is reported too large is so at all sizes: no limit.
+/// A torque scale acts at all sizes of the torque, and a limit does not.
 #[test]
-fn a_scale_is_no_torque_saturation() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+fn a_scale_is_not_a_torque_saturation() {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         tau[SHOULDER] *= 1.3;
     };
-    check(&concealed, &[("torque_scale", "shoulder")]);
+    check(&injected, &[("torque_scale", "shoulder")]);
 }
 
 /// A spring between drive and link gives way without a gap. (A gap needs a simulated drive: `tests/cases/backlash` has one.)
 #[test]
-fn a_spring_in_the_drive_is_no_backlash() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+fn a_spring_in_the_drive_is_not_backlash() {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         motion.q[ELBOW] += tau[ELBOW] / 250.0;
         baseline_friction(motion, tau);
     };
-    check(&concealed, &[("joint_elasticity", "elbow")]);
+    check(&injected, &[("joint_elasticity", "elbow")]);
 }
 
 /// From 6 s to 7.5 s in the first recording, a force of 5, 2 and 8 N on the tool.
 #[test]
 fn external_contact() {
     let arm = trio();
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         if (6.0..7.5).contains(&motion.clock) {
             let mut jacobian = Matrix6xX::zeros(3);
             arm.jacobian(&mut Workspace::new(&arm), &motion.q, &arm.tool_frame(), &mut jacobian);
@@ -214,7 +216,7 @@ fn external_contact() {
         }
         baseline_friction(motion, tau);
     };
-    let diagnosis = check(&concealed, &[("external_contact", "the whole arm")]);
+    let diagnosis = check(&injected, &[("external_contact", "the whole arm")]);
     is_sized(
         &diagnosis,
         "external_contact",
@@ -223,20 +225,20 @@ fn external_contact() {
     );
 }
 
-/// A constant that sets in on one joint is no force on the tool, which all joints would feel.
+/// A constant with an onset on one joint is not a force on the tool, which would act on all joints.
 #[test]
-fn a_torque_offset_that_sets_in_is_no_external_contact() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+fn a_torque_offset_with_an_onset_is_not_an_external_contact() {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         if motion.clock >= 1006.0 {
             tau[ELBOW] += 1.5;
         }
     };
-    check(&concealed, &[("torque_offset", "elbow")]);
+    check(&injected, &[("torque_offset", "elbow")]);
 }
 
-/// In motion, a constant beside dry friction is dry friction that differs by direction: whichever is named, the other stands beside
-/// it, however much it explains.
+/// In motion, a constant beside dry friction equals dry friction that differs by direction: whichever is named, the other
+/// is listed as an alternative, even if the finding explains much.
 #[test]
 fn a_large_constant_beside_friction_has_its_alternative() {
     let diagnosis = diagnosed(
@@ -261,9 +263,9 @@ fn a_large_constant_beside_friction_has_its_alternative() {
     );
 }
 
-/// Every drive has a little more friction in one direction; that is named from 0.7 % of the torque on.
+/// Every drive has slightly more friction in one direction; it is named from 0.7 % of the torque on.
 #[test]
-fn a_small_difference_of_the_directions_is_friction() {
+fn a_small_difference_between_directions_is_friction() {
     for (difference, is_named) in [(0.004, false), (0.05, true)] {
         let spread = 3.0;
         let diagnosis = diagnosed(

@@ -1,21 +1,21 @@
-//! A mismatch that nothing names is still said to be somewhere.
+//! A mismatch without findings is still located.
 
 mod support;
 
 use diagnosis::Verdict;
 use support::{ELBOW, Motion, SHOULDER, TURN, diagnosed, trio};
 
-/// A small torque in a part of the elbow's range that depends on three joints at once, which no regressor predicts: the list is
-/// not empty beside the verdict that the mismatch is unexplained.
+/// A small torque in a part of the elbow's range depends on three joints at once, and no regressor predicts it. The list of
+/// unexplained residuals is not empty if the verdict is unexplained.
 #[test]
-fn what_nothing_predicts_has_its_joint_its_place_and_an_experiment() {
-    let concealed = |motion: &mut Motion, tau: &mut [f64]| {
+fn an_unpredictable_residual_has_its_joint_its_place_and_an_experiment() {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
         let phase = 5.0 * motion.qd[TURN] * motion.q[SHOULDER] + 4.0 * motion.q[ELBOW] * motion.qd[SHOULDER];
         if motion.q[ELBOW] > 1.0 {
             tau[ELBOW] += 0.12 * phase.sin();
         }
     };
-    let report = diagnosed(&trio(), &trio(), &concealed, Vec::new()).report;
+    let report = diagnosed(&trio(), &trio(), &injected, Vec::new()).report;
     assert_eq!(report.verdict, Verdict::Unexplained, "{:?}", report.findings);
     let [open] = report.unexplained.as_slice() else {
         panic!("{:?}", report.unexplained);

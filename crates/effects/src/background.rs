@@ -1,4 +1,5 @@
-//! Laws of the background: columns under a prior in every fit, for errors that every model has. They are no effects.
+//! Laws of the background: columns under a prior in every fit, for errors that every model has. They are not effects and
+//! are not reported.
 
 use crate::signals::Signals;
 use crate::term::{Law, Term};

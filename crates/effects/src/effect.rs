@@ -50,8 +50,8 @@ impl Value {
 
 /// One effect with its parameters in SI units at the joint; a joint is named as in the URDF.
 ///
-/// For a prismatic joint read N for N m and m for rad. Its torque is what the effect adds to the torque that the motion
-/// needs (measured less rigid).
+/// For a prismatic joint read N for N m and m for rad. The torque of an effect is what it adds to the measured torque
+/// beyond the torque of the rigid model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Effect {
     kind: Kind,
@@ -63,7 +63,8 @@ pub struct Effect {
 }
 
 impl Effect {
-    /// An effect of a kind, without a joint. A parameter that has no default and is not set is NaN, which every arm refuses.
+    /// An effect of a kind, without a joint. A parameter that has no default and is not set is NaN, which
+    /// [`check`](crate::check) refuses.
     pub fn of(kind: &'static dyn EffectKind) -> Self {
         Self::of_kind(Kind::of(kind))
     }

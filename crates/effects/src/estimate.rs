@@ -4,15 +4,15 @@ use arm::{Arm, Joint};
 
 use crate::term::{Law, Size, Term};
 
-/// The part of an interval that no resampling shows.
+/// The systematic error of a parameter, which resampling of the recordings does not show and which widens its interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Systematic {
-    /// The usual part: filtering, and a form that is not exact.
+    /// The usual error, from filtering and from a form that is not exact.
     Usual,
-    /// The larger part for a parameter that depends on a form that recordings hardly show: the ends of a gap, friction near
+    /// A larger error, for a parameter that depends on a form that recordings hardly show: the ends of a gap, friction near
     /// standstill.
     OfForm,
-    /// What is in proportion to the arm's links, too, of which the URDF may be wrong.
+    /// The usual error and that of the links' inertias in the URDF, for a parameter that is proportional to them.
     OfArm,
 }
 
@@ -33,8 +33,8 @@ pub trait Estimate {
     /// The index in a draw of the coefficient of the candidate's k-th column.
     fn place(&self, k: usize) -> Option<usize>;
 
-    /// The index in a draw of the coefficient of a law's column, without onset, on the candidate's joint, of whatever effect it is;
-    /// `None` if the fit has no such column.
+    /// The index in a draw of the coefficient of a law's column, without onset, on the candidate's joint. The column may
+    /// belong to another effect. `None` if the fit has no such column.
     fn on_joint(&self, law: &'static Law) -> Option<usize>;
 
     /// The index in a draw of the relative correction of a size.
@@ -67,11 +67,13 @@ impl dyn Estimate + '_ {
         self.arm_joint().name.clone()
     }
 
-    /// The part of the Coulomb level that the candidate states: none of it if an effect with one of these laws is on its joint.
+    /// The factor of the Coulomb level in the candidate's parameters: zero if an effect with one of `laws` on its joint
+    /// states the level, one otherwise.
     ///
-    /// Dry frictions that act together on a joint share the column of its Coulomb level, and their torques add up, so that one of
-    /// them states the level: warming friction, which is relative to it, then asymmetric, load-dependent and Stribeck friction. A
-    /// friction that sets in later has a column of its own.
+    /// Dry frictions that act together on a joint share the column of its Coulomb level, and their torques add up.
+    /// Therefore only one of them states the level. The first of these that is present does: warming friction (which is
+    /// relative to the level), asymmetric, load-dependent, Stribeck friction. A friction that sets in later has a column of
+    /// its own.
     pub fn level_beside(&self, laws: &[&'static Law]) -> f64 {
         let is_there = |law: &&'static Law| self.on_joint(law).is_some();
         let is_stated = self.terms().iter().all(|term| term.onset().is_none()) && laws.iter().any(is_there);

@@ -39,7 +39,8 @@ pub trait Fitted {
     fn arm(&self) -> &Arm;
 }
 
-/// The range of a coefficient that should be one, with the error that linear columns leave.
+/// The accepted range of a coefficient that is one if the size of its effect is exact. The linearisation of the columns
+/// causes a deviation.
 pub const UNIT: std::ops::RangeInclusive<f64> = 0.7..=1.4;
 /// The range of a coefficient that should be one, before the size of its effect is refined.
 const COARSE_UNIT: std::ops::RangeInclusive<f64> = 0.4..=2.5;

@@ -3,7 +3,7 @@
 //! A file holds all that the program knows of an effect, behind the trait [`EffectKind`]: its [`Spec`] (name, parameters,
 //! relations, words), the forms to try, the law of its columns, what physics allows, how its parameters are read from an
 //! estimate, and how it is put into a [`Machine`]. The fit of a diagnosis and the feed-forward of a corrected model come
-//! from the same file. [`spec`] gives what is known of a name.
+//! from the same file. [`spec`](spec()) gives what is known of a name.
 
 pub mod background;
 mod compliance;
@@ -34,7 +34,7 @@ pub use kinds::{Kind, NAMES, spec};
 pub use machine::{Circumstance, Contact, Dry, Machine, Place, Scaled, Smooth, Sprung, State, sign};
 pub use quantity::Quantity;
 pub use signals::{Rigid, Scales, Signals};
-pub use spec::{Against, Experiment, InUrdf, ONSET, Parameter, Range, Scope, Shape, Spec, Unseen};
+pub use spec::{Against, Detectability, Experiment, InUrdf, ONSET, Parameter, Range, Scope, Shape, Spec};
 pub use term::{Carried, Column, Cone, Law, OtherForm, Size, Term};
 
 /// Friction in the drive and its gear.

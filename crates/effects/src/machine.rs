@@ -268,7 +268,7 @@ impl Machine {
     }
 }
 
-/// The index of the joint `name`; the error for no name gives an empty name.
+/// The index of the joint `name`. Without a name, the error contains an empty one.
 fn joint_of(arm: &Arm, effect: &Effect, name: Option<&str>) -> Result<usize, EffectError> {
     let found = arm.joints().iter().position(|joint| Some(joint.name.as_str()) == name);
     found.ok_or_else(|| EffectError::UnknownJoint {

@@ -28,7 +28,8 @@ impl Scales {
     }
 }
 
-/// The rigid model along the motion, on its ticks; the first index is the joint. A list that is not needed may be empty.
+/// The rigid model along the motion. The first index is the joint, the last one the tick. A list that is not needed may be
+/// empty.
 #[derive(Clone, Copy, Debug)]
 pub struct Rigid<'a> {
     /// τ (N m or N).
@@ -39,17 +40,17 @@ pub struct Rigid<'a> {
     pub links: &'a [Vec<Vec<f64>>],
     /// The ten columns of the torque regressor of a body on the tool, in the tool's frame: `[joint][parameter]`.
     pub payload: &'a [Vec<Vec<f64>>],
-    /// ∂τ/∂q: `[joint][by]`.
+    /// ∂τ/∂q: `[joint of τ][joint of q]`.
     pub by_position: &'a [Vec<Vec<f64>>],
-    /// ∂τ/∂q̇: `[joint][by]`.
+    /// ∂τ/∂q̇: `[joint of τ][joint of q̇]`.
     pub by_velocity: &'a [Vec<Vec<f64>>],
-    /// The mass matrix.
+    /// The mass matrix: `[row][column]`.
     pub mass: &'a [Vec<Vec<f64>>],
-    /// ∂τ/∂(turn of the base about its x, y axis).
+    /// The derivative of τ with respect to a turn of the base (rad) about its x and y axis: `[joint][axis]`.
     pub tilt: &'a [[Vec<f64>; 2]],
-    /// The torque of a gravity of 1 m/s² along x, y, z of the base.
+    /// The torque of a gravity of 1 m/s² along x, y, z of the base: `[joint][axis]`.
     pub gravity: &'a [[Vec<f64>; 3]],
-    /// The torque of a unit force on the tool along x, y, z of the base.
+    /// The generalised force Jᵀ F of a force of 1 N on the tool along x, y, z of the base: `[joint][axis]`.
     pub force: &'a [[Vec<f64>; 3]],
 }
 

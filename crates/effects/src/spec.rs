@@ -166,7 +166,7 @@ impl Parameter {
 
 /// How the detectable size of an effect that was not found is determined. Sizes are of its first main parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unseen {
+pub enum Detectability {
     /// No detectable size is determined.
     Never,
     /// A torque limit, which is detectable below the largest torque.
@@ -194,7 +194,7 @@ pub enum Unseen {
     },
 }
 
-impl Unseen {
+impl Detectability {
     /// Proportional to a coefficient, with no further condition.
     pub const LINEAR: Self = Self::Linear {
         if_no_form: None,
@@ -258,8 +258,8 @@ pub struct Spec {
     pub is_simple: bool,
     /// Whether its form is certain, because it follows from rigid-body dynamics.
     pub is_certain_in_form: bool,
-    /// The evidence that it must bring beside the correction of all inertial parameters that is best without it (nats), where the
-    /// URDF is wrong everywhere; `None` if that is not asked.
+    /// The evidence that it must bring beside the correction of all inertial parameters that is best without it (nats),
+    /// where the URDF is wrong everywhere; `None` for an effect without this test.
     pub least_beside_inertials: Option<f64>,
     /// Whether it may be present in one recording only.
     pub is_passing: bool,
@@ -288,9 +288,9 @@ pub struct Spec {
     /// What an unattributed residual depends on, for an unmodelled form.
     pub depends_on: &'static str,
     /// How its detectable size is determined where it was not found.
-    pub unseen: Unseen,
+    pub detectability: Detectability,
     /// Its place in the list of effects that are not testable.
-    pub unseen_turn: u8,
+    pub not_testable_turn: u8,
     /// The experiment to make where no motion distinguishes it from another effect.
     pub experiment: Option<Experiment>,
     /// Experiments that distinguish it from particular other effects; they precede [`Self::experiment`].
@@ -334,8 +334,8 @@ impl Spec {
         in_urdf: InUrdf::Nothing,
         against: Against::Predicted,
         depends_on: "",
-        unseen: Unseen::Never,
-        unseen_turn: u8::MAX,
+        detectability: Detectability::Never,
+        not_testable_turn: u8::MAX,
         experiment: None,
         experiments_against: &[],
     };

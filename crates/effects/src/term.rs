@@ -35,7 +35,7 @@ pub enum Cone {
     Middle,
 }
 
-/// An arm with what a fit found in it, as far as columns depend on that nonlinearly.
+/// The arm about which columns are linearised: the model with those results of a fit on which columns depend nonlinearly.
 pub struct Carried {
     /// The arm.
     pub arm: Arm,
@@ -90,7 +90,7 @@ pub struct Law {
 }
 
 impl Law {
-    /// A law with nothing but a column: the defaults for the other fields.
+    /// A law that has only a column: the defaults for the other fields.
     pub const PLAIN: Self = Self {
         name: "",
         column: |_, _, _| None,

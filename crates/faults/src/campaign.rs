@@ -8,9 +8,8 @@ use crate::fault::{Fault, families, outside};
 use crate::robot::Robot;
 use crate::urdf_error::SIGMAS;
 
-/// Cases drawn from a seed. A third have only baseline friction, a tenth an effect outside the catalogue, and the
-/// others one to three effects of the catalogue, each family about equally often. Half of the cases are easy, half are
-/// hard.
+/// Cases drawn from a seed. A third have only baseline friction, a tenth an effect outside the catalogue, and the others
+/// one to three effects of the catalogue, each family about equally often. Half of the cases are easy, and half are hard.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Campaign {
     /// The seed of all random choices.
@@ -181,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn cases_are_shared_out_as_promised() {
+    fn shares_of_kinds_and_families_are_as_documented() {
         for lifelike in [false, true] {
             let plans = campaign(7, 300, lifelike).plans();
             let count = |holds: &dyn Fn(&CasePlan) -> bool| plans.iter().filter(|plan| holds(plan)).count();

@@ -46,7 +46,7 @@ pub fn write_case(concealment: &Concealment, folder: &Path, truths: &Path) -> Re
         serde_json::to_writer_pretty(&mut *file, &concealment.truth)?;
         file.write_all(b"\n")
     })?;
-    let moved = set_ordinary_permissions(partial.path()).and_then(|()| {
+    let moved = set_usual_permissions(partial.path()).and_then(|()| {
         if case.exists() {
             std::fs::remove_dir(&case)?;
         }
@@ -60,14 +60,14 @@ pub fn write_case(concealment: &Concealment, folder: &Path, truths: &Path) -> Re
     Ok(case)
 }
 
-/// A temporary folder is private to its owner; the finished one is an ordinary folder.
+/// A temporary folder is private to its owner; the finished one has the usual permissions.
 #[cfg(unix)]
-fn set_ordinary_permissions(folder: &Path) -> std::io::Result<()> {
+fn set_usual_permissions(folder: &Path) -> std::io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
     std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o755))
 }
 
 #[cfg(not(unix))]
-fn set_ordinary_permissions(_: &Path) -> std::io::Result<()> {
+fn set_usual_permissions(_: &Path) -> std::io::Result<()> {
     Ok(())
 }

@@ -151,7 +151,7 @@ mod tests {
     /// The machine follows its own inverse model with every fault: with forms that the catalogue does not have, with
     /// memory, and with a spring.
     #[test]
-    fn the_inverse_is_the_machines_own() {
+    fn the_machine_follows_its_own_inverse() {
         let robot = seven_axis();
         let on = |effect: &str| Injected::new(effect, Some("axis4"));
         let level = |effect: &str| on(effect).with("amplitude", 4.0);
@@ -177,7 +177,7 @@ mod tests {
     /// The drives' inertias are those of the robot, whether the truth lists them or not; a truth of another robot is
     /// refused.
     #[test]
-    fn what_the_robot_has_is_not_concealed_twice() {
+    fn rotor_inertias_of_the_robot_are_not_injected_twice() {
         let robot = puma();
         let joints = robot.arm().joints().iter().zip(robot.rotor_inertias());
         let drives: Vec<Injected> = joints

@@ -49,7 +49,7 @@ pub struct Settings {
 }
 
 impl Default for Settings {
-    /// Three recordings at 250 Hz with a clean clock, and nothing but the effects.
+    /// Three recordings at 250 Hz with a clean clock, and only the given effects.
     fn default() -> Self {
         Self {
             seed: 0,

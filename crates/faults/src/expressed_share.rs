@@ -92,7 +92,7 @@ mod tests {
 
     /// Low frequencies pass without delay, high ones are removed.
     #[test]
-    fn what_is_slow_passes() {
+    fn low_frequencies_pass() {
         let wave = |hertz: f64| -> Vec<f64> {
             (0..4000)
                 .map(|k| (std::f64::consts::TAU * hertz * f64::from(k) * 1e-3).sin())

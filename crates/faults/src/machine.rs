@@ -27,7 +27,7 @@ use parts::Parts;
 
 /// The period of the position loop, and the step of the plant (s).
 pub(crate) const TICK: f64 = 1e-3;
-/// rapier's plain step, which the diagnosis' own simulation does not use.
+/// The plain step of rapier. The simulation in the diagnosis uses another order, so that the two are independent.
 const ORDER: usize = 1;
 /// The largest allowed distance of a joint from its reference (rad or m).
 pub(crate) const LARGEST_ERROR: f64 = 0.35;

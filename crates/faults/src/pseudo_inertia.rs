@@ -93,7 +93,7 @@ mod tests {
 
     /// Mass, centre of mass and moments change independently of each other.
     #[test]
-    fn a_body_is_moved_as_asked() {
+    fn a_body_is_moved_as_requested() {
         let moved = moved(&body(), 1.2, [0.01, 0.0, -0.02], [1.0, 1.0, 1.3]);
         assert!((moved.mass - 2.4).abs() < 1e-12);
         assert!((moved.com - body().com - Vector3::new(0.01, 0.0, -0.02)).norm() < 1e-12);

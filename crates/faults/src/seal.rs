@@ -1,4 +1,4 @@
-//! The seal: hashes of everything that was fixed before the first diagnosis, which anyone can compute again.
+//! The seal: hashes of all files that are fixed before the first diagnosis, which anyone can verify.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -21,8 +21,8 @@ pub struct Seal {
     pub source: String,
     /// The cases, in their order.
     pub cases: Vec<SealedCase>,
-    /// The SHA-256 of all lines `sha256  name` of the program, the recordings, the URDFs and the truths: the one
-    /// number to write down.
+    /// The SHA-256 of all lines `sha256  name` of the program, the recordings, the URDFs and the truths: the one hash to
+    /// write down.
     pub whole: String,
 }
 
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn what_changes_breaks_the_seal() {
+    fn a_change_breaks_the_seal() {
         let folder = tempfile::tempdir().expect("a folder");
         std::fs::write(folder.path().join("a.csv"), "1\n").expect("it writes");
         let case = SealedCase {

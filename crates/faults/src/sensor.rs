@@ -99,13 +99,13 @@ impl Sensors {
     }
 }
 
-/// Rounds to so many decimals, as in a file.
+/// Rounds to this number of decimals, as in a file.
 fn rounded(value: f64, decimals: i32) -> f64 {
     let scale = 10_f64.powi(decimals);
     (value * scale).round() / scale
 }
 
-/// Rounds to so many significant digits.
+/// Rounds to this number of significant digits.
 fn significant(value: f64, digits: i32) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
@@ -131,7 +131,7 @@ mod tests {
 
     /// Rows, stamps and noise follow the settings; the positions are those of the run.
     #[test]
-    fn a_logger_does_what_it_is_told() {
+    fn a_logger_follows_its_settings() {
         let robot = seven_axis();
         let n = robot.arm().dof();
         let reference = excitation(&robot, 30.0, &mut ChaCha8Rng::seed_from_u64(4));

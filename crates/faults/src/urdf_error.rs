@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tool_is_drawn_where_a_payload_would_be() {
+    fn a_tool_is_drawn_in_place_of_a_payload() {
         let robot = seven_axis();
         let tool = Inertia {
             mass: 0.7,

@@ -1,4 +1,4 @@
-//! A diagnosis in a thread of its own, while this one listens to it and to Ctrl-C.
+//! A diagnosis in its own thread, while the calling thread receives its messages and checks for Ctrl-C.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -19,7 +19,7 @@ use study::{Diagnosed, Known, Listener, Request, Step, mjcf_file, urdf_file};
 
 use crate::error::{JointwiseError, in_python, raised};
 
-/// How often Ctrl-C is looked for.
+/// The interval between two checks for Ctrl-C.
 const LISTENING: Duration = Duration::from_millis(50);
 
 /// A column of a recording: numbers, whole numbers, or times (ns since 1970).
@@ -59,42 +59,42 @@ fn all_given(recordings: Vec<GivenRecording<'_>>) -> PyResult<Vec<Given>> {
     recordings.into_iter().map(given).collect()
 }
 
-/// What the thread of the diagnosis tells.
-enum Told {
+/// A message of the thread of the diagnosis.
+enum Message {
     Doing(String),
     /// A note, and whether it is a warning.
     Note(String, bool),
 }
 
-/// The end of a diagnosis that nobody waits for any more.
+/// The panic payload that ends a diagnosis whose caller was interrupted.
 struct Abandoned;
 
-struct Ears {
-    told: Sender<Told>,
+struct Channel {
+    sender: Sender<Message>,
     is_abandoned: Arc<AtomicBool>,
 }
 
-impl Ears {
-    fn tell(&self, told: Told) {
-        if self.is_abandoned.load(Ordering::Relaxed) || self.told.send(told).is_err() {
-            // Unwinds to the end of the thread, without a message: nobody is there to read a result.
+impl Channel {
+    fn send(&self, message: Message) {
+        if self.is_abandoned.load(Ordering::Relaxed) || self.sender.send(message).is_err() {
+            // The caller was interrupted: this unwinds to the end of the thread without printing a message.
             std::panic::resume_unwind(Box::new(Abandoned));
         }
     }
 }
 
-impl Listener for Ears {
+impl Listener for Channel {
     fn doing(&self, step: Step<'_>) {
-        self.tell(Told::Doing(step.doing.to_owned()));
+        self.send(Message::Doing(step.doing.to_owned()));
     }
 
     fn note(&self, text: &str) {
-        self.tell(Told::Note(in_python(text), false));
+        self.send(Message::Note(in_python(text), false));
     }
 
     fn recordings(&self, notes: &Notes, _: &[&str]) {
         for note in notes.iter() {
-            self.tell(Told::Note(
+            self.send(Message::Note(
                 in_python(&format!("{}: {}", note.file, note.text)),
                 note.weight == "warning",
             ));
@@ -149,19 +149,19 @@ impl Outcome {
             robot, arm, effects, ..
         } = &self.study;
         let export = urdf_file::corrected_urdf(&robot.text, arm, effects).map_err(|error| raised(&error))?;
-        Ok((export.text, export.left))
+        Ok((export.text, export.omitted))
     }
 
     /// The corrected model as MJCF, and what it cannot hold.
     fn mjcf(&self) -> PyResult<(String, Vec<String>)> {
         self.searched()?;
         let export = mjcf_file::mjcf(&self.study.arm, &self.study.effects).map_err(|error| raised(&error))?;
-        Ok((export.text, export.left))
+        Ok((export.text, export.omitted))
     }
 }
 
 impl Outcome {
-    /// Whether there is a model: where units come first there is none.
+    /// Refuses a diagnosis without a corrected model, because units must be corrected first.
     fn searched(&self) -> PyResult<()> {
         if !self.study.diagnosis.report.doubts.is_empty() {
             let text = "there is no corrected model, because no effect was searched: see `doubts`, and correct the recordings' units, \
@@ -239,20 +239,20 @@ pub fn diagnose(
     };
     let (sender, receiver) = channel();
     let is_abandoned = Arc::new(AtomicBool::new(false));
-    let ears = Ears {
-        told: sender,
+    let channel = Channel {
+        sender,
         is_abandoned: Arc::clone(&is_abandoned),
     };
     let run = move || {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.context("starting threads")?.install(|| request.run(&ears))
+        pool.context("starting threads")?.install(|| request.run(&channel))
     };
     let worker = std::thread::Builder::new().name("jointwise".to_owned()).spawn(run)?;
     let notes = listen(py, receiver, progress.as_ref()).inspect_err(|_| is_abandoned.store(true, Ordering::Relaxed))?;
     match py.detach(|| worker.join()) {
         Ok(Ok(study)) => Ok((Some(Outcome { study }), None, notes)),
         Ok(Err(error)) => Ok((None, Some(raised(&error)), notes)),
-        // A bug, told by the panic's own message.
+        // A panic is a bug; its message is passed on.
         Err(panic) => std::panic::resume_unwind(panic),
     }
 }
@@ -261,18 +261,22 @@ pub fn diagnose(
 ///
 /// # Errors
 /// The exception of Ctrl-C, or of `progress`.
-fn listen(py: Python<'_>, mut receiver: Receiver<Told>, progress: Option<&Py<PyAny>>) -> PyResult<Vec<(String, bool)>> {
+fn listen(
+    py: Python<'_>,
+    mut receiver: Receiver<Message>,
+    progress: Option<&Py<PyAny>>,
+) -> PyResult<Vec<(String, bool)>> {
     let mut notes = Vec::new();
     loop {
         py.check_signals()?;
-        let (back, told) = py.detach(move || {
-            let told = receiver.recv_timeout(LISTENING);
-            (receiver, told)
+        let (back, message) = py.detach(move || {
+            let message = receiver.recv_timeout(LISTENING);
+            (receiver, message)
         });
         receiver = back;
-        match told {
-            Ok(Told::Note(text, is_warning)) => notes.push((text, is_warning)),
-            Ok(Told::Doing(what)) => {
+        match message {
+            Ok(Message::Note(text, is_warning)) => notes.push((text, is_warning)),
+            Ok(Message::Doing(what)) => {
                 if let Some(progress) = progress {
                     progress.call1(py, (what,))?;
                 }

@@ -44,18 +44,18 @@ impl Dynamics {
         self.arm.joints().iter().map(|joint| joint.name.as_str()).collect()
     }
 
-    /// What in the URDF is doubtful, and which joints were fixed.
+    /// Doubts about the URDF, and the joints that were fixed.
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.arm.warnings().iter().map(|warning| in_python(warning)).collect()
     }
 
-    /// Ten numbers a link: what the regressor multiplies.
+    /// The inertial parameters that the regressor multiplies: ten per link, link by link.
     fn inertial_parameters<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         flat(py, self.arm.inertial_parameters())
     }
 
-    /// Inverse dynamics.
+    /// The torque of a motion (inverse dynamics, N m or N): one row of joints per sample.
     fn torque<'py>(
         &self,
         py: Python<'py>,
@@ -73,7 +73,7 @@ impl Dynamics {
         Ok(flat(py, values))
     }
 
-    /// The torque that holds the arm at rest.
+    /// The torque that holds the arm at rest (N m or N): one row of joints per sample.
     fn gravity<'py>(&self, py: Python<'py>, q: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let arm = &self.arm;
         let [q] = rows(arm, [("q", &q)])?;
@@ -85,7 +85,7 @@ impl Dynamics {
         Ok(flat(py, values))
     }
 
-    /// Forward dynamics.
+    /// The acceleration under a torque (forward dynamics, rad/s² or m/s²): one row of joints per sample.
     fn forward<'py>(
         &self,
         py: Python<'py>,
@@ -111,7 +111,7 @@ impl Dynamics {
         Ok(flat(py, values))
     }
 
-    /// The joint-space mass matrix.
+    /// The joint-space mass matrix: joints × joints per sample.
     fn mass_matrix<'py>(&self, py: Python<'py>, q: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let arm = &self.arm;
         let dof = arm.dof();
@@ -120,14 +120,14 @@ impl Dynamics {
         let values = py.detach(|| {
             each_row(q.len(), dof * dof, scratch, |(workspace, matrix), k, row| {
                 arm.mass_matrix(workspace, q.row(k), matrix);
-                // It is symmetric: the order of its columns is that of its rows.
+                // The matrix is symmetric, so that column-major order equals row-major order.
                 row.copy_from_slice(matrix.as_slice());
             })
         });
         Ok(flat(py, values))
     }
 
-    /// The torque regressor.
+    /// The torque regressor: joints × (10 × links) per sample.
     fn regressor<'py>(
         &self,
         py: Python<'py>,

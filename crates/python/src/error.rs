@@ -1,4 +1,4 @@
-//! Errors as Python has them: the sentences of the command line, with the names of parameters in place of flags.
+//! Errors for Python: the sentences of the command line, with names of parameters in place of flags.
 
 use pyo3::PyErr;
 use pyo3::create_exception;
@@ -8,10 +8,10 @@ create_exception!(
     jointwise,
     JointwiseError,
     PyValueError,
-    "An input that cannot be used: where it is, what was found, and how to mend it."
+    "An input that cannot be used: where it is, what was found, and the remedy."
 );
 
-/// The flags that messages speak of, each with what takes its place; longer ones first.
+/// Flags of the command line in messages, each with its replacement; longer flags come first.
 const FLAGS: &[(&str, &str)] = &[
     ("--urdf-friction known", "urdf_friction=\"known\""),
     ("--urdf-accuracy", "urdf_accuracy"),
@@ -34,7 +34,7 @@ const FLAGS: &[(&str, &str)] = &[
     ("--tip", "tip"),
 ];
 
-/// `text` for someone who calls a function and gives no flags.
+/// `text` with the names of Python parameters in place of flags.
 pub fn in_python(text: &str) -> String {
     let mut words = String::new();
     let mut rest = text;
@@ -60,7 +60,7 @@ pub fn in_python(text: &str) -> String {
     words
 }
 
-/// The exception that says what `error` says.
+/// The exception with the text of `error`.
 pub fn raised(error: &anyhow::Error) -> PyErr {
     JointwiseError::new_err(in_python(&study::sentence(error)))
 }

@@ -1,4 +1,4 @@
-//! Learned torque models: the paper's, trained on samples of a motion.
+//! The learned torque model of Independent Joint Learning, trained on samples of a motion.
 
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -26,7 +26,7 @@ fn unknown(what: &str, found: &str, known: &[&str]) -> PyErr {
 
 #[pymethods]
 impl Learned {
-    /// Trains one regression per joint on the part of the torque that the arm leaves.
+    /// Trains one regression per joint on the residual of the rigid model.
     #[staticmethod]
     #[pyo3(signature = (dynamics, q, qd, qdd, tau, inputs, length_scales, starts, max_iterations))]
     #[expect(clippy::too_many_arguments, reason = "the Python class gives them by name")]
@@ -83,7 +83,7 @@ impl Learned {
             torque::Learned::on_top_of(&arm, inputs, &samples, &options)
         };
         let model = py.detach(train).map_err(|error| match error {
-            // The joint by its name.
+            // The error gives the joint's name instead of its number.
             TorqueError::Regression { joint, source } => {
                 JointwiseError::new_err(format!("{}: {source}", arm.joints()[joint - 1].name))
             }
@@ -92,7 +92,7 @@ impl Learned {
         Ok(Self { arm, model })
     }
 
-    /// The torques.
+    /// The predicted torques (N m or N): one row of joints per sample.
     fn predict<'py>(
         &self,
         py: Python<'py>,
@@ -115,7 +115,7 @@ impl Learned {
         Ok(flat(py, values))
     }
 
-    /// The variances of the learned part, without the noise.
+    /// The variances of the learned part, without the noise (squared torque): one row of joints per sample.
     fn variance<'py>(
         &self,
         py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Arrays with a row per sample, and what is computed row by row.
+//! Arrays with one row per sample, and computations row by row.
 
 use arm::{Arm, Workspace};
 use numpy::{PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
@@ -7,12 +7,12 @@ use rayon::prelude::*;
 
 use crate::error::JointwiseError;
 
-/// Rows that one thread computes in one go.
+/// The number of rows that a thread computes at a time.
 const BLOCK: usize = 256;
 
 /// A copy of an array of `n` rows, one column per joint.
 pub struct Rows {
-    /// Row by row.
+    /// The values, row by row.
     pub values: Vec<f64>,
     columns: usize,
 }
@@ -33,12 +33,12 @@ impl Rows {
         Ok(Self { values, columns })
     }
 
-    /// How many there are.
+    /// The number of rows.
     pub fn len(&self) -> usize {
         self.values.len() / self.columns
     }
 
-    /// One of them.
+    /// The values of one row.
     pub fn row(&self, row: usize) -> &[f64] {
         &self.values[row * self.columns..][..self.columns]
     }
@@ -66,7 +66,8 @@ pub fn rows<const N: usize>(arm: &Arm, given: [(&str, &PyReadonlyArray2<'_, f64>
         .map_err(|_| JointwiseError::new_err("arrays were lost on the way"))
 }
 
-/// `width` numbers for each of `count` rows, which `of` writes for a row. A row's numbers do not depend on the other rows.
+/// An array of `count` rows with `width` numbers each; `of` computes a row. A row's numbers do not depend on the other
+/// rows.
 pub fn each_row<W: Send>(
     count: usize,
     width: usize,

@@ -1,4 +1,4 @@
-//! Pages of made-up diagnoses, to be looked at: `cargo run -p report --example pages FOLDER`.
+//! Writes the pages of made-up diagnoses to a folder: `cargo run -p report --example pages FOLDER`.
 
 #[path = "../tests/pages/made_up/mod.rs"]
 mod made_up;

@@ -1,4 +1,4 @@
-//! The pieces that a report is made of, for the page and for Markdown.
+//! The blocks of a report, from which the page and the Markdown file are made.
 
 /// A piece of a report. Text may hold `code` between backticks.
 pub enum Block {
@@ -6,7 +6,7 @@ pub enum Block {
     Title(String),
     /// A heading.
     Heading(&'static str),
-    /// A heading under it.
+    /// A heading one level below [`Self::Heading`].
     Section(String),
     /// A paragraph.
     Text(String),
@@ -19,7 +19,7 @@ pub enum Block {
         /// The number of columns with words.
         words: usize,
     },
-    /// A drawing with its caption; only on the page.
+    /// A drawing with its caption. Only the page has it, not the Markdown file.
     Figure {
         /// SVG.
         svg: String,

@@ -12,7 +12,7 @@ const STYLE: &str = concat!(
     ".wide table { font-size: .8rem; } .wide th { max-width: 6.5rem; } .wide td, .wide th { padding-right: .45rem; }\n",
 );
 
-/// The page of `blocks`: its title, the line above them, and its last line.
+/// The page of `blocks`; `eyebrow` is the line above its first heading, `made` its last line.
 pub fn block_page(title: &str, eyebrow: &str, blocks: &[Block], made: &str) -> String {
     let body = html! {
         p.eyebrow { (inline(eyebrow)) }

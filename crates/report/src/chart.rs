@@ -53,13 +53,13 @@ impl Scale {
     }
 }
 
-/// An SVG under way: `width` × `height` in its own units.
+/// An SVG that is being written: `width` × `height` in units of its view box.
 pub struct Svg {
     text: String,
 }
 
 impl Svg {
-    /// An empty one; `label` is the text for readers who cannot see it.
+    /// An empty drawing; `label` describes it for screen readers.
     pub fn new(width: f64, height: f64, label: &str) -> Self {
         let mut text = format!("<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"");
         let _ = Escaper::new(&mut text).write_str(label);
@@ -67,7 +67,7 @@ impl Svg {
         Self { text }
     }
 
-    /// An empty one as wide as the page, of a fixed height: horizontal positions are percentages.
+    /// An empty drawing as wide as the page and of a fixed height, whose horizontal positions are percentages.
     pub fn stretched(height: f64, label: &str) -> Self {
         let mut text =
             format!("<svg class=\"stretched\" width=\"100%\" height=\"{height}\" role=\"img\" aria-label=\"");
@@ -138,7 +138,7 @@ impl Svg {
         self.text.push_str("\"/>");
     }
 
-    /// Points as dots of the class' stroke width.
+    /// Points as dots, as large as the stroke width of `class`.
     pub fn dots(&mut self, points: &[[f64; 2]], class: &str) {
         self.raw(format_args!("<path class=\"{class}\" d=\""));
         for [x, y] in points {
@@ -172,7 +172,8 @@ impl Svg {
     }
 }
 
-/// The parts of a series that lie together in time, thinned to the smallest and largest of each of `columns`.
+/// The uninterrupted parts of a series of (x, y), each thinned to the points with the smallest and the largest y in each of
+/// `columns` columns.
 pub fn thinned(rows: &[[f64; 2]], columns: usize) -> Vec<Vec<[f64; 2]>> {
     let mut steps: Vec<f64> = rows.windows(2).map(|pair| pair[1][0] - pair[0][0]).collect();
     let gap = quantile(&mut steps, 0.5) * 5.0;
@@ -204,7 +205,8 @@ pub fn thinned(rows: &[[f64; 2]], columns: usize) -> Vec<Vec<[f64; 2]>> {
     runs
 }
 
-/// At most `most` of the points, drawn evenly and not in step with any motion.
+/// At most `most` of the points, spread evenly, but at irregular distances, so that they do not keep step with a periodic
+/// motion.
 pub fn sampled<T: Copy>(points: &[T], most: usize) -> Vec<T> {
     if points.len() <= most {
         return points.to_vec();

@@ -45,7 +45,8 @@ fn blocks(report: &Report, arm: &Arm) -> Vec<Block> {
     blocks
 }
 
-/// A name as code, which Markdown might otherwise read as emphasis; it does not end its own code span.
+/// A name as a code span, because Markdown would read underscores as emphasis. Backticks in the name are replaced, because
+/// they would end the span.
 fn code(name: &str) -> String {
     format!("`{}`", name.replace('`', "'").replace('\n', " "))
 }

@@ -1,21 +1,21 @@
-//! What is wrong with the units, signs, order or zeros of recordings, and the column maps that mend it.
+//! Doubts about the units, signs, order or zeros of recordings, and the column maps that correct them.
 
 use diagnosis::{Doubt, Report};
 
 use crate::words;
 
 /// How a column map is used.
-pub const USE: &str = "A column map that mends it: save it as `map.toml`, and add `--map map.toml` to the command.";
+pub const USE: &str = "A column map that corrects it: save it as `map.toml`, and add `--map map.toml` to the command.";
 
-/// What is said of recordings with the same column map.
+/// The doubts about recordings that have the same column map.
 pub struct Group<'a> {
-    /// In sentences, one a doubt of the first recording.
+    /// One sentence for each doubt about the first recording.
     pub texts: Vec<String>,
-    /// The map (TOML), where one mends it.
+    /// The map (TOML), if one corrects them.
     pub map: Option<&'a str>,
 }
 
-/// The doubts of `report`; recordings with the same map are one group, which the first recording speaks for.
+/// The doubts of `report`. Recordings with the same map are one group, and the sentences name its first recording.
 pub fn groups(report: &Report) -> Vec<Group<'_>> {
     let mut groups: Vec<Vec<&Doubt>> = Vec::new();
     for doubt in &report.doubts {
@@ -29,7 +29,7 @@ pub fn groups(report: &Report) -> Vec<Group<'_>> {
     groups.into_iter().map(|doubts| group(&doubts, all)).collect()
 }
 
-/// The group of `doubts`, of which there is at least one, among `all` recordings.
+/// The group of `doubts` (at least one); `all` is the number of recordings.
 fn group<'a>(doubts: &[&'a Doubt], all: usize) -> Group<'a> {
     let first = &doubts[0].recording;
     let mut files: Vec<&str> = doubts.iter().map(|doubt| doubt.recording.as_str()).collect();

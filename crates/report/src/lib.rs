@@ -1,7 +1,7 @@
 //! The texts of a diagnosis and of a proof: blocks, charts, pages, Markdown, terminal. It returns strings and writes no files.
 //!
 //! A diagnosis is a [`page`](page()) with figures, a text for the [`terminal`], and [Markdown](diagnosis_markdown()). Any other
-//! report is a list of [`block`]s, which [`block_page`] and [`markdown`] both render; [`score`] makes those of a proof.
+//! report is a list of [`block`]s, which [`block_page`](block_page()) and [`markdown`](markdown()) both render; [`score`] makes those of a proof.
 
 pub mod block;
 mod block_page;

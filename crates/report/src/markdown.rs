@@ -2,7 +2,7 @@
 
 use crate::block::Block;
 
-/// The blocks and a last line; drawings are omitted, their tables are kept.
+/// The blocks as Markdown, with `made` as the last line. Drawings are omitted; the tables of the same data are kept.
 pub fn markdown(blocks: &[Block], made: &str) -> String {
     let mut text = String::new();
     for block in blocks {
@@ -42,8 +42,8 @@ fn line(cells: &[String]) -> String {
     format!("| {} |\n", cells.join(" | "))
 }
 
-/// The text with HTML escaped, which Markdown would pass on, because names from files must not become part of a page. A code
-/// span is left as it is.
+/// The text with HTML tags escaped, except in code spans. Markdown would pass tags on, and names from files must not become
+/// markup of a page.
 fn without_tags(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for (index, span) in text.split('`').enumerate() {
@@ -70,12 +70,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tags_are_shown_and_not_obeyed() {
+    fn tags_are_escaped() {
         assert_eq!(
             without_tags("p < 0.05, `a<b>` <b>x</b>"),
             "p < 0.05, `a<b>` &lt;b>x&lt;/b>"
         );
-        // A lone backtick begins no code.
+        // A single backtick does not begin a code span.
         assert_eq!(without_tags("a`<i>"), "a`&lt;i>");
     }
 }

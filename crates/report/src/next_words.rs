@@ -4,7 +4,7 @@ use diagnosis::{Confusable, NextExperiment};
 
 use crate::words;
 
-/// More pairs than this are counted, not listed.
+/// The largest number of pairs that are listed; further ones are counted.
 const LISTED: usize = 6;
 
 /// What the motion distinguishes, and which pairs of effects no motion distinguishes.

@@ -104,7 +104,7 @@ fn join(text: String, unit: &str) -> String {
     }
 }
 
-/// The unit, or nothing for a dimensionless value, which is written in several ways.
+/// The unit; empty for a dimensionless value, whose unit may be written as `1`, `-` or `–`.
 fn without_one(unit: &str) -> &str {
     if matches!(unit, "1" | "-" | "–") { "" } else { unit }
 }
@@ -114,7 +114,7 @@ fn is_relative(name: &str, unit: &str) -> bool {
     without_one(unit).is_empty() && matches!(name, "relative" | "amplitude")
 }
 
-/// A parameter as it is shown: in which unit, with how many decimals.
+/// The unit and the decimals with which a parameter is shown.
 struct Shown {
     value: f64,
     ci95: [f64; 2],
@@ -214,7 +214,7 @@ pub fn percent(share: f64) -> String {
     }
 }
 
-/// A ratio to a standard deviation: `12 %`, or a factor from one on, `3.2 ×`.
+/// A ratio to a standard deviation: `12 %`, or `3.2 ×` for a ratio of one and more.
 pub fn share(ratio: f64) -> String {
     if ratio.is_finite() && ratio >= 1.005 {
         format!("{} ×", factor(ratio))

@@ -21,10 +21,10 @@ use crate::words;
 use figures::Figures;
 use table::name;
 
-/// The number of points that all figures of a page share, and the largest number in one line or cloud.
+/// The number of points in all figures of a page together, and the largest number in one line or cloud.
 const ALL_POINTS: usize = 80_000;
 const MOST_POINTS: usize = 1500;
-/// The number of rows that all figures in time share if they can be zoomed, and the least number in one.
+/// The number of rows in all zoomable figures over time together, and the least number in one.
 const ALL_ROWS: usize = 60_000;
 const FEWEST_ROWS: usize = 2000;
 
@@ -128,7 +128,7 @@ impl<'a> Page<'a> {
     }
 }
 
-/// The library that draws the figures that can be zoomed, with its licence; then the script that gives it the data.
+/// The library that draws zoomable figures, with its licence, and the script that gives it the data.
 const UPLOT: &str = concat!(
     "/*\n",
     include_str!("../../../assets/uplot/LICENSE"),

@@ -164,7 +164,7 @@ fn exempt(score: &Score) -> String {
     )
 }
 
-/// All failures: effects missed, effects named falsely, and refusals without reason.
+/// All failures: effects that are missed, false names, and refusals on joints that need none.
 pub fn failures(score: &Score) -> Vec<Block> {
     let mut rows = Vec::new();
     for outcome in score.concealed.iter().filter(|o| o.counts && !o.fate.is_found()) {

@@ -9,7 +9,7 @@ const STYLE: &str = concat!(
     include_str!("page/style.css")
 );
 
-/// What a browser may load and run: only what the page contains.
+/// The content security policy: a browser loads and runs only what the page contains.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 
 /// A whole page; `more_style` comes after [`STYLE`], `scripts` after `body`.

@@ -6,7 +6,7 @@ pub fn rms(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
 }
 
-/// The value below which `share` of the values lie; 0 for no values.
+/// The quantile of `values` at `share` (0 to 1); 0 for no values. The values are sorted in place.
 pub fn quantile(values: &mut [f64], share: f64) -> f64 {
     if values.is_empty() {
         return 0.0;

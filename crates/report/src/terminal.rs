@@ -15,7 +15,7 @@ pub(crate) mod steps;
 /// The width of lines in characters; a single longer word exceeds it.
 const WIDTH: usize = 80;
 
-/// A table with its first column at the left and numbers at the right.
+/// A table with a left-aligned first column and right-aligned numbers.
 pub fn table(header: impl IntoIterator<Item = String>) -> Table {
     let mut table = Table::new();
     table.load_style(presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
@@ -30,7 +30,7 @@ pub fn table(header: impl IntoIterator<Item = String>) -> Table {
     table
 }
 
-/// `table` with less room between its columns, as far as its lines would be too long otherwise.
+/// `table` with less space between its columns if its lines are too long otherwise.
 pub fn fitted(mut table: Table) -> Table {
     for padding in [(0, 1), (0, 0)] {
         let width = table.lines().map(|line| line.chars().count()).max().unwrap_or(0);
@@ -146,8 +146,9 @@ fn unexplained(open: &Unexplained) -> String {
     }
 }
 
-/// Where an unexplained residual is largest: stretches of time, and regions of the joint's state, whose units need the `arm`.
-/// Regions are those of the nominal residual, and only without findings is all of it unexplained.
+/// Where an unexplained residual is largest: stretches of time, and regions of the joint's state, whose units need the
+/// `arm`. Regions are those of the nominal residual. They are given only if there are no findings, because otherwise a part
+/// of that residual is explained.
 pub fn largest(report: &Report, open: &Unexplained, arm: Option<&Arm>) -> Option<String> {
     let is_this = |located: &&Located| located.joint == open.joint;
     let located = report
@@ -170,7 +171,7 @@ pub fn largest(report: &Report, open: &Unexplained, arm: Option<&Arm>) -> Option
     (!places.is_empty()).then(|| format!("largest: {}", places.join("; ")))
 }
 
-/// What the table does not show of a finding: further parameters, and alternatives. Empty if there are neither.
+/// The further parameters and the alternatives of a finding, which the table does not show; empty if there are neither.
 fn details(finding: &Finding) -> String {
     let place = finding.joint.as_deref().unwrap_or("whole arm");
     let start = format!("{place}, {}", words::effect(finding));
@@ -232,7 +233,8 @@ fn findings(report: &Report) -> String {
         if index < 3 {
             column.set_cell_alignment(CellAlignment::Left);
         }
-        // Only effects are wrapped, between words; a column narrower than a word would break the word.
+        // Only the column of effects is wrapped. It is at least as wide as its longest word, because a narrower column
+        // would break the word.
         column.set_constraint(if index == 1 {
             ColumnConstraint::LowerBoundary(Width::Fixed(longest))
         } else {
@@ -278,7 +280,7 @@ fn findings(report: &Report) -> String {
         .join("\n")
 }
 
-/// Which recordings errors are of: the held-out ones, if there are any.
+/// The recordings that errors belong to: the held-out ones, if there are any.
 pub fn recordings(report: &Report) -> &'static str {
     if report.recordings.held_out.is_empty() {
         "training"
@@ -287,7 +289,7 @@ pub fn recordings(report: &Report) -> &'static str {
     }
 }
 
-/// Whether errors are of held-out recordings, or of those that were fitted.
+/// The title of errors, which belong to the held-out recordings if there are any, and to the training recordings otherwise.
 pub fn error_title(report: &Report) -> &'static str {
     if report.recordings.held_out.is_empty() {
         "training error"

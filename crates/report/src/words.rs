@@ -8,8 +8,9 @@ use diagnosis::{Finding, JointFit, NotObservable, Parameter, Report, Verdict};
 use crate::numbers;
 use crate::statistics::rms;
 
-/// The error of a joint with the effects found, over the torque's standard deviation, from which the verdict gives it.
-const TOLD_ERROR: f64 = 0.1;
+/// The verdict states the largest held-out error with the effects found if it is at least this (over the torque's standard
+/// deviation).
+const STATED_ERROR: f64 = 0.1;
 
 /// The texts of an effect.
 pub struct Wording {
@@ -46,7 +47,7 @@ pub fn share(finding: &Finding) -> Option<f64> {
 
 /// A finding's effect with its parameters, as a noun phrase; for a finding between two sensors, with its place.
 pub fn described(finding: &Finding) -> String {
-    // A parameter has the digits of its interval, as beside its name.
+    // A parameter has as many digits as its interval supports, as in the table.
     let quantity = |value: f64, unit: &str| {
         let mut texts = finding.parameters.iter().filter_map(|(name, own)| {
             let (text, _) = numbers::value_and_interval(name, own);
@@ -156,7 +157,7 @@ pub fn shows_on(finding: &Finding) -> Option<&str> {
     })
 }
 
-/// What changed since the recordings from before, as a sentence; before everything else.
+/// The changes since the recordings from before (`--before`) in a sentence, which comes before everything else.
 pub fn changed(list: &[String]) -> String {
     match list {
         [] => "Since the recordings from before, no change was found.".to_owned(),
@@ -242,12 +243,13 @@ pub fn verdict(report: &Report) -> String {
     }
 }
 
-/// The joint with the largest error on the held-out recordings with the effects found, if that is worth a word.
+/// The joint with the largest error on the held-out recordings with the effects found, if the error is large enough to be
+/// stated.
 fn largest_error(report: &Report) -> Option<(&str, f64)> {
     let errors = report.fit.iter();
     let errors = errors.filter_map(|(joint, fit)| Some((joint.as_str(), fit.held_out_nrmse_augmented?)));
     let largest = errors.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    (largest.1 >= TOLD_ERROR).then_some(largest)
+    (largest.1 >= STATED_ERROR).then_some(largest)
 }
 
 /// The RMS over the joints of the relative torque error, nominal and with the effects found, where more than half of it
@@ -273,7 +275,7 @@ pub fn detectable_sizes(entry: &NotObservable, kind: JointKind) -> String {
         let unit = effects::spec(entry.effect).and_then(|spec| spec.unit(name, kind));
         let size = numbers::round_quantity(*size, unit.filter(|unit| *unit != "1").unwrap_or_default());
         match name.strip_suffix("factor") {
-            // A factor is measured by its distance from one.
+            // The size of a factor is its distance from one.
             Some(_) => format!("{} off by more than {size}", parameter(name)),
             None => format!("{} {side} {size}", parameter(name)),
         }

@@ -126,7 +126,7 @@ pub struct DeclaredUnseen {
     pub effect: String,
     /// The joint; `None` for the whole arm.
     pub joint: Option<String>,
-    /// The size from which it is detectable; no size at all if this and the other are empty.
+    /// The size from which it is detectable. If this and the following field are empty, it is detectable at no size.
     #[serde(default)]
     pub would_be_seen_above: BTreeMap<String, Option<f64>>,
     /// The size below which it is detectable.
@@ -140,13 +140,13 @@ pub struct JointErrors {
     /// Standard deviation of the measured torque (N m or N).
     #[serde(default)]
     pub torque_std: f64,
-    /// Of the nominal model, on the held-out recording.
+    /// The error of the nominal model on the held-out recording.
     #[serde(default)]
     pub held_out_nrmse_nominal: Option<f64>,
     /// With the effects named.
     #[serde(default)]
     pub held_out_nrmse_augmented: Option<f64>,
-    /// With a learned correction instead.
+    /// The error with a learned correction instead of effects.
     #[serde(default)]
     pub held_out_nrmse_learned: Option<f64>,
 }

@@ -10,7 +10,7 @@ const BOUNDS: [f64; 5] = [0.6, 0.75, 0.85, 0.92, 0.97];
 /// Stated probabilities against outcomes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
-    /// The bins in ascending order; bins without findings are left out.
+    /// The bins in ascending order; bins without findings are omitted.
     pub bins: Vec<Bin>,
     /// The mean square of probability minus outcome (Brier 1950); 0 is perfect.
     pub brier: Option<f64>,
@@ -25,9 +25,9 @@ pub struct Bin {
     pub from: f64,
     /// The upper end of the bin.
     pub to: f64,
-    /// Their mean.
+    /// The mean of the stated probabilities.
     pub said: f64,
-    /// Those that were right.
+    /// The findings that were right.
     pub right: Counted,
 }
 
@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_right_as_often_as_said_has_no_error() {
+    fn frequencies_that_equal_the_probabilities_have_no_error() {
         let mut findings = vec![(0.8, true); 4];
         findings.push((0.8, false));
         let found = calibration(&findings);
@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn certainty_is_in_the_last_bin_and_nothing_in_none() {
+    fn a_probability_of_one_is_in_the_last_bin_and_no_findings_have_no_bin() {
         assert_eq!(calibration(&[(1.0, true)]).bins[0].from, 0.97);
         assert!(calibration(&[]).bins.is_empty());
     }

@@ -50,7 +50,7 @@ pub fn is_outside(effect: &str) -> bool {
 }
 
 /// The scored parameters of an effect, the main one first. Phases, times of day, directions and values that depend on the
-/// choice of a zero have no relative error and are left out.
+/// choice of a zero have no relative error and are omitted.
 pub fn parameters(effect: &str) -> &'static [&'static str] {
     match effect {
         "viscous_friction" | "quadratic_drag" => &["coefficient"],

@@ -23,13 +23,13 @@ pub struct WrongTerm {
     pub terms: Vec<Name>,
 }
 
-/// The true terms with another effect on the same joint in place of the largest one that is not a baseline effect; `number`,
-/// that of the case, selects which. `None` if only baseline effects are injected.
+/// The true terms, with another effect on the same joint in place of the largest one that is not a baseline effect. The
+/// case's `number` selects that other effect. `None` if only baseline effects are injected.
 pub fn wrong_term(truth: &Truth, number: usize) -> Option<WrongTerm> {
-    let named = truth.of_note().filter(|concealed| {
-        !concealed.is_outside_the_catalogue()
-            && !is_baseline(truth, concealed.name())
-            && !parameters(concealed.name()).is_empty()
+    let named = truth.of_note().filter(|injected| {
+        !injected.is_outside_the_catalogue()
+            && !is_baseline(truth, injected.name())
+            && !parameters(injected.name()).is_empty()
     });
     let largest = named.max_by(|a, b| {
         let share = |share: Option<f64>| share.unwrap_or(0.0);
@@ -39,7 +39,7 @@ pub fn wrong_term(truth: &Truth, number: usize) -> Option<WrongTerm> {
     let key = Key::new(truth);
     let fits = |name: &str| {
         let name = (name.to_owned(), joint.clone());
-        // // Neither a true effect, nor a part of one, nor a generalisation of one.
+        // Neither a true effect, nor a part of one, nor a generalisation of one.
         !key.known.contains(&name) && !key.brought.contains(&name) && !brings(&name.0).contains(&effect)
     };
     let list: &[&str] = if joint.is_some() { &ON_A_JOINT } else { &ON_THE_ARM };
@@ -91,7 +91,7 @@ impl HeldOut {
 
 /// The errors of a case.
 pub fn held_out(truth: &Truth, answer: &Answer, oracle: Option<&Answer>, wrong: Option<&Answer>) -> HeldOut {
-    // The joints of which every model's error is known.
+    // Only joints for which the errors of all models are known.
     let knows = |joint: &str| {
         let all = [Some(answer), oracle, wrong];
         all.into_iter().flatten().all(|answer| {
@@ -108,7 +108,7 @@ pub fn held_out(truth: &Truth, answer: &Answer, oracle: Option<&Answer>, wrong: 
     HeldOut {
         case: truth.case.clone(),
         outside_the_catalogue: !Key::new(truth).unknown.is_empty(),
-        beside_the_terms: truth.has_a_wrong_urdf() || truth.concealed.iter().any(|concealed| concealed.minor),
+        beside_the_terms: truth.has_a_wrong_urdf() || truth.concealed.iter().any(|injected| injected.minor),
         nominal: over(Some(answer), &|fit| fit.held_out_nrmse_nominal),
         diagnosed: over(Some(answer), &|fit| fit.held_out_nrmse_augmented),
         true_terms: over(oracle, &|fit| fit.held_out_nrmse_augmented),

@@ -14,7 +14,7 @@ use crate::score::Tried;
 pub enum Again {
     /// The second diagnosis.
     Answer(Box<Answer>),
-    /// Why there is none: the motion could not be recorded, or the program gave no answer.
+    /// The reason why there is no second diagnosis: the motion could not be recorded, or the program gave no answer.
     Failed(String),
 }
 
@@ -47,7 +47,7 @@ pub struct Confusion {
     pub rival_is_true: bool,
     /// Whether a motion was proposed for it.
     pub proposed: bool,
-    /// Why not, in the words of the diagnosis, without numbers.
+    /// The diagnosis' reason for proposing none, without numbers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub because: Option<String>,
     /// The outcome; `None` if the case was not examined.
@@ -79,12 +79,12 @@ pub struct Experiments {
     pub cases: usize,
     /// All confusions of the first diagnoses in which one effect is injected.
     pub confusions: Vec<Confusion>,
-    /// Resolved, of those for which a motion was proposed and recorded.
+    /// Confusions resolved, of those for which a motion was proposed and recorded.
     pub resolved: Counted,
-    /// Resolved, of those without a proposed motion in the same cases.
+    /// Confusions resolved, of those without a proposed motion in the same cases.
     pub resolved_unasked: Counted,
-    /// Resolved, of all in the same cases, with or without a proposed motion. This figure does not depend on the diagnosis'
-    /// choice.
+    /// Confusions resolved, of all in the same cases, with or without a proposed motion. This figure does not depend on
+    /// which confusions the diagnosis selects.
     pub resolved_of_all: Counted,
     /// The most frequent pair of effects in `resolved`, in the order of their names.
     pub most_frequent: Option<[String; 2]>,
@@ -150,7 +150,7 @@ pub fn experiments(cases: &[Tried]) -> Experiments {
     for confusion in all.confusions.iter().filter(|c| c.proposed && c.after.is_some()) {
         *pairs.entry(confusion.pair()).or_default() += 1;
     }
-    // The first of as many.
+    // Of equally frequent pairs, the first one counts.
     all.most_frequent = pairs
         .into_iter()
         .rev()
@@ -195,7 +195,7 @@ fn confusions(case: &str, first: &Answer, key: &Key) -> Vec<Confusion> {
         for other in &finding.confusable_with {
             let rival = named(other);
             let (finding_is_true, rival_is_true) = (key.known.contains(&name), key.known.contains(&rival));
-            // Two pushes have one name.
+            // Two contacts have the same name.
             let is_known = |known: &Confusion| known.finding == name && known.rival == rival;
             if (!finding_is_true && !rival_is_true) || list.iter().any(is_known) {
                 continue;
@@ -225,7 +225,7 @@ fn after(confusion: &Confusion, second: Option<&Answer>, key: &Key) -> After {
         (&confusion.finding, &confusion.rival)
     };
     let names = found(second);
-    // Where both are injected, both are to be named; what comes with the truth is no confusion.
+    // If both are injected, both must be named. An effect that accompanies an injected one is not wrong.
     let is_wrong = names.contains(other) && !key.allows(other);
     if !names.contains(truth) {
         return if is_wrong {
@@ -282,7 +282,7 @@ mod tests {
     /// A confusion is resolved only if the injected effect is named, the other is not, and neither is an alternative of the
     /// other.
     #[test]
-    fn a_confusion_is_resolved_when_the_truth_stands_alone() {
+    fn a_confusion_is_resolved_if_only_the_injected_effect_is_named() {
         let viscous =
             |rivals: &str| format!(r#"{{"effect": "viscous_friction", "joint": "a", "confusable_with": [{rivals}]}}"#);
         let drag = r#"{"effect": "quadratic_drag", "joint": "a"}"#;
@@ -295,7 +295,7 @@ mod tests {
         ];
         for (findings, expected) in cases {
             let result = experiments(&[tried(Some(&format!(r#"{{"findings": [{findings}]}}"#)))]);
-            // The spring is not concealed, and neither is the drag: one confusion.
+            // Neither the spring nor the drag is injected, so that there is one confusion.
             assert_eq!(result.confusions.len(), 1);
             assert_eq!(result.confusions[0].after, Some(expected), "{findings}");
             assert!(result.confusions[0].proposed && result.confusions[0].rival_is_true);
@@ -306,7 +306,7 @@ mod tests {
 
     /// The figures of all confusions, and of those without the most frequent pair, are given in addition.
     #[test]
-    fn the_figure_is_shown_without_what_flatters_it() {
+    fn figures_are_also_given_without_the_most_frequent_pair() {
         let mut case = tried(Some(r#"{"findings": [{"effect": "viscous_friction", "joint": "a"}]}"#));
         let of = |extra: &str| {
             answer(&format!(
@@ -315,7 +315,7 @@ mod tests {
                      "rival": {{"effect": "viscous_friction", "joint": "a"}}}}], "not_separated": []}}}}"#
             ))
         };
-        // One confusion more, for which nothing is proposed: an offset that is not named afterwards.
+        // One more confusion, for which no motion is proposed: an offset that the second diagnosis does not name.
         let offset = truth(r#"[{"effect": "torque_offset", "joint": "a", "offset": 1.0}]"#);
         case.truth.concealed.extend(offset.concealed);
         case.answer = Some(of(
@@ -337,7 +337,7 @@ mod tests {
 
     /// Names that are gained and lost are listed.
     #[test]
-    fn regressions_are_shown() {
+    fn names_gained_and_lost_are_listed() {
         let result = experiments(&[tried(Some(r#"{"findings": [{"effect": "spring", "joint": "a"}]}"#))]);
         let name = |effect: &str| InCase {
             case: "case_000".into(),

@@ -20,7 +20,7 @@ impl Counted {
         Self { hits, of, wilson }
     }
 
-    /// Those of `all` that are `true`.
+    /// The number of values that are `true`, of all values.
     pub fn of(all: impl IntoIterator<Item = bool>) -> Self {
         let (mut hits, mut of) = (0, 0);
         for hit in all {
@@ -47,7 +47,7 @@ pub fn wilson(hits: usize, of: usize) -> [f64; 2] {
     let scale = 1.0 + Z * Z / n;
     let middle = p + Z * Z / (2.0 * n);
     let half = Z * (p * (1.0 - p) / n + Z * Z / (4.0 * n * n)).sqrt();
-    // // With no hits, or only hits, the interval ends at the bound up to rounding.
+    // With no hits, or only hits, the interval ends at the bound up to rounding.
     let low = if hits == 0 { 0.0 } else { (middle - half) / scale };
     let high = if hits == of { 1.0 } else { (middle + half) / scale };
     [low, high]
@@ -68,8 +68,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn wilsons_interval_is_the_one_in_books() {
-        // // statsmodels.stats.proportion.proportion_confint(15, 20, method="wilson") is (0.5313, 0.8881).
+    fn wilsons_interval_is_that_of_statsmodels() {
+        // statsmodels.stats.proportion.proportion_confint(15, 20, method="wilson") is (0.5313, 0.8881).
         let [low, high] = wilson(15, 20);
         assert!(
             (low - 0.5313).abs() < 1e-4 && (high - 0.8881).abs() < 1e-4,
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn quantiles_are_between_the_values() {
+    fn quantiles_are_interpolated() {
         assert_eq!(quantile(&[], 0.5), None);
         assert_eq!(quantile(&[3.0, 1.0, 2.0], 0.5), Some(2.0));
         assert_eq!(quantile(&[0.0, 1.0], 0.9), Some(0.9));

@@ -33,8 +33,8 @@ pub use numbers::ScoredNumber;
 pub use outcome::{FalseName, Fate, Outcome, OutsideOutcome};
 pub use plain::Plain;
 pub use published::{
-    Besides, Compared, Denied, Evidence, HeldOutErrors, Published, PublishedNumber, RobotScore, Said, SaidFate,
-    SaidOutcome, compared_parameters,
+    Besides, Compared, Denied, Evidence, HeldOutErrors, Published, PublishedEffect, PublishedFate, PublishedNumber,
+    PublishedOutcome, RobotScore, compared_parameters,
 };
 pub use rules::{LEAST_SHARE, Name};
 pub use score::{Family, Score, Tried, score};

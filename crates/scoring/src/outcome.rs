@@ -25,7 +25,7 @@ pub enum Fate {
     NotObservable,
     /// Not named, and its joint is unexplained.
     Refused,
-    /// None of these.
+    /// Not named, for none of these reasons.
     Missed,
 }
 
@@ -38,7 +38,7 @@ pub struct Outcome {
     pub effect: String,
     /// The joint; `None` for the whole arm.
     pub joint: Option<String>,
-    /// Its form, where it is not the textbook's.
+    /// Its functional form, if it is not the textbook form.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub form: Option<String>,
     /// Its expressed share.
@@ -154,13 +154,13 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
     let named = found(answer);
     let covered = found_or_confusable(answer);
     let baseline = |name: &Name| is_baseline(truth, &name.0);
-    // What is injected by the name that it was given, where that is another of the same machine.
+    // The injected faults under the names that findings give them, if these are equivalent names.
     let other_names: Vec<(Name, Name)> = truth
         .of_note()
-        .filter_map(|concealed| {
+        .filter_map(|injected| {
             let (given, meant) = (
-                same_machine(truth, concealed)?,
-                (concealed.name().to_owned(), concealed.joint.clone()),
+                same_machine(truth, injected)?,
+                (injected.name().to_owned(), injected.joint.clone()),
             );
             let finding = answer.findings.iter().find(|finding| name_of(finding) == given)?;
             let admits = |other: &EffectOnJoint| (&other.effect, &other.joint) == (&meant.0, &meant.1);
@@ -191,9 +191,9 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
         .collect();
     result.baseline_false = named.iter().filter(|n| !key.allows(n) && baseline(n)).count();
     for name in key.known.iter().filter(|name| !baseline(name)) {
-        // // Of several effects of one name, the largest.
+        // Of several faults with the same name, the largest one counts.
         let same = truth.of_note().filter(|c| c.name() == name.0 && c.joint == name.1);
-        let Some(concealed) = same.max_by(|a, b| share(a).total_cmp(&share(b))) else {
+        let Some(injected) = same.max_by(|a, b| share(a).total_cmp(&share(b))) else {
             continue;
         };
         let near = |other: &&&Named| other.joint == name.1 || other.joint.is_none() || name.1.is_none();
@@ -205,7 +205,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
             Fate::SameMachine
         } else if covered.contains(name) {
             Fate::Covered
-        } else if is_declared_unseen(answer, concealed) {
+        } else if is_declared_unseen(answer, injected) {
             Fate::NotObservable
         } else if name.1.as_ref().is_some_and(|joint| unexplained.contains(joint)) {
             Fate::Refused
@@ -216,10 +216,10 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
             case: truth.case.clone(),
             effect: name.0.clone(),
             joint: name.1.clone(),
-            form: concealed.form.clone(),
-            share: concealed.expressed_share,
-            over_noise: over_noise(case, answer, concealed),
-            counts: concealed.expressed_share.is_none_or(|share| share >= LEAST_SHARE),
+            form: injected.form.clone(),
+            share: injected.expressed_share,
+            over_noise: over_noise(case, answer, injected),
+            counts: injected.expressed_share.is_none_or(|share| share >= LEAST_SHARE),
             fate,
             found_as,
             instead: false_names.iter().filter(near).map(|f| name_of(f)).collect(),
@@ -275,8 +275,8 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
             }
         }
         let same = truth.of_note().filter(|c| c.name() == name.0 && c.joint == name.1);
-        // // Of several effects of one name, the nearest.
-        let nearest = same.map(|concealed| sized(truth, concealed, finding)).min_by(|a, b| {
+        // Of several faults with the same name, the one with the nearest size counts.
+        let nearest = same.map(|injected| sized(truth, injected, finding)).min_by(|a, b| {
             let first = |list: &Vec<ScoredNumber>| list.first().map_or(f64::INFINITY, |sized| sized.error);
             first(a).total_cmp(&first(b))
         });
@@ -289,24 +289,24 @@ fn name_of(finding: &Named) -> Name {
     (finding.effect.clone(), finding.joint.clone())
 }
 
-fn share(concealed: &Injected) -> f64 {
-    concealed.expressed_share.unwrap_or(0.0)
+fn share(injected: &Injected) -> f64 {
+    injected.expressed_share.unwrap_or(0.0)
 }
 
 /// An effect's torque over the noise on one sample. The standard deviation of a joint's torque is a property of its recordings,
 /// which every diagnosis reports.
-fn over_noise(case: &Tried, answer: &Answer, concealed: &Injected) -> Option<f64> {
+fn over_noise(case: &Tried, answer: &Answer, injected: &Injected) -> Option<f64> {
     let noise_share = |joint: usize| -> Option<f64> {
         let spread = answer.fit.get(case.joints.get(joint)?)?.torque_std;
         let noise = *case.truth.torque_noise.get(joint)?;
         (spread > 0.0 && noise > 0.0).then(|| noise / spread)
     };
-    let hidden = match &concealed.joint {
+    let hidden = match &injected.joint {
         Some(name) => noise_share(case.joints.iter().position(|joint| joint == name)?)?,
         None => {
             let all: Vec<f64> = (0..case.joints.len()).filter_map(noise_share).collect();
             quantile(&all, 0.5)?
         }
     };
-    Some(concealed.expressed_share? / hidden)
+    Some(injected.expressed_share? / hidden)
 }

@@ -16,30 +16,30 @@ pub struct Plain {
     pub families: BTreeMap<String, [usize; 2]>,
     /// False names that are not baseline, by family.
     pub false_names: BTreeMap<String, usize>,
-    /// Baseline effects injected, found, named falsely.
+    /// The numbers of baseline effects that are injected, found, and named falsely.
     #[serde(rename = "ordinary")]
     pub baseline: [usize; 3],
-    /// Injected effects, not baseline.
+    /// Injected effects that are not baseline effects.
     pub concealed: usize,
-    /// Of these found.
+    /// Injected effects that are found.
     pub found: usize,
-    /// Of these found or alternative only.
+    /// Injected effects that are found, or are an alternative of a finding.
     pub covered: usize,
-    /// Cases with nothing but baseline effects.
+    /// Cases with only baseline effects.
     pub empty: usize,
-    /// Of these, without another name.
+    /// Cases with only baseline effects in which no other effect is named.
     pub clean: usize,
-    /// Cases with something outside the catalogue.
+    /// Cases with an effect outside the catalogue.
     pub outside: usize,
-    /// Of these refused on the right joint.
+    /// Cases with an effect outside the catalogue in which the right joint is refused.
     pub refused: usize,
-    /// Cases with an unexplained joint and nothing outside the catalogue.
+    /// Cases with an unexplained joint and no effect outside the catalogue.
     pub refused_without_cause: usize,
     /// Cases without an answer.
     pub missing: usize,
     /// The median over joints of the held-out error with the findings over the nominal one.
     pub held_out: Option<f64>,
-    /// Over all effects.
+    /// F1 over all effects.
     pub micro_f1: f64,
     /// F1 averaged over the injected families.
     pub macro_f1: f64,

@@ -12,20 +12,20 @@ use crate::rules::{Name, is_declared_unseen};
 use crate::truth::Injected;
 use readings::{Reading, readings};
 
-/// What publishers know of a robot that its URDF leaves out: the truth of a case whose truth nobody made.
+/// The published knowledge of a robot that its URDF does not contain. It serves as the ground truth of a real robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Published {
     /// The robot: the name of its folder.
     pub robot: String,
     /// The published effects.
-    pub said: Vec<Said>,
+    pub said: Vec<PublishedEffect>,
     /// The effects that a publication excludes.
     pub denied: Vec<Denied>,
 }
 
 /// A published effect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Said {
+pub struct PublishedEffect {
     /// Names in the catalogue; if there are several, the publication leaves open which one is meant.
     pub effects: Vec<String>,
     /// The joint; `None` for the whole arm.
@@ -41,7 +41,7 @@ pub struct Said {
 /// A published number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PublishedNumber {
-    /// In SI units at the joint.
+    /// The value, in SI units at the joint.
     pub value: f64,
     /// The SI unit.
     pub unit: String,
@@ -75,7 +75,7 @@ pub struct Denied {
 /// The outcome of a published effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum SaidFate {
+pub enum PublishedFate {
     /// Named, on its joint.
     Named,
     /// Named by an equivalent parameterisation: asymmetric friction is Coulomb friction with an offset, a friction curve
@@ -93,11 +93,11 @@ pub enum SaidFate {
 
 /// A published effect with its outcome.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct SaidOutcome {
+pub struct PublishedOutcome {
     /// The published effect.
-    pub said: Said,
+    pub said: PublishedEffect,
     /// The outcome.
-    pub fate: SaidFate,
+    pub fate: PublishedFate,
     /// The finding that agrees with it, or that has it as an alternative.
     pub named_as: Option<Name>,
     /// All findings that agree with it, in words.
@@ -140,20 +140,20 @@ pub struct Besides {
     pub probability: Option<f64>,
     /// Its alternatives.
     pub confusable_with: Vec<Name>,
-    /// In words.
+    /// The finding as a sentence.
     pub sentence: String,
 }
 
 /// Held-out errors of a joint (NRMSE).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HeldOutErrors {
-    /// Of the URDF's model.
+    /// The error of the URDF's model.
     pub nominal: Option<f64>,
     /// With the findings.
     pub diagnosed: Option<f64>,
-    /// With the published effects, fitted to the same recordings.
+    /// The error with the published effects, fitted to the same recordings.
     pub said: Option<f64>,
-    /// With a learned correction.
+    /// The error with a learned correction.
     pub learned: Option<f64>,
 }
 
@@ -165,7 +165,7 @@ pub struct RobotScore {
     /// The verdict; `None` without an answer.
     pub verdict: Option<String>,
     /// All published effects, in their order.
-    pub said: Vec<SaidOutcome>,
+    pub said: Vec<PublishedOutcome>,
     /// Findings that are not published.
     pub besides: Vec<Besides>,
     /// Joints with an unexplained residual.
@@ -188,7 +188,7 @@ pub fn compared_parameters(effect: &str) -> Vec<&'static str> {
 }
 
 impl Published {
-    /// All published effects in the form of `--only`, each once; of several names, the first.
+    /// All published effects as names for `--only`, each once. Of several possible names, the first one is taken.
     pub fn terms(&self) -> Vec<Name> {
         let mut list = Vec::new();
         for said in &self.said {
@@ -200,13 +200,13 @@ impl Published {
         list
     }
 
-    /// The comparison with `answer`, the blind diagnosis; `with_said` is the fit of [`Self::terms`] alone. Without an answer,
-    /// everything is missed.
-    pub fn score(&self, answer: Option<&Answer>, with_said: Option<&Answer>) -> RobotScore {
+    /// The comparison with `answer`, the blind diagnosis. `with_published` is the fit of [`Self::terms`] alone. Without an
+    /// answer, all published effects are missed.
+    pub fn score(&self, answer: Option<&Answer>, with_published: Option<&Answer>) -> RobotScore {
         let nothing = Answer::default();
         let given = answer.unwrap_or(&nothing);
         let readings = readings(given);
-        let said: Vec<SaidOutcome> = self.said.iter().map(|said| outcome(said, given, &readings)).collect();
+        let said: Vec<PublishedOutcome> = self.said.iter().map(|said| outcome(said, given, &readings)).collect();
         let mut not_observable: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for unseen in &given.not_observable {
             if let Some(joint) = &unseen.joint {
@@ -217,7 +217,7 @@ impl Published {
             }
         }
         let held_out = given.fit.iter().map(|(joint, fit)| {
-            let said = with_said.and_then(|answer| answer.fit.get(joint));
+            let said = with_published.and_then(|answer| answer.fit.get(joint));
             let errors = HeldOutErrors {
                 nominal: fit.held_out_nrmse_nominal,
                 diagnosed: fit.held_out_nrmse_augmented,
@@ -275,13 +275,13 @@ impl Published {
     }
 }
 
-impl Said {
+impl PublishedEffect {
     /// Whether a finding agrees with a published effect.
     fn is(&self, (effect, joint): &Name) -> bool {
         *joint == self.joint && self.effects.contains(effect)
     }
 
-    /// The published effect as a fault of a ground truth, to test whether it was declared not testable.
+    /// The published effect as an injected fault, to test whether it was declared not testable.
     fn concealed(&self, effect: &str) -> Injected {
         let values = self.parameters.iter();
         Injected {
@@ -318,7 +318,7 @@ fn name_of(finding: &Named) -> Name {
     (finding.effect.clone(), finding.joint.clone())
 }
 
-fn outcome(said: &Said, answer: &Answer, readings: &[Reading]) -> SaidOutcome {
+fn outcome(said: &PublishedEffect, answer: &Answer, readings: &[Reading]) -> PublishedOutcome {
     let reading = readings.iter().find(|reading| said.is(&reading.name));
     let is_rival = |finding: &&Named| {
         let mut others = finding.confusable_with.iter();
@@ -327,12 +327,12 @@ fn outcome(said: &Said, answer: &Answer, readings: &[Reading]) -> SaidOutcome {
     let rival = answer.findings.iter().find(is_rival);
     let refused = |joint: &String| answer.unexplained.iter().any(|refused| refused.joint == *joint);
     let (fate, named_as) = match (reading, rival) {
-        (Some(reading), _) if reading.is_rewritten() => (SaidFate::SameTorque, reading.first(answer)),
-        (Some(reading), _) => (SaidFate::Named, reading.first(answer)),
-        (None, Some(finding)) => (SaidFate::Confusable, Some(name_of(finding))),
-        (None, None) if said.is_unseen(answer) => (SaidFate::NotObservable, None),
-        (None, None) if said.joint.as_ref().is_some_and(refused) => (SaidFate::Unexplained, None),
-        (None, None) => (SaidFate::Missed, None),
+        (Some(reading), _) if reading.is_rewritten() => (PublishedFate::SameTorque, reading.first(answer)),
+        (Some(reading), _) => (PublishedFate::Named, reading.first(answer)),
+        (None, Some(finding)) => (PublishedFate::Confusable, Some(name_of(finding))),
+        (None, None) if said.is_unseen(answer) => (PublishedFate::NotObservable, None),
+        (None, None) if said.joint.as_ref().is_some_and(refused) => (PublishedFate::Unexplained, None),
+        (None, None) => (PublishedFate::Missed, None),
     };
     let numbers = reading.map_or_else(Vec::new, |reading| {
         let order = |effect: &String| compared_parameters(effect);
@@ -353,7 +353,7 @@ fn outcome(said: &Said, answer: &Answer, readings: &[Reading]) -> SaidOutcome {
     let sentences = all
         .iter()
         .filter_map(|&k| Some(answer.findings.get(k)?.sentence.clone()));
-    SaidOutcome {
+    PublishedOutcome {
         said: said.clone(),
         fate,
         named_as,

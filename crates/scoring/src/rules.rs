@@ -13,7 +13,8 @@ pub type Name = (String, Option<String>);
 /// The expressed share below which an effect is not required.
 pub const LEAST_SHARE: f64 = 0.015;
 
-/// A common factor of all inertials within so many standard deviations of a URDF's error is a part of that error.
+/// A common factor of all inertials is a part of the URDF's error if it is within this many standard deviations of that
+/// error.
 const WITHIN_THE_URDF: f64 = 3.0;
 
 /// Whether it is a baseline effect of the machine, which is scored separately.
@@ -21,70 +22,73 @@ pub fn is_baseline(truth: &Truth, effect: &str) -> bool {
     truth.baseline().contains(&effect)
 }
 
-/// The equivalent name of the machine with `concealed`: no recording distinguishes the two. Dry friction that depends on the
-/// direction is a level and a constant, ½ (F₊ + F₋) sgn q̇ + ½ (F₊ − F₋), in motion and, as its two limits, at rest.
-pub fn same_machine(truth: &Truth, concealed: &Injected) -> Option<Name> {
-    let other = match concealed.name() {
+/// The equivalent name of the fault `injected`, which no recording distinguishes from its own; `None` if there is none. Dry
+/// friction that depends on the direction is the sum of a level and a constant, ½ (F₊ + F₋) sgn q̇ + ½ (F₊ − F₋), in motion
+/// and, as its two limits, at rest.
+pub fn same_machine(truth: &Truth, injected: &Injected) -> Option<Name> {
+    let other = match injected.name() {
         "torque_offset" => "friction_asymmetry",
         "friction_asymmetry" => "torque_offset",
         _ => return None,
     };
     let number = |of: &Injected, key: &str| of.parameters.get(key).and_then(serde_json::Value::as_f64);
-    // Friction of another kind beside it tells. That the constant sets in later does not, if the level is there by then.
+    // Another kind of friction on the joint makes the two names distinguishable. An onset of the constant does not, if the
+    // level acts by then.
     let beside: Vec<&Injected> = truth
         .of_note()
-        .filter(|c| c.joint == concealed.joint && is_dry_friction(c.name()) && c.name() != concealed.name())
+        .filter(|c| c.joint == injected.joint && is_dry_friction(c.name()) && c.name() != injected.name())
         .collect();
-    let is_plain = concealed.form.is_none();
-    let same = match (concealed.name(), beside.as_slice()) {
+    let is_plain = injected.form.is_none();
+    let same = match (injected.name(), beside.as_slice()) {
         ("friction_asymmetry", []) => is_plain,
-        // // A constant larger than the level would move the joint by itself.
+        // A constant larger than the level would move the joint by itself.
         ("torque_offset", [friction]) => {
-            let (offset, level) = (number(concealed, "offset")?, number(friction, "level")?);
+            let (offset, level) = (number(injected, "offset")?, number(friction, "level")?);
             let start = |of: &Injected| of.onset.unwrap_or(f64::NEG_INFINITY);
             is_plain
                 && friction.name() == "coulomb_friction"
                 && friction.form.is_none()
                 && offset.abs() < level
-                && start(friction) <= start(concealed)
+                && start(friction) <= start(injected)
         }
         _ => false,
     };
-    same.then(|| (other.to_owned(), concealed.joint.clone()))
+    same.then(|| (other.to_owned(), injected.joint.clone()))
 }
 
-/// What is true in a case.
+/// The names that are right in a case.
 #[derive(Clone, Debug, Default)]
 pub struct Key {
-    /// Injected, and in the catalogue.
+    /// Injected faults in the catalogue.
     pub known: BTreeSet<Name>,
-    /// Injected, and outside the catalogue.
+    /// Injected faults outside the catalogue.
     pub unknown: BTreeSet<Name>,
-    /// Accompanying an injected fault, or one of the small effects of real joints.
+    /// Effects that accompany an injected fault, and the small effects of real joints. Naming them is neither right nor
+    /// wrong.
     pub brought: BTreeSet<Name>,
 }
 
 impl Key {
-    /// The key to a case.
+    /// The names that are right in the case of `truth`.
     pub fn new(truth: &Truth) -> Self {
         let (mut known, mut unknown) = (BTreeSet::new(), BTreeSet::new());
-        for concealed in truth.of_note() {
-            let set = if concealed.is_outside_the_catalogue() {
+        for injected in truth.of_note() {
+            let set = if injected.is_outside_the_catalogue() {
                 &mut unknown
             } else {
                 &mut known
             };
-            set.insert((concealed.name().to_owned(), concealed.joint.clone()));
+            set.insert((injected.name().to_owned(), injected.joint.clone()));
         }
         let small: BTreeSet<Name> = truth
             .concealed
             .iter()
-            .filter(|concealed| concealed.minor)
-            .flat_map(|concealed| {
-                // The same torque in motion.
-                let also = (concealed.name() == "torque_offset").then_some("friction_asymmetry");
-                let names = also.into_iter().chain([concealed.name()]);
-                names.map(|name| (name.to_owned(), concealed.joint.clone()))
+            .filter(|injected| injected.minor)
+            .flat_map(|injected| {
+                // Asymmetric friction has the same torque in motion.
+                let also = (injected.name() == "torque_offset").then_some("friction_asymmetry");
+                let names = also.into_iter().chain([injected.name()]);
+                names.map(|name| (name.to_owned(), injected.joint.clone()))
             })
             .collect();
         let mut brought: BTreeSet<Name> = known
@@ -124,15 +128,16 @@ pub fn found_or_confusable(answer: &Answer) -> BTreeSet<Name> {
     set
 }
 
-/// The findings of `answer` as they are counted: `inertial_parameters` stands for each wrong link of its joint (of any, on the whole arm)
-/// that is not named beside it. Where the URDF is wrong everywhere such a link is moved in other ways, too, and inertials that differ are
-/// as baseline as friction; where it is exact, the name is right for a link that was moved in other ways, and false otherwise. On the
-/// whole arm it stands for a common factor of all inertials, too, that is no larger than what the URDF is wrong by.
+/// The findings of `answer` as they are counted: `inertial_parameters` is counted as each wrong link of its joint (of any
+/// joint, if it is on the whole arm) that is not named separately. If the URDF is wrong everywhere, the parameters of such
+/// a link differ in other ways as well, and `inertial_parameters` is a baseline effect. If the URDF is exact, the name is
+/// right for a link whose parameters differ in other ways, and false otherwise. On the whole arm, it is also counted as a
+/// common factor of all inertials that is not larger than the URDF's error.
 pub fn counted_findings(truth: &Truth, answer: &Answer) -> Answer {
     counted(truth, answer, true)
 }
 
-/// The findings as [`counted_findings`] gives them, but for the common factor, which is asked for by its own name.
+/// The findings as of [`counted_findings`], except that a common factor of all inertials is required by its own name.
 pub fn plainly_counted_findings(truth: &Truth, answer: &Answer) -> Answer {
     counted(truth, answer, false)
 }
@@ -147,27 +152,27 @@ fn counted(truth: &Truth, answer: &Answer, factor_too: bool) -> Answer {
     let wrong_everywhere = truth.has_a_wrong_urdf();
     let mut taken: BTreeSet<Name> = BTreeSet::new();
     for finding in general {
-        let is_meant = |concealed: &&Injected| match concealed.name() {
+        let is_meant = |injected: &&Injected| match injected.name() {
             LINK_INERTIAL => {
-                (wrong_everywhere || concealed.form.is_some())
-                    && (finding.joint.is_none() || finding.joint == concealed.joint)
+                (wrong_everywhere || injected.form.is_some())
+                    && (finding.joint.is_none() || finding.joint == injected.joint)
             }
-            ALL_INERTIALS => factor_too && finding.joint.is_none() && is_of_the_urdf(truth, concealed),
+            ALL_INERTIALS => factor_too && finding.joint.is_none() && is_of_the_urdf(truth, injected),
             _ => false,
         };
-        let mut stands = false;
-        for concealed in truth.of_note().filter(is_meant) {
-            stands = true;
-            let name = (concealed.name().to_owned(), concealed.joint.clone());
+        let mut is_counted = false;
+        for injected in truth.of_note().filter(is_meant) {
+            is_counted = true;
+            let name = (injected.name().to_owned(), injected.joint.clone());
             if !names.contains(&name) && taken.insert(name.clone()) {
                 let mut finding = finding.clone();
                 (finding.effect, finding.joint) = name;
-                // Its numbers are others.
+                // The parameters of the two effects are not comparable.
                 finding.parameters.clear();
                 findings.push(finding);
             }
         }
-        if !stands && !wrong_everywhere {
+        if !is_counted && !wrong_everywhere {
             findings.push(finding);
         }
     }
@@ -175,7 +180,8 @@ fn counted(truth: &Truth, answer: &Answer, factor_too: bool) -> Answer {
     counted
 }
 
-/// Whether a common factor of all inertials is within what each of them is wrong by in the URDF, so that nothing tells it from that.
+/// Whether a common factor of all inertials is within the error of each inertial in the URDF, so that no recording
+/// distinguishes it from that error.
 fn is_of_the_urdf(truth: &Truth, scale: &Injected) -> bool {
     let factor = truth_value(scale, "factor").unwrap_or(1.0);
     truth
@@ -184,20 +190,20 @@ fn is_of_the_urdf(truth: &Truth, scale: &Injected) -> bool {
 }
 
 /// Whether a diagnosis declares an effect of this size not testable with these recordings.
-pub fn is_declared_unseen(answer: &Answer, concealed: &Injected) -> bool {
+pub fn is_declared_unseen(answer: &Answer, injected: &Injected) -> bool {
     answer
         .not_observable
         .iter()
-        .filter(|unseen| unseen.effect == concealed.name() && unseen.joint == concealed.joint)
-        .any(|unseen| hides(unseen, concealed))
+        .filter(|unseen| unseen.effect == injected.name() && unseen.joint == injected.joint)
+        .any(|unseen| hides(unseen, injected))
 }
 
-fn hides(unseen: &DeclaredUnseen, concealed: &Injected) -> bool {
+fn hides(unseen: &DeclaredUnseen, injected: &Injected) -> bool {
     let (above, below) = (&unseen.would_be_seen_above, &unseen.would_be_seen_below);
     if above.is_empty() && below.is_empty() {
         return true;
     }
-    let size = |key: &String| truth_value(concealed, key).map(|value| (value - neutral(concealed.name())).abs());
+    let size = |key: &String| truth_value(injected, key).map(|value| (value - neutral(injected.name())).abs());
     let under = |(key, bound): (&String, &Option<f64>)| match (size(key), bound) {
         (Some(size), Some(bound)) => size < *bound,
         _ => false,

@@ -33,7 +33,7 @@ pub struct Tried {
     pub wrong_term: Option<Answer>,
     /// The tracking error of a task with the diagnosed effects over that with the exact model, where a task was tracked.
     pub tracking_over_exact: Option<f64>,
-    /// The tracking error over that with the exact model in a loop without the velocity filter's lag, where nothing but the model differs.
+    /// The same ratio in a loop without the lag of the velocity filter, in which only the model differs.
     pub tracking_over_exact_without_lag: Option<f64>,
     /// A second diagnosis, with the proposed experiment; `None` if there was none.
     pub again: Option<Again>,
@@ -44,72 +44,74 @@ pub struct Tried {
 pub struct Score {
     /// The number of cases.
     pub cases: usize,
-    /// Cases without an answer: nothing is found in them. They are excluded from shares of given names, from errors and from
-    /// intervals.
+    /// Cases without an answer. Nothing counts as found in them. They are excluded from shares of given names, from errors
+    /// and from intervals.
     pub unanswered: Vec<String>,
-    /// Cases with nothing but baseline effects.
+    /// Cases with only baseline effects.
     pub empty: usize,
     /// The targets, and whether they are reached.
     pub targets: Vec<Target>,
     /// The strict figures.
     pub strict: Strict,
-    /// The strict figures by how wrong the URDF was; groups without a case are left out.
+    /// The strict figures by the error of the URDF; groups without a case are omitted.
     pub by_urdf: Vec<UrdfGroup>,
-    /// By family: the effects that are not baseline, and have an expressed share above [`crate::LEAST_SHARE`].
+    /// The figures by family, for effects that are not baseline effects and have an expressed share above
+    /// [`crate::LEAST_SHARE`].
     pub families: BTreeMap<String, Family>,
-    /// F1 of each family, averaged over the families concealed.
+    /// F1 of each family, averaged over the families that are injected.
     pub macro_f1: Option<f64>,
-    /// Macro F1 if what was declared not testable counts as missed, and another name of the same machine as false.
+    /// Macro F1 if effects declared not testable count as missed, and equivalent names as false.
     pub macro_f1_strict: Option<f64>,
-    /// Baseline friction and drive inertia: found.
+    /// Baseline effects found: friction and drive inertia.
     #[serde(rename = "ordinary")]
     pub baseline: Counted,
-    /// Baseline effects named where they were not concealed.
+    /// Baseline effects named where they are not injected.
     #[serde(rename = "ordinary_false")]
     pub baseline_false: usize,
-    /// Cases with nothing but baseline effects in which something else was named, of those answered.
+    /// Cases with only baseline effects in which another effect is named, of those with an answer.
     pub empty_with_a_false_name: Counted,
-    /// Cases with something outside the catalogue that was refused on its joint.
+    /// Cases with an effect outside the catalogue that is refused on its joint.
     pub outside_refused: Counted,
-    /// Such cases in which a false name was given, on whatever joint, of those answered.
+    /// Cases with an effect outside the catalogue in which a false name is given on any joint, of those with an answer.
     pub outside_with_a_wrong_name: Counted,
-    /// Cases with nothing outside the catalogue in which a joint was said to be unexplained, of those answered.
+    /// Cases with no effect outside the catalogue in which a joint is declared unexplained, of those with an answer.
     pub refused_without_cause: Counted,
     /// Injected effects that are a finding or an alternative of a finding.
     pub covered: Counted,
-    /// Effects covered if what was declared not testable counts as not covered.
+    /// Injected effects that are a finding or an alternative, if effects declared not testable count as not covered.
     pub covered_strict: Counted,
     /// Detection against the effect's size.
     pub detection: Vec<Curve>,
     /// Errors of the parameters of effects found, by effect and parameter.
     pub parameters: Vec<ParameterScore>,
-    /// Of the main parameters of all effects that are not baseline: relative errors.
+    /// Relative errors of the main parameters of all effects that are not baseline effects.
     pub main_parameters: Errors,
-    /// Of all scored parameters of these effects: intervals that contain the true value.
+    /// Intervals that contain the true value, of all scored parameters of these effects.
     pub intervals: Counted,
-    /// Errors of prediction on the recording held out, over the true terms', case by case.
+    /// The prediction error on the held-out recording over that of the true terms, case by case.
     pub over_true_terms: Errors,
-    /// The ratio of held-out errors over joints instead of cases.
+    /// The same ratio, joint by joint.
     pub over_true_terms_by_joint: Errors,
-    /// Tracking error with the diagnosed effects over the exact model's, of the cases in which a task was tracked.
+    /// The tracking error with the diagnosed effects over that with the exact model, of the cases in which a task was
+    /// tracked.
     pub tracking_over_exact: Errors,
-    /// Tracking errors over those with the exact model, without the velocity filter's lag.
+    /// The same ratio without the lag of the velocity filter.
     pub tracking_over_exact_without_lag: Errors,
-    /// What was injected (rows) against what it was called (columns).
+    /// The confusion matrix: injected effects (rows) against the names given (columns).
     pub confusion: BTreeMap<String, BTreeMap<String, usize>>,
-    /// Probability against outcome, of findings that are not baseline.
+    /// Stated probability against outcome, of findings that are not baseline effects.
     pub calibration: Calibration,
-    /// Probability against outcome of all findings.
+    /// Stated probability against outcome, of all findings.
     pub calibration_of_all: Calibration,
     /// The count of the open cases' own script, without any of the distinctions above.
     pub plain: Plain,
     /// Every injected effect that is not a baseline effect, with its outcome.
     pub concealed: Vec<Outcome>,
-    /// Every false name that is not baseline.
+    /// Every false name that is not a baseline effect.
     pub false_names: Vec<FalseName>,
-    /// Every case with something outside the catalogue.
+    /// Every case with an effect outside the catalogue.
     pub outside: Vec<OutsideOutcome>,
-    /// Joints called unexplained in cases with nothing outside the catalogue.
+    /// Joints declared unexplained in cases with no effect outside the catalogue.
     pub refusals_without_cause: Vec<OutsideOutcome>,
     /// Every scored number.
     pub sizes: Vec<ScoredNumber>,
@@ -122,32 +124,32 @@ pub struct Score {
 /// The effects of one name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Family {
-    /// Injected with an expressed share that asks for them.
+    /// Injected with an expressed share from which an effect is required.
     pub concealed: usize,
-    /// Of these found, by this name or another of the same machine.
+    /// Required effects that are found, by this name or an equivalent one.
     pub found: usize,
-    /// Of these by another name of the same machine.
+    /// Required effects that are found by an equivalent name.
     pub same_machine: usize,
-    /// Of these found or an alternative of a finding.
+    /// Required effects that are found or are an alternative of a finding.
     pub covered: usize,
-    /// Of these not found, and declared not testable at their size.
+    /// Required effects that are not found and are declared not testable at their size.
     pub not_observable: usize,
-    /// Of these not found, and the joint refused instead.
+    /// Required effects that are not found while their joint is refused.
     pub refused: usize,
-    /// Injected with a smaller share: these are not required.
+    /// Injected with a smaller share, and therefore not required.
     pub too_small: usize,
-    /// Of those too small, found.
+    /// Effects with a smaller share that are found.
     pub too_small_found: usize,
-    /// Named where they were not.
+    /// Named where they are not injected.
     pub false_names: usize,
-    /// 2 found over (required + found + false); what was declared not testable is not required.
+    /// F1 = 2 found / (required + found + false). Effects declared not testable are not required.
     pub f1: Option<f64>,
-    /// F1 if that is required, too, and another name of the same machine is false.
+    /// F1 if effects declared not testable are required as well, and an equivalent name is false.
     pub f1_strict: Option<f64>,
 }
 
 impl Family {
-    /// Those required: visible, or not declared otherwise.
+    /// The number of required effects that are not declared not testable.
     pub fn asked(&self) -> usize {
         self.concealed - self.not_observable
     }
@@ -181,7 +183,7 @@ pub fn score(cases: &[Tried]) -> Score {
             ))
         })
         .collect();
-    // A case without an answer names nothing, which is no merit of it.
+    // A case without an answer names no effect, which must not count as correct.
     let answered = || {
         all.iter()
             .zip(cases)
@@ -260,7 +262,7 @@ fn mean(families: &BTreeMap<String, Family>, pick: impl Fn(&Family) -> Option<f6
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// The cases by how wrong their URDFs are.
+/// The cases in groups by the error of their URDFs.
 fn by_urdf(cases: &[Tried], all: &[CaseOutcome]) -> Vec<UrdfGroup> {
     let group = |urdf: UrdfError| {
         let mine: Vec<(&CaseOutcome, bool)> = all
@@ -300,7 +302,7 @@ fn families(concealed: &[Outcome], false_names: &[FalseName]) -> BTreeMap<String
     for false_name in false_names {
         families.entry(false_name.effect.clone()).or_default().false_names += 1;
     }
-    // By how many names of the same machine a family's name was given that the truth does not bring.
+    // How often a family's name was given as an equivalent name, without accompanying the injected effect.
     let mut given: BTreeMap<&str, usize> = BTreeMap::new();
     for outcome in concealed {
         let name = outcome.found_as.as_ref();
@@ -319,7 +321,8 @@ fn families(concealed: &[Outcome], false_names: &[FalseName]) -> BTreeMap<String
     families
 }
 
-/// The errors of the diagnosis over the true terms', joint by joint, where nothing is outside the catalogue.
+/// The held-out errors with the diagnosed effects over those with the true terms, joint by joint, of a case with no effect
+/// outside the catalogue.
 fn by_joint(case: &Tried) -> Vec<f64> {
     let (Some(answer), Some(oracle)) = (&case.answer, &case.true_terms) else {
         return Vec::new();
@@ -335,8 +338,8 @@ fn by_joint(case: &Tried) -> Vec<f64> {
     answer.fit.iter().filter_map(ratio).collect()
 }
 
-/// Rows: what was concealed and required, "outside the catalogue", "nothing there". Columns: names, "refused",
-/// "not testable", "not named".
+/// Rows: the injected and required effects, "outside the catalogue", "nothing there". Columns: names, "refused", "not
+/// testable", "not named".
 fn confusion(
     concealed: &[Outcome],
     false_names: &[FalseName],

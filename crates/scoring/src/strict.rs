@@ -1,4 +1,5 @@
-//! The strict figure: everything large enough is required, every name that is not true is false, and a size must be right, too.
+//! The strict figure: every effect of sufficient size is required, every name that is not true is false, and the size must
+//! be right.
 
 use std::collections::BTreeMap;
 
@@ -9,44 +10,45 @@ use crate::intervals::Counted;
 use crate::numbers::ScoredNumber;
 use crate::outcome::{CaseOutcome, Fate};
 
-/// The relative error above which a size is not right.
+/// The largest relative error of a size that counts as right.
 pub const SIZE_WITHIN: f64 = 0.2;
 
-/// Cases, counted strictly: what was declared not testable is required, another name of the same machine is false, and a size that
-/// can be compared must be within [`SIZE_WITHIN`].
+/// Cases, counted strictly: effects declared not testable are required, equivalent names are false, and a size that can be
+/// compared must be within [`SIZE_WITHIN`] of the true one.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Strict {
-    /// F1 averaged over the families concealed.
+    /// F1 averaged over the families that are injected.
     pub macro_f1: Option<f64>,
     /// Effects found with their size, of those required.
     pub right: Counted,
-    /// Those named, but with another size.
+    /// Required effects that are named with another size.
     pub wrong_size: usize,
     /// Names that are not true.
     pub false_names: usize,
-    /// False names of baseline effects; no family of theirs is in [`Self::macro_f1`].
+    /// False names of baseline effects, which are not in [`Self::macro_f1`].
     #[serde(rename = "ordinary_false")]
     pub baseline_false: usize,
-    /// Cases with a false name that is not baseline, of those answered.
+    /// Cases with a false name that is not a baseline effect, of those with an answer.
     pub cases_with_a_false_name: Counted,
-    /// 95 % intervals that contain the true value, of effects that are not baseline.
+    /// 95 % intervals that contain the true value, for effects that are not baseline effects.
     pub intervals: Counted,
-    /// By family.
+    /// The figures by family.
     pub families: BTreeMap<String, StrictFamily>,
 }
 
 /// The effects of one name, counted strictly.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StrictFamily {
-    /// Concealed with an expressed share that asks for them.
+    /// Injected with an expressed share from which an effect is required.
     pub asked: usize,
-    /// Of these found, with the right size.
+    /// Required effects that are found with the right size.
     pub right: usize,
-    /// Of these named, but with another size.
+    /// Required effects that are named with another size.
     pub wrong_size: usize,
-    /// Named where they were not.
+    /// Named where they are not injected.
     pub false_names: usize,
-    /// 2 right over (asked + right + wrong size + false): as any F1, 2 right over all that is required and all that is named.
+    /// F1 = 2 right / (required + right + wrong size + false): twice the right names over the sum of all required and all
+    /// given names.
     pub f1: Option<f64>,
 }
 
@@ -72,7 +74,7 @@ pub fn strict<'a>(cases: impl Iterator<Item = (&'a CaseOutcome, bool)>) -> Stric
                 let is_its = |sized: &&ScoredNumber| {
                     (&sized.effect, &sized.joint, sized.main) == (&outcome.effect, &outcome.joint, true)
                 };
-                // A size that cannot be compared is not held against the name.
+                // If the size cannot be compared, the name alone counts.
                 match case
                     .sizes
                     .iter()
@@ -116,23 +118,23 @@ pub fn strict<'a>(cases: impl Iterator<Item = (&'a CaseOutcome, bool)>) -> Stric
     }
 }
 
-/// How wrong the URDF of a case is.
+/// The error of the inertials in the URDF of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum UrdfError {
     /// Exact, apart from the injected faults.
     Exact,
-    /// Up to 20 %: a robot that was measured, or modelled with care.
+    /// Up to 20 %, as of a robot that was measured or modelled with care.
     Some,
-    /// More: masses from a CAD model without cables and covers.
+    /// More than 20 %, as of masses from a CAD model without cables and covers.
     Much,
 }
 
 impl UrdfError {
-    /// All, from exact on.
+    /// All groups, from exact to the largest error.
     pub const ALL: [Self; 3] = [Self::Exact, Self::Some, Self::Much];
 
-    /// Of a truth that says so much (about relative), or nothing.
+    /// The group of a relative error `sigma`; `None` is an exact URDF.
     pub fn of(sigma: Option<f64>) -> Self {
         match sigma.unwrap_or(0.0) {
             0.0 => Self::Exact,
@@ -141,7 +143,7 @@ impl UrdfError {
         }
     }
 
-    /// In words.
+    /// The group in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Exact => "exact",
@@ -151,15 +153,15 @@ impl UrdfError {
     }
 }
 
-/// Cases whose URDFs are about as wrong.
+/// The figures of the cases in one group.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct UrdfGroup {
-    /// How wrong.
+    /// The error of the URDF.
     pub urdf: UrdfError,
-    /// How many cases.
+    /// The number of cases.
     pub cases: usize,
     /// F1 averaged over the families, not counted strictly.
     pub macro_f1: Option<f64>,
-    /// The outcome of them.
+    /// The strict figures of the cases.
     pub strict: Strict,
 }

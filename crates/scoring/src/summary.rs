@@ -8,38 +8,38 @@ use crate::intervals::{Counted, quantile};
 use crate::numbers::ScoredNumber;
 use crate::outcome::{Fate, Outcome};
 
-/// Found or not, against one measure of size.
+/// The detection rate against one measure of size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
     /// The measure: `expressed_share`, or `over_noise` (see [`Outcome::over_noise`]).
     pub measure: String,
-    /// From small to large; empty bins are left out.
+    /// The bins from small to large; empty bins are omitted.
     pub bins: Vec<SizeBin>,
 }
 
-/// Effects of about one size.
+/// Effects of similar size.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SizeBin {
     /// The lower end of the bin.
     pub from: f64,
-    /// The upper end of the bin; `None` has no end.
+    /// The upper end of the bin; `None` for the last bin, which has no end.
     pub to: Option<f64>,
-    /// Those found.
+    /// The effects found.
     pub found: Counted,
-    /// Those found or an alternative of a finding.
+    /// The effects that are found or are an alternative of a finding.
     pub covered: Counted,
-    /// Those not found and declared not testable; they are among those that `found` is of.
+    /// The number of effects that are not found and are declared not testable; `found` counts them as not found.
     pub not_observable: usize,
 }
 
-/// Absolute relative errors, or ratios.
+/// The distribution of absolute relative errors, or of ratios.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
-    /// How many.
+    /// The number of values.
     pub count: usize,
-    /// Half are below.
+    /// The median.
     pub median: Option<f64>,
-    /// Nine tenths are below.
+    /// The 90th percentile.
     pub ninetieth: Option<f64>,
 }
 
@@ -50,7 +50,7 @@ pub struct ParameterScore {
     pub effect: String,
     /// The parameter.
     pub parameter: String,
-    /// Whether it is the effect's main one.
+    /// Whether it is the main parameter of the effect.
     pub main: bool,
     /// Relative errors.
     pub errors: Errors,
@@ -58,7 +58,7 @@ pub struct ParameterScore {
     pub covered: Counted,
 }
 
-/// The median and the 90th percentile.
+/// The distribution of `values`.
 pub fn errors(values: impl IntoIterator<Item = f64>) -> Errors {
     let values: Vec<f64> = values.into_iter().collect();
     Errors {
@@ -68,21 +68,21 @@ pub fn errors(values: impl IntoIterator<Item = f64>) -> Errors {
     }
 }
 
-/// Detection against both measures of size, over all injected effects, also the small ones.
-pub fn curves(concealed: &[Outcome]) -> Vec<Curve> {
+/// The detection rate against both measures of size, over all injected effects, including small ones.
+pub fn curves(injected: &[Outcome]) -> Vec<Curve> {
     let shares: &[f64] = &[0.0, 0.0075, 0.015, 0.03, 0.06, 0.12, 0.25];
     let noises: &[f64] = &[0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
     vec![
-        curve("expressed_share", shares, concealed, &|outcome| outcome.share),
-        curve("over_noise", noises, concealed, &|outcome| outcome.over_noise),
+        curve("expressed_share", shares, injected, &|outcome| outcome.share),
+        curve("over_noise", noises, injected, &|outcome| outcome.over_noise),
     ]
 }
 
-fn curve(measure: &str, bounds: &[f64], concealed: &[Outcome], size: &dyn Fn(&Outcome) -> Option<f64>) -> Curve {
+fn curve(measure: &str, bounds: &[f64], injected: &[Outcome], size: &dyn Fn(&Outcome) -> Option<f64>) -> Curve {
     let bin = |k: usize| {
         let (from, to) = (bounds[k], bounds.get(k + 1).copied());
         let inside = |outcome: &&Outcome| size(outcome).is_some_and(|s| s >= from && to.is_none_or(|to| s < to));
-        let mine: Vec<&Outcome> = concealed.iter().filter(inside).collect();
+        let mine: Vec<&Outcome> = injected.iter().filter(inside).collect();
         (!mine.is_empty()).then(|| SizeBin {
             from,
             to,
@@ -97,7 +97,7 @@ fn curve(measure: &str, bounds: &[f64], concealed: &[Outcome], size: &dyn Fn(&Ou
     }
 }
 
-/// By effect and parameter.
+/// The errors and intervals by effect and parameter.
 pub fn parameter_scores(sizes: &[ScoredNumber]) -> Vec<ParameterScore> {
     let mut groups: BTreeMap<(&str, bool, &str), Vec<&ScoredNumber>> = BTreeMap::new();
     for sized in sizes {

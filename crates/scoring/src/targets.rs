@@ -11,25 +11,25 @@ use crate::strict::{UrdfError, UrdfGroup};
 pub enum Figure {
     /// F1 averaged over the families, counted strictly.
     Strict,
-    /// Cases with a false name, whatever is injected in them.
+    /// Cases with a false name, of all cases.
     FalseCases,
     /// F1 averaged over the families.
     MacroF1,
-    /// Empty cases with a false name.
+    /// Cases with a false name, of those with only baseline effects.
     EmptyCases,
-    /// Outside the catalogue, refused.
+    /// Effects outside the catalogue that are refused on the right joint.
     OutsideRefused,
-    /// Outside the catalogue, given a wrong name.
+    /// Cases with an effect outside the catalogue and a wrong name.
     OutsideNamed,
     /// Relative errors of the main parameters.
     ParameterErrors,
     /// Intervals that contain the true value.
     Intervals,
-    /// The truth is named, or an alternative of a finding.
+    /// Injected effects that are named or are an alternative of a finding.
     Covered,
-    /// Held-out errors over the true terms'.
+    /// Held-out errors over those with the true terms.
     HeldOut,
-    /// Tracking errors over the exact model's.
+    /// Tracking errors over those with the exact model.
     Tracking,
     /// Confusions that the proposed experiment resolved.
     Confusions,
@@ -38,7 +38,7 @@ pub enum Figure {
 /// A figure with its target.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Target {
-    /// Which it is.
+    /// The figure.
     #[serde(skip)]
     pub id: Figure,
     /// The label.
@@ -49,7 +49,7 @@ pub struct Target {
     pub at_least: Option<f64>,
     /// The largest value that meets it.
     pub at_most: Option<f64>,
-    /// The share that it is, with its counts.
+    /// The counts, if the figure is a share.
     pub counted: Option<Counted>,
     /// The number of items.
     pub of: usize,

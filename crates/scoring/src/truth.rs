@@ -15,11 +15,12 @@ use crate::catalogue::{BASELINE, BASELINE_WITH_DRIVES, DRIVE_INERTIA, canonical,
 pub struct Truth {
     /// The case's name, that of its folder.
     pub case: String,
-    /// Everything that was injected, baseline friction among it.
+    /// All injected faults, including baseline friction.
     pub concealed: Vec<Injected>,
     /// Standard deviation of the noise on each torque (N m or N), base to tip.
     pub torque_noise: Vec<f64>,
-    /// How wrong the inertials of the case's URDF are everywhere, about relative; `None` where nobody said: exact but for what is injected.
+    /// The relative standard deviation of the errors of all inertials in the case's URDF; `None` if the URDF is exact apart
+    /// from the injected faults.
     #[serde(default)]
     pub urdf_sigma: Option<f64>,
 }
@@ -34,14 +35,14 @@ pub struct Injected {
     /// The functional form, if it is not the textbook form.
     #[serde(default)]
     pub form: Option<String>,
-    /// When it sets in (s, on the recordings' clock), where it is not there from the start.
+    /// Its onset (s, on the recordings' clock); `None` if it always acts.
     #[serde(default)]
     pub onset: Option<f64>,
-    /// The largest part of a joint's torque (in standard deviations, over the training recordings) that vanishes when the machine is run
-    /// without it; `None` where nobody said.
+    /// The largest part of a joint's torque (in standard deviations, over the training recordings) that vanishes when the
+    /// machine is simulated without it; `None` if the author of the case does not state it.
     #[serde(default)]
     pub expressed_share: Option<f64>,
-    /// Whether it is one of the small effects of real joints: neither required, nor false when named.
+    /// Whether it is one of the small effects of real joints, which are neither required nor false if they are named.
     #[serde(default)]
     pub minor: bool,
     /// The catalogue's parameters (SI), by name.
@@ -50,9 +51,9 @@ pub struct Injected {
 }
 
 impl Truth {
-    /// The effects that every machine like this one has and its URDF leaves out, so that they are scored apart: plain friction, and the
-    /// drives' inertias where the robot comes with them. Faults are injected on a joint: inertia on every one of several joints is the
-    /// robot's own.
+    /// The effects that every machine of this kind has and its URDF omits. They are scored separately: plain friction, and
+    /// the inertias of drives if the robot itself has them. Faults are injected on single joints, so that inertias on each
+    /// of several joints belong to the robot.
     pub fn baseline(&self) -> &'static [&'static str] {
         let joints = self.torque_noise.len();
         let drives = self
@@ -66,17 +67,18 @@ impl Truth {
         }
     }
 
-    /// Whether the URDF is wrong everywhere: inertials that differ from it are baseline then.
+    /// Whether the URDF is wrong everywhere, so that inertials that differ from it are a baseline effect.
     pub fn has_a_wrong_urdf(&self) -> bool {
         self.urdf_sigma.is_some_and(|sigma| sigma > 0.0)
     }
 
-    /// What is injected and required, or baseline: all but the small things of real joints.
+    /// The injected faults without the small effects of real joints: those that are required, and baseline effects.
     pub fn of_note(&self) -> impl Iterator<Item = &Injected> {
         self.concealed.iter().filter(|injected| !injected.minor)
     }
 
-    /// Reported over true torque of a joint, where that is one of its small things: what is weighed there is in the recorded torque's unit.
+    /// The reported over the true torque of a joint, if the joint has a torque scale as a small effect; one otherwise. True
+    /// parameters that are proportional to the torque are multiplied by it.
     pub fn torque_unit(&self, joint: Option<&str>) -> f64 {
         let on_it = |injected: &&Injected| {
             injected.minor && injected.name() == "torque_scale" && injected.joint.as_deref() == joint
@@ -87,12 +89,12 @@ impl Truth {
 }
 
 impl Injected {
-    /// The catalogue's name, also of truths that were written under another.
+    /// The catalogue's name, also for ground truths that were written under an older name.
     pub fn name(&self) -> &str {
         canonical(&self.effect)
     }
 
-    /// Whether no name of the catalogue fits it.
+    /// Whether it is outside the catalogue.
     pub fn is_outside_the_catalogue(&self) -> bool {
         is_outside(&self.effect)
     }

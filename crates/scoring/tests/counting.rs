@@ -1,4 +1,4 @@
-//! What counts as right, covered, not testable, refused and false, on cases made by hand.
+//! Which answers count as right, covered, not testable, refused and false, in made-up cases.
 
 use scoring::{Answer, Fate, Score, Tried, Truth, score, true_terms, wrong_term};
 use serde_json::{Value, json};
@@ -55,7 +55,7 @@ fn an_effect_is_found_covered_declared_unseen_refused_or_missed() {
         let score = scored(backlash(), answer(findings, unexplained, not_observable));
         assert_eq!(score.concealed.len(), 1);
         assert_eq!(score.concealed[0].fate, fate);
-        // The joint's own noise, .2 N m of 4 N m: joints of the truth are in the arm's order.
+        // The joint's own noise is 0.2 N m of 4 N m, because the joints of the ground truth are in the arm's order.
         let over = score.concealed[0].over_noise.expect("the noise is known");
         assert!((over - 1.0).abs() < 1e-12, "{over}");
         let family = &score.families["backlash"];
@@ -73,9 +73,9 @@ fn an_effect_is_found_covered_declared_unseen_refused_or_missed() {
     }
 }
 
-/// An offset beside dry friction and friction that differs by direction are one machine: either name is right if it admits the other.
+/// An offset with dry friction equals friction that differs by direction: either name is right if it lists the other.
 #[test]
-fn another_name_of_the_same_machine_is_right() {
+fn an_equivalent_name_is_right() {
     let truth = |offset: f64| {
         json!([{"effect": "coulomb_friction", "joint": "a", "level": 1.0},
             {"effect": "torque_offset", "joint": "a", "offset": offset, "expressed_share": 0.05}])
@@ -101,7 +101,7 @@ fn another_name_of_the_same_machine_is_right() {
         scored(from(1, 30.0), named(rival.clone())).concealed[0].fate,
         Fate::SameMachine
     );
-    // One that is not admitted, would push by itself, or is there before the friction is another machine.
+    // Not equivalent: the other is not listed, the offset alone moves the joint, or it acts before the friction.
     for score in [
         scored(truth(0.5), named(json!([]))),
         scored(truth(1.5), named(rival.clone())),
@@ -113,7 +113,7 @@ fn another_name_of_the_same_machine_is_right() {
 }
 
 #[test]
-fn small_effects_are_not_asked_for_and_not_false() {
+fn effects_with_a_small_share_are_neither_required_nor_false() {
     let small = json!([{"effect": "spring", "joint": "a", "stiffness": 1.0, "expressed_share": 0.01}]);
     let found = answer(json!([finding("spring", "a", json!([]))]), json!([]), json!([]));
     let score = scored(small, found);
@@ -123,7 +123,7 @@ fn small_effects_are_not_asked_for_and_not_false() {
 }
 
 #[test]
-fn what_is_brought_is_neither_right_nor_wrong_and_the_rest_is_false() {
+fn accompanying_effects_are_neither_right_nor_wrong() {
     let stribeck = json!([{"effect": "stribeck_friction", "joint": "a", "breakaway": 2.0, "coulomb": 1.0, "expressed_share": 0.1}]);
     let list = json!([
         finding("coulomb_friction", "a", json!([])),
@@ -140,7 +140,7 @@ fn what_is_brought_is_neither_right_nor_wrong_and_the_rest_is_false() {
 }
 
 #[test]
-fn numbers_are_compared_in_parts_of_the_truth() {
+fn parameter_errors_are_relative_to_the_truth() {
     let concealed = json!([{"effect": "torque_scale", "joint": "a", "factor": 1.2, "expressed_share": 0.2},
         {"effect": "coulomb_friction", "joint": "b", "level": 2.0}]);
     let number = |value: f64, low: Option<f64>, high: f64| json!({"value": value, "ci95": [low, high]});
@@ -159,13 +159,13 @@ fn numbers_are_compared_in_parts_of_the_truth() {
     };
     assert!((of("torque_scale").error - 0.1).abs() < 1e-9 && of("torque_scale").covered);
     assert!((of("coulomb_friction").error - 0.1).abs() < 1e-9 && !of("coulomb_friction").covered);
-    // An interval that is open at both ends holds nothing.
+    // An interval that is open at both ends contains no value.
     let mut open = finding("torque_scale", "a", json!([]));
     open["parameters"] = json!({"factor": {"value": 1.2, "ci95": [null, null]}});
     let concealed = json!([{"effect": "torque_scale", "joint": "a", "factor": 1.2, "expressed_share": 0.2}]);
     let wide = scored(concealed, answer(json!([open]), json!([]), json!([])));
     assert_eq!((wide.intervals.hits, wide.intervals.of), (0, 1));
-    // What is baseline is not among the figures required.
+    // Baseline effects are not in the required figures.
     assert_eq!((score.main_parameters.count, score.intervals.of), (1, 1));
 }
 
@@ -197,9 +197,10 @@ fn outside_the_catalogue_is_refused_on_its_joint_or_not() {
     assert_eq!(empty.over_true_terms.median, Some(1.0));
 }
 
-/// No answer is no merit: nothing is found, and no empty case is clean for it. What is declared not testable is not covered, strictly.
+/// Without an answer, no effect is found, and an empty case is not free of false names. Strictly, an effect declared not
+/// testable is not covered.
 #[test]
-fn no_answer_and_no_claim_are_no_merit() {
+fn no_answer_counts_as_missed() {
     let tried = |concealed: Value, answer: Option<Answer>| Tried {
         truth: truth(concealed),
         joints: vec!["b".into(), "a".into()],
@@ -221,7 +222,7 @@ fn no_answer_and_no_claim_are_no_merit() {
 }
 
 #[test]
-fn a_wrong_term_is_none_of_the_true_ones_nor_a_part_of_them() {
+fn a_wrong_term_is_neither_a_true_one_nor_a_part_of_one() {
     let truth = truth(json!([{"effect": "coulomb_friction", "joint": "a", "level": 2.0},
         {"effect": "load_dependent_friction", "joint": "a", "gain": 0.1, "expressed_share": 0.1},
         {"effect": "spring", "joint": "a", "stiffness": 3.0, "expressed_share": 0.3},
@@ -253,9 +254,9 @@ fn tried(name: &str, concealed: Value, sigma: f64, findings: Value) -> Tried {
     }
 }
 
-/// Where the URDF is wrong everywhere, inertials that differ are baseline, and stand for the wrong link among them.
+/// If the URDF is wrong everywhere, inertial parameters are a baseline effect, and the name counts for the wrong link.
 #[test]
-fn inertials_stand_for_a_wrong_link() {
+fn inertials_count_as_a_wrong_link() {
     let link = || json!([{"effect": "link_inertial_error", "joint": "a", "relative": 0.3, "expressed_share": 0.1}]);
     let arm = json!({"effect": "inertial_parameters", "joint": null, "share": 0.2, "probability": 0.9});
     let on = |joint: &str| json!([finding("inertial_parameters", joint, json!([]))]);
@@ -264,7 +265,8 @@ fn inertials_stand_for_a_wrong_link() {
         (link(), 0.1, json!([arm]), 1, 0),
         (link(), 0.1, on("b"), 0, 0),
         (json!([]), 0.1, on("b"), 0, 0),
-        // Where it is exact, the name is false; but for a link that was moved in other ways than in mass.
+        // If the URDF is exact, the name is false, except for a link whose parameters differ in other ways than by a common
+        // factor.
         (json!([]), 0.0, on("b"), 0, 1),
         (link(), 0.0, on("a"), 0, 1),
         (
@@ -283,9 +285,9 @@ fn inertials_stand_for_a_wrong_link() {
     }
 }
 
-/// A common factor of all inertials that is no larger than what each of them is wrong by is a part of the URDF's error.
+/// A common factor of all inertials that is not larger than the error of each inertial is a part of the URDF's error.
 #[test]
-fn inertials_of_the_whole_arm_stand_for_a_small_common_factor() {
+fn inertials_of_the_whole_arm_count_as_a_small_common_factor() {
     let scale =
         |factor: f64| json!([{"effect": "inertial_scale", "joint": null, "factor": factor, "expressed_share": 0.1}]);
     let arm = || json!([{"effect": "inertial_parameters", "joint": null, "share": 0.2, "probability": 0.9}]);
@@ -299,12 +301,13 @@ fn inertials_of_the_whole_arm_stand_for_a_small_common_factor() {
     ] {
         let score = score(&[tried("case_000", scale(factor), sigma, findings)]);
         assert_eq!(score.strict.right.hits, found, "{factor} {sigma}");
-        // The plain count knows the one rule of the shared cases.
+        // The plain count has only the rule for wrong links.
         assert_eq!((score.plain.found, score.plain.false_in_all()), (0, 0));
     }
 }
 
-/// The small things of real joints are not required, and not false; what is weighed beside a torque constant is in its unit.
+/// The small effects of real joints are neither required nor false. True parameters beside a wrong torque constant are in
+/// the unit of the reported torque.
 #[test]
 fn minor_effects_are_not_scored() {
     let small = json!([
@@ -343,15 +346,15 @@ fn minor_effects_are_not_scored() {
         [("quadratic_drag".to_owned(), Some("a".to_owned()))]
     );
     assert!(wrong_term(&case.truth, 0).is_some_and(|wrong| wrong.instead_of.0 == "quadratic_drag"));
-    // A case with nothing else is empty.
+    // A case with only small effects is empty.
     let three: Vec<Value> = small.as_array().expect("a list")[..3].to_vec();
     let empty = score(&[tried("case_000", json!(three), 0.0, json!([]))]);
     assert_eq!((empty.empty, empty.plain.clean), (1, 1));
 }
 
-/// Strictly, a wrong size is no find, what was declared not testable is missed, and each group of URDFs stands by itself.
+/// Strictly, an effect with a wrong size is not found, and one declared not testable is missed; URDFs are grouped by error.
 #[test]
-fn the_strict_figure_asks_for_sizes_and_is_told_by_urdf() {
+fn the_strict_figure_requires_sizes_and_is_grouped_by_urdf() {
     let drag = || json!([{"effect": "quadratic_drag", "joint": "a", "coefficient": 4.0, "expressed_share": 0.015}]);
     let named = |value: f64| {
         let mut finding = finding("quadratic_drag", "a", json!([]));

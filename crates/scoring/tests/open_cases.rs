@@ -1,4 +1,4 @@
-//! Our score of the shared open cases is that of their own script (`../shared`, with a Python).
+//! The plain score of the shared open cases equals that of their own script (`../shared`, needs Python).
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -9,8 +9,8 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Names of a case's injected effects as a diagnosis would give them, some dropped, one invented: what is scored need not
-/// be good, but must be counted alike.
+/// A made-up diagnosis with the names of a case's injected effects, of which some are dropped and one is invented. Both
+/// counts must agree on it.
 fn made_up(truth: &Truth, number: usize) -> serde_json::Value {
     let finding = |effect: &str, joint: &Option<String>, rival: &str| {
         serde_json::json!({"effect": effect, "joint": joint, "parameters": {}, "probability": 0.9, "share": 0.1,
@@ -24,7 +24,7 @@ fn made_up(truth: &Truth, number: usize) -> serde_json::Value {
                 unexplained.push(serde_json::json!({"joint": concealed.joint}));
             }
         } else if (number + k).is_multiple_of(5) {
-            // Missed, but in the set of something false on the same joint.
+            // The effect is missed, but it is an alternative of a false name on the same joint.
             findings.push(finding("torque_ripple", &concealed.joint, concealed.name()));
         } else if !(number + k).is_multiple_of(7) {
             findings.push(finding(concealed.name(), &concealed.joint, "spring"));
@@ -43,7 +43,7 @@ fn folder(name: &str) -> PathBuf {
     root().join("../shared/blind").join(name)
 }
 
-/// The script's lines that hold numbers, as we would print them.
+/// Our score in the format of the script's lines with numbers.
 fn printed(cases: &[Tried]) -> Vec<String> {
     let plain = score(cases).plain;
     let found = plain.found as f64;
@@ -117,7 +117,7 @@ fn compare(truths: &Path, answers: &Path) {
 
 #[test]
 #[ignore = "needs ../shared"]
-fn our_count_is_the_scripts() {
+fn the_plain_count_equals_the_scripts() {
     for name in ["truth", "hard_truth"] {
         let truths = folder(name);
         let answers = tempfile::tempdir().expect("a folder");
@@ -128,7 +128,7 @@ fn our_count_is_the_scripts() {
             .collect();
         files.sort();
         for (number, file) in files.iter().enumerate() {
-            // One case gets no answer.
+            // One case has no answer.
             if number == 3 {
                 continue;
             }
@@ -144,7 +144,7 @@ fn our_count_is_the_scripts() {
 /// `TESTBED_ANSWERS=folder` compares a folder of real diagnoses `case_*.json`, too.
 #[test]
 #[ignore = "needs ../shared"]
-fn our_count_of_real_diagnoses_is_the_scripts() {
+fn the_plain_count_of_real_diagnoses_equals_the_scripts() {
     if let Some(answers) = std::env::var_os("TESTBED_ANSWERS") {
         compare(&folder("truth"), Path::new(&answers));
     }

@@ -20,7 +20,7 @@ use self::supposed::supposed;
 use self::supposition::{Supposition, fit};
 use self::torque_unit::MOTOR_SIDE;
 
-/// A torque more than this times the model's is in another unit.
+/// A torque that exceeds the model's by more than this factor is in another unit.
 const OTHER_UNIT: f64 = 100.0;
 /// The largest speed of a robot, as a multiple of the URDF's limit; many URDFs have limits of the normal operation.
 const BEYOND: f64 = 5.0;
@@ -34,7 +34,7 @@ pub struct Misfit {
     pub text: String,
     /// Whether it must be corrected before the robot can be diagnosed.
     #[serde(skip)]
-    pub spoils: bool,
+    pub prevents_diagnosis: bool,
     /// The keys of a column map that correct it.
     #[serde(skip)]
     pub changes: Vec<Change>,
@@ -45,13 +45,13 @@ impl Misfit {
         Self {
             joint: joint.map(str::to_owned),
             text: text.into(),
-            spoils: false,
+            prevents_diagnosis: false,
             changes,
         }
     }
 }
 
-/// The column map that mends `misfits` of `recording`.
+/// The column map (TOML) that corrects `misfits` of `recording`; `None` if none of them can be corrected by a map.
 pub fn column_map(misfits: &[Misfit], recording: &Recording) -> Option<String> {
     let changes: Vec<Change> = misfits
         .iter()
@@ -64,7 +64,7 @@ pub fn column_map(misfits: &[Misfit], recording: &Recording) -> Option<String> {
 pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Misfit> {
     let mut misfits = names(arm, regular);
     if let Some(misfit) = positions::of_time(arm, quality) {
-        // Speeds and accelerations say nothing then.
+        // With a wrong unit of time, speeds and accelerations show nothing.
         misfits.push(misfit);
         return misfits;
     }
@@ -125,7 +125,7 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
     }
     if let (Some(order), Some(smooth)) = (order, smooth) {
         let moves: Vec<bool> = order.iter().map(|&joint| quality.joints[joint].moves).collect();
-        // Positions in degrees or of another joint leave nothing to compare torques with.
+        // With positions in degrees or of another joint, the model's torques are meaningless.
         let doubted = quality.findings.iter().any(|finding| {
             matches!(
                 finding.kind,
@@ -186,24 +186,28 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
     let names: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
     let as_it_is = fit(arm, smooth, Supposition::AsItIs);
     if let Some((text, changes)) = torque_unit::of(&names, moves, &as_it_is) {
-        let spoils = true;
+        let prevents_diagnosis = true;
         return vec![Misfit {
-            spoils,
+            prevents_diagnosis,
             ..Misfit::new(None, text, changes)
         }];
     }
     if let Some(misfit) = supposed(arm, smooth, moves, &names, &as_it_is) {
-        // With signs or an order of all joints that are another arm's no search is of use. A zero, a sign or a swap of one or two
-        // joints is only told: where the URDF's inertial parameters are wrong a light link's centre of mass may lie in another
-        // direction, and torques do not tell that from a zero off by a quarter of a turn. So do the light links of an arm whose
-        // heavy ones explain the torque of most joints as they are, because they look the same in a mirror.
+        // Wrong signs or a wrong order of all joints make a diagnosis useless. A wrong zero, sign or swap of one or two
+        // joints is only reported, because it may not be one: where the URDF's inertial parameters are wrong, the centre of
+        // mass of a light link may lie in another direction, and torques do not distinguish that from a zero that is off by
+        // a quarter of a turn. The same holds for inverted signs of all joints if the heavy links explain the torque of
+        // most joints without the inversion: the light links alone fit a mirrored arm as well.
         let is_changed = |name: &&str| misfit.changes.iter().any(|change| change.is_of(name));
-        let spoils = names.iter().all(is_changed) && !as_it_is.explains_most(moves);
-        return vec![Misfit { spoils, ..misfit }];
+        let prevents_diagnosis = names.iter().all(is_changed) && !as_it_is.explains_most(moves);
+        return vec![Misfit {
+            prevents_diagnosis,
+            ..misfit
+        }];
     }
     let mut misfits = Vec::new();
     for (joint, &factor) in as_it_is.factor.iter().enumerate() {
-        let matters = moves[joint] && as_it_is.told_by_model(joint);
+        let matters = moves[joint] && as_it_is.needs_model(joint);
         let size = factor.abs();
         if matters && factor > 0.0 && !(MOTOR_SIDE..OTHER_UNIT).contains(&size) {
             let what = if size < 1.0 {

@@ -41,8 +41,8 @@ impl EffectFile {
     /// Reads the file at `path`, whose effects must fit `arm`.
     ///
     /// # Errors
-    /// With file, line, reason and remedy: if the file is unreadable, is no such TOML, or is another robot's; if an effect or
-    /// joint does not exist; if a parameter is physically impossible.
+    /// With file, line, reason and remedy: if the file is unreadable, is not such a TOML file, or belongs to another robot;
+    /// if an effect or joint does not exist; if a parameter is physically impossible.
     pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Self> {
         let text = std::fs::read_to_string(path).with_context(|| {
             let path = path.display();
@@ -177,7 +177,7 @@ pub fn effect(source: &Source, span: Range<usize>, table: toml::Table, arm: &Arm
     }
     let effect = Effect::deserialize(toml::Value::Table(table)).map_err(|error| {
         let message = error.message();
-        // The key that serde quotes first is the one in question.
+        // The key that serde quotes first is the wrong one.
         let key = if message.starts_with("unknown variant") {
             Some("effect")
         } else {
@@ -243,7 +243,8 @@ fn refusal(error: &TorqueError) -> (Option<String>, String) {
     }
 }
 
-/// Where within the table that begins at `table` a line has `key` as its key (or as its text value); the table itself, if none has.
+/// The range of bytes of the line in `table` that has `key` as its key or as its text value; `table` itself if there is
+/// none.
 fn key_span(text: &str, table: &Range<usize>, key: Option<&str>) -> Range<usize> {
     let start = table.start.min(text.len());
     let Some(key) = key else { return start..start };

@@ -1,4 +1,4 @@
-//! What formats of other programs can hold of the effects: the common part of URDF and MJCF.
+//! The parts of effects that the formats of other programs can hold: what URDF and MJCF have in common.
 
 use arm::Joint;
 use effects::drive::RotorInertia;
@@ -10,8 +10,8 @@ use effects::{Effect, InUrdf};
 pub struct Export {
     /// The text of the file.
     pub text: String,
-    /// What the format cannot hold, one line each.
-    pub left: Vec<String>,
+    /// The effects, or parts of them, that the format cannot hold, one line each.
+    pub omitted: Vec<String>,
 }
 
 /// The part of an effect that a format can hold.
@@ -25,8 +25,8 @@ pub enum Held {
     Nothing,
 }
 
-/// The part of an effect that dry friction of one level, the same at every speed and in both directions, can hold, with that
-/// level (N m or N); `None` if it is no dry friction.
+/// The level of a dry friction (N m or N) in a format that has one level for all speeds and both directions, and the part
+/// of the effect that this level holds; `None` for an effect that is not dry friction.
 pub fn level(effect: &Effect) -> Option<(f64, Held)> {
     if effect.onset().is_some() {
         None
@@ -49,7 +49,7 @@ pub fn level(effect: &Effect) -> Option<(f64, Held)> {
     }
 }
 
-/// The part of an effect that damping, one level of friction and inertia can hold, which URDF and MJCF have in common.
+/// The part of an effect that URDF and MJCF can both hold: damping, one level of dry friction, bodies, rotor inertias.
 pub fn in_common(effect: &Effect) -> Held {
     if effect.onset().is_some() {
         Held::Nothing
@@ -104,6 +104,6 @@ pub fn left_out(effects: &[Effect], held: impl Fn(&Effect) -> Held) -> anyhow::R
 
 /// Lines as the text of an XML comment.
 pub fn comment(lines: &[String]) -> String {
-    // Two hyphens end a comment, and one must not be its last character.
+    // A comment in XML must not contain two hyphens in a row.
     lines.join("\n       ").replace("--", "- -").replace("--", "- -")
 }

@@ -56,7 +56,7 @@ impl Given {
 /// The recordings of a diagnosis.
 #[derive(Clone, Debug, Default)]
 pub struct Recordings {
-    /// Recordings from before something happened.
+    /// Recordings from before a change of the robot (`--before`).
     pub before: Vec<Given>,
     /// Training recordings.
     pub train: Vec<Given>,
@@ -74,11 +74,11 @@ pub struct Prepared {
     pub regular: RegularRecording,
     /// Its role.
     pub role: Role,
-    /// Some of its stretches, from before parts of it were left out.
+    /// Some of its stretches of samples, taken before parts of a long recording are dropped.
     stretches: Stretches,
-    /// The second of a calendar that its time is counted from.
+    /// The calendar time (s since 1970) from which its time is counted; `None` for stamps without a date.
     epoch: Option<i64>,
-    /// The column map that mends what does not fit the arm.
+    /// The column map that corrects its contradictions with the arm.
     column_map: Option<String>,
     /// Why it cannot be diagnosed as it was read; empty if it can.
     pub doubts: Vec<Doubt>,
@@ -87,7 +87,7 @@ pub struct Prepared {
 /// The role of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Fitted, and made before something happened.
+    /// Training recording from before a change of the robot.
     Before,
     /// Training recording.
     Train,
@@ -101,7 +101,7 @@ impl Role {
     }
 }
 
-/// The recordings to be read, the first of which has been read: its joints choose the arm.
+/// The recordings to be read. The first one has been read, because its joints select the arm.
 pub struct Opened<'a> {
     map: Option<(&'a Path, ColumnMap)>,
     list: Vec<(&'a Given, Role)>,
@@ -109,7 +109,7 @@ pub struct Opened<'a> {
 }
 
 impl<'a> Opened<'a> {
-    /// Opens `recordings`, those of before first, then those for training.
+    /// Opens `recordings`: first those from before a change, then the other training recordings.
     ///
     /// # Errors
     /// If one is given twice, or the map or the first recording cannot be read.
@@ -139,7 +139,7 @@ impl<'a> Opened<'a> {
     }
 }
 
-/// Reads and checks the recordings of `opened`; what is doubtful is added to `notes`, also before an error.
+/// Reads and checks the recordings of `opened`; doubts are added to `notes`, also before an error.
 ///
 /// # Errors
 /// If one cannot be read, does not fit the arm, holds no motion or no torque, or is both fitted and held out.
@@ -171,7 +171,7 @@ pub fn read(
             && prepared.doubts.is_empty()
             && list.iter().all(|other| other.column_map.as_ref() != Some(map))
         {
-            let text = format!("a column map that mends it; save it as map.toml, and add --map map.toml:\n{map}");
+            let text = format!("a column map that corrects it; save it as map.toml, and add --map map.toml:\n{map}");
             notes.add("note", &prepared.name, text);
         }
         // The same samples under another name.
@@ -270,11 +270,11 @@ fn prepare(
         };
         notes.add(weight, &name, about(&finding.joint, &finding.text));
     }
-    for misfit in misfits.iter().filter(|misfit| !misfit.spoils) {
+    for misfit in misfits.iter().filter(|misfit| !misfit.prevents_diagnosis) {
         notes.add("warning", &name, about(&misfit.joint, &misfit.text));
     }
-    let spoils = misfits.into_iter().filter(|misfit| misfit.spoils);
-    let doubts = spoils
+    let prevents_diagnosis = misfits.into_iter().filter(|misfit| misfit.prevents_diagnosis);
+    let doubts = prevents_diagnosis
         .map(|misfit| Doubt {
             recording: name.clone(),
             joint: misfit.joint,

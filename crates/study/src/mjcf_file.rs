@@ -21,9 +21,9 @@ const LEAST_MOMENT: f64 = 1e-13;
 /// The share of a body's largest second moment of mass by which its smallest may be negative, for rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// `arm` with `effects` as MJCF: bodies, joints with damping, frictionloss, armature, straight springs and encoder offsets
-/// (`ref`), the payload as a body of its own, and a motor on each joint. The frames of welded links are sites; shapes are left
-/// out.
+/// `arm` with `effects` as MJCF: bodies, joints with damping, frictionloss, armature, linear springs and encoder offsets
+/// (`ref`), the payload as a body of its own, and a motor on each joint. The frames of welded links are sites; shapes are
+/// omitted.
 ///
 /// # Errors
 /// If an effect does not fit the arm.
@@ -38,15 +38,15 @@ pub fn mjcf(arm: &Arm, effects: &[Effect]) -> anyhow::Result<Export> {
         .into_iter()
         .partition(|effect| effect.is(&Payload) && is_body(&Payload::inertia(effect)));
     let corrected = Corrected::new(arm, &within)?;
-    let mut left = held::left_out(effects, held_of)?;
+    let mut omitted = held::left_out(effects, held_of)?;
     let model = Model {
         arm: corrected.arm(),
         corrected: &corrected,
         effects: &within,
         payloads: apart.iter().map(Payload::inertia).collect(),
     };
-    let text = model.write(&mut left, effects.len())?;
-    Ok(Export { text, left })
+    let text = model.write(&mut omitted, effects.len())?;
+    Ok(Export { text, omitted })
 }
 
 /// The part of an effect that MJCF can hold.
@@ -77,22 +77,22 @@ struct Model<'a> {
 type Xml = Writer<Vec<u8>>;
 
 impl Model<'_> {
-    fn write(&self, left: &mut Vec<String>, count: usize) -> anyhow::Result<String> {
+    fn write(&self, omitted: &mut Vec<String>, count: usize) -> anyhow::Result<String> {
         for joint in self.arm.joints() {
             if nearest_body(&joint.inertia).1 {
-                left.push(format!(
+                omitted.push(format!(
                     "the inertia tensor of link \"{}\": no body has it, and MuJoCo refuses it; the nearest possible one is in it",
                     joint.link_name
                 ));
             }
         }
-        left.push("shapes and meshes of the links".into());
+        omitted.push("shapes and meshes of the links".into());
         let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
         let mut lines = vec![format!(
             "Written by testbed diagnose: the URDF's arm with {count} effects. SI units at the joint; a motor's control is its torque \
              (N m) or force (N). Not in it (the TOML file of the corrected model has all effects):"
         )];
-        lines.extend(left.iter().cloned());
+        lines.extend(omitted.iter().cloned());
         let comment = format!(" {} ", held::comment(&lines));
         xml.write_event(Event::Comment(BytesText::from_escaped(comment)))?;
         open(&mut xml, "mujoco", &[("model", self.arm.name().to_owned())])?;
@@ -165,7 +165,7 @@ impl Model<'_> {
             ("type", kind.to_owned()),
             ("axis", words(joint.axis.as_slice())),
         ];
-        // The encoder reports less than the true position, and all positions in the file are the encoder's.
+        // All positions in the file are those of the encoder: the true position minus `offset`.
         let offset = self.corrected.encoder_offsets()[j];
         let (lower, upper) = (joint.limits.lower - offset, joint.limits.upper - offset);
         let mut add = |key: &'static str, value: f64| {
@@ -191,7 +191,7 @@ impl Model<'_> {
         attributes
     }
 
-    /// All straight springs of a joint as one: stiffness (N m/rad or N/m) and rest position (rad or m).
+    /// All linear springs of a joint as one: stiffness (N m/rad or N/m) and rest position (rad or m).
     fn spring(&self, joint: &Joint) -> (f64, f64) {
         let springs = self.effects.iter().filter(|effect| {
             effect.is(&Spring) && effect.joint() == Some(joint.name.as_str()) && held_of(effect) == Held::Whole

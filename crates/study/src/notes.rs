@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use recording::Warning;
 
-/// The number of gaps from which they are counted instead of listed.
+/// The largest number of gaps that are listed one by one.
 const MOST_GAPS: usize = 3;
 
 /// One note: its severity, its subject and its text.
@@ -54,7 +54,7 @@ impl Notes {
     }
 }
 
-/// The warnings to show of a list, and the number of gaps that are omitted.
+/// The warnings of a list that are shown, and the number of gaps that are not.
 pub fn shortened<T>(list: impl Iterator<Item = T>, warning: impl Fn(&T) -> &Warning) -> (Vec<T>, usize) {
     let mut gaps = 0;
     let told = list.filter(|item| {

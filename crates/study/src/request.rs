@@ -1,4 +1,4 @@
-//! The request for a diagnosis, and the way from there to a complete report.
+//! The request for a diagnosis, and its execution up to the complete report.
 
 use std::path::{Path, PathBuf};
 
@@ -37,9 +37,9 @@ pub struct Request {
     pub only: Option<String>,
     /// Which friction in the URDF is known friction.
     pub urdf_friction: UrdfFriction,
-    /// Half-power frequency of the low-pass filter (Hz); `None` lets the data decide.
+    /// Half-power frequency of the low-pass filter (Hz); `None` derives it from the recordings.
     pub cutoff: Option<f64>,
-    /// The relative error of the URDF's inertial parameters; `None` lets the recordings decide.
+    /// The relative error of the URDF's inertial parameters; `None` estimates it from the recordings.
     pub urdf_accuracy: Option<f64>,
     /// The relative standard deviation of the torque constants; `None` if it is unknown.
     pub torque_accuracy: Option<f64>,
@@ -177,8 +177,8 @@ impl Request {
     }
 }
 
-/// `doubts`, of which those whose maps differ in the factors of torques alone have the first one's: each recording estimates
-/// them anew, and one map is given for all.
+/// `doubts` with one column map where maps differ only in the factors of torques: each recording gives another estimate of
+/// them, and one map serves for all recordings. The first one is kept.
 fn with_one_map(mut doubts: Vec<Doubt>) -> Vec<Doubt> {
     let without_factors = |map: &str| -> Vec<String> {
         let lines = map.lines().map(|line| match line.split_once("tau_scale = ") {
@@ -238,7 +238,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn maps_that_differ_in_factors_of_torques_are_one() {
+    fn maps_that_differ_only_in_factors_of_torques_are_merged() {
         let doubt = |map: Option<&str>| Doubt {
             recording: "a.csv".to_owned(),
             joint: None,

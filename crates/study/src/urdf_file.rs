@@ -18,7 +18,7 @@ use crate::held::{self, Export, Held};
 
 /// The attribute of a `<dynamics>` element whose friction a diagnosis found; other programs ignore it.
 const SOURCE: (&str, &str) = ("source", "testbed");
-/// The name space of what Drake reads beyond URDF.
+/// The XML name space of Drake's extensions of URDF.
 const DRAKE: &str = "xmlns:drake=\"http://drake.mit.edu\"";
 
 /// The text `urdf` of `arm` with those of `effects` that it can hold: inertials, friction as `<dynamics damping friction>` in
@@ -29,12 +29,12 @@ const DRAKE: &str = "xmlns:drake=\"http://drake.mit.edu\"";
 /// If an effect does not fit the arm or the text is not the arm's.
 pub fn corrected_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Result<Export> {
     let places = Places::of(urdf).context("the URDF cannot be edited")?;
-    // A drive that the file describes without its inertia is not described again.
+    // If the file has a transmission without rotor inertia, no second one is written.
     let is_described = |effect: &Effect| {
         let drive = effect.joint().and_then(|joint| places.drives.get(joint));
         drive.is_some_and(|drive| drive.rotor.is_none())
     };
-    let left = held::left_out(effects, |effect| match held::in_common(effect) {
+    let omitted = held::left_out(effects, |effect| match held::in_common(effect) {
         Held::Whole if effect.is(&RotorInertia) && is_described(effect) => {
             Held::Without("the file has a transmission of this joint, which stays as it was")
         }
@@ -48,13 +48,13 @@ pub fn corrected_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Resu
         "Corrected by testbed diagnose: {whole} of {} effects are in it.",
         effects.len()
     )];
-    if !left.is_empty() {
+    if !omitted.is_empty() {
         lines.push("Not in it (the TOML file of the corrected model has all effects):".into());
-        lines.extend(left.iter().map(|line| format!("  {line}")));
+        lines.extend(omitted.iter().map(|line| format!("  {line}")));
     }
     let remark = format!("\n  <!-- {} -->", held::comment(&lines));
     let text = edited(urdf, &places, arm, effects, remark)?;
-    Ok(Export { text, left })
+    Ok(Export { text, omitted })
 }
 
 /// The corrected URDF of [`corrected_urdf`] without comments: the nominal model of an arm.
@@ -230,7 +230,7 @@ fn drives(places: &Places, effects: &[Effect]) -> String {
 }
 
 impl LinkPlaces {
-    /// The new element in place of the link's inertial; nothing, if it has none and needs none.
+    /// The edit that replaces the link's inertial; `None` if it has none and needs none.
     fn edit(&self, body: Option<Inertia>) -> Option<(Range<usize>, String)> {
         let Some(body) = body else {
             return match &self.inertial {
@@ -243,7 +243,7 @@ impl LinkPlaces {
 }
 
 impl JointPlaces {
-    /// The new element in place of the joint's dynamics.
+    /// The edit that replaces the joint's dynamics.
     fn edit(&self, damping: f64, friction: f64) -> (Range<usize>, String) {
         let (key, value) = SOURCE;
         let dynamics = format!("<dynamics damping=\"{damping}\" friction=\"{friction}\" {key}=\"{value}\"/>");

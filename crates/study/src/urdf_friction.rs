@@ -22,8 +22,8 @@ pub enum UrdfFriction {
 }
 
 /// The friction in the `<dynamics>` of `robot` that `which` takes as known, in addition to the effects `known`, which take
-/// precedence on their joints. Drive inertias for Drake are also known, unless friction is ignored, because nobody writes them
-/// as a placeholder. The second value describes what was not used.
+/// precedence on their joints. Drive inertias for Drake are also known, unless friction is ignored, because they are never
+/// placeholders. The second value describes what was not used.
 ///
 /// # Errors
 /// If the URDF cannot be read again.
@@ -45,10 +45,10 @@ pub fn known_friction(
         UrdfFriction::Diagnosed => diagnosed.contains(&joint.name),
     };
     let mut effects = Vec::new();
-    let mut left = Vec::new();
+    let mut omitted = Vec::new();
     for joint in joints {
         if !is_taken(joint) {
-            left.push(joint.name.as_str());
+            omitted.push(joint.name.as_str());
             continue;
         }
         let has = |is_such: &dyn Fn(&Effect) -> bool| {
@@ -83,11 +83,11 @@ pub fn known_friction(
             }
         }
     }
-    let remark = (which == UrdfFriction::Diagnosed && !left.is_empty()).then(|| {
+    let remark = (which == UrdfFriction::Diagnosed && !omitted.is_empty()).then(|| {
         format!(
             "the friction in <dynamics> of {} is not used, because it is a placeholder in most URDFs; --urdf-friction known \
              takes it as known",
-            left.join(", ")
+            omitted.join(", ")
         )
     });
     Ok((effects, remark))
@@ -133,7 +133,7 @@ mod tests {
 
     /// Friction that a diagnosis wrote is known in the next one; friction of the original file is a placeholder.
     #[test]
-    fn diagnosed_friction_is_known_and_other_friction_where_it_is_asked_for() {
+    fn diagnosed_friction_is_known_and_other_friction_only_on_request() {
         let (file, arm) = robot(TWO);
         let (none, remark) = known_friction(&file, &arm, UrdfFriction::Diagnosed, &[]).expect("it reads");
         assert!(none.is_empty());
@@ -165,10 +165,10 @@ mod tests {
         assert_eq!(known, [drive(50.0)]);
         let more = summed(&known, &[drive(10.0)]);
         assert_eq!(more, [drive(60.0)]);
-        let Export { text, left } = corrected_urdf(&file.text, &arm, &more).expect("it is written");
+        let Export { text, omitted } = corrected_urdf(&file.text, &arm, &more).expect("it is written");
         assert!(
-            left.is_empty() && text.contains("rotor_inertia value=\"0.6\""),
-            "{left:?} {text}"
+            omitted.is_empty() && text.contains("rotor_inertia value=\"0.6\""),
+            "{omitted:?} {text}"
         );
         let (none, _) = known_friction(&file, &arm, UrdfFriction::Ignored, &[]).expect("it reads");
         assert!(none.is_empty());

@@ -1,4 +1,4 @@
-//! What a diagnosis uses and says of recordings that are long or slow.
+//! Diagnoses of long recordings and of slow logs: which parts are used, and what is reported.
 
 use std::cell::RefCell;
 use std::fmt::Write as _;
@@ -26,7 +26,7 @@ fn motion(t: f64) -> [f64; 3] {
     [q, qd, 0.23 * qdd + 2.0 * 9.81 * 0.3 * q.sin() + 0.6 * qd]
 }
 
-/// A file of so many seconds at a rate (Hz) of the motion from `from` (s) on, `pace` times as fast.
+/// Writes a file of the motion from `from` (s) on, for `seconds` at `rate` (Hz), in slow motion if `pace` is below one.
 fn write(file: &Path, seconds: u32, rate: u32, from: f64, pace: f64) {
     let mut text = "t,q_swing,tau_swing\n".to_owned();
     for row in 0..seconds * rate {
@@ -77,7 +77,7 @@ fn json(diagnosed: &Diagnosed) -> serde_json::Value {
 }
 
 #[test]
-fn a_short_recording_beside_a_long_one_is_used_whole_and_the_json_says_what_is_used_of_the_long_one() {
+fn a_short_recording_beside_a_long_one_is_used_whole() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| -> PathBuf { folder.path().join(name) };
     write(&path("long.csv"), 2400, 50, 0.0, 1.0);
@@ -114,7 +114,7 @@ fn a_short_recording_beside_a_long_one_is_used_whole_and_the_json_says_what_is_u
 
 /// Logs of a day at 1 to 8 Hz, and half an hour in milliseconds that are taken for seconds.
 #[test]
-fn a_slow_log_is_told_from_stamps_in_milliseconds() {
+fn a_slow_log_is_distinguished_from_stamps_in_milliseconds() {
     let folder = tempfile::tempdir().expect("a folder");
     for rate in [1, 5, 8] {
         write(

@@ -1,20 +1,20 @@
-//! One program per folder: two that write into the same one would replace each other's files.
+//! A lock on an output folder, because two programs that write into the same folder would replace each other's files.
 
 use std::fs::{File, TryLockError};
 use std::path::Path;
 
 use anyhow::bail;
 
-/// While it lives, no other testbed begins to write into the folder. It leaves no file there.
+/// A lock on a folder: while it exists, no other testbed begins to write into the folder. It leaves no file there.
 pub struct Alone {
     _folder: Option<File>,
 }
 
 impl Alone {
-    /// Takes the folder at `path`, which exists. Where the system cannot lock folders, two programs are not told apart.
+    /// Locks the folder at `path`, which must exist. On systems that cannot lock folders, it has no effect.
     ///
     /// # Errors
-    /// If another testbed has it.
+    /// If another testbed has locked it.
     pub fn in_folder(path: &Path) -> anyhow::Result<Self> {
         let Ok(folder) = File::open(path) else {
             return Ok(Self { _folder: None });

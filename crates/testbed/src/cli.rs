@@ -33,7 +33,7 @@ pub struct Cli {
     pub command: Option<Command>,
     #[command(flatten)]
     pub run: Option<RunArgs>,
-    // Not within RunArgs: clap takes an optional struct with a struct in it as never given.
+    // Not within RunArgs, because clap never fills an optional struct that contains another struct.
     #[command(flatten)]
     pub chain: ChainArgs,
 }
@@ -42,7 +42,7 @@ pub struct Cli {
 pub enum Command {
     /// Print tables I and II and figure 4 of the paper, with our results beside the published ones
     Tables(TablesArgs),
-    /// Compare what the data of each task are worth to the others: predicted and measured errors of every training set
+    /// Train a model on every set of tasks, and compare its predicted and measured errors on the other tasks
     Transfer(TransferArgs),
     /// Find the physical effects that a robot's model omits, from recordings
     Diagnose(Box<DiagnoseArgs>),
@@ -94,8 +94,8 @@ pub struct RunArgs {
     #[arg(long, value_name = "BOOL", num_args = 0..=1, default_missing_value = "true", action = clap::ArgAction::Set)]
     pub fade: Option<bool>,
 
-    /// With more samples than this, approximate each regression by so many inducing points; the result says how far off it is
-    /// [default: exact; 250 samples of all joints for the energies]
+    /// With more samples than this, approximate each regression by this number of inducing points; the result states the
+    /// error [default: exact; 250 samples of all joints for the energies]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub inducing: Option<u32>,
 
@@ -123,7 +123,7 @@ pub struct TablesArgs {
     #[arg(long, value_enum, default_value = "one")]
     pub length_scales: LengthScalesArg,
 
-    /// Also train models of today, which the paper does not have: energies with a rigid body and alone
+    /// Also train models that are newer than the paper: the regression by energies, with a rigid body and alone
     #[arg(long)]
     pub today: bool,
 
@@ -159,7 +159,7 @@ pub struct TransferArgs {
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
 
-    /// Also write the samples of every task into this folder, as CSV, for models of others
+    /// Also write the samples of every task into this folder, as CSV, for other models
     #[arg(long, value_name = "DIR")]
     pub samples: Option<PathBuf>,
 }

@@ -15,10 +15,10 @@ use crate::library;
 use crate::output;
 use crate::progress::Progress;
 
-/// Conceals what `args` ask for.
+/// Makes the cases of `args`: injects the faults, records, and writes recordings and ground truth.
 ///
 /// # Errors
-/// If a robot or an effect cannot be used, a case is there already, or none comes out.
+/// If a robot or an effect cannot be used, a case exists already, or none could be made.
 pub fn run(args: &ConcealArgs) -> anyhow::Result<()> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(args.jobs.map_or(0, usize::from))
@@ -40,10 +40,10 @@ fn conceal(args: &ConcealArgs) -> anyhow::Result<()> {
     }
 }
 
-/// The robots of the names or files, with the arm that `chain` chooses; those that come with testbed, if there are none.
+/// The robots of the names or files, with the arm that `chain` selects; without names, the robots that come with testbed.
 ///
 /// # Errors
-/// If one is not there or cannot be simulated, or an arm is chosen on several robots.
+/// If one does not exist or cannot be simulated, or an arm is selected on several robots.
 pub fn robots(names: &[String], chain: &ChainArgs) -> anyhow::Result<Vec<Robot>> {
     ensure!(
         !chain.is_given() || names.len() == 1,
@@ -59,7 +59,7 @@ fn robot(name: &str, chain: &ChainArgs) -> anyhow::Result<Robot> {
     let doing = || format!("--robot {name}");
     let file = robot::named_robot(name)?;
     let arm = file.arm(&chain.options(&[])).context("--robot")?;
-    // The cases are diagnosed without flags, as their recordings are of the arm alone.
+    // The recordings contain the arm only, so that the cases must be diagnosed without flags of the chain.
     let text = library::serial_urdf(&file.text, &arm).with_context(doing)?;
     let robot = Robot::new(text, &file.path).with_context(doing)?;
     match library::rotor_inertias(name) {

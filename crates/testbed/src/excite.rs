@@ -63,7 +63,7 @@ pub fn run(args: &ExciteArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// An error with the flag that mends it.
+/// An error with the flag that corrects it.
 fn explained(error: ExcitationError, robot: &RobotFile, arm: &Arm) -> anyhow::Error {
     let kind = |name: &str| {
         arm.joints()
@@ -93,7 +93,7 @@ fn explained(error: ExcitationError, robot: &RobotFile, arm: &Arm) -> anyhow::Er
     anyhow::anyhow!("{}: {error}{remedy}", robot.path.display())
 }
 
-/// The references, row by row at `rate` (Hz), from the first to the last moment.
+/// The reference trajectory at `rate` (Hz), from the start to the end of the motion.
 fn references(arm: &Arm, found: &Excitation, rate: f64) -> Recording {
     let dof = arm.dof();
     let signal = || vec![Vec::new(); dof];
@@ -118,7 +118,7 @@ fn references(arm: &Arm, found: &Excitation, rate: f64) -> Recording {
     }
 }
 
-/// What the motion determines, in a sentence or two.
+/// The parameters that the motion determines, in a sentence or two.
 fn determined(found: &Excitation) -> String {
     let of = &found.determined;
     let mut text = format!(
@@ -224,7 +224,7 @@ fn joint_row(kind: JointKind, needed: &JointUse, start: f64) -> Vec<String> {
     ]
 }
 
-/// The motion as a scenario, with what it is for in comments.
+/// The motion as a scenario, with its purpose in comments.
 fn scenario(robot: &str, arm: &Arm, found: &Excitation) -> String {
     let mut text = String::from("# A motion for the first recording, proposed by testbed excite.\n#\n");
     let _ = writeln!(text, "# {}", determined(found));
@@ -265,9 +265,9 @@ fn scenario(robot: &str, arm: &Arm, found: &Excitation) -> String {
 mod tests {
     use super::*;
 
-    /// The scenario is what the motion was, to the last bit.
+    /// The loaded scenario equals the motion bit for bit.
     #[test]
-    fn the_scenario_loads_as_the_motion_it_was() {
+    fn the_scenario_is_loaded_as_written() {
         let robot = named_robot("puma560").expect("it comes with testbed");
         let arm = robot.arm(&arm::ChainOptions::default()).expect("an arm");
         let options = ExcitationOptions {

@@ -1,4 +1,4 @@
-//! `testbed inspect FILE…`: what recordings are worth, before anything is fitted to them.
+//! `testbed inspect FILE…`: the quality of recordings, before anything is fitted to them.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -28,9 +28,9 @@ struct FileReport<'a> {
     file: &'a Path,
     #[serde(flatten)]
     quality: Quality,
-    /// What does not fit the robot's model.
+    /// The contradictions with the robot's URDF.
     against_robot: Vec<check::Misfit>,
-    /// The column map (TOML) that corrects it.
+    /// The column map (TOML) that corrects them.
     column_map: Option<String>,
     warnings: Vec<Told>,
 }
@@ -46,8 +46,8 @@ struct Told {
 /// Inspects the recordings that `args` name.
 ///
 /// # Errors
-/// If the robot or the map cannot be read, an output cannot be written, or a recording is unreadable;
-/// the others are inspected all the same.
+/// If the robot or the map cannot be read, an output cannot be written, or a recording is unreadable; the other recordings
+/// are inspected nevertheless.
 pub fn run(args: &InspectArgs) -> anyhow::Result<()> {
     if let Some(path) = &args.json {
         output::check_writable(path)?;

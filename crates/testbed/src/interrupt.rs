@@ -1,4 +1,4 @@
-//! Ctrl-C: a run in its loop ends cleanly, anything else at once.
+//! Handles Ctrl-C: a run in its loop ends cleanly, any other work ends at once.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -15,7 +15,7 @@ pub const EXIT_CODE: u8 = 130;
 pub fn listen() -> anyhow::Result<()> {
     ctrlc::set_handler(|| {
         let again = REQUESTED.swap(true, Ordering::SeqCst);
-        // Outside the loop nothing has been written yet, and who asks twice does not want to wait.
+        // Outside the loop, nothing has been written yet. A second Ctrl-C ends the program without waiting.
         if again || !IN_LOOP.load(Ordering::SeqCst) {
             eprintln!(
                 "{}",
@@ -31,7 +31,7 @@ pub fn listen() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// While it lives, Ctrl-C only sets [`requested`].
+/// While it exists, Ctrl-C only sets [`requested`].
 pub struct Deferred(());
 
 impl Deferred {

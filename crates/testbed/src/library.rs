@@ -21,7 +21,7 @@ const SCENARIOS: [(&str, &str); 5] = [
     ("beyond", include_str!("../../../scenarios/beyond.toml")),
 ];
 
-/// Motor inertias (kg m²) and gear ratios of the PUMA 560 (Corke and Armstrong-Hélouvry 1994), which its URDF leaves out.
+/// Motor inertias (kg m²) and gear ratios of the PUMA 560 (Corke and Armstrong-Hélouvry 1994), which its URDF omits.
 const PUMA_DRIVES: [(f64, f64); 6] = [
     (200e-6, 62.6111),
     (200e-6, 107.815),
@@ -31,8 +31,8 @@ const PUMA_DRIVES: [(f64, f64); 6] = [
     (33e-6, 76.686),
 ];
 
-/// Finds the scenario `name`: a file if it ends in `.toml` or has a folder in it, else
-/// `scenarios/<name>.toml` below the current folder, else one that comes with testbed.
+/// Finds the scenario `name`: a file if the name ends in `.toml` or contains a folder; otherwise `scenarios/<name>.toml`
+/// below the current folder; otherwise a scenario that comes with testbed.
 ///
 /// # Errors
 /// If there is none, with the names that there are.
@@ -101,7 +101,8 @@ fn local_scenarios() -> Vec<String> {
     names
 }
 
-/// The inertias of a robot's drives, seen at its joints (kg m²), as far as they are known beside its URDF.
+/// The reflected inertias of a robot's drives at its joints (kg m²), which its URDF does not contain; `None` if they are
+/// unknown.
 pub fn rotor_inertias(robot: &str) -> Option<Vec<f64>> {
     let inertia = |(motor, gear): (f64, f64)| motor * gear * gear;
     (robot == "puma560").then(|| PUMA_DRIVES.map(inertia).to_vec())

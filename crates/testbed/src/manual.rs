@@ -1,4 +1,4 @@
-//! What the program says of itself: the manual page, completions for shells, and the schema of its JSON.
+//! The program's manual page, its shell completions, and the schema of its JSON.
 
 use anyhow::Context;
 use clap::{Command, CommandFactory};

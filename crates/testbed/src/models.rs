@@ -4,7 +4,7 @@ use arm::Arm;
 use serde::{Serialize, Serializer};
 use torque::{Inputs, Lagrangian, LagrangianOptions, Learned, RigidBody, Samples, TorqueModel, TrainingOptions};
 
-/// The torque models one can ask for.
+/// The torque models that can be selected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum ModelKind {
     /// The exact rigid-body model: the reference
@@ -27,7 +27,7 @@ pub enum ModelKind {
 }
 
 impl ModelKind {
-    /// All: the reference, those of the paper's tables, those of today.
+    /// All models: the reference, those of the paper's tables, the newer ones.
     pub const ALL: [Self; 8] = [
         Self::True,
         Self::RigidBody,
@@ -77,17 +77,17 @@ impl ModelKind {
         !matches!(self, Self::True | Self::RigidBody)
     }
 
-    /// Whether the paper does not have it, nor its inputs: a model of today.
-    pub fn is_of_today(self) -> bool {
+    /// Whether the model and its inputs are newer than the paper.
+    pub fn is_newer_than_the_paper(self) -> bool {
         matches!(self, Self::Lagrangian | Self::LagrangianOnly)
     }
 
     /// Whether its regressions have length scales.
     pub fn has_length_scales(self) -> bool {
-        self.learns() && !self.is_of_today()
+        self.learns() && !self.is_newer_than_the_paper()
     }
 
-    /// The rigid-body model the controller has beside it, for its mass matrix.
+    /// The rigid-body model from which the controller takes its mass matrix.
     pub fn controller_arm(self, true_arm: &Arm, nominal_arm: &Arm) -> Arm {
         match self {
             Self::True => true_arm.clone(),
@@ -109,7 +109,7 @@ impl ModelKind {
         self.build_with(true_arm, nominal_arm, samples, options, &|| {})
     }
 
-    /// Makes the model as [`Self::build`] does, and calls `fitted` once a joint, after its regression, on any thread.
+    /// Makes the model as [`Self::build`] does, and calls `fitted` once per joint after its regression, on any thread.
     ///
     /// # Errors
     /// If training fails.

@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::models::ModelKind;
 use crate::simulation::Outcome;
 
-/// The tracking error of one model, as JSON has it.
+/// The tracking error of one model, as it is written to JSON.
 #[derive(Serialize)]
 pub struct Tracking {
     /// The model.
@@ -163,7 +163,7 @@ pub fn check_distinct(outputs: &[OutputFile<'_>]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Refuses an output that is one of the `inputs`: what the user had would be lost.
+/// Refuses an output that is one of the `inputs`, which would be overwritten.
 ///
 /// # Errors
 /// If it is.
@@ -185,7 +185,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_ending_of_another_format_is_refused_with_those_that_are_possible() {
+    fn an_ending_of_another_format_is_refused_with_the_possible_ones() {
         let check = |path: &str| {
             let path = Some(Path::new(path));
             let file = OutputFile::given("--report", path, &["html", "htm"]).expect("a path was given");

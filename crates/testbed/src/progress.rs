@@ -31,7 +31,8 @@ struct Clock {
 }
 
 impl Clock {
-    /// The time left if the rest is as fast as the part that is done; `None` at the beginning, where it says little.
+    /// The remaining time if the rest is as fast as the part that is done; `None` at the beginning, when the estimate is
+    /// too uncertain.
     fn left(&self, now: Instant) -> Option<Duration> {
         if self.done < 0.02 || now - self.started < SHORT {
             return None;
@@ -115,12 +116,12 @@ impl Progress {
     }
 }
 
-/// Equal pieces of work, counted as they are done on any thread.
+/// Equal pieces of work, which are counted when they are done, on any thread.
 pub struct Pieces<'a> {
     progress: &'a Progress,
     what: String,
     count: usize,
-    /// The part of the task that all of them are.
+    /// The part of the task that all pieces make up.
     share: f64,
     done: AtomicUsize,
 }
@@ -139,7 +140,7 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// One more is done.
+    /// Counts one more piece as done.
     pub fn next(&self) {
         let done = 1 + self.done.fetch_add(1, Ordering::Relaxed);
         let part = self.share * done as f64 / self.count.max(1) as f64;
@@ -163,7 +164,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_left_takes_as_long_as_what_is_done() {
+    fn the_remaining_time_is_in_proportion_to_the_remaining_part() {
         let now = Instant::now();
         let clock = |done: f64| Clock {
             started: now,

@@ -29,7 +29,7 @@ use observers::{Simulating, View};
 /// The number of samples from which a note announces a long training.
 const MANY_SAMPLES: usize = 8000;
 
-/// What a run's summary.json holds.
+/// The content of a run's summary.json.
 #[derive(Serialize)]
 struct Summary<'a> {
     schema: &'static str,
@@ -45,10 +45,10 @@ struct Summary<'a> {
     saturated: Vec<f64>,
     real_time_factor: f64,
     control_step_us: Percentiles,
-    /// The weights of the learned torques, one a joint; absent if they do not fade.
+    /// The weights of the learned torques, one per joint; absent if they do not fade.
     #[serde(skip_serializing_if = "<[Weight]>::is_empty")]
     fade_weights: &'a [Weight],
-    /// The regressions of the model, one a joint; none if it does not learn.
+    /// The regressions of the model, one per joint; empty if it does not learn.
     regressions: Vec<Regression>,
     /// The regression of all joints by energies; absent if the model has none.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -61,10 +61,10 @@ struct Percentiles {
     p99: f64,
 }
 
-/// Runs what `args` say, with the arm that `chain` chooses.
+/// Runs the scenario of `args`, with the arm that `chain` selects.
 ///
 /// # Errors
-/// One that says what was being done, what was found and how to mend it.
+/// With the step that failed, the reason and the remedy.
 pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     let mut scenario = Scenario::load_chain(&args.scenario, chain)?;
     scenario.fade = args.fade.unwrap_or(scenario.fade);
@@ -163,7 +163,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     written.finish()
 }
 
-/// Refuses outputs that cannot be written or are in each other's way, before any work is done.
+/// Refuses outputs that cannot be written or that coincide, before any work is done.
 fn check_outputs(args: &RunArgs, scenario: &Scenario, sources: &[String]) -> anyhow::Result<()> {
     let out = args.out.as_deref();
     observers::check_rerun(args)?;
@@ -196,12 +196,12 @@ fn check_outputs(args: &RunArgs, scenario: &Scenario, sources: &[String]) -> any
         .try_for_each(|file| file.check_ending())
 }
 
-/// The model's torque error against the truth on the reference, as the paper measures it.
+/// The mean squared error of the model's torque on the reference, one per joint ((N m)² or N²), as in the paper.
 fn torque_error(scenario: &Scenario, model: &dyn TorqueModel) -> anyhow::Result<Vec<f64>> {
     Ok(model.mean_squared_error(&training::own_samples(scenario)?))
 }
 
-/// Says what is doubtful in what was asked for, in the robot and in the reference.
+/// Prints notes on doubtful arguments, and on the robot and the reference.
 fn notes(args: &RunArgs, kind: ModelKind, scenario: &Scenario, samples: &Samples) {
     for note in &scenario.notes {
         eprintln!("note: {note}");
@@ -252,19 +252,19 @@ fn faded(scenario: &Scenario, outcome: &Outcome) -> String {
     let joints = scenario.arm.joints().iter().zip(&outcome.weights);
     let joints: Vec<String> = joints
         .filter(|(_, weight)| weight.least < 0.995)
-        .map(|(joint, weight)| format!("{} ({:.2}, at the least {:.2})", joint.name, weight.mean, weight.least))
+        .map(|(joint, weight)| format!("{} ({:.2}, {:.2})", joint.name, weight.mean, weight.least))
         .collect();
     if joints.is_empty() {
         return String::new();
     }
     format!(
-        "The reference leaves what the learned torque knows; it is faded to the rigid body, with the mean weight in brackets: {}. \
-         --fade false is without.\n",
+        "The reference leaves the range of the training data, where the learned torque is faded out; its mean and least weight: {}. \
+         --fade false disables this.\n",
         joints.join(", ")
     )
 }
 
-/// The result for people.
+/// The result as text for the terminal.
 fn text(scenario: &Scenario, kind: ModelKind, sources: &[String], summary: &Summary<'_>, outcome: &Outcome) -> String {
     let trained = if sources.is_empty() {
         String::new()

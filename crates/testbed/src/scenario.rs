@@ -1,4 +1,4 @@
-//! Scenarios: which robot follows which reference under which controller.
+//! Scenarios: a robot that follows a reference under a controller.
 
 mod raw;
 mod validate;
@@ -17,23 +17,23 @@ use crate::sensors::SensorNoise;
 /// A validated scenario. Vectors have one entry per joint of the arm.
 #[derive(Clone, Debug)]
 pub struct Scenario {
-    /// The name it was asked for by, without folder and extension.
+    /// The name by which it was requested, without folder and extension.
     pub name: String,
     /// Its file.
     pub path: PathBuf,
-    /// One line for people.
+    /// A description in one line.
     pub title: String,
     /// The true arm, with the drives' inertia.
     pub arm: Arm,
-    /// Where the arm came from; meshes are looked for beside it.
+    /// The path of the URDF; meshes are searched beside it.
     pub urdf: PathBuf,
     /// Length of the run (s).
     pub duration: f64,
-    /// The torque model that is run unless another is asked for.
+    /// The torque model, unless the command line gives another.
     pub model: ModelKind,
-    /// The length scales of its regressions, unless others are asked for.
+    /// The length scales of its regressions, unless the command line gives others.
     pub length_scales: LengthScalesArg,
-    /// Whether its learned torque fades to the rigid body where it knows nothing, unless the command line says.
+    /// Whether its learned torque fades to zero away from the training data, unless the command line decides.
     pub fade: bool,
     /// The factor on the masses and inertia tensors of the controller's model.
     pub inertia_scale: f64,
@@ -51,9 +51,9 @@ pub struct Scenario {
     pub viscous_friction: Vec<f64>,
     /// Coulomb friction of the plant (N m or N).
     pub coulomb_friction: Vec<f64>,
-    /// What is doubtful about the robot.
+    /// Doubts about the robot.
     pub notes: Vec<String>,
-    /// What the sensors add.
+    /// The noise of the sensors.
     pub sensor_noise: SensorNoise,
 }
 
@@ -61,12 +61,12 @@ impl Scenario {
     /// Reads the scenario `name`: a file, or the name of one that comes with testbed.
     ///
     /// # Errors
-    /// One line that names file, line and key, what was found and how to mend it.
+    /// In one line: file, line, key, reason and remedy.
     pub fn load(name: &str) -> anyhow::Result<Self> {
         Self::load_chain(name, &ChainArgs::default())
     }
 
-    /// Loads a scenario as [`Self::load`] does, with the joints that `chain` chooses in place of the file's.
+    /// Loads a scenario as [`Self::load`] does, with the joints that `chain` selects in place of the file's.
     ///
     /// # Errors
     /// Those of [`Self::load`].
@@ -77,7 +77,7 @@ impl Scenario {
     /// Reads the scenario `name` that comes with testbed, whatever is below the current folder.
     ///
     /// # Errors
-    /// If none of that name does.
+    /// If there is no such scenario.
     pub fn built_in(name: &str) -> anyhow::Result<Self> {
         let source = crate::library::built_in_scenario(name);
         let source = source.with_context(|| format!("no scenario \"{name}\" comes with testbed"))?;

@@ -1,4 +1,4 @@
-//! What the sensors report: the truth plus seeded, normally distributed noise.
+//! Sensors: the true values plus seeded, normally distributed noise.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -7,22 +7,22 @@ use rand_distr::{Distribution, StandardNormal};
 /// Standard deviations of the sensors' noise, one per joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SensorNoise {
-    /// rad or m.
+    /// Positions (rad or m).
     pub position: Vec<f64>,
-    /// rad/s or m/s.
+    /// Velocities (rad/s or m/s).
     pub velocity: Vec<f64>,
-    /// N m or N.
+    /// Torques (N m or N).
     pub torque: Vec<f64>,
 }
 
-/// Sensors with noise of their own; the same seed gives the same noise.
+/// Sensors with their own noise; the same seed gives the same noise.
 pub struct Sensors<'a> {
     noise: &'a SensorNoise,
     generator: ChaCha8Rng,
 }
 
 impl<'a> Sensors<'a> {
-    /// Sensors with the noise of `seed`. `stream` keeps the uses of one seed apart.
+    /// Sensors with the noise of `seed`. Different `stream`s of one seed have independent noise.
     pub fn new(noise: &'a SensorNoise, seed: u64, stream: u64) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         generator.set_stream(stream);

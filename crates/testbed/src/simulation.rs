@@ -17,17 +17,17 @@ use crate::telemetry::Sample;
 /// The rate at which the variance of the learned torque is evaluated (Hz). It is expensive, and outside the control step.
 const VARIANCE_RATE: f64 = 50.0;
 
-/// The sensors' noise in the loop and in the training samples, apart.
+/// The stream of the sensors' noise in the loop, which is independent of that in the training samples.
 const LOOP_STREAM: u64 = 1;
 
 /// An observer of a run.
 pub trait Observer {
-    /// Whether it wants the learned torque's variance.
+    /// Whether it needs the variance of the learned torque.
     fn wants_variance(&self) -> bool {
         false
     }
 
-    /// One control step has been computed.
+    /// Receives a control step that has been computed.
     fn sample(&mut self, sample: &Sample<'_>);
 }
 
@@ -41,9 +41,9 @@ pub struct Outcome {
     pub max_error: Vec<f64>,
     /// Share of the steps in which the effort limit cut the torque, one per joint.
     pub saturated: Vec<f64>,
-    /// The learned torque's weights, one a joint; none if it does not fade.
+    /// The weights of the learned torque, one per joint; empty if it does not fade.
     pub weights: Vec<Weight>,
-    /// Simulated time over the time it took.
+    /// Simulated time over computing time.
     pub real_time_factor: f64,
     /// Median time of a control step (µs).
     pub control_step_median: f64,
@@ -54,17 +54,16 @@ pub struct Outcome {
 /// The weight of the learned torque of a joint over a run: 1 for all of it, 0 for the rigid body alone.
 #[derive(Clone, Copy, Debug, serde::Serialize)]
 pub struct Weight {
-    /// Over the steps.
+    /// The mean over the steps.
     pub mean: f64,
-    /// The least.
+    /// The least weight.
     pub least: f64,
 }
 
 /// Runs `scenario` under `model` from its start on the reference to its end.
 ///
-/// Feedback acts on the state at the start of each control interval. The torque is held over the
-/// interval, so the feed-forward is that of its middle: a held torque then errs by second order in
-/// the interval only.
+/// Feedback acts on the state at the start of each control interval. The torque is held over the interval, so that the
+/// feed-forward is evaluated at its middle: the error of a held torque is then of second order in the interval.
 ///
 /// # Errors
 /// If the controller does not fit the arm, or the motion diverges.
@@ -168,10 +167,11 @@ pub fn run(
     Ok(log.outcome(scenario.duration / wall.as_secs_f64()))
 }
 
-/// The share of the largest inertia about a joint below which another joint moves next to none.
+/// A joint moves almost no inertia if it moves less than this share of the largest inertia about any joint.
 const NEXT_TO_NONE: f64 = 1e-6;
 
-/// How to mend a loop that is unstable: a joint that moves next to no inertia needs some, whatever the gains.
+/// The remedy for an unstable loop: lower gains, or inertia for a joint that moves almost none, which no gains can
+/// stabilise.
 fn remedy(scenario: &Scenario) -> String {
     let arm = &scenario.arm;
     let mut matrix = DMatrix::zeros(arm.dof(), arm.dof());
@@ -194,9 +194,9 @@ fn remedy(scenario: &Scenario) -> String {
     }
 }
 
-/// The plant's accelerations. They are asked for in every step, so they come from the arm's own
-/// forward dynamics, which agree with rapier's to rounding at a tenth of the cost; dry friction needs
-/// the plant, which knows what sticks.
+/// The plant's accelerations. They are needed in every step, and are therefore computed by the arm's own forward dynamics,
+/// which agree with those of rapier to rounding at a tenth of the cost. With dry friction, the plant itself is needed,
+/// because only it knows which joints stick.
 struct Accelerations<'a> {
     scenario: &'a Scenario,
     workspace: arm::Workspace,
@@ -241,10 +241,10 @@ struct Step<'a> {
     control_time: Duration,
 }
 
-/// What a run has produced so far.
+/// The signals of a run so far.
 struct Log {
     recording: Recording,
-    /// The true positions, which the sensors may not tell.
+    /// The true positions, which the sensors do not report exactly.
     actual: Vec<Vec<f64>>,
     /// Columns of the reference and of the torque's parts, joint by joint.
     reference: Vec<Vec<f64>>,

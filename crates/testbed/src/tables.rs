@@ -1,4 +1,4 @@
-//! `testbed tables`: the paper's tables I and II and its figure 4, ours beside theirs.
+//! `testbed tables`: the paper's tables I and II and its figure 4, with our results beside the published ones.
 
 use std::path::Path;
 use std::time::Instant;
@@ -19,7 +19,7 @@ use crate::{paper, simulation, training};
 /// The training tasks of tables I and II.
 const TRAINING: [&[&str]; 2] = [&["taskA"], &["taskA", "taskB", "taskC"]];
 
-/// The rows of a table, in the paper's order, and ours.
+/// The rows of a table: the paper's in its order, then ours.
 const ROWS: [ModelKind; 5] = [
     ModelKind::Gp,
     ModelKind::RigidBody,
@@ -28,10 +28,10 @@ const ROWS: [ModelKind; 5] = [
     ModelKind::IndependentJoint13,
 ];
 
-/// The rows below them, if they are asked for.
-const ROWS_OF_TODAY: [ModelKind; 2] = [ModelKind::LagrangianOnly, ModelKind::Lagrangian];
+/// The rows of newer models, which follow on request.
+const NEWER_ROWS: [ModelKind; 2] = [ModelKind::LagrangianOnly, ModelKind::Lagrangian];
 
-/// All that the command finds.
+/// The results of the command.
 #[derive(Serialize)]
 struct Report {
     tables: Vec<Table>,
@@ -49,13 +49,13 @@ struct Table {
 /// Torque errors of one model.
 #[derive(Serialize)]
 pub struct Row {
-    /// Which.
+    /// The model.
     pub model: ModelKind,
-    /// (N m)², one per joint.
+    /// The mean squared torque error, one per joint ((N m)²).
     pub mse: Vec<f64>,
-    /// Over the joints.
+    /// The mean over the joints.
     pub mean: f64,
-    /// The paper's, where it has one.
+    /// The row of the paper; `None` if the paper does not have the model.
     pub paper: Option<[f64; 6]>,
 }
 
@@ -91,7 +91,7 @@ pub fn table_1(train: &Scenario, test: &Scenario, options: &TrainingOptions) -> 
     ROWS.par_iter().map(row).collect()
 }
 
-/// Computes the tables, with the models of today if they are asked for, prints them, and writes them to `json` if it is given.
+/// Computes the tables, with the newer models if `today` is set, prints them, and writes them to `json` if it is given.
 ///
 /// # Errors
 /// If the file cannot be written; training and simulating the paper's tasks do not fail.
@@ -103,7 +103,7 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions, today: bool) -> anyho
     let started = Instant::now();
     let rows: Vec<ModelKind> = ROWS
         .into_iter()
-        .chain(ROWS_OF_TODAY.into_iter().filter(|_| today))
+        .chain(NEWER_ROWS.into_iter().filter(|_| today))
         .collect();
     let progress = Progress::new("reading");
     let mut test = Scenario::load("taskD")?;
@@ -116,7 +116,7 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions, today: bool) -> anyho
         let names: Vec<String> = tasks.iter().map(|task| (*task).to_owned()).collect();
         training_samples.push(training::training_samples(&test, &names, &ChainArgs::default(), 0)?);
     }
-    // The dearest first, so that the last thread does not wait for one of them.
+    // The most expensive models come first, so that no thread waits for one of them at the end.
     let jobs: Vec<(usize, ModelKind)> = (0..TRAINING.len())
         .rev()
         .flat_map(|set| rows.iter().map(move |&model| (set, model)))
@@ -148,7 +148,7 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions, today: bool) -> anyho
 
     let tracked: Vec<ModelKind> = ModelKind::ALL
         .into_iter()
-        .filter(|model| today || !model.is_of_today())
+        .filter(|model| today || !model.is_newer_than_the_paper())
         .collect();
     progress.done(0.82, format!("tracking task D with {} models", tracked.len()));
     let exact = ModelKind::True.build(&test.arm, &nominal, &test_samples, options)?;
@@ -173,7 +173,7 @@ fn short(task: &str) -> String {
     task.trim_start_matches("task").to_owned()
 }
 
-/// The tables for people.
+/// The tables as text for the terminal.
 fn text(report: &Report) -> String {
     let header = |first: &str, last: &str| {
         let joints = (1..=6).map(|joint| format!("joint {joint}"));

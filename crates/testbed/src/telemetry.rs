@@ -18,6 +18,6 @@ pub struct Sample<'a> {
     pub tau_feedback: &'a [f64],
     /// Torque applied to the plant, after saturation.
     pub tau_applied: &'a [f64],
-    /// Variance of the learned torque ((N m)²), where it was evaluated at this step.
+    /// Variance of the learned torque ((N m)² or N²); `None` if it was not evaluated at this step.
     pub variance: Option<&'a [f64]>,
 }

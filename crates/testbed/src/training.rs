@@ -1,4 +1,4 @@
-//! Samples to train and to test torque models on: of a scenario's reference, or of a recording.
+//! Samples for training and testing torque models, from a scenario's reference or from a recording.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::scenario::Scenario;
 use crate::sensors::Sensors;
 use study::named;
 
-/// The sensors' noise in the training samples, apart from that in the loop.
+/// The stream of the sensors' noise in the training samples, which is independent of that in the loop.
 const TRAINING_STREAM: u64 = 2;
 
 /// The torque (N m or N) that the plant of `scenario` needs for a motion: rigid-body dynamics, drives and friction.
@@ -34,7 +34,7 @@ impl<'a> TrueTorque<'a> {
         }
     }
 
-    /// The torques for `motion`, into `tau`. At standstill Coulomb friction counts as none.
+    /// The torques for `motion`, into `tau`. At standstill, Coulomb friction counts as zero.
     pub fn of(&mut self, motion: &Motion, tau: &mut [f64]) {
         self.arm
             .inverse_dynamics(&mut self.workspace, &motion.q, &motion.qd, &motion.qdd, tau);
@@ -50,7 +50,7 @@ impl<'a> TrueTorque<'a> {
 /// `sensors` report them: the paper's data.
 ///
 /// # Errors
-/// If the reference is of another arm.
+/// If the reference is for another arm.
 pub fn reference_samples(
     plant: &Scenario,
     reference: &Reference,
@@ -102,9 +102,9 @@ pub fn own_samples(scenario: &Scenario) -> anyhow::Result<Samples> {
     Ok(samples)
 }
 
-/// The samples of all `sources`: scenarios by name or file, whose references are sampled on the plant
-/// of `scenario` with the arm's joints that `chain` chooses, and recordings (files that are not `.toml`) with accelerations, thinned to
-/// the scenario's sample rate.
+/// The samples of all `sources`: scenarios by name or file, whose references are sampled on the plant of `scenario` with
+/// the joints that `chain` selects, and recordings (files that are not `.toml`) with accelerations, thinned to the
+/// scenario's sample rate.
 ///
 /// # Errors
 /// If a source cannot be read or is of another robot.
@@ -159,11 +159,11 @@ fn recording_samples(scenario: &Scenario, recording: &Recording, samples: &mut S
     };
     let mut next = f64::NEG_INFINITY;
     for (k, &time) in recording.time.iter().enumerate() {
-        // Half a microsecond forgives the rounding of stamps.
+        // A tolerance of half a microsecond for the rounding of stamps.
         if time < next - 5e-7 {
             continue;
         }
-        // The next sample is due a period after the last one was, or after this one if there was a gap.
+        // The next sample is due one period after the last due time, or one period after this sample if there was a gap.
         let period = 1.0 / scenario.sample_rate;
         next = if time < next + period {
             next + period

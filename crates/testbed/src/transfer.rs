@@ -1,4 +1,4 @@
-//! `testbed transfer`: what the data of one task are worth to another, predicted and measured.
+//! `testbed transfer`: the errors of models on tasks that they were not trained on, predicted and measured.
 
 mod samples_file;
 mod words;
@@ -20,16 +20,17 @@ use crate::training;
 /// More tasks would make more than a hundred training sets.
 const MOST_TASKS: usize = 6;
 
-/// The variance is dear, and changes little from one sample to the next: it is taken at every so many.
+/// The interval of samples at which the variance is evaluated: it is expensive, and changes little from one sample to the
+/// next.
 const EVERY: usize = 4;
 
-/// A joint's error rises if it is by this factor larger with a task than without it …
+/// The error of a joint rises if adding a task multiplies it by at least this factor, and if it rises by at least [`NOTABLE`].
 const RISES: f64 = 1.05;
 
-/// … and that is at least so much of what the rigid body leaves.
+/// The least rise of an error that counts, as a part of the error of the rigid body.
 const NOTABLE: f64 = 0.01;
 
-/// All that the command finds.
+/// The results of the command.
 #[derive(Serialize)]
 pub struct Report {
     schema: &'static str,
@@ -41,49 +42,51 @@ pub struct Report {
     correlation: Correlation,
 }
 
-/// One training set and one task that is not in it. Vectors have one entry a joint.
+/// One training set and one task that is not in it. Vectors have one entry per joint.
 #[derive(Serialize)]
 pub struct Row {
     train: Vec<String>,
     test: String,
     /// Root mean square of the torque error (N m or N).
     error: Vec<f64>,
-    /// That of the rigid body alone.
+    /// Root mean square of the torque error of the rigid body alone (N m or N).
     rigid: Vec<f64>,
-    /// The error that the model expects, from its variance at the motion of the task: no torque of the task is needed.
+    /// The error that the model predicts from its variance along the motion of the task, without torques of the task (N m
+    /// or N).
     predicted: Vec<f64>,
-    /// Mean log predictive density of the task's torques, nats a sample: the likelihood of a task that was left out.
+    /// Mean log predictive density of the task's torques (nats per sample): the likelihood of a task that was not trained
+    /// on.
     likelihood: Vec<f64>,
 }
 
-/// A training set that is worse for a joint with one task more.
+/// A training set whose error on a joint rises when a task is added.
 #[derive(Serialize)]
 pub struct Harm {
     /// The set without the task.
     train: Vec<String>,
     /// The task.
     added: String,
-    /// For this one.
+    /// The task on which the error rises.
     test: String,
     joint: String,
-    /// Errors without and with it (N m or N).
+    /// The errors without and with the added task (N m or N).
     error: [f64; 2],
-    /// Whether the likelihood of the task left out fell, too.
+    /// Whether the likelihood of the tested task fell as well.
     likelihood_fell: bool,
-    /// Whether the predicted error rose, too.
+    /// Whether the predicted error rose as well.
     predicted_rose: bool,
 }
 
 /// Spearman's rank correlation with the measured error over all rows, for each joint: 1 if the order is the same.
 #[derive(Serialize)]
 pub struct Correlation {
-    /// Of the predicted error.
+    /// The correlation of the predicted error.
     predicted: Vec<f64>,
-    /// Of the negative likelihood.
+    /// The correlation of the negative likelihood.
     likelihood: Vec<f64>,
 }
 
-/// Runs what `args` say.
+/// Runs the command with `args`.
 ///
 /// # Errors
 /// If a scenario cannot be read, training fails or the file cannot be written.
@@ -151,7 +154,7 @@ fn compare(args: &TransferArgs, progress: &Progress) -> anyhow::Result<Report> {
             .map(|(task, samples)| row(model.as_ref(), rigid.as_ref(), &train, task, samples))
             .collect())
     };
-    // Fewer tasks first: the order of the table.
+    // Sets with fewer tasks come first, as in the table.
     let mut sets: Vec<usize> = (1..1_usize << args.train.len()).collect();
     sets.sort_by_key(|set| (set.count_ones(), set.reverse_bits().wrapping_neg()));
     let rows: Vec<Vec<Row>> = sets.par_iter().map(of_set).collect::<anyhow::Result<_>>()?;
@@ -194,7 +197,7 @@ fn row(model: &dyn TorqueModel, rigid: &dyn TorqueModel, train: &[String], test:
         let variances = model.variance(&mut workspace, sample.q, sample.qd, sample.qdd);
         let variances = variances.unwrap_or_default();
         for (joint, variance) in variances.iter().enumerate() {
-            // Of the torque: the function's and the noise's.
+            // The variance of the torque is the sum of those of the function and of the noise.
             let variance = variance + model.noise(joint).powi(2);
             let error = sample.tau[joint] - prediction.torque(joint);
             expected[joint] += variance;
@@ -212,7 +215,7 @@ fn row(model: &dyn TorqueModel, rigid: &dyn TorqueModel, train: &[String], test:
     }
 }
 
-/// Every set and task that is worse for a joint of another task than the set alone.
+/// Each set and added task with which the error on a joint of another task is larger than with the set alone.
 fn harm(rows: &[Row], joints: &[String]) -> Vec<Harm> {
     let mut found = Vec::new();
     for with in rows.iter().filter(|row| row.train.len() > 1) {

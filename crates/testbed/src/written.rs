@@ -1,8 +1,9 @@
-//! The files of a command, written one after the other. If one cannot be written, the others and the answer are still given.
+//! The files of a command, written one after the other. If one cannot be written, the others are still written and the
+//! result is still printed.
 
 use std::path::{Path, PathBuf};
 
-/// What was written, and what was not.
+/// The files that were written, and the errors of the others.
 #[derive(Default)]
 pub struct Written {
     /// Each file, and whether it replaces one that was there.
@@ -25,7 +26,7 @@ impl Written {
         self.files.push((path.to_owned(), replaces));
     }
 
-    /// Does what leaves no file.
+    /// Does work that writes no file, and keeps its error.
     pub fn attempt(&mut self, what: impl FnOnce() -> anyhow::Result<()>) {
         self.failures.extend(what().err());
     }
@@ -50,7 +51,7 @@ impl Written {
     /// Fails if a file was not written.
     ///
     /// # Errors
-    /// The first failure, after the others were told on standard error.
+    /// The first failure, after the others were printed on standard error.
     pub fn finish(mut self) -> anyhow::Result<()> {
         if self.failures.is_empty() {
             return Ok(());

@@ -70,7 +70,7 @@ pub fn learn(arm: &Arm, training: &[RecordedMotion<'_>], options: &LearnedOption
     let dof = arm.dof();
     let mut samples = Samples::new(dof);
     let mut row_of = [vec![0.0; dof], vec![0.0; dof], vec![0.0; dof], vec![0.0; dof]];
-    for (recording, row) in chosen(training, options.samples) {
+    for (recording, row) in training_rows(training, options.samples) {
         let motion = &training[recording];
         for (into, signal) in row_of.iter_mut().zip([motion.q, motion.qd, motion.qdd, motion.tau]) {
             RecordedMotion::row(signal, row, into);
@@ -119,7 +119,7 @@ pub fn predict(
 }
 
 /// The rows to learn from, as (recording, row).
-fn chosen(training: &[RecordedMotion<'_>], samples: usize) -> Vec<(usize, usize)> {
+fn training_rows(training: &[RecordedMotion<'_>], samples: usize) -> Vec<(usize, usize)> {
     let ever = |joint: usize| training.iter().any(|motion| motion.moving[joint].contains(&true));
     let joints = training.first().map_or(0, |motion| motion.moving.len());
     let movers: Vec<usize> = (0..joints).filter(|&joint| ever(joint)).collect();
@@ -164,7 +164,7 @@ mod tests {
                 let qdd: Vec<f64> = (0..6).map(|j| -omega(j).powi(2) * q[j]).collect();
                 model.predict(&mut workspace, &q, &qd, &qdd, &mut prediction);
                 for j in 0..6 {
-                    // A little deterministic noise.
+                    // Deterministic noise.
                     let noise = 0.02 * ((row * 7919 + j * 104_729) % 1000) as f64 / 1000.0;
                     for (signal, value) in self_signals(&mut data.0, j).into_iter().zip([
                         q[j],
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn friction_is_learned_in_a_moment() {
+    fn friction_is_learned() {
         let arm = puma();
         let viscous = |joint: usize| {
             Effect::of(&ViscousFriction)
@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_at_rest_are_left_out() {
+    fn rows_at_rest_are_not_learned_from() {
         let truth = Corrected::new(&puma(), &[]).expect("nothing is physical");
         let mut data = Data::new(&truth, 100, 0.0);
         for row in 0..40 {
@@ -236,7 +236,7 @@ mod tests {
                 data.1[joint][row] = false;
             }
         }
-        let rows = chosen(&[data.motion()], 10);
+        let rows = training_rows(&[data.motion()], 10);
         assert_eq!(rows.len(), 10);
         assert!(rows.iter().all(|(_, row)| (40..100).contains(row)));
         assert!(predict(&puma(), &[], &[data.motion()], &LearnedOptions::default()).is_err());

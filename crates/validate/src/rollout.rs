@@ -1,7 +1,7 @@
 //! The motion of the simulated arm, with and without the named effects, driven by the recorded torques.
 //!
-//! The windows are so short that no controller is needed to keep the arm near its path; a controller would hide what the model
-//! omits. Each window starts at the measured state, and the plant then runs on the recorded torques alone.
+//! The windows are so short that the arm stays near its path without a controller. A controller would hide the effects that
+//! the model omits. Each window starts at the measured state, and the plant then runs on the recorded torques alone.
 
 mod drive;
 #[cfg(test)]
@@ -197,7 +197,7 @@ impl Run {
     }
 }
 
-/// The root of the mean square of simulated minus measured position over all windows, without their common start.
+/// RMS of simulated minus measured position over all windows (rad or m), without the instant at which a window starts.
 fn rms(windows: &[Window], joint: usize, simulated: impl Fn(&Window) -> &Vec<Vec<f64>>) -> f64 {
     let distances = windows.iter().flat_map(|window| {
         let pairs = simulated(window)[joint].iter().zip(&window.measured[joint]);

@@ -1,4 +1,4 @@
-//! Torque channels that hold no torque: dead and idle channels, other quantities, other signals.
+//! Detects torque channels without a torque: dead and idle channels, other quantities, other signals.
 
 use std::collections::HashMap;
 
@@ -13,9 +13,9 @@ use crate::thresholds::{CHANNEL_MOVES, FAR_TOO_SMALL, IDLE_CHANNEL, LEAST_CHANNE
 
 /// The number of samples on either side over which positions are compared.
 const STEP: usize = 5;
-/// The number of stretches, each of which is left out once.
+/// The number of stretches of the cross-validation.
 const FOLDS: usize = 5;
-/// The ridge on columns of unit power, against collinear columns.
+/// The ridge of the regression, relative to columns of unit power, against collinear columns.
 const RIDGE: f64 = 1e-4;
 
 /// Why a channel holds no torque.
@@ -37,14 +37,14 @@ impl Why {
         let what = match self {
             Self::Dead => "the measured torque is almost constant while the model's varies".to_owned(),
             Self::Idle(part) => format!(
-                "the torque channel shows one and the same value in {:.0} % of the samples in which the joint moves; it is no measured torque",
+                "the torque channel shows one and the same value in {:.0} % of the samples in which the joint moves; it is not a measured torque",
                 100.0 * part
             ),
             Self::FarTooSmall(part) => format!(
-                "the torque channel is {part:.4} times what the model needs to hold and move the joint; it is no torque in SI units (a current, a percentage?)"
+                "the torque channel is {part:.4} times what the model needs to hold and move the joint; it is not a torque in SI units (is it a current, or a percentage?)"
             ),
             Self::Unrelated(part) => format!(
-                "neither masses nor friction of any size explain more than {:.0} % of the torque channel's power; it is no torque of this joint",
+                "neither masses nor friction of any size explain more than {:.0} % of the torque channel's power; it is not the torque of this joint",
                 100.0 * part
             ),
         };
@@ -68,7 +68,7 @@ pub fn without_torque(inputs: &[Input<'_>], motions: &Motions, rigid: &[Rigid], 
             Some((joint, why?))
         })
         .collect();
-    // If nothing explains any joint, the model is wrong and not a channel.
+    // If no joint is explained, the model is wrong, and not all channels.
     let is_all = list.len() == motions.dof;
     let stays = |(_, why): &(usize, Why)| is_all && matches!(why, Why::Unrelated(_));
     list.into_iter().filter(|one| !stays(one)).collect()
@@ -100,7 +100,7 @@ fn idle(inputs: &[Input<'_>], joint: usize) -> Option<f64> {
     (all >= LEAST_CHANNEL_ROWS && part > IDLE_CHANNEL).then_some(part)
 }
 
-/// Moving rows of a joint in the recordings to be fitted.
+/// The moving rows of a joint in the training recordings.
 struct Rows {
     /// Measured torque (N m or N).
     torque: Vec<f64>,
@@ -125,8 +125,8 @@ fn of_another_kind(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: u
     }
     let all: Vec<&Vec<f64>> = rows.plain.iter().chain(&rows.more).collect();
     let plain: Vec<&Vec<f64>> = rows.plain.iter().collect();
-    let left = left(&plain, &rows.torque).min(left(&all, &rows.torque));
-    (left > UNRELATED).then(|| Why::Unrelated((1.0 - left * left).max(0.0)))
+    let error = cross_validated(&plain, &rows.torque).min(cross_validated(&all, &rows.torque));
+    (error > UNRELATED).then(|| Why::Unrelated((1.0 - error * error).max(0.0)))
 }
 
 fn rows(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Rows {
@@ -177,8 +177,9 @@ fn rows(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Ro
     rows
 }
 
-/// The NRMSE that columns leave of `y` on stretches left out one after the other, each minus the mean of the others.
-fn left(columns: &[&Vec<f64>], y: &[f64]) -> f64 {
+/// The cross-validated NRMSE of a least-squares fit of `y` by `columns`: each of [`FOLDS`] stretches is predicted by the
+/// fit of the others and their mean.
+fn cross_validated(columns: &[&Vec<f64>], y: &[f64]) -> f64 {
     let n = columns.len();
     let scaled: Vec<f64> = columns
         .iter()

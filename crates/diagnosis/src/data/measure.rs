@@ -68,7 +68,7 @@ pub fn deviations(motions: &Motions) -> Vec<f64> {
         .collect()
 }
 
-/// The joints whose `torque` does not vary as the model's does: dead channels, whatever their noise.
+/// The joints with dead channels: their `torque` does not vary while the model's does, apart from noise.
 pub fn dead(motions: &Motions, rigid: &[Rigid], torque: &[f64]) -> Vec<usize> {
     let fitted = || {
         let chunks = motions.chunks.iter().zip(rigid);

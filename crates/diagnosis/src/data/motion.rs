@@ -23,7 +23,7 @@ const FINE: f64 = 8.0;
 const ROWS: f64 = 2.5;
 /// The golden ratio; the fractional parts of its multiples are spread evenly.
 const GOLDEN: f64 = 0.618_033_988_749_895;
-/// The largest number of rows; beyond it, rows are thinned out.
+/// The largest number of rows; if there are more, rows are dropped evenly.
 const MOST_ROWS: f64 = 12_000.0;
 
 /// The pause between recordings without a common clock (s).
@@ -38,7 +38,7 @@ pub struct Input<'a> {
     pub recording: &'a RegularRecording,
     /// Whether it is held out: not to be fitted.
     pub held_out: bool,
-    /// Whether it was made before something happened (`--before`). Such recordings come first.
+    /// Whether it was made before a change of the robot (`--before`). Such recordings come first.
     pub before: bool,
 }
 
@@ -137,9 +137,9 @@ pub struct Motions {
 }
 
 impl Motions {
-    /// Filters `inputs` with the second filter at `cutoff` (Hz), or at the highest frequency that the slowest recording allows.
-    /// Without a `cutoff`, the data decide: the usual cut-off, a higher one if the motion is quick, a lower one if the noise of
-    /// the positions would be a large part of the torques of `arm`.
+    /// Filters `inputs` with the second filter at `cutoff` (Hz), or at the highest frequency that the slowest recording
+    /// allows. Without a `cutoff`, it follows from the data: it is higher than usual if the motion is quick, and lower if
+    /// the noise of the positions would be a large part of the torques of `arm`.
     pub fn new(inputs: &[Input<'_>], cutoff: Option<f64>, arm: &Arm) -> Self {
         let wanted = cutoff.unwrap_or(CUTOFF);
         let white: Vec<WhiteNoise> = inputs.iter().map(|input| WhiteNoise::of(input.recording)).collect();
@@ -214,7 +214,7 @@ impl Motions {
             if has_before && !input.before && motions.changed_at.is_none() {
                 motions.changed_at = Some(end - 0.5 * BETWEEN);
             }
-            // Pauses, and what is left out between windows, are time, too.
+            // Pauses and omitted parts between windows also count as time.
             end += recording.time(recording.len() - 1) - recording.time(0) + recording.period + BETWEEN;
             motions.begins = motions.begins.min(shift + recording.time(0));
             motions.add(index, (input, &white[index]), &used.sections(index, input), thin, shift);

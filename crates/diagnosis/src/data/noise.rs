@@ -99,14 +99,14 @@ fn white_noise(signal: &[f64], recording: &RegularRecording) -> f64 {
     if squares.is_empty() {
         return 0.0;
     }
-    // The mean of the lower nine tenths, because jumps (a reversal, a contact) are no noise. For a normal variable, the mean
-    // of the squares up to their 90 % quantile is 0.6245 of the variance.
+    // The mean of the lower nine tenths, because jumps (a reversal, a contact) are not noise. For a normal variable, the
+    // mean of the squares up to their 90 % quantile is 0.6245 of the variance.
     let keep = (squares.len() * 9 / 10).max(1);
     if keep < squares.len() {
         squares.select_nth_unstable_by(keep, f64::total_cmp);
         squares.truncate(keep);
     }
-    // In order, so that the sum does not depend on how they were parted.
+    // Sorted, so that the sum does not depend on the order after the selection.
     squares.sort_unstable_by(f64::total_cmp);
     (squares[..keep].iter().sum::<f64>() / keep as f64 / 0.6245).sqrt()
 }

@@ -7,7 +7,7 @@ use nalgebra::{Matrix6xX, Vector3};
 
 use crate::data::motion::Chunk;
 
-/// Signals on the ticks of one chunk; the first index is the joint.
+/// Signals on the ticks of one chunk. The first index is the joint, the last one the tick.
 #[derive(Clone, Debug, Default)]
 pub struct Rigid {
     /// τ (N m or N).
@@ -18,17 +18,17 @@ pub struct Rigid {
     pub links: Vec<Vec<Vec<f64>>>,
     /// The last link's ten columns of the torque regressor, in the tool's frame: `[joint][parameter]`.
     pub payload: Vec<Vec<Vec<f64>>>,
-    /// ∂τ/∂q: `[joint][by]`.
+    /// ∂τ/∂q: `[joint of τ][joint of q]`.
     pub by_position: Vec<Vec<Vec<f64>>>,
-    /// ∂τ/∂q̇: `[joint][by]`.
+    /// ∂τ/∂q̇: `[joint of τ][joint of q̇]`.
     pub by_velocity: Vec<Vec<Vec<f64>>>,
-    /// The mass matrix.
+    /// The mass matrix: `[row][column]`.
     pub mass: Vec<Vec<Vec<f64>>>,
-    /// ∂τ/∂(turn of the base about its x, y axis).
+    /// The derivative of τ with respect to a turn of the base (rad) about its x and y axis: `[joint][axis]`.
     pub tilt: Vec<[Vec<f64>; 2]>,
-    /// The torque of a gravity of 1 m/s² along x, y, z of the base.
+    /// The torque of a gravity of 1 m/s² along x, y, z of the base: `[joint][axis]`.
     pub gravity: Vec<[Vec<f64>; 3]>,
-    /// The torque of a unit force on the tool along x, y, z of the base.
+    /// The generalised force Jᵀ F of a force of 1 N on the tool along x, y, z of the base: `[joint][axis]`.
     pub force: Vec<[Vec<f64>; 3]>,
     /// The part of τ that is due to inertial parameters other than the URDF's; empty if there are none.
     pub background: Vec<Vec<f64>>,
@@ -57,7 +57,7 @@ impl Rigid {
             .map(move |mass| mass - self.rotors[joint])
     }
 
-    /// Sets the background to the difference of the torque from that of `arm` for the same positions of the joints.
+    /// Sets `background` to the difference of the torque from that of `arm` at the same positions of the joints.
     pub fn set_background(&mut self, arm: &Arm, chunk: &Chunk) {
         let along = Along::new(chunk, &self.offset, 0..chunk.ticks());
         let mut tau = vec![0.0; along.q.len()];

@@ -115,7 +115,7 @@ fn apply(weights: &[f64], signal: &[f64], stride: usize) -> Vec<f64> {
     (0..count)
         .map(|k| {
             let window = &signal[k * stride..k * stride + weights.len()];
-            // Four partial sums, so that the processor need not wait for each addition.
+            // Four partial sums, so that additions do not wait for each other.
             let mut sums = [0.0; 4];
             let (a, b) = (weights.chunks_exact(4), window.chunks_exact(4));
             let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(w, s)| w * s).sum();
@@ -133,7 +133,7 @@ fn apply(weights: &[f64], signal: &[f64], stride: usize) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// A cubic passes unchanged, with its derivatives.
+    /// A cubic and its derivatives pass unchanged.
     #[test]
     fn cubics_pass() {
         for cutoff in [4.0, 10.0, 23.0] {

@@ -1,4 +1,4 @@
-//! The part of the recordings that is used: all of it, or of long recordings windows that are spread evenly over them.
+//! The part of the recordings that is used: all of short recordings, and evenly spread windows of long ones.
 
 use std::ops::Range;
 
@@ -6,10 +6,10 @@ use recording::RegularRecording;
 
 use crate::data::motion::Input;
 
-/// The total duration up to which all is used of training recordings, and of held-out recordings (s).
+/// The total duration of the recordings of a role (training, held out) up to which they are used whole (s).
 const MOST_SECONDS: f64 = 900.0;
-/// The total duration that is used of longer ones (s). More would make the search slower and the intervals narrower than the
-/// catalogue's formulae are true: their errors do not become fewer with more samples.
+/// The total duration that is used of longer recordings (s). More would make the search slower, and the intervals narrower
+/// than justified, because the errors of the catalogue's formulae do not decrease with more samples.
 const LONG_SECONDS: f64 = 240.0;
 /// The length of a window, if the recording allows (s).
 const WINDOW: f64 = 20.0;
@@ -21,17 +21,18 @@ const LONGEST: f64 = 60.0;
 /// The number of recordings that a sentence names.
 const MOST_NAMED: usize = 4;
 
-/// Of one recording, no more than this needs to be held (s): windows that are spread evenly, and half of it at least.
+/// The duration of one recording that is sufficient to hold in memory (s), as evenly spread windows. At least half of it is
+/// held of a longer recording.
 pub const WORTH_HOLDING: f64 = 1000.0;
 
-/// Recordings are short beside others that are at least so many times as long.
+/// A recording is short beside others that are at least this many times as long.
 const SHORT: f64 = 4.0;
 
 /// The time that is used of each recording of a role (s), which are `recorded` (s) long.
 ///
-/// All of them, if they are not longer than 900 s together. If they are, short ones are still used whole, if they are not longer
-/// than 660 s together; of the others, 240 s are used in equal parts, or all of one that is shorter than its part. A
-/// recording that is used whole among all of them is used whole among any first few of them, too.
+/// All recordings are used whole if they are not longer than 900 s together. Otherwise, short ones are still used whole if
+/// they are not longer than 660 s together. Of the others, 240 s are used in equal parts, or all of a recording that is
+/// shorter than its part. A recording that is used whole is also used whole if only the first few recordings are given.
 pub fn worth_using(recorded: &[f64]) -> Vec<f64> {
     let mut worth = recorded.to_vec();
     if recorded.iter().sum::<f64>() <= MOST_SECONDS {
@@ -59,14 +60,14 @@ pub fn worth_using(recorded: &[f64]) -> Vec<f64> {
     worth
 }
 
-/// What is used of the recordings.
+/// The parts of the recordings that are used.
 #[derive(Debug)]
 pub struct Used {
     /// Durations by role, of training and of held-out recordings, that were recorded (s).
     recorded: [f64; 2],
     /// The duration that is used, by role (s).
     used: [f64; 2],
-    /// The part of what is held of each recording that is to be used.
+    /// The share to be used of the held part of each recording.
     shares: Vec<f64>,
     /// The duration that is used of each recording (s).
     seconds: Vec<f64>,
@@ -156,7 +157,7 @@ impl Used {
         is_part.then(|| [self.seconds[index], input.recording.recorded()])
     }
 
-    /// What is omitted, in sentences.
+    /// Sentences on the parts that are omitted.
     pub fn remarks(&self) -> Vec<String> {
         let long = ["training", "held-out"].into_iter().enumerate();
         long.filter(|&(role, _)| self.recorded[role] > MOST_SECONDS)
@@ -199,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn up_to_900_s_all_is_used() {
+    fn up_to_900_s_are_used_whole() {
         assert_eq!(worth_using(&[600.0, 10.0, 290.0]), [600.0, 10.0, 290.0]);
         assert_eq!(worth_using(&[]), [0.0; 0]);
     }
@@ -209,7 +210,7 @@ mod tests {
         assert_eq!(worth_using(&[3600.0]), [240.0]);
         assert_eq!(worth_using(&[1800.0, 1800.0]), [120.0, 120.0]);
         assert_eq!(worth_using(&[15.0; 100]), [2.4; 100]);
-        // What one that is shorter than its part leaves goes to the others.
+        // The unused part of a recording that is shorter than its part goes to the others.
         assert_eq!(worth_using(&[900.0, 500.0, 150.0, 48.0]), [64.0, 64.0, 64.0, 48.0]);
     }
 
@@ -217,15 +218,15 @@ mod tests {
     fn short_recordings_beside_long_ones_are_used_whole() {
         assert_eq!(worth_using(&[10.0, 86_400.0]), [10.0, 240.0]);
         assert_eq!(worth_using(&[3600.0, 30.0, 3600.0, 60.0]), [120.0, 30.0, 120.0, 60.0]);
-        // As long as they are not too much together.
+        // Short recordings are used whole only if they are not too long together.
         assert!(worth_using(&[&[30.0; 22][..], &[3600.0]].concat()).starts_with(&[30.0; 22]));
         let many = worth_using(&[&[30.0; 23][..], &[3600.0]].concat());
         assert!(many.iter().all(|seconds| *seconds == 10.0), "{many:?}");
     }
 
-    /// What is thinned while further recordings are still to be read cannot be used whole with them.
+    /// A recording that is thinned before all recordings are read can no longer be used whole.
     #[test]
-    fn what_is_whole_among_more_is_whole_among_fewer() {
+    fn a_recording_used_whole_among_more_is_used_whole_among_fewer() {
         let mut state = 1_u64;
         for _ in 0..2000 {
             let mut random = || {
@@ -244,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_used_in_part_is_said() {
+    fn partial_use_is_reported() {
         let recordings = [recording(10), recording(2000), recording(50)];
         let input = |(name, recording), held_out| Input {
             name,

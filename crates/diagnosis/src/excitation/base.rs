@@ -143,7 +143,7 @@ impl Base {
         base
     }
 
-    /// The chosen columns in one state, joint by joint: dof × the number of columns.
+    /// The independent columns in one state, joint by joint: dof × the number of columns.
     pub fn rows(&self, arm: &Arm, scratch: &mut Scratch, state: [&[f64]; 3], rows: &mut [f64]) {
         scratch.regress(arm, state);
         let [_, qd, qdd] = state;
@@ -237,7 +237,7 @@ fn independent(rows: &DMatrix<f64>) -> (Vec<usize>, Vec<f64>) {
         }
         let whole: DVector<f64> = rows.column(column).into_owned();
         let mut left = whole.clone();
-        // Twice is enough (Kahan).
+        // Two passes of orthogonalisation are sufficient (Kahan).
         for _ in 0..2 {
             for unit in &basis {
                 let part = unit.dot(&left);
@@ -255,14 +255,14 @@ fn independent(rows: &DMatrix<f64>) -> (Vec<usize>, Vec<f64>) {
 
 /// The information matrices of a motion, per sample.
 pub struct Measured {
-    /// With the rows as they are.
+    /// From unscaled rows.
     plain: DMatrix<f64>,
-    /// With the rows over the joints' torque scales.
+    /// From rows divided by the joints' torque scales.
     weighted: DMatrix<f64>,
 }
 
 impl Measured {
-    /// How well they determine the parameters, compared with the `proposed` motion.
+    /// The quality of the motion for the parameters, compared with the `proposed` motion.
     pub fn quality(&self, proposed: &Self) -> Quality {
         let norms = self.plain.diagonal().map(f64::sqrt);
         let scaled = DMatrix::from_fn(norms.len(), norms.len(), |a, b| {

@@ -51,11 +51,11 @@ pub struct Allowed {
     pub middle: Vec<f64>,
     /// The allowed distance from the middle (rad or m).
     pub room: Vec<f64>,
-    /// rad/s or m/s.
+    /// The allowed speed (rad/s or m/s).
     pub velocity: Vec<f64>,
-    /// rad/s² or m/s²; infinite where it is not limited.
+    /// The allowed acceleration (rad/s² or m/s²); infinite where it is not limited.
     pub acceleration: Vec<f64>,
-    /// N m or N; infinite where it is not limited.
+    /// The allowed torque (N m or N); infinite where it is not limited.
     pub torque: Vec<f64>,
 }
 
@@ -192,8 +192,8 @@ impl Allowed {
     /// A place at which no joint needs more than [`HELD`] of its torque to hold the arm, relative to the room about the middle:
     /// the middle itself, or a random place.
     ///
-    /// If no tried place is one.
-    /// If none of many places is one.
+    /// # Errors
+    /// [`ExcitationError::TooWeak`], if there is no such place among many random ones.
     pub fn holdable(&self, arm: &Arm, random: &mut impl Rng) -> Result<Vec<f64>, ExcitationError> {
         let mut workspace = Workspace::new(arm);
         let mut place = vec![0.0; arm.dof()];

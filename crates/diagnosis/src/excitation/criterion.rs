@@ -16,8 +16,8 @@ const SAMPLES: usize = 14;
 const STEPS: [f64; 3] = [1e-5, 1.0, 1.0];
 /// Added to the scaled information, so that it has an inverse.
 const RIDGE: f64 = 1e-10;
-/// The weight of the logarithm of the condition number relative to the mean logarithm of the parameters' standard deviations.
-/// Without it, a few combinations of parameters may be determined poorly.
+/// The weight of the logarithm of the condition number relative to the mean logarithm of the parameters' standard
+/// deviations. Without this term, a few combinations of parameters may be determined poorly.
 const CONDITION: f64 = 0.5;
 /// The exponent of the norm that approximates the largest eigenvalue.
 const SMOOTH: i32 = 2;
@@ -212,8 +212,9 @@ impl<'a> Criterion<'a> {
     }
 }
 
-/// The logarithm of the condition number of rows, made smooth: ln √(‖λ‖ ‖1/λ‖) over the eigenvalues λ of their products with
-/// themselves, `matrix`, with the norm of the exponent [`SMOOTH`]. And its derivative by `matrix`.
+/// The logarithm of the condition number of rows, made smooth: ln √(‖λ‖ ‖1/λ‖) over the eigenvalues λ of their products
+/// with themselves, `matrix`, with the norm of the exponent [`SMOOTH`]. The second value is its derivative with respect to
+/// `matrix`.
 fn spread(matrix: &DMatrix<f64>) -> (f64, DMatrix<f64>) {
     let eigen = matrix.clone().symmetric_eigen();
     let largest = eigen.eigenvalues.max();

@@ -14,11 +14,11 @@ const EACH: [(f64, u64); 2] = [(30.0, 40), (300.0, 40)];
 const BEST: [(f64, u64); 2] = [(1000.0, 60), (10_000.0, 60)];
 /// The number of steps that L-BFGS stores.
 const MEMORY: usize = 12;
-/// The number of evaluations without a gain after which a search ends, and the gain that counts as none.
+/// The number of evaluations without a gain after which a search ends, and the largest reduction that counts as no gain.
 const PATIENCE: usize = 25;
 const NO_GAIN: f64 = 1e-5;
 /// The approximate number of evaluations per iteration.
-const LOOKS: f64 = 1.15;
+const EVALUATIONS: f64 = 1.15;
 
 /// The best motion that the search finds from `starts`.
 ///
@@ -30,7 +30,7 @@ pub fn best(
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Vec<f64>, Error> {
     let iterations = |list: &[(f64, u64)]| list.iter().map(|(_, count)| *count).sum::<u64>() as f64;
-    let total = LOOKS * (starts.len() as f64 * iterations(&EACH) + iterations(&BEST));
+    let total = EVALUATIONS * (starts.len() as f64 * iterations(&EACH) + iterations(&BEST));
     let done = AtomicU64::new(0);
     let look = |at: &[f64], hardness: f64| {
         let found = criterion.look(at, hardness);
@@ -48,7 +48,7 @@ pub fn best(
             found = Some((value, at));
         }
         done.store(
-            (LOOKS * (number + 1) as f64 * iterations(&EACH)) as u64,
+            (EVALUATIONS * (number + 1) as f64 * iterations(&EACH)) as u64,
             Ordering::Relaxed,
         );
     }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::found::findings;
 use super::inertials::{Inertials, inertials};
 use super::locate::locate;
-use super::observability::unseen;
+use super::observability::not_testable;
 use super::report::{
     Finding, JointFit, Located, NotObservable, RecordingNames, Report, SCHEMA, Traces, Unexplained, UsedPart,
 };
@@ -69,7 +69,7 @@ impl Conclusion {
         findings.extend(others.into_iter().map(|finding| (finding, None)));
         let not_enough_data = not_enough(study, products);
         if !not_enough_data.is_empty() {
-            // With so few data, no finding is supported.
+            // With too few data, no finding is supported.
             findings.clear();
         }
         let by_exported: Vec<Vec<f64>> = (0..study.motions.dof)
@@ -99,7 +99,7 @@ impl Conclusion {
         Self {
             located,
             traces: traces(study, judged, &findings, [residual, &by_exported]),
-            not_observable: not_named(unseen(study, products, &judged.named), &findings),
+            not_observable: not_named(not_testable(study, products, &judged.named), &findings),
             findings,
             inertials,
             not_enough_data,
@@ -205,7 +205,8 @@ fn used_in_part(sources: &[SourceRecording]) -> Vec<UsedPart> {
     parts.collect()
 }
 
-/// The effects of `list` that no finding names: a second encoder or a motor current shows what the torque alone does not.
+/// The effects of `list` without a finding. A second encoder or a motor current may show an effect that the torque alone
+/// does not.
 fn not_named(mut list: Vec<NotObservable>, findings: &[(Finding, Option<usize>)]) -> Vec<NotObservable> {
     let is_named = |entry: &NotObservable| {
         let same = |finding: &Finding| finding.effect == entry.effect && finding.joint == entry.joint;
@@ -215,10 +216,11 @@ fn not_named(mut list: Vec<NotObservable>, findings: &[(Finding, Option<usize>)]
     list
 }
 
-/// How well each joint's torque is predicted; `left` is the residual of the augmented model, and that of the exported model.
-fn fit(study: &Study, left: [&[Vec<f64>]; 2], identified: &[Option<f64>]) -> BTreeMap<String, JointFit> {
+/// How well each joint's torque is predicted; `residuals` are those of the augmented and of the exported model
+/// (`[joint][row]`, N m or N).
+fn fit(study: &Study, residuals: [&[Vec<f64>]; 2], identified: &[Option<f64>]) -> BTreeMap<String, JointFit> {
     let of = |(joint, residual): (usize, &Vec<f64>)| {
-        let of_exported = errors(study, joint, &left[1][joint]);
+        let of_exported = errors(study, joint, &residuals[1][joint]);
         let errors = JointFit {
             held_out_nrmse_identified: identified[joint],
             held_out_nrmse_exported: of_exported.held_out_nrmse_augmented,
@@ -226,7 +228,7 @@ fn fit(study: &Study, left: [&[Vec<f64>]; 2], identified: &[Option<f64>]) -> BTr
         };
         (study.arm.joints()[joint].name.clone(), errors)
     };
-    left[0].iter().enumerate().map(of).collect()
+    residuals[0].iter().enumerate().map(of).collect()
 }
 
 #[cfg(test)]
@@ -236,7 +238,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_named_is_not_listed_as_not_testable() {
+    fn an_effect_that_is_named_is_not_listed_as_not_testable() {
         let entry = |effect, joint: &str| NotObservable {
             effect,
             joint: Some(joint.to_owned()),
@@ -250,11 +252,11 @@ mod tests {
             entry("backlash", "a"),
         ];
         let finding = Finding::of(Effect::of(&JointElasticity).on("a".to_owned()));
-        let left = not_named(list, &[(finding, None)]);
-        let left: Vec<_> = left
+        let remaining = not_named(list, &[(finding, None)]);
+        let remaining: Vec<_> = remaining
             .iter()
             .map(|entry| (entry.effect, entry.joint.as_deref()))
             .collect();
-        assert_eq!(left, [("joint_elasticity", Some("b")), ("backlash", Some("a"))]);
+        assert_eq!(remaining, [("joint_elasticity", Some("b")), ("backlash", Some("a"))]);
     }
 }

@@ -50,7 +50,7 @@ pub fn findings(study: &Study, named: &Chosen, inputs: &[Input<'_>]) -> Vec<Find
     list
 }
 
-/// The signals of one joint through the study's filter, every tenth of a second or so, away from rest.
+/// The signals of one joint after the study's filter, about every tenth of a second, while the joint moves.
 fn gather(
     study: &Study,
     joint: usize,
@@ -90,7 +90,7 @@ fn gather(
     rows
 }
 
-/// The derivative to take of a signal.
+/// The order of the derivative of a signal.
 #[derive(Clone, Copy)]
 enum Order {
     Value,
@@ -216,7 +216,7 @@ fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>])
         let current = input.recording.tau_current.get(joint)?.as_ref()?;
         let sensor = &input.recording.tau[joint];
         let difference: Vec<f64> = current.iter().zip(sensor).map(|(a, b)| a - b).collect();
-        // If both columns are the same signal, there is nothing between them.
+        // If both columns are the same signal, no friction is between them.
         if difference.iter().all(|d| d.abs() < 1e-9) {
             return None;
         }

@@ -46,7 +46,7 @@ pub fn useless(study: &Study, products: &Products, held: &Products, judged: &Sel
         .par_iter()
         .filter_map(|member| {
             let gain = held_out_gain(study, &problem, Some(held), judged, member)?;
-            // The background in its place predicts as well, for more nats.
+            // The background in its place predicts nearly as well, but costs more evidence.
             let allowed = if problem.is_background_too(&study.candidates[member.candidate]) {
                 AS_WELL
             } else {
@@ -181,8 +181,9 @@ fn held_out_gain(
     );
     let gain = |without: &[f64]| 1.0 - (with[joint].max(0.0) / without[joint].max(1e-300)).sqrt();
     let mut gains = vec![gain(&without)];
-    // Every drive has friction, and most have a rotor: they are also useful if the rest of the fit, as it is, predicts worse
-    // without them. Fitted again, the inertials may change by more than the friction of a joint with a large load.
+    // Every drive has friction, and most have a rotor: they also count as useful if the fit without refitting predicts
+    // worse without them. In a refit, the inertial parameters may change by more than the friction of a joint with a large
+    // load.
     let hypothesis = study.candidates[member.candidate].hypothesis;
     if hypothesis.is_friction() || hypothesis.is_drive_inertia() && member.evidence >= CLEAR_DRIVE {
         let of_others = |column: &usize| !study.candidates[member.candidate].columns.contains(column);
@@ -203,7 +204,7 @@ fn held_out_gain(
 fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joint: usize) -> f64 {
     let columns = &study.candidates[candidate].columns;
     let torque = study.table.torque(joint, columns, &fit.values(columns));
-    let left = study.table.residual(joint, &without.columns, &without.coefficients);
+    let residual = study.table.residual(joint, &without.columns, &without.coefficients);
     let rows = study.training_rows(joint);
     let is_odd = odd_pieces(&study.motions.row_times(), study.motions.begins, &rows, &torque);
     let (mut with, mut bare) = (0.0, 0.0);
@@ -211,12 +212,12 @@ fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joi
         let (mut power, mut product) = (0.0, 0.0);
         for (&row, _) in rows.iter().zip(&is_odd).filter(|(_, odd)| **odd == fitted) {
             power += torque[row] * torque[row];
-            product += torque[row] * left[row];
+            product += torque[row] * residual[row];
         }
         let scale = product / f64::max(power, 1e-300);
         for (&row, _) in rows.iter().zip(&is_odd).filter(|(_, odd)| **odd != fitted) {
-            with += (left[row] - scale * torque[row]).powi(2);
-            bare += left[row].powi(2);
+            with += (residual[row] - scale * torque[row]).powi(2);
+            bare += residual[row].powi(2);
         }
     }
     1.0 - (with / f64::max(bare, 1e-300)).sqrt()
@@ -244,7 +245,7 @@ fn odd_pieces(times: &[f64], begins: f64, rows: &[usize], torque: &[f64]) -> Vec
 fn place(study: &Study, hypothesis: Hypothesis, candidate: usize) -> Place {
     if let Some([from, to]) = study.window(candidate) {
         let at = study.motions.recording_at(0.5 * (from + to));
-        // Refinement may have moved an end just beyond the recording's.
+        // Refinement may have moved an end just beyond the end of the recording.
         let own = |time: f64| {
             at.map_or(time, |at| {
                 let [first, last] = study.motions.span(at);

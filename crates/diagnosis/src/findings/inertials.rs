@@ -38,7 +38,7 @@ pub struct LinkInertials {
 pub struct Inertials {
     /// One finding for most links (joint `None`), or one for each link that stands out.
     pub findings: Vec<Finding>,
-    /// All links' bodies for the corrected model; none if no link differs.
+    /// The bodies of all links for the corrected model; empty if no link differs.
     pub effects: Vec<Effect>,
     /// The links, by the joint before the link.
     pub links: BTreeMap<String, LinkInertials>,
@@ -172,7 +172,8 @@ pub fn inertials(
     let explained: Vec<bool> = (0..dof)
         .map(|joint| errors(study, joint, &augmented(study, &judged.named, joint)).train_nrmse_augmented < PARTLY)
         .collect();
-    // The links that explain nearly as much in the place of one, the best first, and the margin of that one.
+    // The margin of a link over the best other link (nats), and the links that explain nearly as much in its place, the
+    // best first.
     let instead = |link: usize| -> (f64, Vec<Confusable>) {
         let [score, loss] = study.evidence_of_link(products, &judged.named, link);
         let mut others = study.in_other_links(products, &judged.named, link);
@@ -186,7 +187,7 @@ pub fn inertials(
         (margin, rivals.collect())
     };
     let mut add = |joint: Option<usize>, shares: &[f64], parameters: BTreeMap<&'static str, Parameter>| {
-        // Beside unmodelled structure, they may be a part of it.
+        // Beside unmodelled structure on a joint, the changes may be a part of that structure.
         let stands_out = |joint: usize| {
             let unnamed = judged.unmodelled.iter().map(|member| member.shares[joint]);
             explained[joint]
@@ -210,7 +211,7 @@ pub fn inertials(
             ..Finding::of(list.effects[joint.unwrap_or(0)].clone())
         });
     };
-    // A payload and the last link are one body: the rest of it is no second finding.
+    // A payload and the last link are one body, so that the remaining change of the link is not a second finding.
     let has_payload = judged
         .members
         .iter()

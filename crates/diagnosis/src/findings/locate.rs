@@ -121,7 +121,7 @@ fn windows(study: &Study, state: &State, rows: &[usize], nominal: &[f64], all: f
     let mut from = 0;
     while from < rows.len() {
         let (recording, start) = (state.recording[rows[from]], state.time[rows[from]]);
-        // A row at the very end of a window belongs to the next one, however its time was rounded.
+        // A row at the end of a window belongs to the next window, so that rounding of its time does not matter.
         let inside = |&&row: &&usize| state.recording[row] == recording && state.time[row] - start < WINDOW - 1e-6;
         let length = rows[from..].iter().take_while(inside).count().max(1);
         let residual = root_mean_square(rows[from..from + length].iter().map(|&row| nominal[row]));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use effects::{Kind, Unseen};
+use effects::{Detectability, Kind};
 use rayon::prelude::*;
 
 use crate::findings::report::NotObservable;
@@ -42,7 +42,7 @@ impl Visibility {
 }
 
 /// The effects that are not testable in addition to the selection `chosen`.
-pub fn unseen(study: &Study, products: &Products, chosen: &Chosen) -> Vec<NotObservable> {
+pub fn not_testable(study: &Study, products: &Products, chosen: &Chosen) -> Vec<NotObservable> {
     let dof = study.motions.dof;
     let mut list: Vec<NotObservable> = (0..dof)
         .into_par_iter()
@@ -95,10 +95,10 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
                 would_be_seen_below: below.map(|size| (key, size)).into_iter().collect(),
             });
         };
-        match kind.spec().unseen {
-            Unseen::Never => {}
-            Unseen::Limit { because } => add(because, None, Some(largest_torque(study, joint))),
-            Unseen::Sized {
+        match kind.spec().detectability {
+            Detectability::Never => {}
+            Detectability::Limit { because } => add(because, None, Some(largest_torque(study, joint))),
+            Detectability::Sized {
                 because,
                 if_none,
                 is_seen_below,
@@ -122,7 +122,7 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
                     add(because, least.map(|&(size, _)| size), None);
                 }
             }
-            Unseen::Linear {
+            Detectability::Linear {
                 if_no_form,
                 is_of_first,
                 is_of_all_torque,
@@ -174,7 +174,7 @@ fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -
 /// The kinds of effects in the order of `not_observable`.
 fn in_turn() -> impl Iterator<Item = Kind> {
     let mut kinds: Vec<Kind> = Kind::all().filter(|kind| kind.name().is_some()).collect();
-    kinds.sort_by_key(|kind| kind.spec().unseen_turn);
+    kinds.sort_by_key(|kind| kind.spec().not_testable_turn);
     kinds.into_iter()
 }
 

@@ -9,7 +9,7 @@ use serde::Serialize;
 pub use crate::findings::inertials::LinkInertials;
 use crate::next::NextExperiment;
 
-/// What [`Report::schema`] is.
+/// The value of [`Report::schema`].
 pub(crate) const SCHEMA: &str = "testbed.diagnosis/1";
 
 /// The result of a diagnosis. Maps are keyed by the URDF joint's name.
@@ -25,8 +25,8 @@ pub struct Report {
     pub recordings: RecordingNames,
     /// The verdict in one word.
     pub verdict: Verdict,
-    /// What is wrong with the recordings' units, signs, order or zeros, and mends it; no effect is searched before. Empty
-    /// in every other verdict.
+    /// Doubts about the units, signs, order or zeros of the recordings, with their remedies. No effect is searched before
+    /// they are corrected. Empty for every other verdict.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub doubts: Vec<Doubt>,
     /// The effects found, the largest share first.
@@ -67,7 +67,7 @@ pub struct RecordingNames {
     pub used_in_part: Vec<UsedPart>,
 }
 
-/// What is used of a long recording.
+/// The part of a long recording that is used.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct UsedPart {
     /// The recording, with the name that the user gave.
@@ -97,20 +97,20 @@ pub enum Verdict {
     Unexplained,
     /// The recordings do not contain enough data.
     NotEnoughData,
-    /// Units, signs, order or zeros of the recordings come first: no effect was searched.
+    /// Units, signs, order or zeros of the recordings must be corrected first; no effect was searched.
     UnitsFirst,
 }
 
-/// A recording that does not fit the robot as it was read.
+/// A doubt about a recording that contradicts the robot's URDF as it was read.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Doubt {
-    /// The recording, as it was named.
+    /// The recording, with the name that the user gave.
     pub recording: String,
-    /// The joint, or `None` where it is about all that move.
+    /// The joint, or `None` if the doubt concerns all joints that move.
     pub joint: Option<String>,
     /// What is wrong, and the remedy.
     pub text: String,
-    /// The whole column map (TOML) that mends it, where one does.
+    /// The complete column map (TOML) that corrects it, if a column map can.
     pub column_map: Option<String>,
 }
 
@@ -159,7 +159,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// A finding of `effect` with nothing but its name and joint.
+    /// A finding of `effect` with only its name and joint.
     pub fn of(effect: Effect) -> Self {
         Self {
             effect: effect.name(),

@@ -13,7 +13,7 @@ use crate::thresholds::{MARGIN_SCALE, NEARLY, NEARLY_NATS, SUREST};
 /// The number of the most promising alternatives that are fitted in full.
 const TRIED: usize = 8;
 
-/// How many alternatives that explain too little alone are tried in pairs, and the number of partners of each.
+/// The number of effects that explain too little alone and are tried in pairs, and the number of partners of each.
 const PAIRED: usize = 3;
 const PARTNERS: usize = 2;
 
@@ -55,7 +55,7 @@ pub fn allowance(explained: f64) -> f64 {
 pub fn beside(study: &Study, chosen: &Chosen, member: usize) -> Vec<usize> {
     let finding = &study.candidates[member];
     let mut set: Vec<usize> = chosen.others(member);
-    // A form of a simpler effect competes with that effect plus another.
+    // An effect that generalises a simpler one competes with that simpler effect plus another effect.
     let plain = (0..study.candidates.len()).find(|&c| {
         let plain = &study.candidates[c];
         Some(plain.hypothesis) == finding.hypothesis.plain()
@@ -71,8 +71,8 @@ pub fn beside(study: &Study, chosen: &Chosen, member: usize) -> Vec<usize> {
     set
 }
 
-/// The other name of the same machine, if `member` has one: dry friction that depends on the direction from some time on equals
-/// friction of the same level, and a constant from then on. No motion distinguishes the two. `set` is the set [`beside`] the
+/// The equivalent name of `member`, if there is one: a constant torque from an onset on, beside larger dry friction, equals
+/// friction that depends on the direction from then on. No motion distinguishes the two. `set` is the set [`beside`] the
 /// finding.
 pub fn alias(study: &Study, chosen: &Chosen, member: usize, set: &[usize]) -> Option<(Hypothesis, Option<usize>)> {
     let finding = &study.candidates[member];
@@ -92,8 +92,8 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
     let finding = &study.candidates[member];
     let set = beside(study, chosen, member);
     let without = problem.choose(set.clone(), &chosen.fit.weights);
-    // What each rival would gain is told at the weights of what is there without the finding: at the finding's own, whatever is on
-    // its joint seems to explain all.
+    // The gains of rivals are computed with the weights of the fit without the finding. With the weights of the finding's
+    // own fit, every effect on its joint would seem to explain everything.
     let ground = problem.reweighted(without.clone());
     let is_other = |c: usize| {
         let other = &study.candidates[c];
@@ -114,7 +114,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
     let others: Vec<usize> = (0..study.candidates.len()).filter(|&c| is_other(c)).collect();
     let mut promises = problem.promises(&ground, &others);
     promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    // The best size of each hypothesis.
+    // Only the best size of each hypothesis is fitted in full.
     let mut tried: Vec<usize> = Vec::new();
     for &(_, c) in &promises {
         let same = |&&known: &&usize| {
@@ -204,12 +204,12 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
     }
 }
 
-/// The search of two effects that explain together what a finding does.
+/// The search for two effects that together explain as much as a finding.
 struct Paired<'a> {
     study: &'a Study,
     problem: &'a Problem<'a>,
     chosen: &'a Chosen,
-    /// What is beside the finding.
+    /// The set beside which alternatives are tried.
     set: &'a [usize],
     /// The largest loss of an alternative (nats).
     allowance: f64,
@@ -218,8 +218,8 @@ struct Paired<'a> {
 }
 
 impl Paired<'_> {
-    /// Loss and score beyond the finding's (nats) and names of each pair. One is of those fitted `alone` that are nearest to an
-    /// alternative, the other of `others`.
+    /// Each pair with its loss and its score beyond those of the finding (nats). One effect of a pair is among those fitted
+    /// `alone` that are nearest to an alternative, the other among `others`.
     fn pairs(&self, mut alone: Vec<(usize, Chosen)>, others: &[usize]) -> Vec<(f64, f64, [Named; 2])> {
         alone.retain(|(c, _)| !self.rivals.contains(&self.named(*c)));
         alone.sort_by(|a, b| a.1.fit.loss.total_cmp(&b.1.fit.loss).then(a.0.cmp(&b.0)));

@@ -57,7 +57,7 @@ fn is_undetermined(finding: &Finding) -> bool {
     size.is_some_and(|size| size.ci95[0] < 0.0 && size.ci95[1] > 0.0)
 }
 
-/// A ratio of standard deviations in words; a ratio above one is no percentage.
+/// A ratio of standard deviations in words; a ratio above one is not given as a percentage.
 fn of_torque(ratio: f64) -> String {
     if ratio >= 1.005 {
         format!("{} times the torque's standard deviation", number(ratio))

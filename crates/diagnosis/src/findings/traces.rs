@@ -7,12 +7,12 @@ use crate::findings::report::{Finding, Trace, Traces};
 use crate::search::study::Study;
 use crate::selection::judge::Selection;
 
-/// All signals on the rows; `left` is the residual of the augmented model, and that of the exported model.
+/// All signals on the rows; `residuals` are those of the augmented and of the exported model (`[joint][row]`, N m or N).
 pub fn traces(
     study: &Study,
     judged: &Selection,
     findings: &[(Finding, Option<usize>)],
-    left: [&[Vec<f64>]; 2],
+    residuals: [&[Vec<f64>]; 2],
 ) -> Traces {
     let dof = study.motions.dof;
     let table = &study.table;
@@ -97,8 +97,8 @@ pub fn traces(
                 qdd: cut(&qdd),
                 tau: cut(&study.measured),
                 residual: cut(&study.nominal),
-                residual_augmented: cut(left[0]),
-                residual_exported: cut(left[1]),
+                residual_augmented: cut(residuals[0]),
+                residual_exported: cut(residuals[1]),
                 effects: torques.iter().map(|torque| cut(torque)).collect(),
                 moving: table
                     .joints

@@ -43,7 +43,7 @@ struct Push {
 }
 
 /// Searches bursts in the residuals of the named effects (`[joint][row]`) in the held-out recordings.
-pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
+pub fn bursts(study: &Study, judged: &Selection, residual: &[Vec<f64>]) -> Bursts {
     let mut bursts = Bursts::default();
     let held: Vec<bool> = study.fitted.iter().map(|fitted| !fitted).collect();
     if !held.contains(&true) {
@@ -56,14 +56,17 @@ pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
             if study.training_rows(joint).len() < LEAST_BURST_ROWS {
                 return 0.0;
             }
-            1.0 / usual(study, joint, left).powi(2).max(study.floor[joint]).max(1e-300)
+            1.0 / usual(study, joint, residual)
+                .powi(2)
+                .max(study.floor[joint])
+                .max(1e-300)
         })
         .collect();
-    let windows = scan::contacts(&study.table, &times, left, &weights, study.force(), &held, MOST);
+    let windows = scan::contacts(&study.table, &times, residual, &weights, study.force(), &held, MOST);
     let already = judged.named.set.iter().any(|&c| study.window(c).is_some());
     let mut pushes: Vec<Push> = Vec::new();
     for (from, to) in windows {
-        let Some((recording, powers)) = power(study, &times, left, &weights, (from, to)) else {
+        let Some((recording, powers)) = power(study, &times, residual, &weights, (from, to)) else {
             continue;
         };
         let felt = powers.iter().filter(|power| power.sqrt() > OVER_THE_REST).count();
@@ -71,7 +74,7 @@ pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
             continue;
         }
         let name = study.motions.sources[recording].name.clone();
-        let (force, explained) = force(study, &times, left, &weights, (from, to));
+        let (force, explained) = force(study, &times, residual, &weights, (from, to));
         if explained > ONE_FORCE && !already {
             pushes.push(Push {
                 window: [from, to],
@@ -80,13 +83,13 @@ pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
                 explained,
             });
         } else {
-            // The joint on which it stands out most.
+            // The joint on which the burst exceeds the usual residual most.
             let window = (from, to);
             let at = (0..study.motions.dof)
                 .map(|joint| (powers[joint], joint))
                 .max_by(|a, b| a.0.total_cmp(&b.0));
             if let Some((_, joint)) = at {
-                let rms = joint_rms(study, &times, left, joint, window) / study.scales.torque[joint].max(1e-300);
+                let rms = joint_rms(study, &times, residual, joint, window) / study.scales.torque[joint].max(1e-300);
                 let entry = bursts.unexplained.entry(joint).or_default();
                 entry.0 = entry.0.max(rms);
                 entry.1.push(TimeWindow {
@@ -97,21 +100,21 @@ pub fn bursts(study: &Study, judged: &Selection, left: &[Vec<f64>]) -> Bursts {
             }
         }
     }
-    // A burst that recurs is an error of the model, not a contact.
+    // Bursts that recur are an error of the model and not contacts.
     if pushes.len() + bursts.unexplained.values().map(|entry| entry.1.len()).sum::<usize>() > MOST_BURSTS {
         return Bursts::default();
     }
-    bursts.contact = contact(study, left, &pushes);
+    bursts.contact = contact(study, residual, &pushes);
     for (_, windows) in bursts.unexplained.values_mut() {
         windows.sort_by(|a, b| a.recording.cmp(&b.recording).then(a.start.total_cmp(&b.start)));
     }
     bursts
 }
 
-/// The usual residual of a joint: the median over stretches of all moving rows, or that of a held-out recording alone where it is
-/// larger. Friction that differs in a recording, or links that its poses load otherwise, raise all of its residuals; a burst
-/// exceeds those, too.
-fn usual(study: &Study, joint: usize, left: &[Vec<f64>]) -> f64 {
+/// The usual residual of a joint: the median over stretches of all moving rows, or that of a held-out recording alone where
+/// it is larger. Friction or loads that differ in one recording raise all its residuals, and a burst must exceed these as
+/// well.
+fn usual(study: &Study, joint: usize, residual: &[Vec<f64>]) -> f64 {
     let moving = &study.table.joints[joint].moving;
     let mut all = Vec::new();
     let mut largest = 0.0_f64;
@@ -123,7 +126,7 @@ fn usual(study: &Study, joint: usize, left: &[Vec<f64>]) -> f64 {
             let to = (from + length).min(rows.end);
             let values: Vec<f64> = (from..to)
                 .filter(|&row| moving[row])
-                .map(|row| left[joint][row])
+                .map(|row| residual[joint][row])
                 .collect();
             if values.len() * 2 > length {
                 stretches.extend(rms(values));
@@ -157,7 +160,7 @@ fn rows<'a>(
 fn power(
     study: &Study,
     times: &[f64],
-    left: &[Vec<f64>],
+    residual: &[Vec<f64>],
     weights: &[f64],
     window: (f64, f64),
 ) -> Option<(usize, Vec<f64>)> {
@@ -165,7 +168,7 @@ fn power(
     let mut at = None;
     for (recording, row, joint) in rows(study, times, window) {
         at = Some(recording);
-        sums[joint].0 += weights[joint] * left[joint][row].powi(2);
+        sums[joint].0 += weights[joint] * residual[joint][row].powi(2);
         sums[joint].1 += 1.0;
     }
     let recording = at?;
@@ -173,7 +176,7 @@ fn power(
     let all = all
         .filter(|&row| times[row] >= window.0 && times[row] <= window.1)
         .count() as f64;
-    // A joint that hardly moves in the window only stops or starts there, where dry friction is not determined.
+    // A joint that hardly moves in the window only stops or starts there, and its dry friction is undetermined.
     let powers = sums
         .iter()
         .map(|&(sum, moving)| if moving > LEAST_MOVING * all { sum / moving } else { 0.0 })
@@ -181,13 +184,19 @@ fn power(
     Some((recording, powers))
 }
 
-fn joint_rms(study: &Study, times: &[f64], left: &[Vec<f64>], joint: usize, window: (f64, f64)) -> f64 {
+fn joint_rms(study: &Study, times: &[f64], residual: &[Vec<f64>], joint: usize, window: (f64, f64)) -> f64 {
     let own = rows(study, times, window).filter(|&(_, _, at)| at == joint);
-    rms(own.map(|(_, row, _)| left[joint][row])).unwrap_or(0.0)
+    rms(own.map(|(_, row, _)| residual[joint][row])).unwrap_or(0.0)
 }
 
 /// The force that explains a window best, fitted to every other piece, and the part of the power that it explains on the rest.
-fn force(study: &Study, times: &[f64], left: &[Vec<f64>], weights: &[f64], window: (f64, f64)) -> (Vector3<f64>, f64) {
+fn force(
+    study: &Study,
+    times: &[f64],
+    residual: &[Vec<f64>],
+    weights: &[f64],
+    window: (f64, f64),
+) -> (Vector3<f64>, f64) {
     let columns = study.force();
     let mut fit = ForceFit::default();
     for (_, row, joint) in rows(study, times, window) {
@@ -196,7 +205,7 @@ fn force(study: &Study, times: &[f64], left: &[Vec<f64>], weights: &[f64], windo
             columns.map(|column| study.table.place[joint][column].map_or(0.0, |place| this.x[place][row])),
         );
         let is_fitted = ((times[row] - window.0) / BURST_PIECE) as i64 % 2 == 0;
-        fit.add(is_fitted, weights[joint], left[joint][row], x);
+        fit.add(is_fitted, weights[joint], residual[joint][row], x);
     }
     let Some((force, [before, after])) = fit.solved() else {
         return (Vector3::zeros(), 0.0);
@@ -205,7 +214,7 @@ fn force(study: &Study, times: &[f64], left: &[Vec<f64>], weights: &[f64], windo
 }
 
 /// All contacts as one finding, with the parameters of the strongest.
-fn contact(study: &Study, left: &[Vec<f64>], pushes: &[Push]) -> Option<Finding> {
+fn contact(study: &Study, residual: &[Vec<f64>], pushes: &[Push]) -> Option<Finding> {
     let strongest = pushes.iter().max_by(|a, b| a.force.norm().total_cmp(&b.force.norm()))?;
     let Push {
         window: [from, to],
@@ -231,7 +240,7 @@ fn contact(study: &Study, left: &[Vec<f64>], pushes: &[Push]) -> Option<Finding>
     let times = study.motions.row_times();
     let share_by_joint: BTreeMap<String, f64> = (0..study.motions.dof)
         .map(|joint| {
-            let rms = joint_rms(study, &times, left, joint, (from, to));
+            let rms = joint_rms(study, &times, residual, joint, (from, to));
             (
                 study.arm.joints()[joint].name.clone(),
                 rms / study.scales.torque[joint].max(1e-300),

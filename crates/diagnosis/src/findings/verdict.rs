@@ -12,7 +12,7 @@ use crate::selection::judge::Selection;
 use crate::thresholds::{LEAST_MOTION, POOR, POOR_ABOVE_NOISE, REMEMBERS, STRUCTURED, STRUCTURED_ABOVE_NOISE};
 
 /// The structured residuals on each joint that no effect in the catalogue explains.
-pub fn unexplained(study: &Study, judged: &Selection, bursts: &Bursts, left: &[Vec<f64>]) -> Vec<Unexplained> {
+pub fn unexplained(study: &Study, judged: &Selection, bursts: &Bursts, residual: &[Vec<f64>]) -> Vec<Unexplained> {
     let mut by_joint: BTreeMap<usize, (f64, Vec<(f64, String)>)> = BTreeMap::new();
     for member in &judged.unmodelled {
         let candidate = &study.candidates[member.candidate];
@@ -36,7 +36,7 @@ pub fn unexplained(study: &Study, judged: &Selection, bursts: &Bursts, left: &[V
             entry.1.push((*share, "time".to_owned()));
         }
     }
-    let located = locate(study, left);
+    let located = locate(study, residual);
     by_joint
         .into_iter()
         .map(|(joint, (share, mut on))| {
@@ -76,7 +76,7 @@ pub fn poorly_predicted(study: &Study, fit: &BTreeMap<String, JointFit>, unexpla
     for (joint, name) in study.arm.joints().iter().map(|joint| &joint.name).enumerate() {
         let Some(this) = fit.get(name) else { continue };
         let error = this.held_out_nrmse_augmented.unwrap_or(this.train_nrmse_augmented);
-        let is_known = unexplained.iter().any(|left| left.joint == *name);
+        let is_known = unexplained.iter().any(|residual| residual.joint == *name);
         let is_poor = error >= POOR && error * this.torque_std >= POOR_ABOVE_NOISE * this.noise;
         if is_known || !(is_poor || structured(this).is_some()) {
             continue;
@@ -96,8 +96,8 @@ pub fn poorly_predicted(study: &Study, fit: &BTreeMap<String, JointFit>, unexpla
     }
 }
 
-/// Where the nominal residual is larger than the errors of noise and filtering, for recordings in which nothing was named and no
-/// regressor predicts the rest: the mismatch is on these joints, and depends on the state in which it is largest.
+/// The joints on which the nominal residual exceeds the errors of noise and filtering, for recordings without findings
+/// whose residual no regressor predicts. The mismatch is reported on these joints, with the state in which it is largest.
 pub fn only_located(located: &[Located], fit: &BTreeMap<String, JointFit>) -> Vec<Unexplained> {
     let one = |located: &Located| {
         let error = |fit: &JointFit| fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented);

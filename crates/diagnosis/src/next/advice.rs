@@ -10,7 +10,7 @@ const ALIAS: (f64, f64) = (1.0, 0.1);
 
 /// The confusion of `finding` with `rival`: the best motion for it brings the evidence `best` (nats), and `needed`
 /// distinguishes them. `sure` is the evidence from which it is promised, unless it is `barred` for a reason.
-pub fn untold(
+pub fn not_separated(
     finding: Confusable,
     rival: Confusable,
     [best, needed]: [f64; 2],

@@ -32,7 +32,7 @@ const PROPOSED: (f64, f64) = (FINE, 0.99);
 pub enum Mix {
     /// One sine: every cycle takes the whole range and all speeds up to the highest.
     Steady,
-    /// Two sines of almost the same frequency: the motion swells and dies away.
+    /// Two sines of almost the same frequency: the amplitude rises and falls.
     Beats,
     /// Three sines of almost the same frequency, so that the motion is slow for longer.
     Swells,

@@ -95,7 +95,7 @@ impl Limits {
             });
             let torque = study.measured[j].iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
             let allowed = if joint.limits.effort.is_finite() {
-                // The drive can give again the torque that it gave before.
+                // A drive that gave this torque in the recordings can give it again.
                 (WITHIN * joint.limits.effort).max(torque.min(joint.limits.effort))
             } else {
                 STRONGER_UNLIMITED * torque

@@ -165,7 +165,7 @@ impl<'a> Prospect<'a> {
         let new = Products::new(&table, |_| true, &[seconds], &tempo, &study.floor);
         let new = new.picked(&table, &(0..self.columns.len()).collect::<Vec<_>>());
         // The residual of the motion is predicted to be as large as that of the recordings.
-        let left: Vec<f64> = (0..dof)
+        let variance: Vec<f64> = (0..dof)
             .map(|j| self.chosen.fit.rss[j].max(0.0) / self.old.count[j].max(1.0))
             .collect();
         let evidence = (0..dof)
@@ -178,7 +178,7 @@ impl<'a> Prospect<'a> {
             .map(|j| study.noise[j] + (study.thresholds.tolerance * torque[j]).powi(2))
             .collect();
         Outlook {
-            products: self.old.joined(&new, &left, evidence, floor),
+            products: self.old.joined(&new, &variance, evidence, floor),
             torque,
             weights: self.chosen.fit.weights.clone(),
             largest,
@@ -223,7 +223,7 @@ impl<'a> Prospect<'a> {
         let mut own = Vec::new();
         for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
             let term = self.study.table.terms[column];
-            // A motion within a torque limit exceeds it nowhere.
+            // A motion within a torque limit never exceeds it, so that the column is zero.
             if is_carried(term) || term.law.cuts {
                 continue;
             }
@@ -271,7 +271,7 @@ impl<'a> Prospect<'a> {
             let is_possible = |&c: &usize| is_possible(&study.candidates[c], &study.table, &fit, &study.arm);
             added.iter().all(is_possible).then_some(fit.loss)
         });
-        // What is impossible then is no better than nothing in the finding's place.
+        // An alternative that is physically impossible there counts as no effect in the finding's place.
         [possible.unwrap_or(without) - with, rivals::allowance(without - with)]
     }
 
@@ -318,7 +318,7 @@ fn powers(sums: &mut [f64; 2], speed: &[f64], acceleration: &[f64], period: f64)
 mod tests {
     use super::*;
 
-    /// A motion counts by its duration, on any grid.
+    /// The weight of a motion depends on its duration and not on its grid.
     #[test]
     fn a_coarser_grid_counts_as_much() {
         let (mut fine, mut coarse) = ([0.0; 3], [0.0; 3]);

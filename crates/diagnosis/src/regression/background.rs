@@ -198,7 +198,7 @@ impl Strengths {
     }
 }
 
-/// Strengths that the user states, so that they are not chosen by evidence.
+/// Strengths that the user states, so that they are not selected by evidence.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stated {
     /// ρ of all links.

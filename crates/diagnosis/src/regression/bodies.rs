@@ -113,9 +113,9 @@ fn enlarged(parameters: &[f64], of_distance: f64) -> Matrix4<f64> {
 mod tests {
     use super::*;
 
-    /// Ten per cent of a body, in any frame: the length of δπ = 0.1 π in the metric is 0.1 √4, as tr(1) = 4.
+    /// The length of δπ = 0.1 π (ten per cent of a body) in the metric is 0.1 √4 in every frame, because tr(1) = 4.
     #[test]
-    fn the_metric_knows_no_units() {
+    fn the_metric_does_not_depend_on_units() {
         for (mass, com, size) in [(2.0, [0.1, 0.0, 0.3], 0.2), (40.0, [1.0, -0.5, 0.0], 0.4)] {
             let c: nalgebra::Vector3<f64> = com.into();
             let second = Matrix3::identity() * (mass * size * size) + mass * c * c.transpose();

@@ -1,5 +1,5 @@
-//! Intervals by resampling: each draw fits the data with random weights on blocks of time (Rubin 1981, The Bayesian bootstrap).
-//! No block is left out, so that rows of a short event, such as a contact, always count.
+//! Intervals by resampling: each draw fits the data with random weights on blocks of time (Rubin 1981, The Bayesian
+//! bootstrap). All blocks have a positive weight, so that rows of a short event, such as a contact, always count.
 
 use effects::laws::RIGID;
 use effects::{Size, Term};
@@ -37,8 +37,8 @@ pub struct Resampled {
 }
 
 impl Resampled {
-    /// The estimate and the 95 % interval of a function of the parameters. `systematic` is the part of the value that no
-    /// resampling shows.
+    /// The estimate and the 95 % interval of a function of the parameters. `systematic` is the part of the value by which
+    /// resampling underestimates the error.
     pub fn interval_within(&self, systematic: f64, f: impl Fn(&[f64]) -> f64) -> (f64, [f64; 2]) {
         let value = f(&self.estimate);
         let mut draws: Vec<f64> = self
@@ -172,7 +172,7 @@ fn in_true_torque(solution: DVector<f64>, scaled: &[ScaledBy]) -> Vec<f64> {
     values
 }
 
-/// Uniform in (0, 1], by the upper 53 bits (splitmix64).
+/// A number that is uniform in (0, 1], from the upper 53 bits (splitmix64).
 fn uniform(state: &mut u64) -> f64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut z = *state;

@@ -43,7 +43,7 @@ pub struct Products {
     pub floor: Vec<f64>,
     /// The recordings.
     recordings: Vec<usize>,
-    /// The background of every fit, in addition to the chosen columns.
+    /// The background of every fit, in addition to the selected columns.
     background: Option<Arc<Background>>,
     /// The background eliminated at the last weights.
     eliminated: Arc<Mutex<Vec<Arc<Eliminated>>>>,
@@ -52,9 +52,9 @@ pub struct Products {
 /// A solution.
 #[derive(Clone, Debug)]
 pub struct Fit {
-    /// The columns, as indices into the table, ascending: those of the background, then the chosen ones.
+    /// The columns, as indices into the table, ascending: those of the background, then the selected ones.
     pub columns: Vec<usize>,
-    /// How many of them are the background's.
+    /// The number of columns of the background.
     pub background: usize,
     /// One coefficient per column.
     pub coefficients: Vec<f64>,
@@ -64,7 +64,7 @@ pub struct Fit {
     pub weights: Vec<f64>,
     /// Minus the logarithm of the likelihood, plus the cost of the background (nats).
     pub loss: f64,
-    /// The Cholesky factor of the scaled normal matrix of the chosen columns, the background eliminated.
+    /// The Cholesky factor L of the scaled normal matrix of the selected columns, with the background eliminated.
     factor: DMatrix<f64>,
     scale: Vec<f64>,
     /// L⁻¹ of the scaled right side.
@@ -87,7 +87,7 @@ impl Fit {
         columns.iter().map(|&column| self.coefficient(column)).collect()
     }
 
-    /// The chosen columns.
+    /// The selected columns, without those of the background.
     pub fn chosen(&self) -> &[usize] {
         &self.columns[self.background..]
     }
@@ -212,7 +212,7 @@ impl Products {
 
     /// Fits `columns` with the joints weighted by their residuals, starting with the weights `weights`.
     ///
-    /// With a background, the weights are kept: eliminating it for other weights costs more than many fits.
+    /// With a background, the weights are kept, because its elimination for other weights costs more than many fits.
     /// [`Self::reweighted`] recomputes them after a decision.
     pub fn fit(&self, table: &Table, columns: &[usize], weights: &[f64]) -> Fit {
         let mut weights = weights.to_vec();

@@ -24,7 +24,8 @@ pub struct ForceFit {
 }
 
 impl ForceFit {
-    /// A row of a joint with its weight, its residual (N m or N) and the torques of unit forces (N m/N or 1), to be fitted or tried.
+    /// A row of a joint with its weight, its residual (N m or N) and the torques of unit forces (N m/N or 1). It is fitted,
+    /// or the fit is tested on it.
     pub fn add(&mut self, is_fitted: bool, weight: f64, residual: f64, x: Vector3<f64>) {
         if is_fitted {
             self.matrix += weight * x * x.transpose();

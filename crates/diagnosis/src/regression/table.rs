@@ -1,4 +1,4 @@
-//! All columns on all rows, and their inner products: what every fit is made from.
+//! All columns on all rows, and their inner products, from which every fit is computed.
 
 use std::ops::Range;
 
@@ -50,7 +50,7 @@ pub struct Table {
     pub terms: Vec<Term>,
     /// The index of a term among a joint's columns: `[joint][term]`.
     pub place: Vec<Vec<Option<usize>>>,
-    /// One a joint.
+    /// The tables of the joints, one each.
     pub joints: Vec<JointTable>,
     /// The rows of each recording.
     pub rows: Vec<Range<usize>>,
@@ -104,7 +104,7 @@ impl Table {
                     y.extend(chunk.filter(&difference));
                     let core = (CORE * chunk.kernel.width() / chunk.period).ceil() as usize;
                     let rest = scales.rest[joint];
-                    // A joint that only yields a little does not count as moving.
+                    // A joint that is only deflected a little does not count as moving.
                     let (low, high) = chunk.q[joint]
                         .iter()
                         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &q| {
@@ -183,7 +183,7 @@ impl Table {
         carried: &[(Term, f64)],
         moving: Moving,
     ) -> Self {
-        // Their inner products are over other rows: they are not needed beside the new ones.
+        // The inner products are over other rows, so that they are not needed any more.
         self.joints.iter_mut().for_each(|joint| joint.stretches = Vec::new());
         let mut table = Self::new(motions, rigid, scales, Vec::new(), carried, moving);
         table.add(motions, rigid, scales, terms, Some(self));

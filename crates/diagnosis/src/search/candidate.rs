@@ -27,7 +27,7 @@ impl Hypothesis {
         self.kind.is(kind)
     }
 
-    /// What is known of it before any recording.
+    /// Its [`Spec`]: what is known before any recording.
     pub fn spec(self) -> &'static Spec {
         self.kind.spec()
     }

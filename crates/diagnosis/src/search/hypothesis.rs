@@ -157,7 +157,8 @@ fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, Diag
     Ok(places)
 }
 
-/// What to say of an effect that is not in the catalogue: the name that is meant, which may be given as its title, or all names.
+/// The reason why an effect is refused that is not in the catalogue, with the name that is probably meant (a title is also
+/// understood), or with all names.
 fn no_effect(name: &str) -> String {
     let names: Vec<String> = CATALOGUE.iter().map(|kind| kind.spec().name.to_owned()).collect();
     let titled = CATALOGUE
@@ -170,7 +171,7 @@ fn no_effect(name: &str) -> String {
     }
 }
 
-/// What to say of a joint that the robot does not have.
+/// The reason why a joint is refused that the robot does not have.
 fn no_joint(name: &str, study: &Study) -> String {
     let names: Vec<String> = study.arm.joints().iter().map(|joint| joint.name.clone()).collect();
     let meant = nearest(name, &names).map_or_else(String::new, |meant| format!("did you mean {meant}? "));

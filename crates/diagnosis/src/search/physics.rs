@@ -8,7 +8,7 @@ use crate::regression::table::Table;
 use crate::search::candidate::Candidate;
 use crate::thresholds::LARGEST_TORQUE_SHARE;
 
-/// The powers of a thousandth of a size that are tried in its place.
+/// The number of smaller sizes that are tried: a thousandth of a size, a millionth, and so on.
 const SMALLER: i32 = 6;
 
 /// A candidate with the coefficients of a fit.

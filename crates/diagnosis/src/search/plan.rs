@@ -28,8 +28,8 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
             &format!("searching effects, round {round}"),
         ));
         let before = chosen.set.clone();
-        // Unmodelled forms must not hide what the residual suggests. Neither must earlier suggestions, made with less
-        // knowledge: the period of a ripple, a contact, an onset, one of which may have replaced the beginning of another.
+        // Unmodelled forms must not hide effects that the residual suggests. Neither must earlier suggestions, which were
+        // made with a worse fit: the period of a ripple, a contact or an onset may have taken the place of another one.
         let products = study.training_products();
         let named = before
             .iter()

@@ -26,7 +26,7 @@ pub const MOST: usize = 60;
 /// The number of times that the next most promising candidates are tried if the first do not pay.
 const BATCHES: usize = 6;
 
-/// A choice of candidates with its fit.
+/// Selected candidates with their fit.
 #[derive(Clone, Debug)]
 pub struct Chosen {
     /// Indices into the candidates.
@@ -47,7 +47,7 @@ impl Chosen {
 /// The memory of a stepwise growth.
 #[derive(Clone, Debug, Default)]
 pub struct Growth {
-    /// Candidates that do not predict.
+    /// Candidates that do not improve the prediction of recordings that they were not fitted to.
     pub refused: Vec<usize>,
     /// Candidates that were fitted and not taken, with their score and the reason.
     pub tried: Vec<(usize, f64, &'static str)>,
@@ -61,7 +61,7 @@ pub const IMPOSSIBLE: &str = "its parameters are not physical";
 pub struct Problem<'a> {
     /// All columns.
     pub table: &'a Table,
-    /// Over the training recordings.
+    /// The inner products over the training recordings.
     pub products: &'a Products,
     /// All candidates.
     pub candidates: &'a [Candidate],
@@ -140,8 +140,8 @@ impl Problem<'_> {
         let mut promises = self.promises(chosen, &free);
         promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         promises.retain(|(promise, _)| *promise > 0.0);
-        // The most promising of each kind comes first: a candidate that contains a simpler one promises as much, in all its
-        // sizes.
+        // The most promising candidates of each kind come first, because a candidate that contains a simpler one promises
+        // as much as that one, at all its sizes.
         let kind = |c: usize| (self.candidates[c].joint, self.candidates[c].hypothesis);
         let mut of_kind: HashMap<(Option<usize>, Hypothesis), usize> = HashMap::new();
         let mut turns: Vec<(usize, usize)> = promises
@@ -154,7 +154,7 @@ impl Problem<'_> {
             .collect();
         turns.sort_by_key(|&(turn, _)| turn);
         let mut waiting = turns.into_iter().map(|(_, candidate)| candidate);
-        // What the candidates of a joint are added to is fitted once.
+        // The fit to which the candidates of a joint are added is computed once.
         let bases: Vec<OnceLock<LeftOut<'_>>> = (0..self.table.dof()).map(|_| OnceLock::new()).collect();
         for _ in 0..BATCHES {
             let mut batch = Vec::with_capacity(TRIED);
@@ -245,8 +245,8 @@ impl Problem<'_> {
                 .any(|&c| self.is_unmodelled(c) && self.candidates[c].joint == this.joint)
     }
 
-    /// Whether an effect replaces a part of the background at a lower cost. It then does not predict better, but costs fewer
-    /// nats.
+    /// Whether an effect may be a part of the background. It then need not predict better than the background, but it costs
+    /// less evidence.
     pub fn is_background_too(&self, candidate: &Candidate) -> bool {
         self.products.has_background() && candidate.hypothesis.is_certain_in_form()
     }
@@ -323,7 +323,7 @@ impl Problem<'_> {
                 && plain.joint == candidate.joint
                 && onset(plain).is_some() == onset(candidate).is_some()
         };
-        // Of candidates with an onset, those with nearly the same onset.
+        // Among candidates with an onset, only those with nearly the same onset.
         let apart = |&c: &usize| match (onset(&self.candidates[c]), onset(candidate)) {
             (Some(a), Some(b)) => (a - b).abs(),
             _ => 0.0,

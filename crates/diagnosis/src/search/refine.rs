@@ -110,8 +110,9 @@ fn variants(terms: &[Term], round: usize, mass: f64) -> Vec<Vec<Term>> {
     list
 }
 
-/// The sizes with which the effect of `member` was tried first. It was taken beside other effects than those of now, beside which
-/// the best size may be far from its own: a torque limit far below the true one explains a part of a friction not yet found.
+/// The sizes with which the effect of `member` was tried first. When it was taken, other effects were selected, so that its
+/// size may be far from the best one now: a torque limit far below the true one may have explained a part of friction that
+/// was not yet found.
 fn first_sizes(study: &Study, member: usize) -> Vec<Vec<Term>> {
     let this = &study.candidates[member];
     let own = study.terms(member);
@@ -138,7 +139,7 @@ fn nudged(term: &Term, kind: usize, step: f64) -> Option<Term> {
     }
 }
 
-/// Refines the sizes in `chosen`, coarsely first if they were not refined before, and removes members that do not pay then.
+/// Refines the sizes in `chosen`, coarsely first if they were not refined before, and removes members that no longer pay.
 pub fn refine(study: &mut Study, chosen: Chosen, again: bool) -> Chosen {
     let before = chosen.clone();
     let chosen = resize(study, chosen, again);

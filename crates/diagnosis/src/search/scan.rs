@@ -1,4 +1,4 @@
-//! Candidates that the residual suggests: the time of a contact, the period of a ripple.
+//! Suggests candidates from the residual: the time of a contact, the period of a ripple.
 
 use effects::Scales;
 use nalgebra::{Matrix3, Vector3};
@@ -106,7 +106,8 @@ fn force_gain(before: &[f64; 9], after: &[f64; 9]) -> f64 {
     explained(matrix, &Vector3::new(d[6], d[7], d[8]), FORCE_RIDGE)
 }
 
-/// The periods (rad a rad) of a ripple on `joint` that explain most of its residual: peaks, best first.
+/// The numbers of periods (rad of phase per rad or m) of a ripple on `joint` that explain most of its residual: peaks, best
+/// first.
 pub fn ripples(
     table: &Table,
     motions: &Motions,
@@ -165,11 +166,13 @@ fn samples(table: &Table, motions: &Motions, joint: usize, residual: &[f64], fit
     samples
 }
 
-/// The number of periods of a [`spectrum`] between which sines and exponentials are not evaluated, but multiplied.
+/// The number of successive entries of a [`spectrum`] that are computed by multiplication before sines and exponentials are
+/// evaluated again.
 const BETWEEN: usize = 32;
 
-/// The powers that ripples of `count` periods from `least` on take, `step` from each other, weakened by a filter of a width (s):
-/// with E = e^(−a p²), p = p₀ + j s is reached from p₀ by the factors e^(−2 a p₀ s)ʲ and e^(−a s² j²), and its sine by a turn.
+/// The powers that ripples explain at `count` numbers of periods from `least` on, in steps of `step`, after a filter of a
+/// `width` (s). The gain e^(−a p²) at p = p₀ + j s follows from that at p₀ by the factors e^(−2 a p₀ s)ʲ and e^(−a s² j²),
+/// and the sine by a rotation.
 fn spectrum(samples: &[Sample], width: f64, least: f64, step: f64, count: usize) -> Vec<f64> {
     let mut sums = vec![[[0.0; BETWEEN]; 5]; count.div_ceil(BETWEEN)];
     let lanes = std::array::from_fn::<f64, BETWEEN, _>(|j| j as f64);
@@ -207,7 +210,7 @@ fn spectrum(samples: &[Sample], width: f64, least: f64, step: f64, count: usize)
     (0..count).map(at).collect()
 }
 
-/// A gain below which nothing passes.
+/// Gains below this count as zero.
 const NOTHING: f64 = 1e-30;
 
 /// The powers of a number, from one on.
@@ -223,7 +226,7 @@ fn powers(base: f64) -> [f64; BETWEEN] {
     powers
 }
 
-/// The part of the residual's power that a sine and a cosine take.
+/// The part of the residual's power that a sine and a cosine explain.
 fn power(samples: &[Sample], pair: impl Fn(&Sample) -> (f64, f64)) -> f64 {
     let (mut ss, mut sc, mut cc, mut sr, mut cr) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for sample in samples {
@@ -278,8 +281,8 @@ pub fn golden(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// How well a contact's force predicts its own window: it is fitted to every other piece and tested on the rest. The relative
-/// reduction of the residual `without` it there.
+/// The relative reduction of the residual `without` a contact in its window: its force is fitted to every other piece of
+/// the window and tested on the rest.
 pub fn contact_gain(study: &Study, without: &Fit, columns: &[usize]) -> f64 {
     let table = &study.table;
     let residual = residuals(table, without);

@@ -62,7 +62,7 @@ pub struct Study {
     moving: Moving,
     /// The prior of the background.
     prior: Prior,
-    /// The strengths of the background, chosen by evidence.
+    /// The strengths of the background, selected by evidence.
     pub strengths: Strengths,
     /// The strengths that the user states.
     pub stated: Stated,

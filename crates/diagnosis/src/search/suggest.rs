@@ -1,4 +1,4 @@
-//! Candidates that the residual of a choice suggests: contacts, ripples, sinusoids in time, onsets.
+//! Suggests candidates from the residual of a selection: contacts, ripples, sinusoids in time, onsets.
 
 use effects::arm::{ExternalContact, contact_columns, contact_window};
 use effects::drive::{TorqueRipple, ripple_columns};
@@ -14,7 +14,7 @@ use crate::search::study::Study;
 use crate::thresholds::{MOST_CONTACTS, MOST_OF_A_RECORDING, MOST_RIPPLES, MOST_WAVES};
 
 impl Study {
-    /// Adds what the residual of `chosen` suggests.
+    /// Adds the candidates that the residual of `chosen` suggests.
     pub fn suggest(&mut self, chosen: &Chosen) {
         let residual = scan::residuals(&self.table, &chosen.fit);
         let times = self.motions.row_times();
@@ -80,7 +80,7 @@ impl Study {
         self.terms(candidate).first().and_then(contact_window)
     }
 
-    /// Whether terms are no contact, or a contact that is short in comparison with its recording.
+    /// Whether terms are not a contact, or are a contact that is short in comparison with its recording.
     pub fn is_brief(&self, terms: &[Term]) -> bool {
         let Some(window) = terms.first().and_then(contact_window) else {
             return true;

@@ -1,18 +1,18 @@
 //! Thresholds of phase 1: the filters, which channels hold a torque, when a joint moves.
 
-/// The cut-off of the second filter where the motion does not ask for another (Hz).
+/// The cut-off of the second filter if the motion does not require another (Hz).
 pub const CUTOFF: f64 = 12.0;
 /// The second filter passes this many times the frequency of the motion.
 pub const CUTOFF_PERIODS: f64 = 22.0;
-/// The cut-off that a quick motion may lead to (Hz).
+/// The highest cut-off, for a quick motion (Hz).
 pub const HIGHEST_CUTOFF: f64 = 40.0;
 /// The largest cut-off as a share of the sampling rate. Source: there, the kernel's width is one sample.
 pub const LARGEST_CUTOFF: f64 = 0.235;
 /// A recording must be this multiple of the kernel's width long, in one piece. Source: the reach of both filters, and ten rows.
 pub const LEAST_WIDTHS: f64 = 16.0;
-/// A quick motion raises the cut-off if it asks for at least this multiple of the present one.
+/// A quick motion raises the cut-off if it requires at least this multiple of the present one.
 pub const WORTH_RAISING: f64 = 1.15;
-/// The part of a joint's torque that the noise of the positions may make before the cut-off is lowered.
+/// The largest part of a joint's torque that the noise of the positions may cause; otherwise the cut-off is lowered.
 pub const MOST_NOISE: f64 = 0.05;
 /// Noise does not lower the cut-off below this (Hz).
 pub const LEAST_CUTOFF: f64 = 4.0;
@@ -31,11 +31,12 @@ pub const CHANNEL_MOVES: f64 = 0.1;
 pub const LEAST_CHANNEL_ROWS: usize = 200;
 /// A torque that is below this part of what the model needs to hold and move the arm is in another unit, or is not the drive's.
 pub const FAR_TOO_SMALL: f64 = 0.05;
-/// A channel of which models of all kinds leave this part (NRMSE) on stretches that they were not fitted to holds another signal.
+/// A channel holds another signal if all models have at least this error (NRMSE) on stretches that they were not fitted to.
 pub const UNRELATED: f64 = 0.97;
-/// A dead channel varies by less than this part of what the model needs, and by no more than [`NOISE_ALONE`] allows.
+/// A dead channel varies by less than this part of the variation of the model's torque, and by no more than [`NOISE_ALONE`]
+/// allows.
 pub const DEAD: f64 = 0.05;
-/// A dead channel varies by no more than this multiple of its noise behind both filters.
+/// A dead channel varies by no more than this multiple of its noise after both filters.
 pub const NOISE_ALONE: f64 = 4.0;
 /// The quantile of a joint's speeds that counts as its largest speed.
 pub const SPEED_QUANTILE: f64 = 0.99;

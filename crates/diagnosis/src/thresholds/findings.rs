@@ -1,4 +1,4 @@
-//! Thresholds of phase 5: alternatives, what is not testable, contacts, second sensors, what is left unexplained.
+//! Thresholds of phase 5: alternatives, effects that are not testable, contacts, second sensors, unexplained residuals.
 
 /// An alternative explains nearly as much if it loses at most this part of what the finding explains.
 pub const NEARLY: f64 = 0.08;
@@ -6,22 +6,23 @@ pub const NEARLY: f64 = 0.08;
 pub const NEARLY_NATS: f64 = 4.0;
 /// The margin that divides the doubt about a name by e (nats). Source: calibrated on simulated cases.
 pub const MARGIN_SCALE: f64 = 8.0;
-/// The largest probability of a name: however clear the evidence, the catalogue may lack the right one.
+/// The largest probability of a name, because the catalogue may lack the right one even if the evidence is clear.
 pub const SUREST: f64 = 0.985;
 /// A linear effect is listed as not testable if it could reach this part of the joint's torque undetected.
 pub const HIDDEN: f64 = 0.06;
-/// An effect is detectable at no size if it would need so many times the standard deviation of the joint's torque.
+/// An effect is detectable at no size if it would need this multiple of the standard deviation of the joint's torque.
 pub const BEYOND: f64 = 3.0;
-/// A link's strength must be this multiple of that of most links to be named for itself.
+/// A link is named separately if its strength is at least this multiple of that of most links.
 pub const LINK_STANDS_OUT: f64 = 2.0;
-/// The relative error of all links from which the URDF is said to be wrong: no CAD model is better, and what a smaller correction
-/// explains may be anything else. Source: 240 simulated cases; 0.05 and more where URDFs are wrong by 3 %, and 0.014 where one is exact.
+/// The relative error of all links from which the URDF is reported as wrong. No CAD model is better, and a smaller
+/// correction may explain something else. Source: 240 simulated cases; 0.05 and more where URDFs are wrong by 3 %, and
+/// 0.014 where one is exact.
 pub const LEAST_WRONG_EVERYWHERE: f64 = 0.02;
-/// A burst exceeds the median of all windows of its length, and the residual of the model itself, by this factor.
+/// A burst exceeds the median of all windows of its length, and the usual residual of the model, by this factor.
 pub const OVER_THE_REST: f64 = 6.0;
 /// One force on the tool must explain this part of a burst's power, on pieces it was not fitted to.
 pub const ONE_FORCE: f64 = 0.8;
-/// More bursts than this in the held-out recordings are the model's error.
+/// More bursts than this in the held-out recordings are an error of the model.
 pub const MOST_BURSTS: usize = 4;
 /// The usual residual of a joint that moves on fewer training rows is not known.
 pub const LEAST_BURST_ROWS: usize = 50;
@@ -33,7 +34,7 @@ pub const LEAST_STRETCHES: usize = 8;
 pub const LEAST_MOVING: f64 = 0.5;
 /// The length of the pieces of a burst of which every other is fitted (s).
 pub const BURST_PIECE: f64 = 0.1;
-/// A push on the tool acts on at least this many joints, if the arm has more.
+/// A contact acts on at least this many joints, if the arm has more.
 pub const LEAST_PUSHED: usize = 2;
 /// A regression between two sensors needs this many rows per coefficient, and as many held-out rows.
 pub const SENSOR_ROWS: usize = 10;
@@ -46,7 +47,8 @@ pub const LISTED_SHARE: f64 = 1e-4;
 pub const SENSORS_MOVE: f64 = 2.0;
 /// A deflection must follow the torque to this part of its power, on recordings it was fitted to and on others.
 pub const FOLLOWS: f64 = 0.5;
-/// Beyond this part of the joint's range it is no deflection: the encoders measure different things.
+/// A difference of encoders beyond this part of the joint's range is not a deflection, because the encoders measure
+/// different quantities.
 pub const LARGEST_DEFLECTION: f64 = 0.05;
 /// The part of the difference of two encoders that the torque must bend.
 pub const LEAST_BEND: f64 = 0.4;
@@ -75,7 +77,8 @@ pub const POOR_ABOVE_NOISE: f64 = 3.0;
 pub const STRUCTURED: f64 = 0.06;
 /// The ratio to the noise that a structured error ([`STRUCTURED`]) exceeds.
 pub const STRUCTURED_ABOVE_NOISE: f64 = 4.0;
-/// The autocorrelation from row to row that a structured error exceeds: neither noise nor filter residues reach it.
+/// The autocorrelation from row to row that a structured error exceeds. Neither noise nor the filter causes such an
+/// autocorrelation.
 pub const REMEMBERS: f64 = 0.6;
 /// The least time in motion that a diagnosis needs on some joint (s).
 pub const LEAST_MOTION: f64 = 4.0;

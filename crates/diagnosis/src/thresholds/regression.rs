@@ -1,4 +1,4 @@
-//! Thresholds of phase 2: what counts as evidence, the prior of the background, what no resampling shows.
+//! Thresholds of phase 2: what counts as evidence, the prior of the background, systematic errors of the intervals.
 
 /// Independent pieces of evidence in a second of a slow motion (1/s). Residuals of a wrong model are correlated over longer
 /// than the filter.
@@ -14,27 +14,29 @@ pub const RECORDING_GROUPS: usize = 6;
 /// The prior standard deviation of friction's form, and of its change from recording to recording, at strength one, as a part of
 /// the joint's torque.
 pub const FRICTION_PRIOR: f64 = 0.015;
-/// The prior standard deviation of a torque constant at strength one. Source: torque constants are good to about five per cent.
+/// The prior standard deviation of a torque constant at strength one. Source: torque constants are accurate to about 5 %.
 pub const GAIN_PRIOR: f64 = 0.05;
 /// The standard deviation that is assumed of torque constants where the recordings need no correction of any constant or link.
 pub const LEAST_TORQUE_ACCURACY: f64 = 0.015;
-/// The deviation of a torque constant in the background from which it is an effect, in standard deviations of such constants. Source:
-/// 96 simulated cases, in which all that were named from 1.5 on were true, and those beyond 2.5 had been concealed on purpose.
+/// The deviation of a torque constant in the background from which it is an effect, in standard deviations of such
+/// constants. Source: 96 simulated cases, in which all deviations from 1.5 on were true, and those beyond 2.5 were injected
+/// faults.
 pub const TOLERANCE: f64 = 2.5;
 /// The evidence that a part of the background must bring (nats).
 pub const PER_BACKGROUND_PART: f64 = 4.0;
-/// The evidence that a link with a strength of its own must bring (nats).
+/// The evidence that a separate strength of one link must bring (nats).
 pub const PER_LINK_APART: f64 = 8.0;
 /// The evidence by which two effects on a joint that imitate another body of its link must beat that body (nats).
 pub const PER_IMITATION: f64 = 8.0;
-/// The part of its largest share in any joint's torque that a payload has on one of the last two joints. Source: simulated cases with
-/// wrong URDFs, 0.7 and more for payloads that are there, 0.43 and less for those that stood for a link before the wrist.
+/// The part of its largest share in any joint's torque that a payload has on one of the last two joints. Source: simulated
+/// cases with wrong URDFs, 0.7 and more for true payloads, 0.43 and less for false ones that resembled a link before the
+/// wrist.
 pub const FELT: f64 = 0.55;
-/// The prior standard deviation of the links' common strength: a URDF is seldom off by more than this part everywhere.
+/// The prior standard deviation of the links' common strength: a URDF is seldom wrong by more than this part everywhere.
 pub const USUAL_STRENGTH: f64 = 0.3;
 /// The strengths of all links' inertial parameters that are tried.
 pub const LINK_STRENGTHS: [f64; 7] = [0.0, 0.01, 0.03, 0.1, 0.2, 0.4, 1.0];
-/// The strengths that are tried on one link beside the common one.
+/// The strengths that are tried on one link in addition to the common one.
 pub const OWN_STRENGTHS: [f64; 3] = [0.1, 0.3, 1.0];
 /// The factor between the strengths that are tried in the end.
 pub const FINER_STRENGTH: f64 = 1.4;
@@ -51,25 +53,25 @@ pub const LEAST_BODY_MASS: f64 = 0.05;
 /// allow that the centre of mass of a slender link far from its frame is shifted. Source: 75 URDFs that were wrong by known errors
 /// (1.4 nats a link more likely).
 pub const OF_DISTANCE: f64 = 0.289;
-/// The least eigenvalue of a body's pseudo-inertia as seen from the URDF's body: less cannot be left of a link.
+/// The least eigenvalue of a body's pseudo-inertia relative to that of the URDF's body, so that a link never vanishes.
 pub const LEAST_BODY_LEFT: f64 = 0.02;
 /// The URDF may be wrong in a single direction by this multiple of the background's strength, which is a mean over all links and
 /// directions: centres of mass more than moments of inertia, one link more than another.
 pub const UNEVEN: f64 = 2.0;
-/// The shortest block that is resampled (s): longer than what residuals remember.
+/// The shortest block that is resampled (s); it is longer than the correlation of residuals.
 pub const BLOCK: f64 = 2.5;
-/// The factor on resampled standard deviations, because residuals remember longer than a block. Source: coverage of the
-/// intervals on simulated cases.
+/// The factor on resampled standard deviations, because residuals are correlated over more than a block. Source: coverage
+/// of the intervals on simulated cases.
 pub const INFLATION: f64 = 1.25;
 /// This factor where friction curves or torque constants differ from the model's: other parts of the drives, which are not modelled,
 /// then do so, too, and their residuals do not vary from block to block. Source: coverage of the intervals on simulated cases.
 pub const INFLATION_IN_DRIVES: f64 = 2.0;
-/// The half-width of an interval, as a part of the value, that filtering and a form that is not quite right leave.
+/// The half-width of an interval, as a part of the value, due to filtering and to a form that is not exact.
 pub const SYSTEMATIC: f64 = 0.01;
-/// The half-width of an interval, as a part of the value, where it hangs on a form that recordings hardly show: how a gap ends,
-/// how friction falls near standstill, what else is late in a drive. Source: the errors on simulated cases.
+/// The half-width of an interval, as a part of the value, for a parameter that depends on a form that recordings hardly
+/// show: the ends of a gap, friction near standstill, other lags of a drive. Source: the errors on simulated cases.
 pub const OF_FORM: f64 = 0.05;
-/// The half-width of an interval, as a part of the value and for a background of strength one, of what is in proportion to the links
-/// that a joint moves: the stiffness of a joint by the frequency at which its link swings, friction by the load. Source: the errors
-/// on simulated cases with URDFs wrong by 3 to 30 %.
+/// The half-width of an interval, as a part of the value and for a background of strength one, for a parameter that is
+/// proportional to the links that a joint moves: a stiffness, which follows from the frequency at which the link
+/// oscillates, or friction that depends on the load. Source: the errors on simulated cases with URDFs wrong by 3 to 30 %.
 pub const OF_ARM: f64 = 0.3;

@@ -1,20 +1,21 @@
-//! Thresholds of phase 3: which candidates there are, and which of them are taken.
+//! Thresholds of phase 3: which candidates are tried, and which of them are taken.
 
-/// Below this cut-off delays, springs and gaps between drive and link cannot be told from each other (Hz).
+/// Below this cut-off (Hz), delays, springs and gaps between drive and link cannot be distinguished.
 pub const LEAST_FOR_DYNAMICS: f64 = 5.0;
-/// A candidate whose torque is this multiple of what it is to explain cancels another one, and is impossible.
+/// A candidate is impossible if its torque is this multiple of the torque to be explained, because it then only cancels
+/// another one.
 pub const LARGEST_TORQUE_SHARE: f64 = 3.0;
-/// The part of a recording that contacts cover at most. A push is short beside the recording; what acts longer is a load, or
-/// something else that the model lacks, and a free force in a long window takes whatever that is. Source: the pushes that are
-/// injected into simulated cases last 0.4 to 1.5 s of 25 s.
+/// The largest part of a recording that contacts may cover. A contact is short in comparison with the recording. A longer
+/// force is a load or another unmodelled effect, and a free force in a long window would explain any of these. Source:
+/// contacts that are injected into simulated cases last 0.4 to 1.5 s of 25 s.
 pub const MOST_OF_A_RECORDING: f64 = 0.15;
 /// The durations of contact that are tried (s).
 pub const CONTACT_DURATIONS: [f64; 7] = [0.2, 0.35, 0.6, 1.0, 1.6, 2.5, 4.0];
-/// The windows of contact that a residual suggests, at most.
+/// The largest number of windows of contact that a residual suggests.
 pub const MOST_CONTACTS: usize = 4;
 /// The length of the pieces of a contact's window of which every other is fitted (s).
 pub const CONTACT_PIECE: f64 = 0.15;
-/// The periods of a ripple that a residual suggests on a joint, at most.
+/// The largest number of periods of a ripple that a residual suggests on a joint.
 pub const MOST_RIPPLES: usize = 3;
 /// The phase through which the slowest ripple passes over the joint's range (rad).
 pub const LEAST_RIPPLE_PHASE: f64 = 16.0;
@@ -22,7 +23,7 @@ pub const LEAST_RIPPLE_PHASE: f64 = 16.0;
 pub const MOST_RIPPLE_PERIODS: f64 = 400.0;
 /// The part of the largest speed at which the filter must pass a ripple.
 pub const RIPPLE_SPEED: f64 = 0.4;
-/// The sinusoids in time that a residual suggests on a joint, at most.
+/// The largest number of sinusoids in time that a residual suggests on a joint.
 pub const MOST_WAVES: usize = 2;
 /// The lowest and the highest frequency of a sinusoid in time (Hz).
 pub const WAVE_FREQUENCIES: (f64, f64) = (0.3, 8.0);
@@ -30,10 +31,10 @@ pub const WAVE_FREQUENCIES: (f64, f64) = (0.3, 8.0);
 pub const WAVE_CUTOFF: f64 = 0.7;
 /// The time from either end of the recordings to the first onset that is tried (s).
 pub const ONSET_FROM_END: f64 = 2.0;
-/// Where so many drives' inertias are left out of a model, all drives' are likely to be.
+/// If a model omits the inertias of this many drives, it probably omits those of all drives.
 pub const TELLING_DRIVES: usize = 2;
-/// The evidence that each drive's inertia beyond [`TELLING_DRIVES`] need not bring (nats): beside a gap that is never crossed,
-/// which is an encoder's offset with a drive's inertia, the two then stand for themselves.
+/// The reduction of the evidence that the inertia of each drive beyond [`TELLING_DRIVES`] must bring (nats). Without it, a
+/// gap that is never crossed could replace an encoder offset with a drive inertia, which have the same torque.
 pub const KNOWN_DRIVE: f64 = 3.0;
 /// The gain that an exchange of a candidate for another must bring (nats).
 pub const SWAP_GAIN: f64 = 0.5;

@@ -1,4 +1,5 @@
-//! The tables of all thresholds in `docs/thresholds.md`: made from their files, so that no value changes unseen.
+//! The tables of all thresholds in `docs/thresholds.md`, which are generated from their files, so that every change of a
+//! value shows there.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What tests and benches of the diagnosis share: arms, a known motion, and recordings of both with something concealed.
+//! Shared by tests and benches of the diagnosis: arms, a known motion, and recordings of both with injected effects.
 
 #![allow(dead_code, reason = "each test takes what it needs")]
 
@@ -12,11 +12,11 @@ use recording::{Recording, RegularRecording};
 /// Three joints: a turning column, a shoulder and an elbow.
 pub const TRIO: &str = include_str!("trio.urdf");
 
-/// The joints of [`TRIO`].
+/// The index of the column in [`TRIO`].
 pub const TURN: usize = 0;
-/// The second.
+/// The index of the shoulder in [`TRIO`].
 pub const SHOULDER: usize = 1;
-/// The third.
+/// The index of the elbow in [`TRIO`].
 pub const ELBOW: usize = 2;
 
 /// The arm of [`TRIO`].
@@ -26,19 +26,19 @@ pub fn trio() -> Arm {
 
 /// The motion at one time.
 pub struct Motion {
-    /// s, since the recording's start.
+    /// The time since the recording's start (s).
     pub time: f64,
-    /// s, on the clock that runs through all recordings.
+    /// The time on the common clock of all recordings (s).
     pub clock: f64,
-    /// rad.
+    /// Positions (rad).
     pub q: Vec<f64>,
-    /// rad/s.
+    /// Velocities (rad/s).
     pub qd: Vec<f64>,
-    /// rad/s².
+    /// Accelerations (rad/s²).
     pub qdd: Vec<f64>,
 }
 
-/// Four sines a joint about a bent arm; `variant` chooses frequencies and phases.
+/// Four sines per joint about a bent arm; `variant` selects frequencies and phases.
 pub fn motion(dof: usize, time: f64, variant: usize) -> Motion {
     let middle = |joint: usize| [0.0, -0.5, 0.7][joint % 3];
     let mut motion = Motion {
@@ -62,16 +62,16 @@ pub fn motion(dof: usize, time: f64, variant: usize) -> Motion {
     motion
 }
 
-/// What is concealed: it changes what is recorded of the motion and of its torques.
-pub type Concealed<'a> = &'a dyn Fn(&mut Motion, &mut [f64]);
+/// Injected effects, as a function that changes the recorded motion and its torques.
+pub type Injected<'a> = &'a dyn Fn(&mut Motion, &mut [f64]);
 
-/// The time of the first row of a recording (s): time runs on through recordings.
+/// The time of the first row of a recording on the common clock (s).
 pub fn start(variant: usize) -> f64 {
     1e3 * variant as f64
 }
 
-/// A recording of `seconds` at 250 Hz of `arm` with what is `concealed`, and noise of 0.02 N m.
-pub fn recorded(arm: &Arm, variant: usize, seconds: f64, concealed: Concealed<'_>) -> Recording {
+/// A recording of `seconds` at 250 Hz of `arm` with the effects `injected` and noise of 0.02 N m.
+pub fn recorded(arm: &Arm, variant: usize, seconds: f64, injected: Injected<'_>) -> Recording {
     let dof = arm.dof();
     let mut workspace = Workspace::new(arm);
     let mut recording = Recording {
@@ -86,7 +86,7 @@ pub fn recorded(arm: &Arm, variant: usize, seconds: f64, concealed: Concealed<'_
         let time = k as f64 / 250.0;
         let mut motion = motion(dof, time, variant);
         arm.inverse_dynamics(&mut workspace, &motion.q, &motion.qd, &motion.qdd, &mut tau);
-        concealed(&mut motion, &mut tau);
+        injected(&mut motion, &mut tau);
         recording.time.push(time + start(variant));
         for joint in 0..dof {
             recording.q[joint].push((motion.q[joint] * 1e6).round() / 1e6);
@@ -96,7 +96,7 @@ pub fn recorded(arm: &Arm, variant: usize, seconds: f64, concealed: Concealed<'_
     recording
 }
 
-/// Nearly normal: the sum of twelve uniform numbers (splitmix64), less six.
+/// A nearly normal number: the sum of twelve uniform numbers (splitmix64) minus six.
 fn normal(state: &mut u64) -> f64 {
     let uniform = |state: &mut u64| {
         *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -113,27 +113,28 @@ pub fn regular(recording: &Recording) -> RegularRecording {
     recording.regular().expect("the clock is regular").0
 }
 
-/// Diagnoses `believed` and what is `known` on two recordings of 16 s and one of 10 s, held out, of `robot` with what is `concealed`.
-pub fn diagnosed(believed: &Arm, robot: &Arm, concealed: Concealed<'_>, known: Vec<Effect>) -> Diagnosis {
+/// Diagnoses the model `believed` with the `known` effects on recordings of `robot` with the effects `injected`: two of 16
+/// s for training and one of 10 s held out.
+pub fn diagnosed(believed: &Arm, robot: &Arm, injected: Injected<'_>, known: Vec<Effect>) -> Diagnosis {
     let options = Options {
         known,
         ..Options::default()
     };
-    diagnosed_with(believed, robot, concealed, &options).expect("it can be diagnosed")
+    diagnosed_with(believed, robot, injected, &options).expect("it can be diagnosed")
 }
 
 /// The diagnosis with the given options.
 pub fn diagnosed_with(
     believed: &Arm,
     robot: &Arm,
-    concealed: Concealed<'_>,
+    injected: Injected<'_>,
     options: &Options,
 ) -> Result<Diagnosis, DiagnosisError> {
     let recordings = [16.0, 16.0, 10.0];
     let recordings: Vec<RegularRecording> = recordings
         .into_iter()
         .enumerate()
-        .map(|(variant, seconds)| regular(&recorded(robot, variant, seconds, concealed)))
+        .map(|(variant, seconds)| regular(&recorded(robot, variant, seconds, injected)))
         .collect();
     diagnose(believed, &inputs(&recordings), options, &|_| {})
 }
@@ -152,7 +153,7 @@ pub fn inputs(recordings: &[RegularRecording]) -> Vec<Input<'_>> {
         .collect()
 }
 
-/// Friction of every joint, which every robot has.
+/// Baseline friction on every joint.
 pub fn baseline_friction(motion: &Motion, tau: &mut [f64]) {
     for joint in 0..3 {
         let speed = motion.qd[joint];
@@ -160,7 +161,7 @@ pub fn baseline_friction(motion: &Motion, tau: &mut [f64]) {
     }
 }
 
-/// What is named beside plain friction: effects and joints.
+/// The findings beside plain friction: effects and joints.
 pub fn named(diagnosis: &Diagnosis) -> Vec<(&str, Option<&str>)> {
     let plain = ["viscous_friction", "coulomb_friction"];
     let findings = diagnosis.report.findings.iter();
@@ -170,7 +171,7 @@ pub fn named(diagnosis: &Diagnosis) -> Vec<(&str, Option<&str>)> {
         .collect()
 }
 
-/// What was found, in words.
+/// The sentences of the findings.
 pub fn sentences(diagnosis: &Diagnosis) -> Vec<&str> {
     diagnosis
         .report

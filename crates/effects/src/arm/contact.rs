@@ -8,7 +8,8 @@ use crate::{
     Quantity, Range, Scope, Shape, Size, Spec, Systematic, Term,
 };
 
-/// A force on the tool for a while: τ = −Jᵀ F.
+/// A force F on the tool for a limited time. The drives must add τ = −Jᵀ F, where J is the Jacobian of the tool's position
+/// in the base's frame.
 #[derive(Debug)]
 pub struct ExternalContact;
 
@@ -40,7 +41,8 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// A unit force on the tool along a base axis, between two times (sizes, s); form 1 is half a sine instead of constant.
+/// The torque of a force of 1 N on the tool along an axis of the base (`of[0]`), between two times (the sizes, s). The
+/// force is constant in form 0 and half a period of a sine in form 1.
 pub static FORCE: Law = Law {
     name: "force",
     column: |term, joint, motion| {
@@ -143,7 +145,7 @@ impl EffectKind for ExternalContact {
         Some(effect.with("duration", duration).with("force", force))
     }
 
-    /// Two contacts are never the same one, unless they are equal in all values.
+    /// Contacts with any different value are different contacts.
     fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
         a == b
     }

@@ -28,7 +28,7 @@ static SPEC: Spec = Spec {
     main: &["angle"],
     is_certain_in_form: true,
     may_be_inertial: true,
-    // As for an encoder offset; injected ones had 175 nats and more.
+    // Shifted centres of mass resemble a tilt. In simulated cases with wrong URDFs, injected tilts had 175 nats and more.
     least_beside_inertials: Some(60.0),
     is_behind_the_drive: true,
     experiment: Some(Experiment {
@@ -65,7 +65,8 @@ const LEAST_TURNED: f64 = 0.3;
 /// from the URDF's.
 const AS_LARGE: f64 = 1.3;
 
-/// The angle (rad) and the axis of the turn of a base in which gravity is `seen` instead of `usual`.
+/// The turn of the base after which gravity in the base's frame is `seen` instead of `usual` (m/s²): its angle (rad, from 0
+/// to π) and its axis, a unit vector in the base's frame.
 fn turn(usual: &Vector3<f64>, seen: &Vector3<f64>) -> (f64, Vector3<f64>) {
     let axis = seen.cross(usual);
     let angle = axis.norm().atan2(seen.dot(usual));
@@ -84,13 +85,13 @@ fn turn(usual: &Vector3<f64>, seen: &Vector3<f64>) -> (f64, Vector3<f64>) {
     (angle, axis / axis.norm().max(f64::MIN_POSITIVE))
 }
 
-/// The angle (rad, from 0 to 2 π) of the turn about a unit `axis`.
+/// The angle of this turn about a given unit `axis` (rad, from 0 to 2 π).
 fn angle_about(axis: &Vector3<f64>, usual: &Vector3<f64>, seen: &Vector3<f64>) -> f64 {
     let angle = axis.dot(&seen.cross(usual)).atan2(seen.dot(usual));
     angle.rem_euclid(std::f64::consts::TAU)
 }
 
-/// Gravity as the arm has it, plus `beyond` (m/s²).
+/// Gravity in the base's frame: the model's plus the difference `beyond` (m/s²).
 fn seen(arm: &Arm, beyond: [f64; 3]) -> Vector3<f64> {
     arm.gravity() + Vector3::from(beyond)
 }

@@ -5,8 +5,8 @@ use crate::compliance::{Behind, gap, sprung};
 use crate::fitted::is_near_one;
 use crate::laws::ACCELERATION;
 use crate::{
-    Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range, Signals,
-    Size, Spec, Systematic, Term, Turn, Unseen,
+    Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
+    Range, Signals, Size, Spec, Systematic, Term, Turn,
 };
 
 /// The rotor drives the link through a gap of ± `halfgap`; q is the rotor's position.
@@ -27,12 +27,12 @@ static SPEC: Spec = Spec {
     prior: 8.0,
     is_simulated: true,
     experiment: Some(SECOND_ENCODER),
-    unseen: Unseen::Sized {
+    detectability: Detectability::Sized {
         because: "a smaller gap is crossed too quickly to be detected",
         if_none: "the load on the joint does not change its sign, so that a gap is never crossed",
         is_seen_below: false,
     },
-    unseen_turn: 3,
+    not_testable_turn: 3,
     ..Spec::EMPTY
 };
 
@@ -86,7 +86,8 @@ fn stop(mass: f64, hertz: f64) -> f64 {
     mass * (2.0 * std::f64::consts::PI * hertz).powi(2)
 }
 
-/// A gap with rigid ends, as gaps with each of the stiffnesses that are tried first.
+/// The forms of a gap with compliant ends that are tried in place of a gap with rigid ends, for a link of inertia `mass`
+/// (kg m² or kg).
 fn softened(term: &Term, mass: f64) -> Vec<Term> {
     let [halfgap, rigid, ..] = term.sizes;
     if rigid.is_finite() {
@@ -154,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_that_is_none_adds_nothing() {
+    fn a_gap_of_zero_adds_nothing() {
         let (none, _) = column(&Term::about(&GAP, 0).sized([0.0, f64::INFINITY, 1.0]), 0);
         assert!(none.iter().all(|torque| *torque == 0.0), "{none:?}");
     }

@@ -98,8 +98,8 @@ impl EffectKind for TransmissionCoupling {
         forms
     }
 
-    /// The viscous friction must be clearly positive and the inertia not clearly negative, because a drive that turns with both
-    /// joints has both, in the sense in which it turns with them. (During the search, other values are allowed.)
+    /// The viscous friction must be clearly positive and the inertia not clearly negative, because a drive that turns with
+    /// both joints has both, in the sense in which it turns with them. The search allows other values.
     fn is_certain(&self, effect: &Effect, interval: &dyn Fn(&str) -> Option<[f64; 2]>, _accuracy: f64) -> bool {
         let sense = effect.number("viscous").signum();
         let is_clear = |[low, high]: [f64; 2]| (sense * low).min(sense * high) > 0.0;

@@ -1,8 +1,8 @@
 //! Torque that is applied later than it is commanded.
 
 use crate::{
-    Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range,
-    Size, Spec, Systematic, Term, Turn, UNIT, Unseen,
+    Detectability, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place,
+    Quantity, Range, Size, Spec, Systematic, Term, Turn, UNIT,
 };
 
 /// The torque applied at t is the one commanded at t − `delay`.
@@ -28,12 +28,12 @@ static SPEC: Spec = Spec {
     least_beside: &[("backlash", 0.5), ("joint_elasticity", 0.5)],
     is_simulated: true,
     experiment: Some(SECOND_ENCODER),
-    unseen: Unseen::Sized {
+    detectability: Detectability::Sized {
         because: "a shorter delay changes the torque by less than the noise",
         if_none: "no delay that a drive has changes the torque by more than the noise",
         is_seen_below: false,
     },
-    unseen_turn: 5,
+    not_testable_turn: 5,
     ..Spec::EMPTY
 };
 

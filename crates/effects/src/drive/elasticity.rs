@@ -5,8 +5,8 @@ use crate::compliance::{Behind, sprung};
 use crate::fitted::is_near_one;
 use crate::laws::ACCELERATION;
 use crate::{
-    Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range, Size, Spec,
-    Sprung, Systematic, Term, Turn, Unseen,
+    Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
+    Range, Size, Spec, Sprung, Systematic, Term, Turn,
 };
 
 /// The rotor drives the link through a spring and a damper; q is the rotor's position.
@@ -30,12 +30,12 @@ static SPEC: Spec = Spec {
     prior: 8.0,
     is_simulated: true,
     experiment: Some(SECOND_ENCODER),
-    unseen: Unseen::Sized {
+    detectability: Detectability::Sized {
         because: "a stiffer joint deflects less than these recordings can resolve",
         if_none: "a joint of any usual stiffness deflects less than these recordings can resolve",
         is_seen_below: true,
     },
-    unseen_turn: 4,
+    not_testable_turn: 4,
     ..Spec::EMPTY
 };
 

@@ -2,8 +2,8 @@
 
 use crate::laws::ACCELERATION;
 use crate::{
-    Against, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity,
-    Range, Spec, Term, Turn, Unseen,
+    Against, Detectability, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Machine, Parameter, Place,
+    Quantity, Range, Spec, Term, Turn,
 };
 
 /// τ = inertia q̈.
@@ -29,8 +29,8 @@ static SPEC: Spec = Spec {
         text: "attach a body of known inertia to the tool: the rotor inertia is independent of posture and load, the inertia of a \
                link is not; or take the rotor inertia from the data sheet (--known)",
     }),
-    unseen: Unseen::LINEAR,
-    unseen_turn: 7,
+    detectability: Detectability::LINEAR,
+    not_testable_turn: 7,
     ..Spec::EMPTY
 };
 

@@ -3,8 +3,8 @@
 use ::arm::JointKind;
 
 use crate::{
-    Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range, Size, Spec,
-    Systematic, Term, Turn, Unseen,
+    Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
+    Range, Size, Spec, Systematic, Term, Turn,
 };
 
 /// The torque applied is the commanded one, clipped at ± limit.
@@ -21,10 +21,10 @@ static SPEC: Spec = Spec {
     parameters: &[Parameter::new("limit", Quantity::Torque).within(Range::Positive)],
     main: &["limit"],
     is_simulated: true,
-    unseen: Unseen::Limit {
+    detectability: Detectability::Limit {
         because: "no torque limit was reached",
     },
-    unseen_turn: 2,
+    not_testable_turn: 2,
     ..Spec::EMPTY
 };
 
@@ -48,7 +48,7 @@ pub static EXCESS: Law = Law {
 const CUT_OFF: std::ops::RangeInclusive<f64> = 0.8..=1.25;
 /// The largest part of the power beyond the limit that may remain with the limit in the model. If more remains, the motion
 /// shows that the drive gave more torque.
-const MOST_LEFT: f64 = 0.5;
+const MOST_REMAINING: f64 = 0.5;
 /// The largest part of the moving rows that a torque limit may clip.
 const MOST_CLIPPED: f64 = 0.45;
 /// The least torque limit, as a part of the torque that the motion needs by the model, which may be wrong.
@@ -122,7 +122,7 @@ fn cuts(fitted: &dyn Fitted) -> bool {
             without += (left + fitted.value(0) * x).powi(2);
         }
     }
-    with <= MOST_LEFT * without
+    with <= MOST_REMAINING * without
 }
 
 /// The part of the moving rows on which the first column differs from zero.
@@ -140,9 +140,9 @@ mod tests {
     use crate::friction::CoulombFriction;
     use crate::test_support::{column, machine};
 
-    /// The torque of a slow joint with nothing but dry friction is flat at the friction level.
+    /// The torque of a slow joint that has only dry friction is constant at the friction level, which resembles a limit.
     #[test]
-    fn a_limit_hardly_above_the_dry_friction_is_none() {
+    fn a_limit_just_above_the_dry_friction_is_refused() {
         let limit = |limit: f64| Effect::of(&TorqueSaturation).on("a").with("limit", limit);
         let friction = |joint: &str| Effect::of(&CoulombFriction).on(joint).with("level", 3.3);
         assert!(TorqueSaturation.is_contradicted(&limit(3.4), &[friction("a")]));
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn it_cuts_what_its_column_takes_off() {
+    fn its_column_is_the_clipped_torque() {
         let effect = Effect::of(&TorqueSaturation).on("a").with("limit", 2.5);
         assert_eq!(machine(&effect).limits, [2.5, f64::INFINITY]);
         let (cut, tau) = column(&Term::on(&EXCESS, 0).sized([2.5]), 0);

@@ -28,8 +28,9 @@ static SPEC: Spec = Spec {
     main: &["positive"],
     plain: Some("coulomb_friction"),
     excludes: &["torque_offset", "spring"],
-    // Every drive has a little of it. In cases with small amounts on every joint (under 1.5 % of its torque) these explain 0.3 % to
-    // 2 % beyond Coulomb friction, concealed ones 0.8 % and more where the background stands for a part of them.
+    // Every drive has a small asymmetry. In simulated cases with small effects on every joint (below 1.5 % of its torque),
+    // it explains 0.3 % to 2 % beyond Coulomb friction; injected asymmetry explains 0.8 % and more, because the background
+    // of the fit may explain a part of it.
     least_beyond_plain: 0.007,
     is_simple: true,
     against: Against::Speed,
@@ -37,7 +38,7 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// |sgn q̇|: one in motion, none at a reversal.
+/// |sgn q̇|: one in motion, zero at a reversal.
 pub static ABS_SIGN: Law = Law {
     name: "abs_sign",
     column: |_, joint, motion| motion.map(|k| motion.sign(joint, k).abs()),
@@ -66,7 +67,8 @@ impl EffectKind for FrictionAsymmetry {
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        // No motion distinguishes an asymmetry from a torque offset, which every sensor has: its size decides.
+        // No motion distinguishes an asymmetry from a torque offset, which every sensor has, so that the relative size
+        // decides between them.
         let part = fitted.value(1).abs() / fitted.value(0);
         fitted.value(0) > 0.0 && (LEAST_PART..MOST_PART).contains(&part)
     }
@@ -74,7 +76,7 @@ impl EffectKind for FrictionAsymmetry {
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let (a, b) = (estimate.place(0)?, estimate.place(1)?);
         let effect = Effect::of(&Self).on(estimate.joint_name());
-        // Beside an effect that states the level, it is what one direction has more than the other.
+        // If another effect states the Coulomb level, the parameters give only the difference between the directions.
         let is_whole = estimate.level_beside(&[&WARMING]) > 0.0;
         let level = |draw: &[f64]| if is_whole { draw[a] } else { draw[b].abs() };
         let positive = estimate.note("positive", |draw| level(draw) + draw[b]);
@@ -87,7 +89,8 @@ impl EffectKind for FrictionAsymmetry {
         (sum < 0.0).then_some(("positive + negative", sum, "finite and not negative"))
     }
 
-    /// Where another dry friction of the joint states the Coulomb level, this one is what one direction has more than the other.
+    /// If another dry friction of the joint states the Coulomb level, this one states only by how much one direction
+    /// exceeds the other.
     fn sentence(&self, effect: &Effect) -> &'static str {
         if effect.number("negative") == 0.0 {
             "dry friction that is larger by {positive} forwards than backwards"

@@ -25,7 +25,7 @@ static SPEC: Spec = Spec {
     is_simple: true,
     in_urdf: InUrdf::Friction,
     against: Against::Speed,
-    unseen_turn: 0,
+    not_testable_turn: 0,
     ..Spec::EMPTY
 };
 

@@ -1,8 +1,8 @@
 //! Drag: friction that grows faster than the speed.
 
 use crate::{
-    Against, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range,
-    SetsIn, Size, Spec, State, Term, Turn, Unseen,
+    Against, Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place,
+    Quantity, Range, SetsIn, Size, Spec, State, Term, Turn,
 };
 
 /// τ = coefficient |q̇|^exponent sgn q̇.
@@ -23,8 +23,8 @@ static SPEC: Spec = Spec {
     main: &["coefficient"],
     may_set_in: true,
     against: Against::Speed,
-    unseen: Unseen::LINEAR,
-    unseen_turn: 6,
+    detectability: Detectability::LINEAR,
+    not_testable_turn: 6,
     ..Spec::EMPTY
 };
 

@@ -4,8 +4,8 @@ use super::asymmetry::ABS_SIGN;
 use super::thermal::WARMING;
 use crate::laws::SIGN;
 use crate::{
-    Against, Cone, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
-    Range, Spec, Systematic, Term, Turn, Unseen,
+    Against, Cone, Detectability, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter,
+    Place, Quantity, Range, Spec, Systematic, Term, Turn,
 };
 
 /// τ = (coulomb + gain |τ rigid|) sgn q̇; τ rigid is what the gear transmits to the links, without the rotor's own torque.
@@ -31,8 +31,8 @@ static SPEC: Spec = Spec {
     // explains up to 1 % beyond Coulomb friction; injected load dependence explains 6.6 % and more.
     least_beyond_plain: 0.012,
     against: Against::LoadAlong,
-    unseen: Unseen::LINEAR,
-    unseen_turn: 9,
+    detectability: Detectability::LINEAR,
+    not_testable_turn: 9,
     ..Spec::EMPTY
 };
 
@@ -78,7 +78,8 @@ impl EffectKind for LoadDependentFriction {
         Some(effect.with("coulomb", coulomb).with("gain", gain))
     }
 
-    /// Where another dry friction of the joint states the Coulomb level, this one has none of its own.
+    /// If another dry friction of the joint states the Coulomb level, this one states only the part that grows with the
+    /// load.
     fn sentence(&self, effect: &Effect) -> &'static str {
         if effect.number("coulomb") == 0.0 {
             "dry friction of {gain} times the load torque"

@@ -67,8 +67,8 @@ pub fn velocity(terms: &[Term]) -> Option<f64> {
     Some(term.sizes[0])
 }
 
-/// The largest Stribeck velocity (rad/s or m/s). Published ones of robot joints are 0.01 to 0.2 rad/s, those of simulated cases at most
-/// 0.3; friction that falls over a larger speed is the form of the viscous friction.
+/// The largest Stribeck velocity (rad/s or m/s). Published ones of robot joints are 0.01 to 0.2 rad/s, those of simulated
+/// cases at most 0.3; friction that falls over a wider range of speeds belongs to the curve of the viscous friction.
 const FASTEST: f64 = 0.5;
 
 /// The least Coulomb friction of a joint in motion, as a part of the additional breakaway friction.
@@ -115,7 +115,8 @@ impl EffectKind for StribeckFriction {
         Some(effect.with("velocity", velocity).with("exponent", exponent))
     }
 
-    /// Where another dry friction of the joint states the Coulomb level, this one has none of its own.
+    /// If another dry friction of the joint states the Coulomb level, this one states only the additional breakaway
+    /// friction.
     fn sentence(&self, effect: &Effect) -> &'static str {
         if effect.number("coulomb") == 0.0 {
             "dry friction that is larger by {breakaway} at breakaway than in motion, with a Stribeck velocity of {velocity}"
@@ -141,8 +142,8 @@ impl EffectKind for StribeckFriction {
     }
 }
 
-/// Whether friction with the background's curve is larger at standstill than in motion. Friction that reaches its level gradually
-/// has a background that is negative at low speed, in which the additional friction only mends the form.
+/// Whether friction with the background's curve is larger at standstill than in motion. Friction that reaches its level
+/// gradually has a background that is negative at low speed, and the additional friction only corrects that curve.
 fn falls(fitted: &dyn Fitted) -> bool {
     let curve = fitted.term(1).joint.map(|joint| Term::on(&FRICTION_CURVE, joint));
     let taken_back = curve.map_or(0.0, |curve| -fitted.background(&curve));

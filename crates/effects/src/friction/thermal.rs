@@ -3,8 +3,8 @@
 use super::asymmetry::ABS_SIGN;
 use crate::laws::SIGN;
 use crate::{
-    Against, Circumstance, Cone, Dry, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine,
-    Parameter, Place, Quantity, Range, Size, Spec, Systematic, Term, Turn, Unseen,
+    Against, Circumstance, Cone, Detectability, Dry, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds,
+    Law, Machine, Parameter, Place, Quantity, Range, Size, Spec, Systematic, Term, Turn,
 };
 
 /// Dry friction coulomb (1 + amplitude e^(−(t − start)/time_constant)) sgn q̇, t on the recordings' own clock.
@@ -42,12 +42,12 @@ static SPEC: Spec = Spec {
         rank: 3,
         text: "record the same motion with the cold and with the warm drive, on one clock",
     }),
-    unseen: Unseen::Linear {
+    detectability: Detectability::Linear {
         if_no_form: Some("the recordings are shorter than the time that a drive takes to warm up"),
         is_of_first: true,
         is_of_all_torque: false,
     },
-    unseen_turn: 8,
+    not_testable_turn: 8,
     ..Spec::EMPTY
 };
 
@@ -60,12 +60,13 @@ pub static WARMING: Law = Law {
     ..Law::PLAIN
 };
 
-/// The remaining part of the cold friction: one at the start.
+/// The share of the additional cold friction that remains at `time` (s); it is one at the start.
 fn cold(time: f64, [time_constant, start, ..]: [f64; 4]) -> f64 {
     (-(time - start) / time_constant).exp()
 }
 
-/// The time (s) at which recordings begin on a clock that did not begin with them, but with a controller or a computer.
+/// If the first time stamp is later than this (s), the clock began with a controller or a computer and not with the
+/// recordings.
 const OWN_CLOCK: f64 = 60.0;
 
 /// The time for which the amplitude is given (s), for recordings that begin at `begins`.
@@ -73,7 +74,7 @@ fn start(begins: f64) -> f64 {
     if begins.abs() > OWN_CLOCK { begins.floor() } else { 0.0 }
 }
 
-/// The factor by which refinement may fall below the shortest time constant.
+/// Refinement may shorten a time constant to this part of [`FASTEST_WARMING`].
 const REFINED: f64 = 0.7;
 /// The largest additional friction of a cold drive, as a multiple of the warm friction.
 const MOST_COLD: f64 = 4.0;
@@ -85,7 +86,7 @@ impl EffectKind for ThermalDrift {
 
     fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
         let constants = [0.15, 0.25, 0.4, 0.6, 1.0].map(|share| share * grounds.span.unwrap_or(0.0));
-        // A faster decay is no warming of a drive.
+        // A drive does not warm up faster than this.
         let constants: Vec<f64> = constants.into_iter().filter(|time| *time >= FASTEST_WARMING).collect();
         let start = start(grounds.times.first().map_or(0.0, |&(begins, _)| begins));
         let mut forms = Vec::new();

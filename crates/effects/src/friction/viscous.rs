@@ -25,7 +25,7 @@ static SPEC: Spec = Spec {
     is_simple: true,
     in_urdf: InUrdf::Damping,
     against: Against::Speed,
-    unseen_turn: 1,
+    not_testable_turn: 1,
     ..Spec::EMPTY
 };
 

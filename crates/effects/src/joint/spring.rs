@@ -2,8 +2,8 @@
 
 use crate::laws::{ONE, POSITION, TENT, power, tent};
 use crate::{
-    Against, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity, SetsIn, Shape,
-    Spec, State, Term, Times, Turn, Unseen,
+    Against, Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity,
+    SetsIn, Shape, Spec, State, Term, Times, Turn,
 };
 
 /// τ = stiffness (q − rest); for a nonlinear spring, a curve through (q, τ) points: linear between them, constant beyond.
@@ -31,8 +31,8 @@ static SPEC: Spec = Spec {
     excludes: &["own_position", "torque_offset", "friction_asymmetry"],
     is_behind_the_drive: true,
     against: Against::Position,
-    unseen: Unseen::LINEAR,
-    unseen_turn: 11,
+    detectability: Detectability::LINEAR,
+    not_testable_turn: 11,
     ..Spec::EMPTY
 };
 

@@ -1,8 +1,8 @@
 //! An encoder whose zero differs from the model's.
 
 use crate::{
-    Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Spec,
-    Term, Turn, Unseen,
+    Detectability, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place,
+    Quantity, Spec, Term, Turn,
 };
 
 /// The encoder reports the true position plus `offset`.
@@ -27,8 +27,8 @@ static SPEC: Spec = Spec {
         rank: 6,
         text: "move the joint to a mechanical reference, or measure its angle: the comparison shows an encoder offset",
     }),
-    unseen: Unseen::LINEAR,
-    unseen_turn: 12,
+    detectability: Detectability::LINEAR,
+    not_testable_turn: 12,
     ..Spec::EMPTY
 };
 

@@ -3,8 +3,8 @@
 use super::torque_offset::KNOWN_LOAD;
 use crate::laws::RIGID;
 use crate::{
-    Against, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity, Range, Scaled,
-    SetsIn, Spec, Term, Turn, Unseen,
+    Against, Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity,
+    Range, Scaled, SetsIn, Spec, Term, Turn,
 };
 
 /// The measured torque is `factor` times the true one.
@@ -26,20 +26,20 @@ static SPEC: Spec = Spec {
     may_set_in: true,
     is_certain_in_form: true,
     may_be_inertial: true,
-    // Structure that the catalogue lacks resembles some factor on the load.
+    // Unmodelled structure of the residual resembles a factor on the load.
     least_beside_residual: Some(1.5),
-    // Both are a gain on the load. They differ only in form: one has the load of the drive, the other that of the link.
+    // Both multiply the load: one that of the drive, the other that of the link.
     least_beside: &[("load_dependent_friction", 0.3)],
     against: Against::Load,
     experiment: Some(KNOWN_LOAD),
     experiments_against: &[("inertial_scale", KNOWN_BODY), ("link_inertial_error", KNOWN_BODY)],
     // The rigid torque alone determines it, but it is a part of the joint's whole torque.
-    unseen: Unseen::Linear {
+    detectability: Detectability::Linear {
         if_no_form: None,
         is_of_first: false,
         is_of_all_torque: true,
     },
-    unseen_turn: 10,
+    not_testable_turn: 10,
     ..Spec::EMPTY
 };
 
@@ -102,7 +102,7 @@ mod tests {
     use crate::test_support::{column, machine};
 
     #[test]
-    fn a_scale_within_the_usual_accuracy_of_torque_constants_is_none() {
+    fn a_scale_within_the_accuracy_of_torque_constants_is_not_certain() {
         let is_certain = |factor: f64, accuracy: f64| {
             let effect = Effect::of(&TorqueScale).on("a").with("factor", factor);
             TorqueScale.is_certain(&effect, &|_| None, accuracy)
@@ -115,7 +115,7 @@ mod tests {
 
     /// The column is the rigid torque: a factor of 1.5 adds half of it.
     #[test]
-    fn it_scales_what_its_column_is() {
+    fn its_column_is_the_rigid_torque() {
         let effect = Effect::of(&TorqueScale).on("a").with("factor", 1.5);
         assert_eq!(machine(&effect).factors[0].factor, 1.5);
         let (rigid, _) = column(&Term::on(&RIGID, 0), 0);

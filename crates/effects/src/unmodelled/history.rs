@@ -15,7 +15,7 @@ static SPEC: Spec = Spec {
 /// The shortest time constant that is not attributed to friction (s).
 const SHORTEST_MEMORY: f64 = 0.1;
 
-/// A memory of q̇ (form 0) or sgn q̇ (form 1) that fades with a time constant (the size, s).
+/// q̇ (form 0) or sgn q̇ (form 1) after a first-order low-pass filter; the size is its time constant (s).
 static MEMORY: Law = Law {
     name: "memory",
     column: |term, joint, motion| {
@@ -24,9 +24,9 @@ static MEMORY: Law = Law {
         } else {
             (0..motion.ticks()).map(|k| motion.sign(joint, k)).collect()
         };
-        Some(faded(&source, motion.period / term.sizes[0]))
+        Some(low_passed(&source, motion.period / term.sizes[0]))
     },
-    // With a shorter time constant it is the velocity itself.
+    // With a shorter time constant, the filtered velocity is the velocity itself.
     varied: Some(|term, size, factor| match size {
         Size::Main => term.sized([(term.sizes[0] * factor).max(SHORTEST_MEMORY)]),
         _ => *term,
@@ -62,8 +62,8 @@ impl EffectKind for History {
     }
 }
 
-/// A first-order low-pass from rest at the first value; `share` is a tick over the time constant.
-fn faded(signal: &[f64], share: f64) -> Vec<f64> {
+/// A first-order low-pass filter that starts at the first value; `share` is the period of the ticks over the time constant.
+fn low_passed(signal: &[f64], share: f64) -> Vec<f64> {
     let keep = (-share).exp();
     let mut state = signal.first().copied().unwrap_or(0.0);
     signal
@@ -75,7 +75,7 @@ fn faded(signal: &[f64], share: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Where q stands in the play of a drag link (−1 to 1): a position hysteresis (Prandtl's play operator).
+/// The position of q within the play `width` of a drag link, −1 to 1: a hysteresis (Prandtl's play operator).
 fn play(q: &[f64], width: f64) -> Vec<f64> {
     let mut link = q.first().copied().unwrap_or(0.0);
     q.iter()

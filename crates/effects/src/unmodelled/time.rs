@@ -19,7 +19,7 @@ static MOMENT: Law = Law {
     name: "moment",
     column: |term, _, motion| {
         let [centre, width, ..] = term.sizes;
-        // Most tents are in other stretches.
+        // Most tents are zero throughout this section of motion.
         if motion.time(0) >= centre + width || motion.time(motion.ticks()) <= centre - width {
             return Some(vec![0.0; motion.ticks()]);
         }

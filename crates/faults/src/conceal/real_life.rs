@@ -38,7 +38,7 @@ pub(crate) struct RealLife {
     pub noise_time: f64,
     /// The steps in which torques are reported (N m or N).
     pub torque_quantum: Vec<f64>,
-    /// Whether each file has a clock of its own; only if no fault depends on the time.
+    /// Whether each file has its own clock; only if no fault depends on the time.
     pub own_clocks: bool,
 }
 
@@ -98,8 +98,8 @@ impl RealLife {
             .cloned()
     }
 
-    /// The entry in the ground truth.
-    pub(super) fn told(&self, own_clocks: bool) -> Lifelike {
+    /// The properties as an entry of the ground truth.
+    pub(super) fn entry(&self, own_clocks: bool) -> Lifelike {
         Lifelike {
             friction: self.friction.clone(),
             noise_time: self.noise_time,

@@ -297,7 +297,7 @@ impl<'a> Stage<'a> {
                 encoder_quantum: self.sensors.quantum,
                 period: self.sensors.period(),
                 urdf_sigma: Some(self.urdf_error),
-                lifelike: self.real.as_ref().map(|real| real.told(sensors.own_clocks)),
+                lifelike: self.real.as_ref().map(|real| real.entry(sensors.own_clocks)),
             },
             urdf,
             train,

@@ -53,7 +53,7 @@ fn a_case_is_the_same_every_time() {
 }
 
 #[test]
-fn the_truth_says_what_was_given() {
+fn the_truth_contains_the_given_effects() {
     let mut payload = Injected::new("payload", None)
         .with("mass", 1.0)
         .with("com", serde_json::json!([0.0, 0.0, 0.1]));
@@ -83,7 +83,7 @@ fn the_truth_says_what_was_given() {
 }
 
 #[test]
-fn what_cannot_be_is_refused() {
+fn impossible_effects_are_refused() {
     let robot = seven_axis();
     let refuse = |effect: Injected| {
         let error = conceal_effects(&robot, "no", &[effect], &Settings::default()).expect_err("it is refused");
@@ -155,7 +155,7 @@ fn cases_are_written_once() {
 /// A case that resembles a real robot: small effects on every joint that are not scored, friction that differs between
 /// recordings, a URDF with errors. The truth contains them, and the machine can be made from it.
 #[test]
-fn a_lifelike_case_tells_what_it_has() {
+fn the_truth_of_a_lifelike_case_is_complete() {
     let robot = seven_axis();
     let n = robot.arm().dof();
     let plan = CasePlan {
@@ -211,7 +211,7 @@ fn a_lifelike_case_tells_what_it_has() {
 /// The small effects of one kind, on all joints at the same time, with the part of each joint's torque that is not
 /// scored.
 #[test]
-fn small_things_are_small() {
+fn small_effects_are_small() {
     let robot = puma();
     let kind = Kind {
         seed: 5,
@@ -248,7 +248,7 @@ fn small_things_are_small() {
 /// A tool that is drawn and not mounted: the machine is the robot without it, the URDF has it, and its share is that
 /// of its torque.
 #[test]
-fn a_tool_that_is_not_mounted_is_in_the_urdf_alone() {
+fn a_tool_that_is_not_mounted_is_only_in_the_urdf() {
     let robot = puma();
     let tool = Injected::new("payload", None)
         .with("mass", -0.7)

@@ -1,5 +1,5 @@
-//! Coulomb friction: equal at every speed. A baseline effect: it is drawn for the background of a case, not as its
-//! fault.
+//! Coulomb friction, which is equal at every speed. It is a baseline effect, drawn for the background of a case and not as
+//! its fault.
 
 use super::prelude::*;
 

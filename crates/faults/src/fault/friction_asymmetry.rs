@@ -20,7 +20,8 @@ pub(super) const FAULT: Fault = Fault {
         let [positive, negative] = ["positive", "negative"].map(|name| injected.number(name).unwrap_or(0.0));
         let mean = 0.5 * (positive + negative);
         let half = factor * (positive - mean);
-        // A larger difference comes with more friction: no bearing drags ten times as much forwards as backwards.
+        // A larger difference comes with more friction, because no bearing has ten times as much friction forwards as
+        // backwards.
         let mean = mean.max(half.abs() / MOST_PART);
         vec![("positive", json!(mean + half)), ("negative", json!(mean - half))]
     }),

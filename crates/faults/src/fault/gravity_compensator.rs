@@ -1,5 +1,5 @@
-//! The counterbalance of a heavy joint: a spring between a fixed anchor and the end of a lever on the link. Not drawn: it is
-//! injected by name.
+//! The counterbalance of a heavy joint: a spring between a fixed anchor and the end of a lever on the link. Campaigns do
+//! not draw it; it is injected by name.
 
 use super::prelude::*;
 

@@ -1,5 +1,5 @@
-//! Viscous friction: a torque against the motion that is proportional to the speed or to another power of it. A
-//! baseline effect: it is drawn for the background of a case, not as its fault.
+//! Viscous friction: a torque against the motion that is proportional to the speed or to another power of it. It is a
+//! baseline effect, drawn for the background of a case and not as its fault.
 
 use super::prelude::*;
 

@@ -201,7 +201,7 @@ mod tests {
 
     /// A rotor and a link on a spring are released: their oscillation decays according to the damping.
     #[test]
-    fn a_spring_is_damped_as_it_says() {
+    fn a_spring_has_its_damping() {
         let (rotor, link, stiffness, damping): (f64, f64, f64, f64) = (0.8, 2.0, 900.0, 2.0);
         let connection = Connection {
             stiffness: Some(stiffness),
@@ -236,7 +236,7 @@ mod tests {
     /// Without a connection, rotor and link move on together: the encoder reports the present position of the link,
     /// not an earlier one.
     #[test]
-    fn what_moves_evenly_is_seen_where_it_is() {
+    fn an_encoder_without_connection_reports_the_present_position() {
         let connection = Connection {
             stiffness: Some(900.0),
             damping: Some(2.0),

@@ -105,7 +105,7 @@ mod tests {
 
     /// Joints under a torque below their friction stop and remain at rest; others slide against their full friction.
     #[test]
-    fn friction_stops_what_it_can() {
+    fn friction_stops_joints_below_its_level() {
         let robot = seven_axis();
         let arm = robot.arm();
         let n = arm.dof();

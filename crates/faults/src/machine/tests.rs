@@ -24,7 +24,7 @@ fn run(robot: &Robot, effects: &[Injected], reference: &Reference) -> Run {
 /// The drives report the torque of the motion by inverse dynamics, to 0.2 % of its standard deviation below 20 Hz:
 /// step, hold and loop cause no larger error.
 #[test]
-fn an_empty_machine_costs_the_rigid_torque() {
+fn a_machine_without_faults_needs_the_rigid_torque() {
     for robot in [puma(), seven_axis()] {
         let n = robot.arm().dof();
         let reference = reference(&robot);
@@ -72,7 +72,7 @@ fn every_effect_in_every_form_changes_the_torque() {
 
 /// Before the onset of an effect, the machine equals the one without it, bit for bit.
 #[test]
-fn an_onset_parts_two_machines() {
+fn before_an_onset_two_machines_are_equal() {
     let robot = seven_axis();
     let reference = reference(&robot).first_seconds(2.0);
     let plain = run(&robot, &[], &reference);
@@ -104,7 +104,7 @@ fn an_onset_parts_two_machines() {
 
 /// Signs and sizes of reported torques at rest: an offset and a scale directly, a contact as −Jᵀ F.
 #[test]
-fn what_is_reported_is_what_the_catalogue_says() {
+fn reported_torques_follow_the_catalogue() {
     let robot = seven_axis();
     let n = robot.arm().dof();
     let mut reference = reference(&robot).first_seconds(2.0);
@@ -178,7 +178,7 @@ fn asymmetry_and_offset_give_one_recording() {
 
 /// A machine that cannot follow its reference is an error.
 #[test]
-fn what_cannot_follow_is_refused() {
+fn a_machine_that_cannot_follow_is_refused() {
     let robot = seven_axis();
     let weak = Injected::new("torque_saturation", Some("axis2")).with("limit", 1.0);
     let machine = Machine::new(&robot, &[&weak], None).expect("it fits");

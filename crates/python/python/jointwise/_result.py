@@ -165,7 +165,7 @@ class Doubt:
     text: str
     """What is wrong, and the remedy."""
     column_map: Optional[str]
-    """The column map (TOML) that mends it, where one does."""
+    """The complete column map (TOML) that corrects it, if a column map can."""
 
 
 @dataclass(frozen=True)

@@ -44,7 +44,7 @@ impl Against {
         }
     }
 
-    /// The state that an unexplained residual depends on, where it is a single quantity.
+    /// The state that an unexplained residual depends on; `None` if it is not a single quantity.
     pub fn of_dependence(code: &str, arm: &Arm) -> Option<Self> {
         match code {
             "own_position" => Some(Self::Position),
@@ -97,12 +97,12 @@ impl Against {
             Self::Load => load(),
             Self::LoadAlong => load().map(f64::abs),
             Self::OtherSpeed(other) => at(&trace.qd, other),
-            // The caller has the effect.
+            // The caller knows the torque of the effect.
             Self::Predicted => None,
         }
     }
 
-    /// The factor applied to torques at a row: the sign of the velocity, or one.
+    /// The factor applied to torques at a row: the sign of the velocity if torques count along the motion, one otherwise.
     pub fn turn(self, trace: &Trace, joint: usize, row: usize) -> f64 {
         if !self.is_along() {
             return 1.0;

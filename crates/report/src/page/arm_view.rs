@@ -10,16 +10,16 @@ use crate::chart::Svg;
 use crate::{numbers, terminal, words};
 
 const WIDTH: f64 = 800.0;
-/// The arm's own part of the picture: from left to right, from the top down.
+/// The part of the picture that shows the arm: its left and right end, and its upper end.
 const SIDES: [f64; 2] = [270.0, 530.0];
 const TOP: f64 = 34.0;
-/// Its greatest height, and the picture's below it.
+/// The largest height of this part, and the height of the picture below it.
 const TALLEST: f64 = 338.0;
 const BELOW: f64 = 24.0;
 /// Height of the camera above the horizon (rad).
 const ELEVATION: f64 = 0.42;
 const RADIUS: f64 = 12.0;
-/// Rows of a label's two lines.
+/// The height of a label of two lines, and the largest number of its characters.
 const LABEL: f64 = 46.0;
 const LONGEST_LABEL: usize = 34;
 
@@ -170,9 +170,9 @@ fn skeleton(arm: &Arm, workspace: &mut Workspace, q: &[f64]) -> Vec<Vector3<f64>
     std::iter::once(Vector3::zeros()).chain(joints).chain([tool]).collect()
 }
 
-/// The map of a picture.
+/// The map from camera coordinates to the picture.
 struct InBox {
-    /// The middle of what is seen.
+    /// The middle of the points, in camera coordinates.
     middle: [f64; 2],
     zoom: f64,
     /// The lower end of the arm's part of the picture.
@@ -188,7 +188,8 @@ impl InBox {
     }
 }
 
-/// The map that puts the points into the middle of the box, which is as high as they and the labels of `dof` joints need.
+/// The map that puts the points into the middle of the arm's part of the picture, which is as high as the points and the
+/// labels of `dof` joints require.
 fn fit_into_box<'a>(points: impl Iterator<Item = &'a [f64; 2]>, dof: usize) -> InBox {
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];
@@ -200,7 +201,7 @@ fn fit_into_box<'a>(points: impl Iterator<Item = &'a [f64; 2]>, dof: usize) -> I
     }
     let size = |axis: usize| (high[axis] - low[axis]).max(1e-3);
     let zoom = ((SIDES[1] - SIDES[0]) / size(0)).min(TALLEST / size(1));
-    // One label more for the whole arm, on two sides.
+    // The labels are on two sides, with one more for the whole arm.
     let of_labels = LABEL * (dof + 1).div_ceil(2) as f64;
     InBox {
         middle: [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])],
@@ -242,7 +243,7 @@ fn nominal_error(fit: &JointFit) -> f64 {
     fit.held_out_nrmse_nominal.unwrap_or(fit.train_nrmse_nominal)
 }
 
-/// Names and findings at both sides, with lines to the joints.
+/// Labels with names and findings on both sides of the arm, with lines to the joints.
 fn labels(
     svg: &mut Svg,
     report: &Report,
@@ -335,7 +336,7 @@ fn labels(
     }
 }
 
-/// Heights near the wanted ones (in order), no two labels in each other's way.
+/// Heights of labels near the `wanted` ones, which are in ascending order, such that no two labels overlap.
 fn stacked(wanted: &[f64], bottom: f64) -> Vec<f64> {
     let (top, bottom) = (TOP, bottom - 10.0);
     let mut placed: Vec<f64> = Vec::new();

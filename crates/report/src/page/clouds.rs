@@ -1,4 +1,4 @@
-//! Residuals against a state, before and after, with the effect drawn through them.
+//! Figures of residuals against a state, without and with an effect, and of the torque of the effect.
 
 use diagnosis::{Finding, Trace};
 
@@ -18,7 +18,8 @@ pub struct Cloud {
     pub data: Data,
 }
 
-/// One point of a state figure: state, before, after, the effect; with all torques along the motion where required.
+/// One point of such a figure: the state, the residual before, the residual after, the torque of the effect. Torques count
+/// along the motion if [`Against::is_along`].
 type Point = [f64; 4];
 
 impl Figures<'_> {
@@ -29,7 +30,7 @@ impl Figures<'_> {
         if let (Against::Time, Some(first), Some(last)) =
             (against, finding.place.time.first(), finding.place.time.last())
         {
-            // Data far from the event would only make the event narrow in the figure.
+            // With data far from the event, the event would be too narrow in the figure.
             let around = 2.0 * (last[1] - first[0]).max(0.1);
             points.retain(|point| (first[0] - around..=last[1] + around).contains(&point[0]));
         }
@@ -56,7 +57,7 @@ impl Figures<'_> {
             }
         }
         let mut cloud = self.cloud(joint, against, &points, 1.0)?;
-        // There is one figure, of the residual after.
+        // Only the residual with all effects is drawn.
         cloud.data.series.retain(|series| series.colour == "after");
         for series in &mut cloud.data.series {
             series.on = vec![0];
@@ -143,7 +144,7 @@ impl Figures<'_> {
     }
 
     /// Whether other findings also act on the joint.
-    pub fn has_company(&self, index: usize, joint: usize) -> bool {
+    pub fn shares_joint(&self, index: usize, joint: usize) -> bool {
         let acts = |trace: &Trace| {
             let effects = trace.effects.iter().enumerate().filter(|(other, _)| *other != index);
             effects
@@ -252,7 +253,7 @@ struct Bin {
 }
 
 fn through(points: &[Point], [from, to]: [f64; 2], bins: f64) -> Vec<Bin> {
-    // Bins meet at zero, so that a jump there stays one.
+    // Zero is a border of bins, so that a jump there remains a jump.
     let width = ((to - from) / bins).max(f64::MIN_POSITIVE);
     let mut sorted: Vec<[f64; 2]> = points
         .iter()
@@ -292,7 +293,7 @@ fn draw_effect(svg: &mut Svg, bins: &[Bin], x: &Scale, y: &Scale) {
     for end in ends {
         let run = &bins[first..end];
         let at = |pick: fn(&Bin) -> f64| run.iter().map(move |bin| [x.place(bin.state), y.place(pick(bin))]);
-        // More torques at one state than the slope of a line explains.
+        // The effect has more different torques in one bin than the slope of a line explains.
         let height = |low: f64, high: f64| (y.place(low) - y.place(high)).abs();
         let is_wide = |index: usize| {
             let [before, after] = [index.saturating_sub(1), (index + 1).min(run.len() - 1)];
@@ -300,7 +301,7 @@ fn draw_effect(svg: &mut Svg, bins: &[Bin], x: &Scale, y: &Scale) {
         };
         let is_wide = (0..run.len()).filter(|&index| is_wide(index)).count() > run.len() / 5;
         if is_wide {
-            // No line, because the effect has many torques at one state.
+            // There is no line, because the effect has many torques at one state.
             let outline: Vec<[f64; 2]> = at(|bin| bin.low).chain(at(|bin| bin.high).rev()).collect();
             svg.area(&outline, "effect-band");
         } else {

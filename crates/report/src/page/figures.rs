@@ -18,7 +18,7 @@ pub struct Figures<'a> {
     pub rows: usize,
 }
 
-/// The time between two recordings along the axis of a figure that can be zoomed, relative to all of them.
+/// The time between two recordings along the axis of a zoomable figure, relative to the duration of all recordings.
 const PAUSE: f64 = 0.01;
 /// A step of the time axis in such a figure (s).
 const TIME_STEP: f64 = 1e-3;
@@ -251,7 +251,7 @@ fn thinned_rows(series: [Option<&[f64]>; 2], count: usize, most: usize) -> Vec<u
     rows
 }
 
-/// The recording's number and, where there is room, its name.
+/// The recording's number, and its name if the width `room` allows it.
 fn heading(trace: &Trace, number: usize, room: f64) -> String {
     let name = trace.name.rsplit(['/', '\\']).next().unwrap_or_default();
     let held_out = if trace.held_out { " · held out" } else { "" };

@@ -24,7 +24,7 @@ impl Page<'_> {
         self.report.located.iter().find(|located| located.joint == joint)
     }
 
-    /// Whether the joint has something to show.
+    /// Whether the joint has a finding or an unexplained residual that its section can show.
     pub(super) fn has_section(&self, joint: usize) -> bool {
         let name = self.figures.arm.joints()[joint].name.as_str();
         let touches = |finding: &Finding| {
@@ -211,7 +211,7 @@ impl Page<'_> {
                 @if let Some((joint, cloud)) = panels {
                     (zoomable(Some(&cloud.data), html! { div.pair {
                         figure { div.plot { (PreEscaped(&cloud.before)) } figcaption {
-                            (key("k-before", if self.figures.has_company(index, joint) {
+                            (key("k-before", if self.figures.shares_joint(index, joint) {
                                 "before: residual with all other effects found"
                             } else {
                                 "before: measured − nominal model"
@@ -265,7 +265,8 @@ impl Page<'_> {
     }
 }
 
-/// What a card says beside its title: probability, share of the torque, and what it improves on held-out recordings.
+/// The facts beside the title of a finding: its probability, its share of the torque, and the reduction of the held-out
+/// error.
 fn odds(finding: &Finding) -> Vec<String> {
     let probability = finding
         .probability

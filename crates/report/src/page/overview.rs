@@ -73,7 +73,7 @@ impl Page<'_> {
         }
     }
 
-    /// What is wrong with units, signs, order or zeros, with the column maps that mend it.
+    /// Doubts about units, signs, order or zeros, with the column maps that correct them.
     pub(super) fn doubts(&self) -> Option<Section> {
         let groups = doubts::groups(self.report);
         if groups.is_empty() {

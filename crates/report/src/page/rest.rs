@@ -197,7 +197,7 @@ impl Page<'_> {
     }
 }
 
-/// The facts of a recording that gives none.
+/// The facts of a recording without a trace.
 fn none() -> (String, String, String) {
     ("–".into(), "–".into(), "–".into())
 }

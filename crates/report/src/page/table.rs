@@ -22,7 +22,8 @@ pub const fn number(title: &str) -> Column<'_> {
     Column { title, is_number: true }
 }
 
-/// A table as [`table`] makes it, with compact cards on a narrow screen: each cell after the third continues the line.
+/// A table as of [`table`](table()), with compact cards on a narrow screen: the cells after the third one continue its
+/// line.
 pub fn brief_table(columns: &[Column<'_>], rows: Vec<Vec<Markup>>) -> Markup {
     html! { div.brief { (table(columns, rows)) } }
 }
@@ -45,7 +46,7 @@ fn class(column: &Column<'_>) -> Option<&'static str> {
     column.is_number.then_some("n")
 }
 
-/// The number of letters from which a name is broken where it must be.
+/// The number of characters from which a name may be broken into lines.
 const LONG: usize = 18;
 
 /// A long name, which may be broken after its underscores, slashes and dots.

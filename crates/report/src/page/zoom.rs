@@ -1,4 +1,4 @@
-//! The data of figures that can be zoomed, as JSON beside the drawing of the same figure.
+//! The data of zoomable figures, as JSON beside the drawing of the same figure.
 
 use maud::{Markup, PreEscaped, html};
 use serde::Serialize;
@@ -10,7 +10,7 @@ pub struct Data {
     pub x: Axis,
     /// The vertical axis.
     pub y: Axis,
-    /// The recordings that follow each other along a time axis; none on other axes.
+    /// The recordings along a time axis, one after the other; empty for other axes.
     pub panels: Vec<Panel>,
     /// Stretches of the horizontal axis with a background: from, to, class.
     pub shades: Vec<(f64, f64, &'static str)>,

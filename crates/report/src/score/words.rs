@@ -18,12 +18,12 @@ pub fn counted(counted: &Counted) -> String {
     }
 }
 
-/// Two decimals.
+/// The number with two decimals, or a dash.
 pub fn number(value: Option<f64>) -> String {
     value.map_or_else(|| "–".to_owned(), |value| format!("{value:.2}"))
 }
 
-/// A share, where there is one.
+/// A share in per cent, or a dash.
 pub fn share(value: Option<f64>) -> String {
     value.map_or_else(|| "–".to_owned(), percent)
 }

@@ -16,7 +16,7 @@ fn blocks() -> Vec<Block> {
 }
 
 #[test]
-fn markdown_leaves_drawings_out() {
+fn markdown_omits_drawings() {
     let text = report::markdown(&blocks(), "The end.");
     assert_eq!(
         text,
@@ -25,7 +25,7 @@ fn markdown_leaves_drawings_out() {
 }
 
 #[test]
-fn the_page_has_drawings_and_escapes_words() {
+fn the_page_has_drawings_and_escapes_text() {
     let text = report::block_page("A <title>", "over it", &blocks(), "The end.");
     for part in [
         "<title>A &lt;title&gt;</title>",

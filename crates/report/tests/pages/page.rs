@@ -1,4 +1,4 @@
-//! The page needs nothing else, escapes names, and can be made of any diagnosis.
+//! The page is self-contained, escapes names, and can be made of any diagnosis.
 
 use diagnosis::Traces;
 
@@ -10,7 +10,7 @@ fn page(joints: usize, plot: Plot) -> String {
 }
 
 #[test]
-fn the_page_needs_nothing_else_and_says_it_all() {
+fn the_page_is_self_contained_and_complete() {
     let text = page(7, Plot::Rich);
     // The library's licence and address are comments in its script.
     let (own, scripts) = text.split_at(text.find("<script>").expect("the page has scripts"));
@@ -36,9 +36,9 @@ fn the_page_needs_nothing_else_and_says_it_all() {
     assert!(!own.contains("NaN") && !own.contains("inf "));
 }
 
-/// The error in the first sentence changes as the sentence says, in the digits that are shown.
+/// The verb of the first sentence agrees with the errors as they are rounded in it.
 #[test]
-fn the_first_sentence_says_what_changes() {
+fn the_first_sentence_agrees_with_its_numbers() {
     let lead = |errors: &[[f64; 2]]| {
         let (mut report, traces, arm) = made_up::diagnosis(errors.len(), Plot::Rich);
         report.located.clear();
@@ -61,7 +61,7 @@ fn the_first_sentence_says_what_changes() {
         text.ends_with(&format!("falls from 0.50 to 0.10 {torque} {median}")),
         "{text}"
     );
-    // Most joints are as they were, and one is better.
+    // Most joints are unchanged, and one is better.
     let text = lead(&[[0.25, 0.25], [0.25, 0.25], [0.9, 0.26]]);
     let one =
         format!("falls from 0.90 to 0.26 {torque}, more than that of any other joint; the median over the joints");
@@ -99,7 +99,7 @@ fn the_contents_lead_to_every_section() {
     );
 }
 
-/// Beside every drawing that can be zoomed are its data: as many values as places, and every figure has something to show.
+/// Every zoomable drawing has its data: as many values as positions, and no figure is empty.
 #[test]
 fn figures_have_their_data() {
     let text = page(7, Plot::Rich);
@@ -110,7 +110,7 @@ fn figures_have_their_data() {
         let data: serde_json::Value = serde_json::from_str(json).expect("it is JSON");
         let places = data["places"].as_array().expect("places");
         assert!(places.len() > 8);
-        // Places never go back.
+        // Positions never decrease.
         assert!(places.iter().skip(1).all(|step| step.as_i64() >= Some(0)));
         for series in data["series"].as_array().expect("series") {
             let values = series["values"].as_array().expect("values");

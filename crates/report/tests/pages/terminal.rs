@@ -1,11 +1,11 @@
-//! What is printed is narrow and says it all.
+//! The text for the terminal is narrow and complete.
 
 use report::terminal;
 
 use crate::made_up::{self, Plot};
 
 #[test]
-fn the_table_is_narrow_and_says_it_all() {
+fn the_text_is_narrow_and_complete() {
     let (report, _, arm) = made_up::diagnosis(6, Plot::Rich);
     let text = terminal::complete(&report, &arm);
     println!("{text}");
@@ -82,9 +82,9 @@ fn an_empty_diagnosis_has_no_table() {
     assert!(terminal::diagnosis(&report).contains("not enough data: 1.9 s in motion"));
 }
 
-/// Without findings, all of the residual is unexplained, and the text says in which state and when it is largest.
+/// Without findings, the text says in which state and when the residual is largest.
 #[test]
-fn an_unexplained_mismatch_says_where_it_is_and_what_to_do() {
+fn an_unexplained_mismatch_has_its_place_and_next_experiment() {
     let (mut report, _, arm) = made_up::diagnosis(6, Plot::Rich);
     report.findings.clear();
     report.verdict = diagnosis::Verdict::Unexplained;
@@ -110,7 +110,7 @@ fn an_unexplained_mismatch_says_where_it_is_and_what_to_do() {
 }
 
 #[test]
-fn a_residual_above_the_torques_spread_is_no_percentage() {
+fn a_residual_above_the_torques_standard_deviation_is_not_a_percentage() {
     let (mut report, ..) = made_up::diagnosis(6, Plot::Rich);
     report.unexplained[0].share = 3.21;
     let text = terminal::diagnosis(&report);
@@ -121,7 +121,7 @@ fn a_residual_above_the_torques_spread_is_no_percentage() {
 }
 
 #[test]
-fn little_explained_and_no_held_out_recording_are_said_first() {
+fn the_first_sentence_states_little_explanation_and_missing_validation() {
     let (mut report, ..) = made_up::diagnosis(6, Plot::Rich);
     for fit in report.fit.values_mut() {
         fit.held_out_nrmse_nominal = Some(1.2);

@@ -14,7 +14,7 @@ pub struct Reading {
     pub parameters: BTreeMap<String, Number>,
     /// The indices of the findings that it follows from.
     pub of: Vec<usize>,
-    /// Whether the name differs from theirs.
+    /// Whether the name differs from those of the findings.
     rewritten: bool,
 }
 
@@ -24,7 +24,7 @@ impl Reading {
         self.rewritten
     }
 
-    /// The name of the first finding it is made of.
+    /// The name of the first finding from which it follows.
     pub fn first(&self, answer: &Answer) -> Option<Name> {
         Some(name_of(answer.findings.get(*self.of.first()?)?))
     }
@@ -53,7 +53,7 @@ pub fn readings(answer: &Answer) -> Vec<Reading> {
         let joint = &finding.joint;
         let number = |key: &str| finding.parameters.get(key).copied();
         match finding.effect.as_str() {
-            // // F₊ forwards and F₋ backwards equal their mean against the motion and half their difference in both directions.
+            // F₊ forwards and F₋ backwards equal their mean against the motion and half their difference in both directions.
             "friction_asymmetry" => {
                 if let (Some(positive), Some(negative)) = (number("positive"), number("negative")) {
                     let level = scaled(combined(positive, negative, 1.0), 0.5);

@@ -1,15 +1,15 @@
-//! Scores of diagnoses that are written down here, against publishers that are, too.
+//! Scores of made-up diagnoses against made-up publications.
 
 use serde_json::json;
 
 use super::*;
 
-fn said(effects: &[&str], joint: Option<&str>, parameters: &[(&str, f64)]) -> Said {
+fn said(effects: &[&str], joint: Option<&str>, parameters: &[(&str, f64)]) -> PublishedEffect {
     let number = |value: f64| PublishedNumber {
         value,
         unit: "N m".into(),
     };
-    Said {
+    PublishedEffect {
         effects: effects.iter().map(|&effect| effect.to_owned()).collect(),
         joint: joint.map(str::to_owned),
         parameters: parameters
@@ -21,7 +21,7 @@ fn said(effects: &[&str], joint: Option<&str>, parameters: &[(&str, f64)]) -> Sa
     }
 }
 
-fn published(said: Vec<Said>) -> Published {
+fn published(said: Vec<PublishedEffect>) -> Published {
     Published {
         robot: "axis".into(),
         said,
@@ -56,7 +56,7 @@ fn answer() -> Answer {
 }
 
 #[test]
-fn each_fate_is_told_from_the_others() {
+fn each_fate_is_distinguished_from_the_others() {
     let published = published(vec![
         said(
             &["friction_asymmetry"],
@@ -78,8 +78,8 @@ fn each_fate_is_told_from_the_others() {
         said(&["rotor_inertia"], Some("c"), &[]),
     ]);
     let score = published.score(Some(&answer()), None);
-    let fates: Vec<SaidFate> = score.said.iter().map(|outcome| outcome.fate).collect();
-    use SaidFate::{Confusable, Missed, Named, NotObservable, SameTorque, Unexplained};
+    let fates: Vec<PublishedFate> = score.said.iter().map(|outcome| outcome.fate).collect();
+    use PublishedFate::{Confusable, Missed, Named, NotObservable, SameTorque, Unexplained};
     let expected = [
         Named,
         SameTorque,
@@ -104,7 +104,7 @@ fn each_fate_is_told_from_the_others() {
     assert!((level.ci95[1].expect("a bound") - 20.0 - 0.5_f64.sqrt()).abs() < 1e-12);
     assert!(level.covered && offset.covered);
     assert!(offset.difference.expect("a number") > 0.0);
-    // A number that the finding has not is none that was found.
+    // A parameter that the finding does not have has no found value.
     assert_eq!(numbers(7)[0].found, Some(0.5));
     assert_eq!((numbers(7)[1].found, numbers(7)[1].covered), (None, false));
     assert_eq!(score.held_out["a"].diagnosed, Some(0.1));
@@ -112,7 +112,7 @@ fn each_fate_is_told_from_the_others() {
 }
 
 #[test]
-fn what_nobody_published_is_false_only_where_it_is_denied() {
+fn an_unpublished_finding_is_false_only_if_it_is_excluded() {
     let score = published(vec![said(&["coulomb_friction"], Some("a"), &[])]).score(Some(&answer()), None);
     let besides: Vec<(&str, bool)> = score
         .besides
@@ -140,7 +140,7 @@ fn an_offset_and_coulomb_friction_are_asymmetric_friction() {
         &[("positive", 17.5), ("negative", 25.0)],
     )]);
     let score = published.score(Some(&answer), None);
-    assert_eq!(score.said[0].fate, SaidFate::SameTorque);
+    assert_eq!(score.said[0].fate, PublishedFate::SameTorque);
     let found: Vec<Option<f64>> = score.said[0].numbers.iter().map(|number| number.found).collect();
     assert_eq!(found, [Some(17.0), Some(23.0)]);
     assert!(score.besides.is_empty(), "{:?}", score.besides);
@@ -150,6 +150,6 @@ fn an_offset_and_coulomb_friction_are_asymmetric_friction() {
 fn without_an_answer_everything_is_missed() {
     let published = published(vec![said(&["spring"], Some("a"), &[("stiffness", 1.0)])]);
     let score = published.score(None, None);
-    assert_eq!((score.verdict, score.said[0].fate), (None, SaidFate::Missed));
+    assert_eq!((score.verdict, score.said[0].fate), (None, PublishedFate::Missed));
     assert_eq!(published.terms(), [("spring".to_owned(), Some("a".to_owned()))]);
 }

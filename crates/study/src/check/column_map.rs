@@ -1,15 +1,15 @@
-//! The column map that mends what does not fit: TOML, whole, ready to paste.
+//! The complete column map (TOML) that corrects contradictions between a recording and its URDF.
 
 use std::fmt::Write;
 
 use recording::{Origin, OriginColumn, Quantity, Recording};
 
-/// What a key of a column map is to be.
+/// The value of a key of a column map.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A number.
     Number(f64),
-    /// A unit, and what one of it is in the unit that the recording was read in.
+    /// A unit, and its size in the unit in which the recording was read.
     Unit(&'static str, f64),
     /// The column that the named joint has for this key.
     ColumnOf(String),
@@ -41,7 +41,7 @@ impl Change {
         }
     }
 
-    /// The unit of the time stamps, and how many seconds it is.
+    /// The unit of the time stamps, with its size in seconds.
     pub fn time(unit: &'static str, seconds: f64) -> Self {
         Self {
             joint: None,
@@ -57,7 +57,7 @@ impl Change {
         Self::new(joint, "tau_scale", Value::Number(short))
     }
 
-    /// The same with a comment behind it.
+    /// This change with a comment at the end of its line.
     pub fn with_remark(self, remark: &'static str) -> Self {
         Self {
             remark: Some(remark),
@@ -109,7 +109,7 @@ pub fn text(recording: &Recording, changes: &[Change]) -> Option<String> {
     Some(text)
 }
 
-/// One table for all joints, where each has the same changes, and columns with its name in the same place.
+/// One table for all joints, if all have the same changes and column names that differ only in the joint's name.
 fn for_all(recording: &Recording, origin: &Origin, changes: &[Change]) -> Option<String> {
     const JOINT: &str = "{joint}";
     let names = &recording.joints;
@@ -152,12 +152,13 @@ fn keys_of_joint(origin: &Origin, joints: &[String], joint: usize, changes: &[&C
         };
         columns.push((key, column));
     }
-    // Where the columns were read as they are, the changes say what they mean; else the factors hold both.
+    // If the columns were read without factors, the changes are written as keys of their own. Otherwise a factor holds the
+    // product of the change and the factor of the reading.
     let is_plain = columns
         .iter()
         .all(|(_, column)| column.factor == 1.0 && column.offset == 0.0);
     for (key, column) in &columns {
-        // Units other than these cannot be told from a factor.
+        // A factor does not reveal the unit of a current or a temperature.
         let is_written = matches!(column.quantity, Quantity::Current | Quantity::Temperature);
         if is_written && (column.factor != 1.0 || column.offset != 0.0) {
             continue;
@@ -180,7 +181,7 @@ fn keys_of_joint(origin: &Origin, joints: &[String], joint: usize, changes: &[&C
             Value::Unit(unit, _) => quoted(unit),
             Value::ColumnOf(_) => continue,
         };
-        // A unit of velocities that were not recorded.
+        // The recording has no velocities whose unit could be set.
         if change.key == "qd_unit" && columns.iter().all(|(key, _)| *key != "qd") {
             continue;
         }
@@ -210,7 +211,7 @@ fn folded(column: &OriginColumn, changes: &[&Change]) -> (f64, f64) {
     (column.factor * motion, sign * column.offset + value("q_offset", 0.0))
 }
 
-/// The columns of a recording that was not read, as it would be written.
+/// The columns of a recording that was not read from a file, with the names that a file of it would have.
 fn own_columns(recording: &Recording) -> Origin {
     let mut quantities = vec![Quantity::Position, Quantity::Torque];
     if recording.qd.is_some() {
@@ -233,7 +234,7 @@ fn own_columns(recording: &Recording) -> Origin {
     }
 }
 
-/// The unit of time stamps of so many seconds.
+/// The name of the unit of time that is `seconds` long; `None` for any other length.
 fn time_unit(seconds: f64) -> Option<&'static str> {
     let units = [("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9), ("min", 60.0)];
     let unit = units.iter().find(|(_, factor)| *factor == seconds);
@@ -273,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn the_map_is_whole() {
+    fn the_map_is_complete() {
         let changes = [
             Change::new("a", "tau", Value::ColumnOf("b/c".into())),
             Change::new("b/c", "q_unit", Value::Unit("deg", 0.0174)),
@@ -292,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn joints_with_the_same_changes_are_one_table() {
+    fn joints_with_the_same_changes_share_one_table() {
         let names = ["t", "q_one", "q_two", "q_six", "tau_one", "tau_two", "tau_six"];
         let columns = names.map(|name| (name.to_owned(), Column::Numbers(vec![0.0, 1.0])));
         let recording = Recording::of_columns("r", columns.into(), None).expect("it is whole");

@@ -1,4 +1,4 @@
-//! Positions in another unit than the model's, and times with which no robot could have moved.
+//! Units of positions other than the model's, and time stamps with which no robot could have moved.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,29 +11,30 @@ use super::smooth::Smooth;
 use super::supposition::{Supposition, fit};
 use super::{BEYOND, Misfit};
 
-/// Rows further apart (s) are no drive's.
+/// The largest time between rows of a recording that shows a drive's motion (s).
 const SLOWEST_PERIOD: f64 = 0.1;
-/// Degrees and milliradians: the unit, that of velocities, and how many rad it is.
+/// Degrees and milliradians: the unit of positions, the unit of velocities, its size in rad.
 const UNITS: [(&str, &str, f64); 2] = [("deg", "deg/s", PI / 180.0), ("mrad", "mrad/s", 1e-3)];
 /// A unit must be better than the other by at least this reduction of the mean log residual.
 const LEAD: f64 = 0.5;
 
-/// A joint of the arm and what was measured of it.
+/// A joint of the arm and the statistics of its recorded signals.
 pub type Pair<'a> = (&'a Joint, &'a JointQuality);
 
-/// The unit of the time stamps, where rows are too far apart for a drive.
+/// The contradiction if rows are too far apart to show a drive's motion, with the unit of the time stamps that would
+/// explain it.
 pub fn of_time(arm: &Arm, quality: &Quality) -> Option<Misfit> {
     let period = 1.0 / quality.rate;
     if period <= SLOWEST_PERIOD {
         return None;
     }
-    let told = quality
+    let finding = quality
         .findings
         .iter()
         .find(|finding| finding.kind == FindingKind::TimeUnit);
-    // Recorded velocities tell the unit; without them it is the largest with which the rows are close enough.
+    // Recorded velocities determine the unit. Without them, it is the largest unit with which the rows are close enough.
     let units = [("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
-    let by_velocity = told.and_then(|finding| {
+    let by_velocity = finding.and_then(|finding| {
         let unit = |name: &str| finding.text.contains(&format!("are in {name};"));
         units.into_iter().find(|(name, _)| unit(name))
     });
@@ -54,7 +55,7 @@ pub fn of_time(arm: &Arm, quality: &Quality) -> Option<Misfit> {
              would be possible): record at 100 Hz or more"
         );
         return Some(Misfit {
-            spoils: true,
+            prevents_diagnosis: true,
             ..Misfit::new(None, text, Vec::new())
         });
     };
@@ -63,12 +64,13 @@ pub fn of_time(arm: &Arm, quality: &Quality) -> Option<Misfit> {
          under [time]), or record at 100 Hz or more"
     );
     Some(Misfit {
-        spoils: true,
+        prevents_diagnosis: true,
         ..Misfit::new(None, text, vec![Change::time(unit, seconds)])
     })
 }
 
-/// What the positions' ranges, their slopes against the recorded velocities, and the torques say about the positions' unit.
+/// The contradictions in the unit of the positions, judged by their ranges, by the ratio of their slopes to the recorded
+/// velocities, and by the torques.
 pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> Vec<Misfit> {
     let moving: Vec<&Pair<'_>> = pairs
         .iter()
@@ -119,7 +121,7 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
             joint.limits.lower, joint.limits.upper
         );
         return vec![Misfit {
-            spoils: true,
+            prevents_diagnosis: true,
             ..Misfit::new(None, text, Vec::new())
         }];
     };
@@ -136,7 +138,7 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
         )
     };
     let text = format!("the positions are in {name}: {why}; say so in a column map (--map): q_unit = \"{unit}\"");
-    // All of them are spoilt together, because each position is a part of all torques.
+    // A wrong unit of one position makes all torques of the model wrong, so that all joints are corrected together.
     let mut changes = Vec::new();
     let slopes = moving.iter().filter(|(_, measured)| {
         measured
@@ -146,26 +148,26 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
     let velocities_too = 2 * slopes.count() >= moving.len();
     for (joint, _) in pairs.iter().filter(|(joint, _)| joint.kind == JointKind::Revolute) {
         changes.push(Change::new(&joint.name, "q_unit", Value::Unit(unit, factor)));
-        // Velocities that are the positions' slopes are in the same unit.
+        // Velocities that equal the slopes of the positions are in the same unit.
         if velocities_too {
             changes.push(Change::new(&joint.name, "qd_unit", Value::Unit(of_velocity, factor)));
         }
     }
     vec![Misfit {
-        spoils: true,
+        prevents_diagnosis: true,
         ..Misfit::new(None, text, changes)
     }]
 }
 
-/// Whether the positions span two turns and more than the URDF's limits allow. A zero that is off by turns keeps the span,
-/// and many a motion exceeds the limits of its URDF.
+/// Whether the positions span more than two turns and more than 1.5 times the URDF's range. A zero that is off by whole
+/// turns does not change the span, and many motions exceed the URDF's limits slightly.
 fn is_beyond((joint, measured): &Pair<'_>) -> bool {
     let (low, high) = measured.q_range;
     let limits = joint.limits;
     limits.upper > limits.lower && high - low > (2.0 * TAU).max(1.5 * (limits.upper - limits.lower))
 }
 
-/// One joint alone whose positions fit into its limits as degrees.
+/// The contradiction if the positions of one joint fit into its limits only in degrees.
 pub fn of_one((joint, measured): &Pair<'_>) -> Option<Misfit> {
     let (low, high) = measured.q_range;
     let limits = joint.limits;
@@ -192,7 +194,7 @@ pub fn of_one((joint, measured): &Pair<'_>) -> Option<Misfit> {
     Some(Misfit::new(Some(&joint.name), text, changes))
 }
 
-/// Speeds that no joint of the robot has, where all that move have them.
+/// The contradiction if the speeds of all joints that move are far beyond their limits.
 pub fn of_speeds(pairs: &[Pair<'_>]) -> Option<Misfit> {
     let moving: Vec<&Pair<'_>> = pairs.iter().filter(|(_, measured)| measured.moves).collect();
     let mut times: Vec<f64> = moving
@@ -227,7 +229,7 @@ pub fn of_speeds(pairs: &[Pair<'_>]) -> Option<Misfit> {
         rounded(most, 2)
     );
     Some(Misfit {
-        spoils: true,
+        prevents_diagnosis: true,
         ..Misfit::new(None, text, Vec::new())
     })
 }

@@ -1,4 +1,4 @@
-//! The one supposition on signs, order and zeros that explains a recording's torques far better than all others.
+//! The search for a supposition on signs, order and zeros that explains a recording's torques far better than all others.
 
 use arm::Arm;
 
@@ -7,12 +7,13 @@ use super::column_map::{Change, Value};
 use super::smooth::Smooth;
 use super::supposition::{EXPLAINED, Fit, Supposition, fit};
 
-/// An assumption must reduce the sum of the joints' log residuals by at least this much.
+/// A supposition must reduce the sum of the joints' log residuals by at least this much.
 const GAIN: f64 = 2.0;
-/// An assumption must be better than the next one by at least this reduction of the sum of log residuals.
+/// A supposition must be better than the next one by at least this reduction of the sum of log residuals.
 const LEAD: f64 = 1.0;
 
-/// The one supposition that explains the torques far better than all others.
+/// The contradiction that follows from the supposition that explains the torques far better than all others; `None` if
+/// there is no such supposition. `as_it_is` is the fit of the recording without a supposition.
 pub fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_it_is: &Fit) -> Option<Misfit> {
     let mut scored: Vec<(f64, Supposition, Fit)> = Supposition::all(arm, moves)
         .into_iter()
@@ -28,12 +29,13 @@ pub fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_i
         .find(|(_, other, _)| !best.same_joint(*other) && !best.same_signs(*other));
     let lead = gain - next.map_or(0.0, |next| next.0);
     let close = next.filter(|_| lead <= LEAD).map(|(_, other, _)| *other);
-    // A base on a wall or on a ceiling is an effect and no mistake.
+    // A base on a wall or on a ceiling is an effect that the diagnosis finds, not an error of the recording.
     let is_base = |supposition: Supposition| matches!(supposition, Supposition::Gravity(_));
     if *gain <= GAIN || is_base(*best) || close.is_some_and(|other| is_base(other) && !best.is_of_all_signs()) {
         return None;
     }
-    // Two that explain much alike: the one that explains a little more, with the other beside it.
+    // Of two suppositions that explain the torques about equally well, the better one is reported and the other is
+    // mentioned. Both must explain much.
     if close.is_some() && *gain <= 2.0 * GAIN {
         return None;
     }
@@ -49,11 +51,16 @@ pub fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_i
         let near = |(next, other, _): &&(f64, Supposition, Fit)| best.same_joint(*other) && gain - next < LEAD;
         scored[1..].iter().filter(near).map(|(_, other, _)| *other)
     };
-    let good = |joint: &usize| fit.left[*joint] < EXPLAINED && as_it_is.left[*joint] > 3.0 * fit.left[*joint].max(0.02);
-    let no_worse = |joint: usize| fit.left[joint] < EXPLAINED && fit.left[joint] <= as_it_is.left[joint];
-    // The joint at which the supposition is told best, and by how much.
+    let good = |joint: &usize| {
+        fit.residual_share[*joint] < EXPLAINED
+            && as_it_is.residual_share[*joint] > 3.0 * fit.residual_share[*joint].max(0.02)
+    };
+    let no_worse = |joint: usize| {
+        fit.residual_share[joint] < EXPLAINED && fit.residual_share[joint] <= as_it_is.residual_share[joint]
+    };
+    // How much of the torque of `joint` is explained with and without the supposition.
     let evidence = |joint: usize| {
-        let share = |fit: &Fit| (100.0 * (1.0 - fit.left[joint])).round();
+        let share = |fit: &Fit| (100.0 * (1.0 - fit.residual_share[joint])).round();
         format!(
             "with this correction, the model and friction explain {} % of the torque's variance at {}; without it, {} %{beside}",
             share(fit),
@@ -62,12 +69,12 @@ pub fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_i
         )
     };
     let change = |joint: usize, key, value| Change::new(names[joint], key, Value::Number(value));
-    let exchanged = |what: &str, keys: &[&'static str], told_at: usize, a: usize, b: usize| {
+    let exchanged = |what: &str, keys: &[&'static str], shown_at: usize, a: usize, b: usize| {
         let text = format!(
             "the {what} of {} and {} seem swapped; correct the header, or map the columns (--map): {}",
             names[a],
             names[b],
-            evidence(told_at)
+            evidence(shown_at)
         );
         let pairs = [(a, b), (b, a)];
         let of = |key: &'static str| {
@@ -75,10 +82,10 @@ pub fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_i
         };
         Some(Misfit::new(None, text, keys.iter().flat_map(|key| of(key)).collect()))
     };
-    let told: Vec<usize> = (0..arm.dof()).filter(|joint| good(joint)).collect();
+    let explained: Vec<usize> = (0..arm.dof()).filter(|joint| good(joint)).collect();
     let all = |text: &str, keys: &[&'static str]| {
-        let text = format!("{text}: {}", evidence(told[0]));
-        // Where the base may hang, the signs may be right.
+        let text = format!("{text}: {}", evidence(explained[0]));
+        // If the base may hang from a ceiling, the signs may be right, and no map is proposed.
         let joints = if is_doubtful { 0..0 } else { 0..arm.dof() };
         let changes = joints.flat_map(|joint| keys.iter().map(move |key| change(joint, key, -1.0)));
         Some(Misfit::new(None, text, changes.collect()))
@@ -86,7 +93,7 @@ pub fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_i
     let in_order = |what: &str, keys: &[&'static str]| {
         let text = format!(
             "the {what} seem to be in the opposite order, tip to base; correct the header, or map the columns (--map): {}",
-            evidence(told[0])
+            evidence(explained[0])
         );
         let last = arm.dof() - 1;
         let of = |joint: usize| {
@@ -97,23 +104,23 @@ pub fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_i
         Some(Misfit::new(None, text, (0..=last).flat_map(of).collect()))
     };
     match *best {
-        Supposition::AllTorquesFlipped if told.len() > 1 => all(
+        Supposition::AllTorquesFlipped if explained.len() > 1 => all(
             "the torques of all joints have the sign opposite to the URDF's axes; invert them (tau_sign = -1 for each joint in a \
              column map)",
             &["tau_sign"],
         ),
-        Supposition::AllPositionsFlipped if told.len() > 1 => all(
+        Supposition::AllPositionsFlipped if explained.len() > 1 => all(
             "the positions of all joints have the sign opposite to the URDF's axes; invert them (sign = -1 and tau_sign = -1 for \
              each joint in a column map)",
             &["sign", "tau_sign"],
         ),
-        Supposition::AllFlipped if told.len() > 1 => all(
+        Supposition::AllFlipped if explained.len() > 1 => all(
             "positions and torques of all joints have the sign opposite to the URDF's axes; invert both (sign = -1 for each joint \
              in a column map)",
             &["sign"],
         ),
-        Supposition::Reversed if told.len() > 1 => in_order("columns of the joints", &["q", "qd", "tau"]),
-        Supposition::TorquesReversed if told.len() > 1 => in_order("torques of the joints", &["tau"]),
+        Supposition::Reversed if explained.len() > 1 => in_order("columns of the joints", &["q", "qd", "tau"]),
+        Supposition::TorquesReversed if explained.len() > 1 => in_order("torques of the joints", &["tau"]),
         Supposition::Flipped(joint) | Supposition::TorqueFlipped(joint) if good(&joint) => {
             let inverted = |keys: &[&'static str]| keys.iter().map(|key| change(joint, key, -1.0)).collect();
             let (text, changes): (_, Vec<Change>) = if rivals().any(|other| matches!(other, Supposition::Zero(..))) {
@@ -149,17 +156,18 @@ pub fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_i
             Some(Misfit::new(Some(names[joint]), text, changes))
         }
         Supposition::Swapped(a, b) if good(&a) && good(&b) => exchanged("columns", &["q", "qd", "tau"], a, a, b),
-        // The other one may be told by the same motion as it is.
+        // Two joints with similar motions may explain each other's torques, so that the second joint need not become
+        // better.
         Supposition::TorquesSwapped(a, b) if (good(&a) && no_worse(b)) || (good(&b) && no_worse(a)) => {
             exchanged("torques", &["tau"], if good(&a) { a } else { b }, a, b)
         }
-        // All joints' torques depend on the positions: that one of the two is explained is enough.
+        // The torques of all joints depend on the positions, so that it is sufficient that one of the two is explained.
         Supposition::PositionsSwapped(a, b) if good(&a) || good(&b) => {
             exchanged("positions", &["q", "qd"], if good(&a) { a } else { b }, a, b)
         }
-        // Its own gravity torque tells a zero, or that of the joints that carry it.
+        // A wrong zero shows in the gravity torque of the joint itself or of the joints that carry it.
         Supposition::Zero(joint, added) if rivals().next().is_none() => {
-            let told_at = (0..=joint).rev().find(good)?;
+            let shown_at = (0..=joint).rev().find(good)?;
             let turn = match added {
                 added if added.abs() > 3.0 => "π",
                 added if added > 0.0 => "-π/2",
@@ -167,7 +175,7 @@ pub fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_i
             };
             let text = format!(
                 "the position's zero is off by {turn} from the URDF's; correct it (q_offset = {added:.4} in a column map): {}",
-                evidence(told_at)
+                evidence(shown_at)
             );
             Some(Misfit::new(
                 Some(names[joint]),

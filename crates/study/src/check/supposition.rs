@@ -24,9 +24,9 @@ pub enum Supposition {
     TorquesSwapped(usize, usize),
     /// The positions of two joints are swapped.
     PositionsSwapped(usize, usize),
-    /// A joint's zero is wrong: this is to be added to its position (rad).
+    /// A joint's zero is wrong; the second value must be added to its position (rad).
     Zero(usize, f64),
-    /// All positions are in another unit, of so many rad.
+    /// All positions are in a unit of this size (rad).
     Unit(f64),
     /// All torques have the other sign, or all positions, or all of both.
     AllTorquesFlipped,
@@ -35,13 +35,13 @@ pub enum Supposition {
     /// The columns of all joints are in the opposite order, or those of the torques alone.
     Reversed,
     TorquesReversed,
-    /// Gravity has another direction (base frame), as on a wall or a ceiling. That is an effect and no
-    /// mistake, and must not be taken for a wrong zero.
+    /// Gravity has another direction (base frame), as on a wall or a ceiling. That is an effect and not an error of the
+    /// recording. It is among the suppositions so that it is not taken for a wrong zero.
     Gravity(Vector3<f64>),
 }
 
 impl Supposition {
-    /// All suppositions about the joints that move; a resting joint gives too little information.
+    /// All suppositions on an arm, of which single joints only if they move: a resting joint gives too little information.
     pub fn all(arm: &Arm, moves: &[bool]) -> Vec<Self> {
         let dof = arm.dof();
         let mut all = Vec::new();
@@ -61,7 +61,7 @@ impl Supposition {
         if moves.iter().filter(|moves| **moves).count() > 1 {
             all.extend([Self::AllTorquesFlipped, Self::AllPositionsFlipped, Self::AllFlipped]);
         }
-        // Of three joints or fewer, two are swapped.
+        // In an arm of three joints or fewer, the opposite order is a swap of two joints.
         if dof > 3 {
             all.extend([Self::Reversed, Self::TorquesReversed]);
         }
@@ -81,12 +81,13 @@ impl Supposition {
         )
     }
 
-    /// Whether both are about the signs of all joints: which ones hardly matters to a motion without much acceleration.
+    /// Whether both are about the signs of all joints. A motion with small accelerations hardly distinguishes these
+    /// suppositions.
     pub fn same_signs(self, other: Self) -> bool {
         self.is_of_all_signs() && other.is_of_all_signs()
     }
 
-    /// What is wrong, in a few words; none where it needs no words.
+    /// What is wrong, in a few words; `None` for a supposition that is never mentioned beside another one.
     pub fn words(self, names: &[&str]) -> Option<String> {
         Some(match self {
             Self::AsItIs | Self::Unit(_) | Self::Gravity(_) => return None,
@@ -116,32 +117,35 @@ impl Supposition {
 
 /// The fit of measured torques by the model's, with dry and viscous friction and an offset.
 pub struct Fit {
-    /// The residual share of each joint's variance.
-    pub left: Vec<f64>,
-    /// The factor of the model's torque.
+    /// The residual variance over the variance of the torque, by joint.
+    pub residual_share: Vec<f64>,
+    /// The factor of the model's torque, by joint.
     pub factor: Vec<f64>,
-    /// The residual share without the model's torque.
+    /// The residual variance over the variance of the torque in a fit without the model's torque, by joint.
     without: Vec<f64>,
-    /// The measured torque's standard deviation over the model's.
+    /// The standard deviation of the measured torque over that of the model's, by joint.
     pub size: Vec<f64>,
 }
 
 impl Fit {
     /// Whether the model's torque is needed to explain the joint's.
-    pub fn told_by_model(&self, joint: usize) -> bool {
-        self.left[joint] < EXPLAINED && self.without[joint] > 3.0 * self.left[joint]
+    pub fn needs_model(&self, joint: usize) -> bool {
+        self.residual_share[joint] < EXPLAINED && self.without[joint] > 3.0 * self.residual_share[joint]
     }
 
     /// Whether the model, with its own sign, is needed and sufficient to explain at least half of the joints that move.
     pub fn explains_most(&self, moves: &[bool]) -> bool {
-        let is_explained = |&joint: &usize| self.told_by_model(joint) && self.factor[joint] > 0.0;
-        let explained = (0..self.left.len()).filter(is_explained).count();
+        let is_explained = |&joint: &usize| self.needs_model(joint) && self.factor[joint] > 0.0;
+        let explained = (0..self.residual_share.len()).filter(is_explained).count();
         2 * explained >= moves.iter().filter(|moves| **moves).count()
     }
 
     /// The sum of the logarithms of the joints' residuals.
     pub fn score(&self) -> f64 {
-        self.left.iter().map(|left| left.max(0.01).ln()).sum()
+        self.residual_share
+            .iter()
+            .map(|residual_share| residual_share.max(0.01).ln())
+            .sum()
     }
 }
 
@@ -206,7 +210,7 @@ pub fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
         }
     }
     let mut fit = Fit {
-        left: Vec::new(),
+        residual_share: Vec::new(),
         factor: Vec::new(),
         without: Vec::new(),
         size: Vec::new(),
@@ -217,15 +221,15 @@ pub fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
         let dry: Vec<f64> = speed.iter().map(|speed| (speed / (0.02 * top)).tanh()).collect();
         let measured = &smooth.tau[torque_source[joint]];
         let (without, _) = regress(&[&dry, speed], measured);
-        let (left, factor) = regress(&[&model[joint], &dry, speed], measured);
-        // A joint with an inverted position may have an inverted torque, one with an inverted torque must; otherwise a
-        // negative factor explains nothing.
+        let (residual_share, factor) = regress(&[&model[joint], &dry, speed], measured);
+        // A negative factor counts as an explanation only for a joint whose torque is supposed to be inverted, or whose
+        // position is and whose torque may be inverted too.
         let explains = match supposition {
             Supposition::Flipped(flipped) if flipped == joint => true,
             Supposition::TorqueFlipped(flipped) if flipped == joint => factor < 0.0,
             _ => torque_sign * factor >= 0.0,
         };
-        fit.left.push(if explains { left } else { without });
+        fit.residual_share.push(if explains { residual_share } else { without });
         fit.factor.push(factor);
         fit.without.push(without);
         fit.size
@@ -234,8 +238,8 @@ pub fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
     fit
 }
 
-/// The residual variance of `measured` after `columns` and an offset (Gram-Schmidt, the first
-/// column last), and the factor of the first column.
+/// The residual variance of `measured` after a least-squares fit of `columns` and an offset, over its variance, and the
+/// factor of the first column (Gram-Schmidt orthogonalisation with the first column last).
 fn regress(columns: &[&Vec<f64>], measured: &[f64]) -> (f64, f64) {
     let centred = |values: &[f64]| -> Vec<f64> {
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
@@ -276,20 +280,20 @@ fn regress(columns: &[&Vec<f64>], measured: &[f64]) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    /// On a simulated arm of seven joints, with a URDF wrong by 30 %, the light links lie on the other side of their axes: all signs
-    /// inverted fit better, but the heavy links are explained as they are.
+    /// A simulated arm of seven joints with a URDF wrong by 30 %: the centres of mass of light links lie on the other side
+    /// of their axes. Inverting all signs fits better, but the heavy links are explained without it.
     #[test]
-    fn light_links_do_not_speak_for_the_arm() {
-        let fit = |left: [f64; 7], factor: [f64; 7]| Fit {
-            left: left.to_vec(),
+    fn light_links_do_not_decide_on_the_signs_of_the_arm() {
+        let fit = |residual_share: [f64; 7], factor: [f64; 7]| Fit {
+            residual_share: residual_share.to_vec(),
             factor: factor.to_vec(),
             without: vec![0.95; 7],
             size: vec![1.0; 7],
         };
-        let left = [0.05, 0.01, 0.80, 0.01, 0.97, 0.02, 0.80];
-        let mirrored = fit(left, [0.50, 0.88, 0.18, 0.94, 0.0, 1.26, -1.0]);
+        let residual_share = [0.05, 0.01, 0.80, 0.01, 0.97, 0.02, 0.80];
+        let mirrored = fit(residual_share, [0.50, 0.88, 0.18, 0.94, 0.0, 1.26, -1.0]);
         assert!(mirrored.explains_most(&[true; 7]));
-        let inverted = fit(left, [-0.50, -0.88, 0.18, -0.94, 0.0, -1.26, -1.0]);
+        let inverted = fit(residual_share, [-0.50, -0.88, 0.18, -0.94, 0.0, -1.26, -1.0]);
         assert!(!inverted.explains_most(&[true; 7]));
         let unknown = fit([0.8; 7], [0.2; 7]);
         assert!(!unknown.explains_most(&[true; 7]));

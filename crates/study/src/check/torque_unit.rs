@@ -1,4 +1,4 @@
-//! Torques of all joints in another unit, or on the motors' side.
+//! Detects torques of all joints in another unit or on the motors' side of the gears.
 
 use super::column_map::{Change, Value};
 use super::supposition::Fit;
@@ -10,7 +10,7 @@ pub const MOTOR_SIDE: f64 = 0.05;
 const LARGE_EVERYWHERE: f64 = 30.0;
 /// With less than this ratio on all joints, the torques are motor currents or in another unit.
 const SMALL_EVERYWHERE: f64 = 0.2;
-/// A decimal unit of torque.
+/// A unit of torque that is a power of ten of N m.
 struct Unit {
     /// The ratio of the recorded torque to the model's.
     factor: f64,
@@ -49,24 +49,25 @@ const UNITS: [Unit; 4] = [
     },
 ];
 
-/// The standard deviation.
+/// The standard deviation of `values`, with their number as the divisor.
 pub fn deviation(values: &[f64]) -> f64 {
     let count = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / count;
     (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
-/// The error of the torques' unit, if all joints that move have the same error, and the keys that correct it.
+/// The message on a wrong unit of the torques, if all joints that move have the same error, and the keys of a column map
+/// that correct it.
 pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Change>)> {
     let moving: Vec<usize> = (0..moves.len()).filter(|&joint| moves[joint]).collect();
-    let is_evident = |joint: &usize| fit.factor[*joint] > 0.0 && fit.told_by_model(*joint);
+    let is_evident = |joint: &usize| fit.factor[*joint] > 0.0 && fit.needs_model(*joint);
     let evident: Vec<usize> = moving.iter().copied().filter(is_evident).collect();
     let all = |outside: &dyn Fn(f64) -> bool| {
         evident.iter().all(|&joint| outside(fit.factor[joint])) && moving.iter().all(|&joint| outside(fit.size[joint]))
     };
     if evident.is_empty() {
-        // Friction makes a measured torque larger than the model's, and nothing makes it that much smaller. Channels without a
-        // torque are checked elsewhere.
+        // Friction makes a measured torque larger than the model's, and no effect makes it that much smaller. Columns
+        // without a torque are checked elsewhere.
         let sizes: Vec<f64> = moving
             .iter()
             .map(|&joint| fit.size[joint])
@@ -85,7 +86,8 @@ pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Chan
     }
     let large = all(&|size| size > LARGE_EVERYWHERE);
     let small = all(&|size| size < MOTOR_SIDE);
-    // A joint with more friction than weight does not tell; all that do must agree, and be more than one.
+    // A joint with more friction than weight does not show the unit. All others must agree, and there must be more than
+    // one.
     let agree = evident.iter().all(|&joint| fit.factor[joint] < SMALL_EVERYWHERE);
     let currents = evident.len() > 1 && agree;
     if !(large || small || currents) {
@@ -95,7 +97,7 @@ pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Chan
     factors.sort_by(f64::total_cmp);
     let (least, most) = (factors[0], factors[factors.len() - 1]);
     let middle = factors[factors.len() / 2];
-    // Masses are known to about a third, and all joints have one unit.
+    // The masses of a URDF are accurate to about a third, and all joints have the same unit.
     let decimal = UNITS.into_iter().find(|unit| {
         let near = |found: f64| (0.5..2.0).contains(&(found / unit.factor));
         near(middle) && near((least * most).sqrt())
@@ -127,7 +129,7 @@ pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Chan
                     return Change::scale(names[joint], 1.0 / fit.factor[joint]);
                 }
                 Change::scale(names[joint], 1.0 / middle)
-                    .with_remark("not told by its torque: the middle of the others")
+                    .with_remark("not determined by its torque: the median of the others")
             };
             let all: Vec<usize> = (0..names.len()).collect();
             (text, all.iter().map(scale).collect())

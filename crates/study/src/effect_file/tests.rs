@@ -94,7 +94,7 @@ fn all(joint: &str, other: &str) -> Vec<Effect> {
 }
 
 #[test]
-fn every_effect_goes_round() {
+fn every_effect_is_read_as_written() {
     let arm = arm();
     let joints = joints(&arm);
     let file = EffectFile {
@@ -114,13 +114,13 @@ fn every_effect_goes_round() {
 }
 
 #[test]
-fn a_file_without_effects_is_one() {
+fn a_file_without_effects_is_valid() {
     let read = EffectFile::parse(format!("schema = \"{SCHEMA}\"\n"), Path::new("k.toml"), &arm());
     assert_eq!(read.expect("it is read"), EffectFile::default());
 }
 
 #[test]
-fn what_is_wrong_has_its_line_and_a_remedy() {
+fn errors_name_line_and_remedy() {
     let arm = arm();
     let joint = joints(&arm)[1].clone();
     let head =
@@ -180,7 +180,7 @@ fn what_is_wrong_has_its_line_and_a_remedy() {
 }
 
 #[test]
-fn an_effect_said_twice_is_refused_with_both_places() {
+fn an_effect_given_twice_is_refused_with_both_places() {
     let friction = |joint: &str, size: &str| {
         format!("[[effects]]\neffect = \"viscous_friction\"\njoint = \"{joint}\"\ncoefficient = {size}\n")
     };

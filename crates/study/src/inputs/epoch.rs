@@ -1,12 +1,12 @@
-//! One clock for recordings whose stamps are a calendar's.
+//! One clock for recordings whose stamps are calendar times.
 
 use super::Prepared;
 
-/// Earlier seconds than this (1973) are no date, but those of a machine that has run for long.
+/// Stamps below this (s since 1970, a date in 1973) are not dates but the running time of a controller.
 const DATE: i64 = 100_000_000;
 
 /// Puts the recordings whose stamps are dates on one clock, which begins with the whole second of the earliest; those with
-/// stamps of a clock of their own stay as they are.
+/// another clock are unchanged.
 pub(super) fn share(recordings: &mut [Prepared]) {
     let epochs: Vec<Option<i64>> = recordings.iter().map(|recording| recording.epoch).collect();
     for (recording, later) in recordings.iter_mut().zip(delays(&epochs)) {
@@ -14,11 +14,12 @@ pub(super) fn share(recordings: &mut [Prepared]) {
     }
 }
 
-/// By how much each recording begins later on the common clock than on that of its file (s).
+/// The time that must be added to each recording's clock to obtain the common clock (s). `epochs` are the whole seconds
+/// that the reader subtracted.
 fn delays(epochs: &[Option<i64>]) -> Vec<f64> {
     let dates = epochs.iter().flatten().filter(|&&epoch| epoch >= DATE);
     let begins = dates.min().copied().unwrap_or(0);
-    // Of a machine's clock the first digits are taken off in reading; others of its recordings may have none to take off.
+    // The reader subtracts the leading digits of a controller's clock, but only from recordings late enough to have them.
     let small: Vec<i64> = epochs
         .iter()
         .flatten()
@@ -44,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn dates_share_a_clock_and_own_clocks_stay() {
+    fn dates_share_a_clock_and_other_clocks_are_unchanged() {
         let noon = 1_709_294_400;
         assert_eq!(delays(&[Some(noon + 3600), Some(noon), None]), [3600.0, 0.0, 0.0]);
         assert_eq!(delays(&[None, None]), [0.0, 0.0]);

@@ -5,15 +5,16 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use recording::RegularRecording;
 
-/// The length of a stretch in samples: so many equal samples of a moving arm, torques included, are no coincidence.
+/// The length of a stretch in samples. That so many samples of a moving arm, torques included, are equal is not a
+/// coincidence.
 const STRETCH: usize = 50;
 
-/// One of so many samples begins a stretch.
+/// On average, one of this many samples begins a stretch.
 const EVERY: u64 = 32;
 
-/// Some moving stretches of a recording, each as a hash of its positions and torques. Where they begin is chosen by the positions
-/// themselves, so that a part of a recording, under another name or at other times, has the same ones. They are taken before
-/// parts of a long recording are left out.
+/// Some stretches of motion of a recording, each as a hash of its positions and torques. The positions determine where
+/// stretches begin, so that a part of a recording has the same stretches under another name or at other times. They are
+/// taken before parts of a long recording are dropped.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Stretches(BTreeSet<u64>);
 
@@ -80,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn an_arm_at_rest_has_none() {
+    fn an_arm_at_rest_has_no_stretches() {
         let mut resting = recording(0.0, 0..500);
         resting.q.iter_mut().for_each(|q| q.fill(0.2));
         let none = Stretches::of(&resting);

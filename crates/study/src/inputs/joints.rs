@@ -6,11 +6,11 @@ use anyhow::bail;
 use arm::{Arm, FixedBecause, FixedJoint};
 use recording::{Recording, RegularRecording, Signal, nearest};
 
-/// The column of each joint of the arm. Columns of joints that are fixed in the arm are left out.
+/// The column of each joint of the arm. Columns of joints that are fixed in the arm are omitted.
 ///
 /// # Errors
 /// If the recording lacks a joint of the arm, or has one that the robot does not have, or that was fixed because the
-/// recording `first`, which chose the arm, lacks it.
+/// recording `first`, which selected the arm, lacks it.
 pub(super) fn order(
     recording: &Recording,
     arm: &Arm,
@@ -105,7 +105,7 @@ pub(super) fn order(
         .collect())
 }
 
-/// The recording with its joints in another order; other joints are left out.
+/// The recording with its joints in another order; other joints are omitted.
 pub(super) fn reordered(mut recording: RegularRecording, order: &[usize]) -> RegularRecording {
     let signal = |signal: &Signal| -> Signal { order.iter().map(|&from| signal[from].clone()).collect() };
     let partial = |signal: &recording::PartialSignal| -> recording::PartialSignal {

@@ -1,4 +1,4 @@
-//! The memory that recordings take, however long and many they are.
+//! Limits the memory that long recordings take.
 
 use diagnosis::worth_using;
 use recording::RegularRecording;
@@ -14,10 +14,11 @@ pub(super) fn without_unused(mut recording: RegularRecording) -> RegularRecordin
     recording
 }
 
-/// Of a recording of which a part is used, at most so many times that part is held, so that its windows can be chosen.
+/// The largest part of a recording that is held, as a multiple of the part that is used. More than one leaves a choice of
+/// windows.
 const HELD: f64 = 2.0;
 
-/// Leaves windows of the recordings of each role, if they are longer than a diagnosis uses.
+/// Reduces the recordings of each role to windows if they are longer than a diagnosis uses.
 pub(super) fn bound(list: &mut [Prepared]) {
     for is_fitted in [true, false] {
         let recordings = list
@@ -28,7 +29,8 @@ pub(super) fn bound(list: &mut [Prepared]) {
     }
 }
 
-/// Thins the `recordings` of one role until little more is held than is used of them, or none can be thinned.
+/// Thins each of the `recordings` of one role until at most [`HELD`] times its used part is held, or until it cannot be
+/// thinned further.
 fn bound_together(recordings: Vec<&mut RegularRecording>) {
     let recorded: Vec<f64> = recordings.iter().map(|recording| recording.recorded()).collect();
     for (recording, worth) in recordings.into_iter().zip(worth_using(&recorded)) {
@@ -62,19 +64,19 @@ mod tests {
     }
 
     #[test]
-    fn what_is_short_together_stays() {
+    fn recordings_that_are_short_together_are_held_whole() {
         assert_eq!(held(&[500, 300]), [500.0, 300.0]);
     }
 
     #[test]
-    fn long_recordings_have_equal_parts() {
+    fn long_recordings_are_held_in_equal_parts() {
         let held = held(&[3600, 3600, 1000]);
         assert!(held.iter().all(|held| (80.0..=160.0).contains(held)), "{held:?}");
     }
 
-    /// Also where it is read before the long one.
+    /// The order in which the recordings are read does not matter.
     #[test]
-    fn a_short_recording_beside_a_long_one_stays_whole() {
+    fn a_short_recording_beside_a_long_one_is_held_whole() {
         for others in [vec![86_400], vec![3600, 3600]] {
             for at in 0..=others.len() {
                 let mut seconds = others.clone();
@@ -87,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn many_short_ones_stay_long_enough_to_be_filtered() {
+    fn many_short_recordings_remain_long_enough_to_be_filtered() {
         assert!(held(&[15; 100]).iter().all(|seconds| *seconds > 4.0));
     }
 }

@@ -55,12 +55,12 @@ fn held(arm: &Arm) -> Vec<Effect> {
 }
 
 #[test]
-fn what_mjcf_cannot_hold_is_said() {
+fn what_mjcf_cannot_hold_is_listed() {
     let arm = read(SEVEN);
     let joint = arm.joints()[0].name.clone();
     let mut effects = held(&arm);
-    let Export { text, left } = mjcf(&arm, &effects).expect("it is written");
-    assert_eq!(left, ["shapes and meshes of the links"]);
+    let Export { text, omitted } = mjcf(&arm, &effects).expect("it is written");
+    assert_eq!(omitted, ["shapes and meshes of the links"]);
     for part in [
         "<body name=\"payload\"",
         "stiffness=\"25\"",
@@ -83,15 +83,15 @@ fn what_mjcf_cannot_hold_is_said() {
             .with("com", [0.0; 3])
             .since(Some(2.0)),
     );
-    let Export { text, left } = mjcf(&arm, &effects).expect("it is written");
-    for (line, start) in left.iter().zip([
+    let Export { text, omitted } = mjcf(&arm, &effects).expect("it is written");
+    for (line, start) in omitted.iter().zip([
         "torque_offset: joint",
         "friction_asymmetry (the diff",
         "payload: mass = 1.0",
     ]) {
         assert!(line.starts_with(start) && text.contains(line.as_str()), "{line}");
     }
-    assert_eq!(left.len(), 4);
+    assert_eq!(omitted.len(), 4);
     assert!(text.contains("frictionloss=\"2\""), "{text}");
     // A tool that is not mounted is a body of negative mass, in the last link.
     let less = [Effect::of(&Payload).with("mass", -0.1).with("com", [0.0; 3])];
@@ -100,9 +100,12 @@ fn what_mjcf_cannot_hold_is_said() {
 }
 
 #[test]
-fn a_tensor_that_no_body_has_is_written_as_the_nearest_and_said() {
-    let left = mjcf(&read(PUMA), &[]).expect("it is written").left;
-    assert!(left[0].contains("link \"link3\"") && left.len() == 2, "{left:?}");
+fn an_impossible_tensor_is_replaced_by_the_nearest_and_reported() {
+    let omitted = mjcf(&read(PUMA), &[]).expect("it is written").omitted;
+    assert!(
+        omitted[0].contains("link \"link3\"") && omitted.len() == 2,
+        "{omitted:?}"
+    );
     let flat = Inertia {
         mass: 1.0,
         com: [0.0; 3].into(),

@@ -1,4 +1,4 @@
-//! The places in a URDF's text of the inertials and the joints' dynamics.
+//! Finds the inertials of links and the dynamics of joints in the text of a URDF.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -12,11 +12,11 @@ use super::SOURCE;
 
 /// The place of an element, existing or to be inserted.
 pub(super) enum Place {
-    /// These bytes.
+    /// The element takes these bytes.
     At(Range<usize>),
-    /// At the end of its parent: before this byte.
+    /// The element is to be inserted before this byte, at the end of its parent.
     Before(usize),
-    /// Its parent is one empty tag: these bytes, that tag without its `/>`.
+    /// The parent is one empty tag: its bytes, and its text without `/>`.
     Within(Range<usize>, String),
 }
 

@@ -69,22 +69,22 @@ fn assert_same_dynamics(written: &Arm, corrected: &Corrected) {
 }
 
 #[test]
-fn what_urdf_holds_is_put_in() {
+fn effects_that_a_urdf_can_hold_are_written() {
     let arm = read(TWO);
-    let Export { text, left } = corrected_urdf(TWO, &arm, &effects()).expect("it is written");
+    let Export { text, omitted } = corrected_urdf(TWO, &arm, &effects()).expect("it is written");
     let written = read(&text);
     assert_same_dynamics(&written, &Corrected::new(&arm, &effects()).expect("they are physical"));
     let [a, b] = written.joints() else { panic!("two joints") };
     // The joint's friction is the found one, and not that of the file.
     assert_eq!((a.damping, a.friction), (1.25, 0.0));
     assert_eq!((b.damping, b.friction), (0.0, 0.75));
-    let [offset] = &left[..] else { panic!("{left:?}") };
+    let [offset] = &omitted[..] else { panic!("{omitted:?}") };
     assert_eq!(offset, "torque_offset: joint = \"b\", offset = 0.3");
     assert!(text.contains(offset) && text.contains("5 of 6 effects"), "{text}");
 }
 
 #[test]
-fn all_else_stays_as_it_was() {
+fn the_rest_of_the_file_is_unchanged() {
     let arm = read(TWO);
     let text = corrected_urdf(TWO, &arm, &effects()).expect("it is written").text;
     for kept in [
@@ -104,7 +104,7 @@ fn all_else_stays_as_it_was() {
 }
 
 #[test]
-fn the_puma_goes_round() {
+fn the_puma_is_read_as_written() {
     let urdf = include_str!("../../../../assets/puma560.urdf");
     let arm = read(urdf);
     let joint = |j: usize| arm.joints()[j].name.clone();
@@ -122,7 +122,7 @@ fn the_puma_goes_round() {
 }
 
 #[test]
-fn what_does_not_fit_is_refused() {
+fn effects_of_another_robot_are_refused() {
     let arm = read(TWO);
     let unknown = [Effect::of(&CoulombFriction).on("z").with("level", 1.0)];
     assert!(corrected_urdf(TWO, &arm, &unknown).is_err());
@@ -133,7 +133,7 @@ fn what_does_not_fit_is_refused() {
 
 /// A friction with more than one level is written as its most similar level; the rest is listed.
 #[test]
-fn what_a_urdf_holds_in_part_is_put_in_and_said() {
+fn what_a_urdf_holds_in_part_is_written_and_listed() {
     let arm = read(TWO);
     let found = [
         Effect::of(&FrictionAsymmetry)
@@ -146,15 +146,15 @@ fn what_a_urdf_holds_in_part_is_put_in_and_said() {
             .with("breakaway", 1.5)
             .with("velocity", 0.1),
     ];
-    let Export { text, left } = corrected_urdf(TWO, &arm, &found).expect("it is written");
+    let Export { text, omitted } = corrected_urdf(TWO, &arm, &found).expect("it is written");
     let written = read(&text);
     let friction: Vec<f64> = written.joints().iter().map(|joint| joint.friction).collect();
     assert_eq!(friction, [2.5, 1.0]);
-    assert_eq!(left.len(), 2);
+    assert_eq!(omitted.len(), 2);
     assert!(
-        left[0].starts_with("friction_asymmetry (the difference between the directions"),
+        omitted[0].starts_with("friction_asymmetry (the difference between the directions"),
         "{}",
-        left[0]
+        omitted[0]
     );
     assert!(text.contains("0 of 2 effects"), "{text}");
     assert_eq!(diagnosed_joints(&text).expect("it reads"), ["a", "b"]);
@@ -162,7 +162,7 @@ fn what_a_urdf_holds_in_part_is_put_in_and_said() {
 
 /// Estimated bodies replace the inertials of all links that are welded together.
 #[test]
-fn inertial_parameters_are_put_in() {
+fn inertial_parameters_are_written() {
     let arm = read(TWO);
     let body = Inertia {
         mass: 1.75,
@@ -180,11 +180,11 @@ fn inertial_parameters_are_put_in() {
 
 /// A drive's inertia is written for Drake, unless the file describes the drive.
 #[test]
-fn drive_inertias_are_put_in_for_drake() {
+fn drive_inertias_are_written_for_drake() {
     let arm = read(TWO);
     let drive = |joint: &str| Effect::of(&RotorInertia).on(joint).with("inertia", 0.125);
-    let Export { text, left } = corrected_urdf(TWO, &arm, &[drive("b")]).expect("it is written");
-    assert!(left.is_empty(), "{left:?}");
+    let Export { text, omitted } = corrected_urdf(TWO, &arm, &[drive("b")]).expect("it is written");
+    assert!(omitted.is_empty(), "{omitted:?}");
     for part in [
         "<robot name=\"two\"   xmlns:xacro=\"x\" xmlns:drake=\"http://drake.mit.edu\">",
         "<joint name=\"b\"/><actuator name=\"b_drive\"><drake:rotor_inertia value=\"0.125\"/><drake:gear_ratio value=\"1\"/>",
@@ -193,7 +193,7 @@ fn drive_inertias_are_put_in_for_drake() {
     }
     assert_eq!(read(&text).dof(), 2);
     // The joint has a transmission in the file.
-    let Export { text, left } = corrected_urdf(TWO, &arm, &[drive("a")]).expect("it is written");
-    assert!(left[0].contains("transmission of this joint"), "{left:?}");
+    let Export { text, omitted } = corrected_urdf(TWO, &arm, &[drive("a")]).expect("it is written");
+    assert!(omitted[0].contains("transmission of this joint"), "{omitted:?}");
     assert!(!text.contains("drake:"), "{text}");
 }

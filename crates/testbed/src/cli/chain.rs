@@ -25,7 +25,7 @@ pub struct ChainArgs {
 }
 
 impl ChainArgs {
-    /// The choice, where recordings hold the joints `recorded` (none: there are no recordings).
+    /// The options of the arm, for recordings with the joints `recorded` (empty without recordings).
     pub fn options(&self, recorded: &[String]) -> ChainOptions {
         ChainOptions {
             base: self.base.clone(),
@@ -35,7 +35,7 @@ impl ChainArgs {
         }
     }
 
-    /// Whether something was chosen.
+    /// Whether any of the flags is given.
     pub fn is_given(&self) -> bool {
         self.base.is_some() || self.tip.is_some() || !self.lock.is_empty()
     }

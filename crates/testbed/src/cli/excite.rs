@@ -8,7 +8,7 @@ use super::chain::ChainArgs;
 use super::numbers::parse_frequency;
 use crate::output::OutputFile;
 
-/// A limit of one joint, or of all where no joint is named.
+/// A limit of one joint, or of all joints if no joint is named.
 pub type Limit<T> = (Option<String>, T);
 
 #[derive(Debug, Args)]

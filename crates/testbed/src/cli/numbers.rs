@@ -16,7 +16,7 @@ pub fn parse_frequency(text: &str) -> Result<f64, String> {
     }
 }
 
-/// How wrong the inertial parameters of a URDF are, relative.
+/// The relative error of the inertial parameters of a URDF.
 pub fn parse_urdf_error(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(sigma) if (0.0..=1.0).contains(&sigma) => Ok(sigma),

@@ -11,14 +11,14 @@ pub enum Rerun {
     Save(Option<PathBuf>),
     /// In a viewer started for it.
     Spawn,
-    /// In a viewer that listens, by default on this machine.
+    /// In a running viewer at this address, by default on this machine.
     Connect(Option<String>),
 }
 
 /// The value of `--rerun`.
 ///
 /// # Errors
-/// If it is none, with what to give.
+/// If it is not one of the values, with the possible ones.
 pub fn parse_rerun(text: &str) -> Result<Rerun, String> {
     let (word, value) = match text.split_once('=') {
         Some((word, value)) => (word, Some(value)),

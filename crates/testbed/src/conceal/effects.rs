@@ -1,4 +1,4 @@
-//! Effects to conceal as a TOML file: that of a diagnosis, where an effect may have an onset and a form, too.
+//! The effects to inject as a TOML file: the file of a diagnosis, in which an effect may also have an onset and a form.
 
 use std::path::Path;
 
@@ -31,7 +31,7 @@ pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Vec<Injected>> {
         let span = table.span();
         let fail = |reason: String| anyhow!("{}: {reason}", source.place(span.clone()));
         let mut table = table.into_inner();
-        // JSON has no such numbers, and would leave the key out.
+        // JSON has no such numbers and would omit the key.
         if let Some((key, value)) = table
             .iter()
             .find(|(_, value)| value.as_float().is_some_and(|v| !v.is_finite()))
@@ -41,13 +41,13 @@ pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Vec<Injected>> {
         let json = serde_json::to_value(&table).map_err(|error| fail(error.to_string()))?;
         let effect: Injected = serde_json::from_value(json).map_err(|error| fail(error.to_string()))?;
         if !effect.is_outside_the_catalogue() {
-            // What the catalogue has not is this command's; the rest is checked as any effect is.
+            // Keys that the catalogue does not have belong to this command; the others are checked as for any effect.
             let own = form_parameters(&effect.effect);
             for key in ["onset", "form"].iter().chain(own) {
                 table.remove(*key);
             }
             if effect.is_not_mounted() {
-                // What is checked is the body that is drawn.
+                // The drawn body is checked, which has the opposite sign.
                 for key in ["mass", "inertia"] {
                     if let Some(value) = table.get_mut(key) {
                         negate(value);
@@ -62,7 +62,7 @@ pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Vec<Injected>> {
     Ok(effects)
 }
 
-/// A number, or each of a list, times −1; what is neither stays, and is refused as it is.
+/// Multiplies a number, or each number of a list, by −1. Any other value is unchanged and is refused later.
 fn negate(value: &mut toml::Value) {
     match value {
         toml::Value::Float(number) => *number = -*number,

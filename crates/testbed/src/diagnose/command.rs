@@ -23,7 +23,8 @@ const MISMATCH: u8 = 3;
 /// Diagnoses where and why the recordings that `args` name differ from the robot's model.
 ///
 /// # Errors
-/// If an input cannot be used, or an output cannot be written; the answer is printed then, and the other outputs are written.
+/// If an input cannot be used, or an output cannot be written. In the second case, the result is printed and the other
+/// outputs are written.
 pub fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     outputs::check(args)?;
     let pool = rayon::ThreadPoolBuilder::new()
@@ -50,7 +51,7 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
         diagnosis,
         effects,
     } = study?;
-    // From here on Ctrl-C waits, so that no file is left half written.
+    // From here on, Ctrl-C is deferred, so that no file is left incomplete.
     let deferred = interrupt::Deferred::start();
     let written = write(args, &arm, &robot, &diagnosis, effects);
     drop(deferred);
@@ -64,7 +65,7 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     })
 }
 
-/// Tells what is done and noted on standard error.
+/// Prints progress and notes on standard error.
 struct Terminal<'a> {
     args: &'a DiagnoseArgs,
     progress: &'a Progress,
@@ -91,7 +92,7 @@ impl Listener for Terminal<'_> {
     }
 }
 
-/// Prints the result and the files written. JSON on standard output has it for itself.
+/// Prints the result and the files written. If JSON is printed on standard output, nothing else is.
 fn tell(args: &DiagnoseArgs, arm: &Arm, diagnosis: &Diagnosis, written: &Files<'_>) -> anyhow::Result<()> {
     let report = &diagnosis.report;
     if args.prints_json() {
@@ -114,8 +115,8 @@ fn tell(args: &DiagnoseArgs, arm: &Arm, diagnosis: &Diagnosis, written: &Files<'
     if args.quiet {
         return Ok(());
     }
-    for (path, left) in &written.left {
-        say(format!("not in {}:\n  {}\n", path.display(), left.join("\n  ")))?;
+    for (path, omitted) in &written.omitted {
+        say(format!("not in {}:\n  {}\n", path.display(), omitted.join("\n  ")))?;
     }
     if let Some(path) = written.removed {
         say(format!(
@@ -126,13 +127,13 @@ fn tell(args: &DiagnoseArgs, arm: &Arm, diagnosis: &Diagnosis, written: &Files<'
     Ok(())
 }
 
-/// What there is to say of the files that were written.
+/// The outcome of writing the files.
 #[derive(Default)]
 struct Files<'a> {
-    /// Which were, and which could not be.
+    /// The files written, and the errors of the others.
     files: Written,
     /// What a format cannot hold, by its file.
-    left: Vec<(&'a Path, Vec<String>)>,
+    omitted: Vec<(&'a Path, Vec<String>)>,
     /// An earlier proposal that was removed without a new one.
     removed: Option<&'a Path>,
 }
@@ -159,12 +160,12 @@ fn write<'a>(
         let (Some(path), Some(export)) = (path, export) else {
             continue;
         };
-        let left = &mut written.left;
+        let omitted = &mut written.omitted;
         written.files.add(path, || {
             let export = export?;
             output::write_text(path, &export.text)?;
-            if !export.left.is_empty() {
-                left.push((path, export.left));
+            if !export.omitted.is_empty() {
+                omitted.push((path, export.omitted));
             }
             Ok(())
         });
@@ -202,7 +203,7 @@ fn write<'a>(
     written
 }
 
-/// Writes the answer as page, Markdown and JSON, as far as they are asked for.
+/// Writes the report as page, Markdown and JSON, as far as they are requested.
 fn write_reports(args: &DiagnoseArgs, arm: &Arm, diagnosis: &Diagnosis, files: &mut Written) {
     if let Some(path) = &args.report {
         let page = || report::page(&diagnosis.report, &diagnosis.traces, arm);
@@ -217,8 +218,8 @@ fn write_reports(args: &DiagnoseArgs, arm: &Arm, diagnosis: &Diagnosis, files: &
     }
 }
 
-/// Writes the answer where units, signs, order or zeros come first. There is no model and no residual then: what asks for one
-/// is an error.
+/// Writes the report if units, signs, order or zeros must be corrected first. There is neither a model nor a residual then,
+/// so that a request for one is an error.
 fn write_doubts<'a>(args: &'a DiagnoseArgs, arm: &Arm, diagnosis: &Diagnosis) -> Files<'a> {
     let mut written = Files::default();
     write_reports(args, arm, diagnosis, &mut written.files);

@@ -12,13 +12,13 @@ use torque::Reference;
 
 use crate::scenario::written;
 
-/// How a file begins that is ours to replace and to remove.
+/// The first line of a proposal, by which a file is recognised that may be replaced and removed.
 const FIRST_LINE: &str = "# The next experiment, proposed by testbed diagnose.\n";
 
-/// Refuses a `path` that has something else than an earlier proposal.
+/// Refuses a `path` with a file that is not an earlier proposal.
 ///
 /// # Errors
-/// If it is there and begins otherwise, or cannot be read.
+/// If the file exists and begins otherwise, or cannot be read.
 pub fn check_replaceable(path: &Path) -> anyhow::Result<()> {
     ensure!(
         !path.is_file() || std::fs::metadata(path)?.len() == 0 || is_earlier(path)?,
@@ -28,8 +28,8 @@ pub fn check_replaceable(path: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Removes the proposal of an earlier diagnosis from `path`, where this one proposes nothing: its motion would be run in vain. Whether
-/// there was one.
+/// Removes the proposal of an earlier diagnosis from `path` if this diagnosis proposes none, because the old motion would
+/// be useless. Returns whether there was one.
 ///
 /// # Errors
 /// If it cannot be read or removed.
@@ -46,7 +46,8 @@ fn is_earlier(path: &Path) -> anyhow::Result<bool> {
     Ok(bytes.starts_with(FIRST_LINE.as_bytes()))
 }
 
-/// Writes `motion` of `arm` to `path`, completely or not at all, with what it is for in comments; `robot` is as it was given.
+/// Writes `motion` of `arm` to `path`, completely or not at all, with its purpose in comments. `robot` is the name or path
+/// as the user gave it.
 ///
 /// # Errors
 /// If it cannot be written.
@@ -124,7 +125,7 @@ mod tests {
     use super::*;
     use crate::scenario::Scenario;
 
-    /// A proposal of an earlier diagnosis is replaced and removed; what the user wrote is neither.
+    /// A proposal of an earlier diagnosis is replaced or removed; a file of the user is not.
     #[test]
     fn only_a_proposal_is_removed() {
         let folder = tempfile::tempdir().expect("a folder");
@@ -146,9 +147,10 @@ mod tests {
         assert!(!remove_earlier(&own).expect("it can be read") && own.exists());
     }
 
-    /// What is written is what a scenario loads, to the last bit, beside its URDF or elsewhere.
+    /// A scenario that is loaded from the written file equals the motion bit for bit, whether the file is beside its URDF
+    /// or elsewhere.
     #[test]
-    fn a_proposal_loads_as_the_scenario_it_was() {
+    fn a_proposal_is_loaded_as_written() {
         let next = NextExperiment {
             duration: Some(25.0),
             separates: Vec::new(),

@@ -1,4 +1,4 @@
-//! Where a diagnosis writes to, checked before anything is read.
+//! Checks the outputs of a diagnosis before anything is read.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use super::residuals_file::Kind;
 use crate::cli::{DiagnoseArgs, Rerun};
 use crate::output::{self, OutputFile};
 
-/// Checks where `args` write to, before anything is read.
+/// Checks the outputs of `args` before anything is read.
 ///
 /// # Errors
 /// If an output cannot be written, is an input, or is another output.
@@ -28,7 +28,7 @@ pub fn check(args: &DiagnoseArgs) -> anyhow::Result<()> {
     let robot = Path::new(&args.robot);
     for output in &outputs {
         let path = output.path;
-        // A model of effects may be read, added to and written in one go.
+        // The corrected model may be the file of known effects, to which the findings are added.
         let known = args.known.iter().filter(|_| args.model.as_deref() != Some(path));
         let recordings = args
             .train

@@ -1,7 +1,7 @@
 //! The diagnosis in Rerun: the recorded motion, torques and residuals on a timeline, the named effects beside them.
 //!
-//! Entities: `world/actual/link_<i>` with `mismatch` (a ball, redder where the model misses more), and for every
-//! joint `joint/<name>/` with `torque/{measured,model,named}`, `residual/{before,after}` and `effect/<number>`.
+//! Entities: `world/actual/link_<i>` with `mismatch` (a ball, the redder the larger the residual), and for every joint
+//! `joint/<name>/` with `torque/{measured,model,named}`, `residual/{before,after}` and `effect/<number>`.
 
 mod layout;
 
@@ -23,13 +23,13 @@ use crate::viewer::{Sink, joint_entity};
 const SUMMARY: &str = "summary";
 /// The most rows that one recording shows.
 const MOST_ROWS: usize = 20_000;
-/// Time between two poses (s), and between two recordings that would else be shown on top of each other.
+/// The time between two poses (s), and the pause between two recordings whose times overlap.
 const POSE_PERIOD: f64 = 1.0 / 30.0;
 const PAUSE: f64 = 1.0;
-/// How long a viewer may take for everything.
+/// The time that a viewer has for the whole diagnosis.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// Shows the diagnosis in `sink`; meshes are looked for from the folder of `urdf_path`.
+/// Shows the diagnosis in `sink`; meshes are searched from the folder of `urdf_path`.
 ///
 /// # Errors
 /// If a file cannot be written (it is then absent), or no viewer answers.
@@ -90,7 +90,7 @@ impl Shown<'_> {
         Ok(())
     }
 
-    /// What to add to every recording's time: nothing where they lie apart, else one follows the other.
+    /// The time to add to each recording: zero if the recordings do not overlap; otherwise they follow each other.
     fn starts(&self) -> Vec<f64> {
         let ends = |trace: &Trace| Some([*trace.time.first()?, *trace.time.last()?]);
         let all: Vec<Option<[f64; 2]>> = self.traces.recordings.iter().map(ends).collect();
@@ -145,7 +145,7 @@ impl Shown<'_> {
 
     fn log_signals(&self, trace: &Trace, start: f64) -> anyhow::Result<()> {
         let step = trace.time.len().div_ceil(MOST_ROWS).max(1);
-        // A gap after the last row, so that nothing joins two recordings.
+        // A gap after the last row, so that no line joins two recordings.
         let gap = trace.time.last().map(|last| last + start + 0.01 * PAUSE);
         let times = trace.time.iter().step_by(step).map(|time| time + start).chain(gap);
         let times: Vec<f64> = times.collect();
@@ -227,7 +227,7 @@ impl Shown<'_> {
     }
 }
 
-/// Grey where the model explains the torque, through amber to red where it misses as much as the torque's spread.
+/// Grey for a small residual, through amber to red for a residual as large as the torque's standard deviation.
 fn colour(share: f64) -> Color {
     let stops = [(0.0, [150, 160, 172]), (0.3, [242, 166, 90]), (1.0, [214, 48, 38])];
     let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };

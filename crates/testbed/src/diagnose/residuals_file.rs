@@ -1,4 +1,4 @@
-//! What the models predict of every recording, and what they leave, row by row: CSV or Parquet.
+//! The predictions and the residuals of the models for every recording, row by row, as CSV or Parquet.
 
 use std::io::Write;
 use std::path::Path;
@@ -23,7 +23,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Of the file `path`.
+    /// The format of the file `path`.
     ///
     /// # Errors
     /// If it ends otherwise than in `.csv` or `.parquet`.
@@ -59,7 +59,7 @@ fn columns<'a>(trace: &'a Trace, joints: &[&str]) -> Vec<(String, Values<'a>)> {
         ("held_out".to_owned(), Values::Same(trace.held_out)),
         ("t".to_owned(), Values::Numbers(trace.time.clone())),
     ];
-    // What a model predicts is the measured torque less what it leaves.
+    // A prediction is the measured torque minus the residual.
     let predicted = |residual: &[Vec<f64>], joint: usize| {
         let pairs = trace.tau[joint].iter().zip(&residual[joint]);
         pairs.map(|(tau, left)| tau - left).collect()
@@ -85,7 +85,7 @@ fn columns<'a>(trace: &'a Trace, joints: &[&str]) -> Vec<(String, Values<'a>)> {
 /// Writes all recordings of `traces` to `path`, one after the other, completely or not at all. The format follows from the ending.
 ///
 /// # Errors
-/// If the ending is of another format, or the file cannot be written.
+/// If the ending is that of another format, or the file cannot be written.
 pub fn write(path: &Path, arm: &Arm, traces: &Traces) -> anyhow::Result<()> {
     let joints: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
     match Kind::of(path)? {

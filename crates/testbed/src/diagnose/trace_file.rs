@@ -1,4 +1,4 @@
-//! The record of a diagnosis as CSV: one row a decision, read in order.
+//! The decisions of a diagnosis as CSV: one row per decision, in order.
 
 use std::path::Path;
 

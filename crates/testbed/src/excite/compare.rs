@@ -1,4 +1,4 @@
-//! The motion of recordings beside the proposed one.
+//! The quality of recorded motions, for comparison with the proposed one.
 
 use std::path::PathBuf;
 
@@ -38,7 +38,7 @@ pub fn read(paths: &[PathBuf], arm: &Arm) -> anyhow::Result<Vec<(String, Regular
     paths.iter().map(read).collect()
 }
 
-/// How well each recording's motion determines what the `proposed` one does.
+/// The quality of each recording's motion for the parameters that the `proposed` motion determines.
 ///
 /// # Errors
 /// If a recording is too short.

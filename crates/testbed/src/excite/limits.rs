@@ -34,7 +34,7 @@ pub fn of(args: &ExciteArgs, arm: &Arm) -> anyhow::Result<Vec<MotionLimits>> {
     Ok(limits)
 }
 
-/// Sets a limit where it is given: first of all joints, then of those that are named.
+/// Replaces limits by those given: first the ones for all joints, then those of named joints.
 fn replace<T: Copy>(
     what: &str,
     given: &[Limit<T>],

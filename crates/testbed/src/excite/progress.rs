@@ -1,4 +1,4 @@
-//! How far the search is: a bar with the time left, or plain lines where there is no terminal.
+//! The progress of the search: a bar with the remaining time, or plain lines without a terminal.
 
 use std::io::IsTerminal;
 use std::sync::Mutex;
@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Nothing is said of what takes no longer than this; then a line as often, where there is no terminal.
+/// The duration below which no progress is shown, and the interval between lines without a terminal.
 const QUIET: Duration = Duration::from_secs(2);
 const PAUSE: Duration = Duration::from_secs(10);
 /// Steps of the bar.
@@ -16,13 +16,13 @@ const STEPS: f64 = 1000.0;
 pub struct Progress {
     what: &'static str,
     begun: Instant,
-    /// When the next line is due, where there is no terminal.
+    /// The time of the next line, without a terminal.
     next: Option<Mutex<Instant>>,
     bar: ProgressBar,
 }
 
 impl Progress {
-    /// Begins `what`.
+    /// Begins the progress of `what`.
     pub fn new(what: &'static str) -> Self {
         let bar = ProgressBar::new(STEPS as u64);
         if let Ok(style) = ProgressStyle::with_template("{msg} {bar:40} {percent} %  ({eta} left)") {

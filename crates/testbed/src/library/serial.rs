@@ -1,4 +1,4 @@
-//! A robot's URDF with nothing but the arm's joints moving, so that it needs no flags any more.
+//! A robot's URDF in which only the arm's joints move, so that no flags are needed to select the arm.
 
 use std::collections::HashMap;
 
@@ -7,8 +7,8 @@ use arm::{Arm, FixedJoint};
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, Writer};
 
-/// `urdf`, of which `arm` was made, with every joint fixed, where it stands, that does not move in the arm. All else
-/// stays; a URDF whose joints all move in the arm stays to the byte.
+/// `urdf`, from which `arm` was made, with every joint that does not move in the arm fixed at its position. The rest is
+/// unchanged; a URDF whose joints all move in the arm is unchanged byte for byte.
 ///
 /// # Errors
 /// If the text is no URDF.
@@ -24,7 +24,7 @@ pub fn serial_urdf(urdf: &str, arm: &Arm) -> anyhow::Result<String> {
     let mut reader = Reader::from_str(urdf);
     let mut writer = Writer::new(Vec::new());
     let mut depth = 0;
-    // Whether a joint is being read whose origin was written already.
+    // Whether the joint being read already has its origin written.
     let mut is_placed = false;
     loop {
         let event = reader.read_event()?;
@@ -96,7 +96,7 @@ mod tests {
 
     use super::*;
 
-    /// A turned column that carries an arm of two joints and a hook on a slide.
+    /// A column that is turned, with an arm of two joints and a hook on a prismatic joint.
     const ROBOT: &str = r#"<robot name="r"><!-- kept --><link name="root"/>
 <joint name="column" type="revolute"><parent link="root"/><child link="post"/><axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
 <link name="post"/>

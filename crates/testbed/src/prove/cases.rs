@@ -13,7 +13,7 @@ use crate::conceal;
 /// The number of seeds that are tried for a case.
 const SEEDS: usize = 4;
 
-/// A case: where it is, and where its truth is.
+/// A case: the paths of its files and of its ground truth.
 #[derive(Clone, Debug)]
 pub struct Place {
     /// Its number, from 0.
@@ -34,15 +34,15 @@ pub enum Cases {
         seed: u64,
         /// Robots, in turn.
         robots: Vec<Robot>,
-        /// The robots as the user named them; empty for those that come with testbed.
+        /// The robots as the user named them; empty for the robots that come with testbed.
         named: Vec<String>,
         /// Which of their joints are the arm.
         chain: ChainArgs,
         /// Whether half of them resemble real robots.
         lifelike: bool,
-        /// How wrong their URDFs are; `None`: in turns.
+        /// The relative error of their URDFs; `None` for the four errors in turns.
         urdf_error: Option<f64>,
-        /// What each case is to be.
+        /// The plans of the cases.
         plans: Vec<CasePlan>,
     },
     /// Folders of cases, and the folder of their truths.
@@ -55,7 +55,7 @@ pub enum Cases {
 }
 
 impl Cases {
-    /// What `args` ask for.
+    /// The cases of `args`.
     ///
     /// # Errors
     /// If a robot cannot be used.
@@ -93,7 +93,7 @@ impl Cases {
         })
     }
 
-    /// In words, without paths: it is sealed.
+    /// The origin in words, without paths, because it is a part of the seal.
     pub fn describe(&self) -> String {
         match self {
             Self::Drawn {
@@ -154,7 +154,7 @@ impl Cases {
         }
     }
 
-    /// The places of all cases; those drawn are under `out`, and after them the paper's.
+    /// The places of all cases. Drawn cases are under `out`, followed by the paper's disturbance.
     ///
     /// # Errors
     /// If a folder cannot be read, or has no case.
@@ -174,8 +174,8 @@ impl Cases {
         }
     }
 
-    /// The numbers of the cases in which a task is tracked: told by the plan, so that a part of a campaign knows its own; none of cases
-    /// that were given, whose truths need not say enough to make their machines again.
+    /// The numbers of the cases in which a task is tracked. They follow from the plan, so that each part of a campaign
+    /// knows its own. Empty for given cases, whose ground truths may be insufficient to rebuild their machines.
     ///
     /// # Errors
     /// If the task's scenario cannot be read.
@@ -194,10 +194,10 @@ impl Cases {
         }
     }
 
-    /// Makes a case that is not there yet: its folder is there completely or not at all, its truth after it.
+    /// Makes a case that does not exist yet. Its folder is written completely or not at all, and its ground truth after it.
     ///
     /// # Errors
-    /// If it cannot be made, or a case that should be there is not.
+    /// If it cannot be made, or a given case is missing.
     pub fn make(&self, place: &Place) -> anyhow::Result<()> {
         if place.truth.is_file() && place.folder.is_dir() {
             return Ok(());
@@ -205,7 +205,7 @@ impl Cases {
         let Self::Drawn { robots, plans, .. } = self else {
             bail!("{}: does not exist", place.truth.display());
         };
-        // Half of a case is what an interruption left.
+        // An incomplete case was left by an interruption.
         if place.truth.exists() {
             std::fs::remove_file(&place.truth).with_context(|| place.truth.display().to_string())?;
         }
@@ -215,7 +215,7 @@ impl Cases {
         let parent = |path: &Path| path.parent().unwrap_or(Path::new(".")).to_owned();
         let (folder, truths) = (parent(&place.folder), parent(&place.truth));
         let Some(mut plan) = plans.get(place.number).cloned() else {
-            // The last one is not drawn.
+            // The last case is the paper's, which is not drawn.
             return disturbance::write(&folder, &truths);
         };
         for attempt in 1.. {
@@ -224,7 +224,7 @@ impl Cases {
                     write_case(&concealment, &folder, &truths)?;
                     break;
                 }
-                // What a robot cannot show from one seed it may from another.
+                // Effects that are not detectable with one seed may be detectable with another.
                 Err(FaultError::NotExpressed { .. }) if attempt < SEEDS => plan.seed = plan.seed.wrapping_add(1),
                 Err(error) => return Err(error.into()),
             }
@@ -263,7 +263,7 @@ fn given(cases: &Path, truth: &Path) -> anyhow::Result<Vec<Place>> {
     Ok(names.into_iter().enumerate().map(place).collect())
 }
 
-/// The files of a case: its URDF, recordings to fit, recordings held out; each by its name in the folder.
+/// The files of a case by their names in its folder: URDF, training recordings, held-out recordings.
 #[derive(Clone, Debug)]
 pub struct Files {
     /// The URDF.
@@ -275,7 +275,7 @@ pub struct Files {
 }
 
 impl Files {
-    /// Those in `folder`; what else is there is not given to a diagnosis.
+    /// The files in `folder`. Other files there are not given to a diagnosis.
     ///
     /// # Errors
     /// If one is missing.
@@ -299,7 +299,7 @@ impl Files {
         Ok(Self { robot, train, held_out })
     }
 
-    /// All of them.
+    /// The names of all files.
     pub fn all(&self) -> impl Iterator<Item = &String> {
         [&self.robot].into_iter().chain(&self.train).chain(&self.held_out)
     }

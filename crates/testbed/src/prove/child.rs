@@ -1,4 +1,4 @@
-//! A diagnosis in a process of its own, in a folder that has the recordings and the URDF and nothing else.
+//! A diagnosis in its own process, in a folder that contains only the recordings and the URDF.
 
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
@@ -10,40 +10,40 @@ use anyhow::{Context, bail};
 use super::cases::Files;
 use crate::interrupt;
 
-/// What a proposed motion's recording is called.
+/// The file name of the recording of a proposed motion.
 pub const MORE: &str = "train_next.csv";
-/// What a proposed motion's scenario is called.
+/// The file name of the scenario of a proposed motion.
 pub const NEXT: &str = "next.toml";
 
-/// What a child did.
+/// The outcome of the process.
 pub enum Ended {
-    /// What it wrote.
+    /// It wrote a diagnosis.
     Answer {
         /// The diagnosis.
         json: String,
-        /// The named effects as `diagnose --known` takes them (not where effects were given).
+        /// The named effects in the format of `diagnose --known`; `None` if effects were given.
         model: Option<String>,
-        /// The motion it proposed, as a scenario.
+        /// The proposed motion as a scenario.
         next: Option<String>,
     },
-    /// The last line it wrote instead.
+    /// It failed; this is the last line of its messages.
     Failed(String),
 }
 
-/// What is asked of a child.
+/// The task of the process.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Task<'a> {
-    /// What is to be fitted alone; all is searched if `None`.
+    /// The effects to fit without a search; `None` searches all effects.
     pub only: Option<&'a str>,
     /// Whether it is to propose the next experiment.
     pub next: bool,
-    /// One recording to fit more.
+    /// An additional training recording.
     pub more: Option<&'a Path>,
 }
 
-/// Diagnoses the files of `folder`: `program diagnose --robot … --train … --held-out … --json out.json --jobs 1`, with `--model
-/// model.toml` or what is to be fitted alone in `--only`, and what else `task` adds. The process gets no environment, and starts in a new
-/// folder with copies of the files.
+/// Diagnoses the files of `folder`: `program diagnose --robot … --train … --held-out … --json out.json --jobs 1`, with
+/// `--model model.toml` or the effects to fit in `--only`, and the other options of `task`. The process has no environment
+/// variables, and starts in a new folder with copies of the files.
 ///
 /// # Errors
 /// If it cannot be started, or the user interrupts.
@@ -66,7 +66,7 @@ pub fn diagnose(program: &Path, folder: &Path, files: &Files, task: Task<'_>) ->
     command.arg("--held-out").args(&files.held_out);
     command.args(["--json", "out.json", "--jobs", "1"]);
     match task.only {
-        // Of a hypothesis nothing is scored but the torques.
+        // Of a hypothesis, only the torques are scored.
         Some(only) => command.args(["--only", only, "--torques-only"]),
         None => command.args(["--model", "model.toml"]),
     };
@@ -83,7 +83,7 @@ pub fn diagnose(program: &Path, folder: &Path, files: &Files, task: Task<'_>) ->
             break status;
         }
         if interrupt::requested() {
-            // It may be gone already: Ctrl-C reaches it, too.
+            // The process may have ended already, because Ctrl-C also reaches it.
             let _ = child.kill();
             child.wait()?;
             bail!("interrupted");

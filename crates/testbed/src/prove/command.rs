@@ -30,11 +30,11 @@ use crate::output::{self, OutputFile};
 pub struct Proof {
     /// `testbed.proof/1`.
     pub schema: &'static str,
-    /// The command that repeats it.
+    /// The command that repeats the proof.
     pub command: String,
     /// The seal, made before the first diagnosis.
     pub seal: Seal,
-    /// What was fixed before the truth was opened: SHA-256 of each diagnosis, by case.
+    /// The SHA-256 of each diagnosis by case, fixed before the ground truths were opened.
     pub answers: BTreeMap<String, Option<String>>,
     /// The score.
     pub score: Score,
@@ -105,7 +105,7 @@ fn protocol(
     times: &mut Times,
 ) -> anyhow::Result<(Seal, Vec<Row>)> {
     if let Cases::Given { .. } = source {
-        // A truth that cannot be read is better known before hours of diagnosis than after.
+        // An unreadable ground truth must be reported before hours of diagnoses, not after.
         for Place { name, truth, .. } in places {
             let text = std::fs::read_to_string(truth).with_context(|| truth.display().to_string())?;
             rows::truth::<Truth>(name, &text).with_context(|| format!("{}: correct or remove it", truth.display()))?;
@@ -126,7 +126,7 @@ fn protocol(
         })
     })?;
     output::write_json(&vault.out.join("answers.json"), &answers(vault, places)?)?;
-    // // From here on, the ground truths are read.
+    // From here on, the ground truths are read.
     let truths: Mutex<BTreeMap<String, String>> = Mutex::default();
     times.of("controls", || {
         work::all("fitting the controls", &pairs, jobs, |(place, sealed)| {
@@ -155,18 +155,18 @@ fn protocol(
     })?;
     let mut truths = truths.into_inner().unwrap_or_default();
     times.of("experiments", || {
-        let chosen = experiments::chosen(source, vault, &pairs)?;
+        let examined = experiments::examined(source, vault, &pairs)?;
         work::all(
             "recording the proposed experiments",
-            &chosen,
+            &examined,
             jobs,
             |(place, sealed)| experiments::make(source, vault, place, sealed, &truths[&place.name]),
         )
     })?;
-    let chosen = source.tracked()?;
+    let to_track = source.tracked()?;
     let tracked: Vec<_> = pairs
         .iter()
-        .filter(|(place, _)| chosen.contains(&place.number))
+        .filter(|(place, _)| to_track.contains(&place.number))
         .collect();
     times.of("track", || {
         work::all("tracking task D", &tracked, jobs, |(place, sealed)| {
@@ -177,7 +177,7 @@ fn protocol(
         .iter()
         .map(|(place, sealed)| {
             let truth = truths.remove(&place.name).unwrap_or_default();
-            let is_tracked = chosen.contains(&place.number);
+            let is_tracked = to_track.contains(&place.number);
             let tracking = is_tracked.then(|| tracking::step::text(vault, place)).transpose()?;
             Ok(Row {
                 tracking,
@@ -188,7 +188,7 @@ fn protocol(
     Ok((seal, rows?))
 }
 
-/// Effects as `--only` takes them.
+/// Effects in the format of `--only`.
 pub fn list(terms: &[scoring::Name]) -> String {
     let words = terms.iter().map(|(effect, joint)| match joint {
         Some(joint) => format!("{effect}:{joint}"),
@@ -217,7 +217,7 @@ impl Proof {
     }
 }
 
-/// The hashes of all diagnoses.
+/// The SHA-256 of all diagnoses, by case; `None` without a diagnosis.
 ///
 /// # Errors
 /// If one is not what its record says.
@@ -290,10 +290,10 @@ fn summary(proof: &Proof) -> String {
     )
 }
 
-/// How long each phase took: the only thing that differs between two runs, and so in a file of its own.
+/// The duration of each phase. It is the only result that differs between two runs, and therefore has its own file.
 #[derive(Default, Serialize)]
 struct Times {
-    /// s, by phase; of what was finished before an interruption nothing is counted.
+    /// The durations (s) by phase, without steps that were finished before an interruption.
     seconds: Vec<(&'static str, f64)>,
 }
 

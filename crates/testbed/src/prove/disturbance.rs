@@ -22,15 +22,15 @@ use study::urdf_file::changed_urdf;
 
 /// The case's name; those drawn begin with `case_`.
 pub const CASE: &str = "paper";
-/// What is recorded to fit, as in the paper's table I.
+/// The training task, as in the paper's table I.
 const TRAIN: &str = "taskA";
 /// The held-out task, for which torque errors are given.
 const TEST: &str = "taskD";
-/// What the URDF says of a correct arm's torques.
+/// The effect that the wrong URDF amounts to.
 const EFFECT: &str = "inertial_scale";
 /// The alternative that cannot be excluded without a known load: a common scale of all measured torques.
 const ALIAS: &str = "torque_scale";
-/// A mean squared torque error below this is rounding beside torques of tens of N m ((N m)²).
+/// A mean squared torque error below this is rounding error for torques of tens of N m ((N m)²).
 const ROUNDING: f64 = 1e-6;
 
 /// The outcome of the case: `paper` in `score.json`.
@@ -38,17 +38,17 @@ const ROUNDING: f64 = 1e-6;
 pub struct Disturbance {
     /// The URDF's masses and inertia tensors over the true ones.
     pub inertia_scale: f64,
-    /// What the diagnosis named; empty without an answer.
+    /// The effects that the diagnosis names; empty without an answer.
     pub findings: Vec<NamedEffect>,
-    /// Whether that is the scale of all inertias and nothing else.
+    /// Whether the inertial scale is the only finding.
     pub is_one_finding: bool,
-    /// What it could be instead, as it was said.
+    /// The alternatives that the diagnosis states.
     pub aliases: Vec<NamedEffect>,
-    /// Whether these are the scales of all joints' torques and nothing else.
+    /// Whether the alternatives are the torque scales of all joints and nothing else.
     pub aliases_are_all_torque_scales: bool,
-    /// The size that was found.
+    /// The estimated factor.
     pub factor: Option<Factor>,
-    /// Torque error on task D of the URDF with what was named put in.
+    /// The torque error on task D of the URDF with the named effects.
     pub diagnosed: Option<Errors>,
     /// Whether its mean is below 1e-6 (N m)².
     pub is_rounding: bool,
@@ -83,19 +83,19 @@ pub struct Factor {
 /// Mean squared torque errors on the reference samples of task D, (N m)².
 #[derive(Serialize)]
 pub struct Errors {
-    /// One a joint.
+    /// One value per joint.
     pub mse: Vec<f64>,
-    /// Over the joints.
+    /// The mean over the joints.
     pub mean: f64,
 }
 
 /// A torque model's errors, ours and the paper's.
 #[derive(Serialize)]
 pub struct Other {
-    /// Trained on task A; `paper` is the paper's table I.
+    /// The errors after training on task A; `paper` is the paper's table I.
     #[serde(flatten)]
     pub row: tables::Row,
-    /// The paper's table II: trained on tasks A, B and C.
+    /// The paper's table II, after training on tasks A, B and C.
     pub paper_table_2: Option<[f64; 6]>,
 }
 
@@ -118,7 +118,8 @@ pub fn conceal() -> anyhow::Result<Concealment> {
                 form: None,
                 onset: None,
                 minor: false,
-                // All torques scale with all inertias: so much of each vanishes with the error.
+                // All torques are proportional to the inertias, so that this share of each torque vanishes without the
+                // error.
                 expressed_share: Some(train.inertia_scale - 1.0),
             }],
             background_friction: false,
@@ -134,14 +135,15 @@ pub fn conceal() -> anyhow::Result<Concealment> {
     })
 }
 
-/// The URDF as the paper's controller believes it: [`Scenario::nominal_arm`], in the words of the robot's own file.
+/// The URDF of the paper's controller: [`Scenario::nominal_arm`] as an edit of the robot's own file.
 fn heavy_urdf(scenario: &Scenario) -> anyhow::Result<String> {
     let urdf = study::robot::named_robot(scenario.arm.name())?.text;
     let heavier = Effect::of(&InertialScale).with("factor", scenario.inertia_scale);
     changed_urdf(&urdf, &scenario.arm, &[heavier])
 }
 
-/// A run under the exact model, as a robot's logger has it: the torque's parts would give the truth away.
+/// A run under the exact model with only the columns of a robot's logger, because the parts of the torque would reveal the
+/// ground truth.
 fn recorded(scenario: &Scenario) -> anyhow::Result<Recording> {
     let exact = RigidBody::new(scenario.arm.clone());
     let run = simulation::run(scenario, ModelKind::True, &exact, 0, &mut [])?.recording;
@@ -155,10 +157,10 @@ fn recorded(scenario: &Scenario) -> anyhow::Result<Recording> {
     })
 }
 
-/// What the case's diagnosis is worth, beside the models of table I, which are trained here.
+/// The assessment of the case's diagnosis, with the models of table I, which are trained here, for comparison.
 ///
 /// # Errors
-/// If the diagnosis is not what it should be, or names what does not fit the arm.
+/// If the diagnosis cannot be read, or names an effect that does not fit the arm.
 pub fn assess(row: &Row) -> anyhow::Result<Disturbance> {
     let (train, test) = (Scenario::built_in(TRAIN)?, Scenario::built_in(TEST)?);
     let answer = row.tried()?.answer.unwrap_or_default();
@@ -192,7 +194,7 @@ pub fn assess(row: &Row) -> anyhow::Result<Disturbance> {
     })
 }
 
-/// Whether the aliases are the torque's scale on each of `joints`, once.
+/// Whether the aliases are exactly the torque scales of all `joints`.
 fn are_all_scales(aliases: &[NamedEffect], joints: &[String]) -> bool {
     let has = |joint: &String| aliases.iter().any(|alias| alias.joint.as_ref() == Some(joint));
     aliases.len() == joints.len() && joints.iter().all(has) && aliases.iter().all(|alias| alias.effect == ALIAS)
@@ -210,7 +212,7 @@ fn factor(found: &Number, truth: f64) -> Option<Factor> {
     })
 }
 
-/// The errors of the heavy arm with all that was named; `None` if nothing was, or in numbers that make no torque.
+/// The errors of the heavy arm with all named effects; `None` if no effect is named, or if one has impossible parameters.
 fn diagnosed(answer: &Answer, test: &Scenario) -> anyhow::Result<Option<Errors>> {
     let effects: Option<Vec<Effect>> = answer.findings.iter().map(effect).collect();
     let Some(effects) = effects.filter(|effects| !effects.is_empty()) else {
@@ -224,7 +226,7 @@ fn diagnosed(answer: &Answer, test: &Scenario) -> anyhow::Result<Option<Errors>>
     }))
 }
 
-/// A finding as an effect; those whose parameters are no plain numbers there are not read back.
+/// A finding as an effect; `None` for effects whose parameters are not plain numbers in a finding.
 fn effect(named: &Named) -> Option<Effect> {
     let mut fields = serde_json::Map::new();
     fields.insert("effect".to_owned(), named.effect.clone().into());
@@ -267,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn aliases_are_each_joints_scale_and_nothing_else() {
+    fn aliases_are_exactly_the_torque_scales_of_all_joints() {
         let joints = ["a".to_owned(), "b".to_owned()];
         let alias = |effect: &str, joint: &str| NamedEffect {
             effect: effect.to_owned(),

@@ -14,26 +14,27 @@ use super::vault::{Vault, made_of};
 use crate::output;
 use crate::scenario::Scenario;
 
-/// Cases that are looked at for experiments, spread evenly over a campaign: a second diagnosis of all would take too long.
+/// The number of cases that are examined for experiments. They are spread evenly over a campaign, because a second
+/// diagnosis of all cases would take too long.
 pub const LOOKED_AT: usize = 60;
 
-/// A motion that the position loop cannot hold the machine on is made smaller about its centre, as a user does whose drive
-/// trips: the model that it was proposed with may be wrong.
+/// The factors by which a motion is scaled about its centre until the position loop can follow it. The model with which it
+/// was proposed may be wrong; a user whose drive trips would do the same.
 const SIZES: [f64; 3] = [1.0, 0.7, 0.5];
 
-/// What making a motion left, beside its recording: enough to see that neither was changed since, and need not be made again.
+/// The record of a motion that was made, from which it follows whether it must be made again.
 #[derive(Serialize, Deserialize)]
 struct Made {
-    /// SHA-256 of the hashes of what it was made of: program, recordings and URDF, truth, scenario.
+    /// SHA-256 of the hashes of its inputs: program, recordings and URDF, ground truth, scenario.
     made_of: String,
     /// SHA-256 of the recording; `None` if there is none.
     recording: Option<String>,
-    /// Why there is none.
+    /// The reason if there is none.
     failed: Option<String>,
 }
 
 impl Made {
-    /// Whether it was made of what `made_of` stands for, and the file `recording` is what it left.
+    /// Whether it was made from the inputs with the hash `made_of`, and the file `recording` is unchanged.
     fn is_of(&self, made_of: &str, recording: &Path) -> bool {
         let is_as_left = match &self.recording {
             Some(hash) => sha256_of(recording).is_ok_and(|is| is == *hash),
@@ -43,18 +44,19 @@ impl Made {
     }
 }
 
-/// The cases whose proposed experiment is made: of [`LOOKED_AT`] spread evenly, those whose diagnosis proposes one for a
-/// confusion. What a case's turn is depends on its number alone, not on the others in its share.
+/// The cases whose proposed experiment is made: of [`LOOKED_AT`] cases that are spread evenly, those whose diagnosis
+/// proposes a motion for a confusion. Whether a case is examined depends only on its number, not on the part of the
+/// campaign that it is in.
 ///
 /// # Errors
 /// If a diagnosis is not what its record says.
-pub fn chosen<'a>(
+pub fn examined<'a>(
     source: &Cases,
     vault: &Vault,
     pairs: &[(&'a Place, &'a SealedCase)],
 ) -> anyhow::Result<Vec<(&'a Place, &'a SealedCase)>> {
     let Cases::Drawn { plans, .. } = source else {
-        // The machine of a case that was given is not at hand.
+        // The machine of a given case is not available.
         return Ok(Vec::new());
     };
     let turn = |number: usize| number * LOOKED_AT / plans.len().max(1);
@@ -75,8 +77,8 @@ pub fn chosen<'a>(
     Ok(list)
 }
 
-/// Makes the proposed experiment of a case, whose truth is open, and diagnoses again with its recording, unless that is done; what was
-/// changed since is made again.
+/// Makes the proposed experiment of a case, whose truth is open, and diagnoses again with its recording, unless that is
+/// done. A result whose inputs have changed is made again.
 ///
 /// # Errors
 /// If a file cannot be read or written, the process cannot be started, or the user interrupts.
@@ -86,7 +88,7 @@ pub fn make(source: &Cases, vault: &Vault, place: &Place, sealed: &SealedCase, t
     };
     let folder = folder(vault, place);
     std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
-    // Where it stood when it was proposed: beside the URDF.
+    // The scenario refers to the URDF beside it.
     let (scenario, recording) = (folder.join(NEXT), folder.join(MORE));
     let copies = [
         (vault.proposed(&first(place)), scenario.clone()),
@@ -126,7 +128,7 @@ pub fn make(source: &Cases, vault: &Vault, place: &Place, sealed: &SealedCase, t
                     made.write_csv(&recording)?;
                     break;
                 }
-                // What cannot be recorded at any size is a result, too.
+                // That a motion cannot be recorded at any size is also a result.
                 Err(error @ FaultError::Lost { .. }) if size == SIZES[SIZES.len() - 1] => {
                     failed = Some(error.to_string());
                 }
@@ -151,7 +153,7 @@ pub fn make(source: &Cases, vault: &Vault, place: &Place, sealed: &SealedCase, t
     vault.diagnose(place, sealed, &second(place), task)
 }
 
-/// The outcome: the second diagnosis, or why there is none; neither where none was tried.
+/// The outcome: the second diagnosis, or the reason why there is none; neither if no experiment was tried.
 ///
 /// # Errors
 /// If the diagnosis is not what its record says.
@@ -187,7 +189,7 @@ fn second(place: &Place) -> String {
 mod tests {
     use super::*;
 
-    /// A recording is taken again only as it was left, and made of the same.
+    /// A recording is reused only if it and its inputs are unchanged.
     #[test]
     fn a_changed_recording_is_made_again() {
         let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! `testbed prove --published`: real robots' recordings diagnosed under seal, with what their publishers say as the truth.
+//! `testbed prove --published`: recordings of real robots, diagnosed under seal, with published values as the ground truth.
 
 mod figure;
 mod file;
@@ -15,7 +15,7 @@ use std::sync::Mutex;
 
 use anyhow::{Context, ensure};
 use faults::Seal;
-use scoring::{Answer, Published, RobotScore, SaidFate};
+use scoring::{Answer, Published, PublishedFate, RobotScore};
 use serde::Serialize;
 
 use super::cases::Place;
@@ -32,11 +32,11 @@ use file::{File, Robot};
 pub struct Real {
     /// `testbed.published_proof/1`.
     pub schema: &'static str,
-    /// The command that makes it again.
+    /// The command that repeats the proof.
     pub command: String,
-    /// What was fixed before the first diagnosis.
+    /// The seal, made before the first diagnosis.
     pub seal: Seal,
-    /// What was fixed before the truth was opened: SHA-256 of each diagnosis, by robot.
+    /// The SHA-256 of each diagnosis by robot, fixed before the published values were opened.
     pub answers: BTreeMap<String, Option<String>>,
     /// The outcome of each robot.
     pub robots: Vec<Tried>,
@@ -58,11 +58,12 @@ pub struct Tried {
     pub score: RobotScore,
 }
 
-/// Runs the protocol on the robots of the file at `path` whose folders are in `recordings`; what is finished already is not done again.
+/// Runs the protocol on the robots of the file at `path` whose folders are in `recordings`; finished steps are not
+/// repeated.
 ///
 /// # Errors
-/// If the file says what cannot be, no robot's folder is there or a file of one is missing, a seal is broken, a process
-/// cannot be started, or the user interrupts.
+/// If the file is inconsistent, no robot's folder exists or a file of one is missing, a seal is broken, a process cannot be
+/// started, or the user interrupts.
 pub fn run(args: &ProveArgs, path: &Path, recordings: &Path) -> anyhow::Result<()> {
     let file = File::load(path)?;
     let (robots, absent) = robots::there(&file, recordings)?;
@@ -92,7 +93,7 @@ pub fn run(args: &ProveArgs, path: &Path, recordings: &Path) -> anyhow::Result<(
     })?;
     let answers = answers(&vault, &places)?;
     output::write_json(&vault.out.join("answers.json"), &answers)?;
-    // Only now.
+    // The published values are opened only after all diagnoses are written.
     let truths: Mutex<BTreeMap<String, Published>> = Mutex::default();
     work::all("fitting the published effects", &pairs, jobs, |(place, sealed)| {
         let bytes = std::fs::read(&place.truth).with_context(|| place.truth.display().to_string())?;
@@ -134,13 +135,13 @@ pub fn run(args: &ProveArgs, path: &Path, recordings: &Path) -> anyhow::Result<(
     write(args, &vault.out, &real)
 }
 
-/// The command that makes the proof again; where it is written to does not matter.
+/// The command that repeats the proof, with an arbitrary output folder.
 fn command(file: &Path, recordings: &Path) -> String {
     let (file, recordings) = (file.display(), recordings.display());
     format!("testbed prove --published {file} --recordings {recordings} --out proof-real/")
 }
 
-/// Where the fit of what is said goes.
+/// The name of the fit of the published effects.
 fn control(place: &Place) -> String {
     format!("controls/{}.said", place.name)
 }
@@ -185,8 +186,8 @@ fn summary(real: &Real) -> String {
     .map(str::to_owned);
     let mut table = report::terminal::table(header);
     for Tried { robot, score, .. } in &real.robots {
-        let count = |fates: &[SaidFate]| score.said.iter().filter(|said| fates.contains(&said.fate)).count();
-        let found = count(&[SaidFate::Named, SaidFate::SameTorque]);
+        let count = |fates: &[PublishedFate]| score.said.iter().filter(|said| fates.contains(&said.fate)).count();
+        let found = count(&[PublishedFate::Named, PublishedFate::SameTorque]);
         let contradicted = score
             .besides
             .iter()
@@ -195,7 +196,7 @@ fn summary(real: &Real) -> String {
         table.add_row([
             robot.name.clone(),
             format!("{found} of {}", score.said.len()),
-            count(&[SaidFate::NotObservable]).to_string(),
+            count(&[PublishedFate::NotObservable]).to_string(),
             contradicted.to_string(),
             fold::held_out(score),
         ]);

@@ -1,4 +1,4 @@
-//! What a proof says, as blocks that the page and the Markdown file are both made of.
+//! The report of a proof, as blocks from which the page and the Markdown file are made.
 
 use report::block::{Block, table, text};
 use report::numbers::percent_to_a_tenth as percent;
@@ -7,7 +7,7 @@ use report::score;
 use super::command::Proof;
 use super::{disturbance, experiments, tracking};
 
-/// The page, which needs nothing beside it.
+/// The self-contained HTML page.
 pub fn page(proof: &Proof) -> String {
     let eyebrow = format!(
         "testbed proof · {} · sealed as `{}`",

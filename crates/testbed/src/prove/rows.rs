@@ -1,4 +1,4 @@
-//! A case with all its results as one row, which is scored, and which parts of a campaign pass on.
+//! A case with all its results as one row. Rows are scored, and parts of a campaign are exchanged as rows.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::tracking::CaseTracking;
 
-/// Everything that is known of a case, as it was read.
+/// The files of a case and of its results, as text.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// The case.
@@ -23,7 +23,7 @@ pub struct Row {
     pub truth: String,
     /// The diagnosis; `None` if the program gave no answer.
     pub diagnosis: Option<String>,
-    /// What it said instead.
+    /// The message of the program instead of a diagnosis.
     pub error: Option<String>,
     /// The true terms fitted by name.
     pub true_terms: Option<String>,
@@ -33,7 +33,7 @@ pub struct Row {
     pub tracking: Option<String>,
     /// The diagnosis with the recording of the motion that the first one proposed.
     pub again: Option<String>,
-    /// Why there is none, where it was tried.
+    /// The reason why there is no second diagnosis, if it was tried.
     pub again_error: Option<String>,
 }
 
@@ -47,7 +47,7 @@ impl Row {
         }
     }
 
-    /// For scoring.
+    /// The case with parsed results, for scoring.
     ///
     /// # Errors
     /// If a text is not what it should be.
@@ -84,7 +84,7 @@ impl Row {
 /// Reads a truth.
 ///
 /// # Errors
-/// If it is none.
+/// If the text is not a ground truth.
 pub fn truth<T: DeserializeOwned>(case: &str, text: &str) -> anyhow::Result<T> {
     serde_json::from_str(text).with_context(|| format!("{case}: the truth"))
 }

@@ -1,4 +1,4 @@
-//! Parts of a campaign: what one machine did, as a Parquet file; all of them, as one proof.
+//! Parts of a campaign that different machines compute: each is a Parquet file, and all together are one proof.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -20,15 +20,15 @@ use super::rows::Row;
 
 /// The `schema` of a part.
 const SCHEMA: &str = "testbed.shard/1";
-/// The key of a file's own description.
+/// The key of the label in the metadata of a file.
 const KEY: &str = "testbed.shard";
 
 /// A part: the `number`-th of `of`, from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
-    /// Which.
+    /// The number of the part, from 1.
     pub number: usize,
-    /// Of how many.
+    /// The number of parts.
     pub of: usize,
 }
 
@@ -36,7 +36,7 @@ impl Shard {
     /// Reads `k/n`.
     ///
     /// # Errors
-    /// If it is none.
+    /// If the text is not of this form.
     pub fn parse(text: &str) -> Result<Self, String> {
         let parts = text
             .split_once('/')
@@ -52,31 +52,31 @@ impl Shard {
         case % self.of == self.number - 1
     }
 
-    /// What its folder and its file are called.
+    /// The name of its folder and of its file.
     pub fn name(self) -> String {
         format!("shard-{}-of-{}", self.number, self.of)
     }
 }
 
-/// What a part says of itself.
+/// The label of a part, in the metadata of its file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Label {
     /// `testbed.shard/1`.
     pub schema: String,
-    /// Which part.
+    /// The part.
     pub shard: Shard,
     /// The program that was sealed.
     pub program: Program,
-    /// Where all cases are from.
+    /// The origin of all cases.
     pub source: String,
-    /// The command that makes the whole again.
+    /// The command that repeats the whole proof.
     pub command: String,
-    /// The number that this part was sealed as.
+    /// The seal of this part.
     pub sealed: String,
 }
 
 impl Label {
-    /// Of a part.
+    /// The label of a part.
     pub fn new(shard: Shard, program: Program, [source, command]: [String; 2], sealed: String) -> Self {
         Self {
             schema: SCHEMA.to_owned(),
@@ -89,7 +89,7 @@ impl Label {
     }
 }
 
-/// The columns: name, whether it may be empty, and what is in it.
+/// A column: its name, whether its cells may be empty, and their content.
 type Column = (&'static str, bool, fn(&Row) -> anyhow::Result<Option<String>>);
 const COLUMNS: [Column; 11] = [
     ("case", false, |row| Ok(Some(row.case.clone()))),
@@ -151,7 +151,7 @@ pub fn write(path: &Path, label: &Label, rows: &[Row]) -> anyhow::Result<()> {
 /// Reads a part.
 ///
 /// # Errors
-/// If it is none, or damaged.
+/// If the file is not a part of a proof, or is damaged.
 pub fn read(path: &Path) -> anyhow::Result<(Label, Vec<Row>)> {
     let place = || path.display().to_string();
     let reader = SerializedFileReader::new(std::fs::File::open(path).with_context(place)?).with_context(place)?;
@@ -201,7 +201,7 @@ pub fn read(path: &Path) -> anyhow::Result<(Label, Vec<Row>)> {
 /// All parts in `folder`, in the order of the cases.
 ///
 /// # Errors
-/// If one is missing, damaged or there twice, or they are not of one program and one campaign.
+/// If a part is missing, damaged or given twice, or the parts belong to different programs or campaigns.
 pub fn merge(folder: &Path) -> anyhow::Result<(Label, Vec<Row>)> {
     let entries = std::fs::read_dir(folder).with_context(|| folder.display().to_string())?;
     let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn shares_are_read_as_they_were_written_and_make_the_whole() {
+    fn parts_are_read_as_written_and_merged() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = |number: usize| folder.path().join(format!("shard-{number}-of-2.parquet"));
         write(&path(2), &label(2, 2), &[row(1), row(3)]).expect("it writes");
@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn shares_parse_and_share_out_every_case_once() {
+    fn parts_are_parsed_and_contain_every_case_once() {
         assert_eq!(Shard::parse("3/20"), Ok(Shard { number: 3, of: 20 }));
         for wrong in ["0/3", "4/3", "3", "a/b", "1/0"] {
             assert!(Shard::parse(wrong).is_err(), "{wrong}");

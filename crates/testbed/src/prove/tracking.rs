@@ -1,4 +1,5 @@
-//! The loop closed: on the machines of a dozen cases a controller tracks task D under five models, one of them the diagnosed one.
+//! Closed-loop tracking: on the machines of a dozen cases, a controller tracks task D with five models, one of which is the
+//! diagnosed one.
 
 mod choice;
 mod closed_loop;
@@ -30,27 +31,27 @@ pub use self::choice::chosen;
 /// The task that is tracked.
 const TASK: &str = "taskD";
 
-/// What the controller's feed-forward knows.
+/// The model of the controller's feed-forward.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Model {
     /// The URDF.
     Nominal,
-    /// The URDF and what was named.
+    /// The URDF with the named effects.
     Diagnosed,
-    /// The URDF and what Independent Joint Learning made of the same recordings.
+    /// The URDF with Independent Joint Learning on the same recordings.
     Learned,
-    /// The URDF, what was named, and what was learned of the rest.
+    /// The URDF with the named effects, and Independent Joint Learning of the remaining residual.
     Both,
     /// The true machine's own laws.
     Exact,
 }
 
 impl Model {
-    /// All, in the report's order.
+    /// All models, in the order of the report.
     pub const ALL: [Self; 5] = [Self::Nominal, Self::Diagnosed, Self::Learned, Self::Both, Self::Exact];
 
-    /// In a table's head.
+    /// The title of its column in a table.
     pub fn title(self) -> &'static str {
         match self {
             Self::Nominal => "nominal",
@@ -65,27 +66,27 @@ impl Model {
 /// An injected fault of the machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConcealedEffect {
-    /// Its name in the truth.
+    /// Its name in the ground truth.
     pub effect: String,
     /// The joint; `None` for the whole arm.
     pub joint: Option<String>,
-    /// When it set in (s, on the recordings' clock), where that was not at the start.
+    /// Its onset (s, on the recordings' clock); `None` if it always acts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub onset: Option<f64>,
 }
 
-/// The links' distance from the task's reference under one model.
+/// The tracking error of the links under one model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tracked {
-    /// What the controller knew.
+    /// The model of the feed-forward.
     pub model: Model,
-    /// Root mean square, one per joint (rad or m); empty if the loop left all bounds.
+    /// The root mean square error, one per joint (rad or m); empty if the loop left all bounds.
     pub rms: Vec<f64>,
-    /// The largest, one per joint (rad or m).
+    /// The largest error, one per joint (rad or m).
     pub largest: Vec<f64>,
     /// The share of ticks in which an effort limit of the URDF cut the torque, one per joint.
     pub cut: Vec<f64>,
-    /// Root mean square over joints and time (rad or m); `None` if the loop left all bounds.
+    /// The root mean square error over joints and time (rad or m); `None` if the loop left all bounds.
     pub error: Option<f64>,
     /// Root mean square error in a loop in which the reference velocity passes the drives' filter, without its lag (rad or m).
     pub error_without_lag: Option<f64>,
@@ -96,7 +97,7 @@ pub struct Tracked {
 pub struct CaseTracking {
     /// The case.
     pub case: String,
-    /// SHA-256 of the hashes of what it was made of: program, recordings and URDF, truth, effects named.
+    /// SHA-256 of the hashes of its inputs: program, recordings and URDF, ground truth, named effects.
     pub made_of: String,
     /// When the task begins, on the recordings' clock (s).
     pub start: f64,
@@ -104,9 +105,9 @@ pub struct CaseTracking {
     pub joints: Vec<String>,
     /// The injected faults.
     pub concealed: Vec<ConcealedEffect>,
-    /// What was named, as the diagnosed model has it.
+    /// The effects of the diagnosed model.
     pub named: Vec<Name>,
-    /// One a model, in the order of [`Model::ALL`].
+    /// The errors of the models, in the order of [`Model::ALL`].
     pub runs: Vec<Tracked>,
 }
 
@@ -121,12 +122,13 @@ impl CaseTracking {
         self.runs.iter().find(|run| run.model == model)?.error_without_lag
     }
 
-    /// The diagnosed model's error over the exact one's; infinite if it lost the arm.
+    /// The error with the diagnosed model over that with the exact one; infinite if the loop with the diagnosed model left
+    /// all bounds.
     pub fn over_exact(&self) -> Option<f64> {
         over(self.error(Model::Diagnosed), self.error(Model::Exact))
     }
 
-    /// The diagnosed model's error over the exact one's, in the loop without the velocity filter's lag.
+    /// The same ratio in the loop without the lag of the velocity filter.
     pub fn over_exact_without_lag(&self) -> Option<f64> {
         over(
             self.error_without_lag(Model::Diagnosed),
@@ -135,13 +137,13 @@ impl CaseTracking {
     }
 }
 
-/// An error over the exact model's, if that kept the arm.
+/// An error over that with the exact model; `None` if the loop with the exact model left all bounds.
 fn over(error: Option<f64>, exact: Option<f64>) -> Option<f64> {
     let exact = exact?.max(f64::MIN_POSITIVE);
     Some(error.map_or(f64::INFINITY, |error| error / exact))
 }
 
-/// What a case is tracked from.
+/// The inputs for tracking a task in a case.
 pub struct Case<'a> {
     /// The robot it was drawn on.
     pub robot: &'a Robot,
@@ -154,7 +156,8 @@ pub struct Case<'a> {
 }
 
 impl Case<'_> {
-    /// Tracks the task on the machine of the case under all models; into `timeline`, if there is one, goes what the viewer shows.
+    /// Tracks the task on the machine of the case with all models. If `timeline` is given, the recording for the viewer is
+    /// written to that file.
     ///
     /// # Errors
     /// If the case cannot be read, nothing can be learned from its recordings, or the timeline cannot be written.
@@ -163,10 +166,10 @@ impl Case<'_> {
         let task = Scenario::built_in(TASK)?;
         let files = Files::of(self.folder)?;
         let machine = CaseMachine::new(self.robot, self.truth)?;
-        // As long after the last recording as these are apart.
+        // The pause before the task is that between recordings.
         let start = (files.train.len() + files.held_out.len()) as f64 * (DURATION + PAUSE);
         let course = Course::new(&task, start);
-        // What its user believes, which the machine need not be.
+        // The arm of the user's URDF, which may differ from the machine.
         let believed = Arm::from_urdf(self.folder.join(&files.robot)).with_context(|| case.clone())?;
         let arm = &believed;
         let effects = match self.named {

@@ -1,4 +1,4 @@
-//! The files of a proof on disk: the seal, what was diagnosed under it, and what is finished.
+//! The files of a proof on disk: the seal, the diagnoses under it, and records of finished steps.
 
 use std::path::{Path, PathBuf};
 
@@ -16,9 +16,9 @@ use crate::output;
 pub struct Record {
     /// SHA-256 of the program.
     pub program: String,
-    /// One number for the recordings and the URDF ([`SealedCase::inputs`]).
+    /// One hash for the recordings and the URDF ([`SealedCase::inputs`]).
     pub inputs: String,
-    /// What alone was to be fitted; `None` in a diagnosis.
+    /// The effects that were fitted without a search; `None` for a diagnosis.
     pub only: Option<String>,
     /// SHA-256 of the JSON it wrote.
     pub answer: Option<String>,
@@ -27,7 +27,7 @@ pub struct Record {
     /// SHA-256 of the scenario it proposed.
     #[serde(default)]
     pub next: Option<String>,
-    /// What it said instead.
+    /// The message of the program instead of a diagnosis.
     pub error: Option<String>,
 }
 
@@ -35,22 +35,22 @@ pub struct Record {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Begun {
     program: Program,
-    /// A seed and the robots' names, or that the cases were given.
+    /// The origin of the cases: a seed and the robots' names, or given cases.
     source: String,
     /// SHA-256 of the robots' URDFs.
     robots: Vec<String>,
 }
 
-/// One number for what a step is made of.
+/// One hash for the inputs of a step.
 pub fn made_of(hashes: [&str; 4]) -> String {
     sha256(hashes.join("\n").as_bytes())
 }
 
 /// The folder of a proof.
 pub struct Vault {
-    /// Where.
+    /// The path.
     pub out: PathBuf,
-    /// The program that diagnoses, which is this one.
+    /// The path of this program, which also diagnoses.
     pub executable: PathBuf,
     /// Its version and hash.
     pub program: Program,
@@ -94,10 +94,10 @@ impl Vault {
         })
     }
 
-    /// Notes for which campaign the folder is, or checks that it is this one.
+    /// Records the campaign of the folder, or checks that it is this one.
     ///
     /// # Errors
-    /// If it was begun for another, or by another program.
+    /// If the folder was begun for another campaign or by another program.
     pub fn begin(&self, source: &Cases) -> anyhow::Result<()> {
         let begun = Begun {
             program: self.program.clone(),
@@ -129,7 +129,7 @@ impl Vault {
         Ok(())
     }
 
-    /// Seals `places`, or checks that what is sealed already is this.
+    /// Seals `places`, or checks that they equal the existing seal.
     ///
     /// # Errors
     /// If a file cannot be read, or another program or other cases are sealed here.
@@ -171,8 +171,8 @@ impl Vault {
         Ok(seal)
     }
 
-    /// Diagnoses a sealed case as `task` says, into `name`.json, `name`.toml and, what it proposes, `name`.next.toml, unless that
-    /// is done. Where effects are given, there is no `name`.toml.
+    /// Diagnoses a sealed case according to `task`, unless that is done. Writes `name`.json, `name`.toml (unless effects
+    /// are given) and the proposed motion `name`.next.toml.
     ///
     /// # Errors
     /// If the seal is broken, the process cannot be started, or the user interrupts.
@@ -266,7 +266,7 @@ impl Vault {
     }
 }
 
-/// The text of a file of which the hash was kept.
+/// The text of a file, which must have the recorded `hash`.
 fn unchanged(path: &Path, hash: &str) -> anyhow::Result<String> {
     let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
     ensure!(

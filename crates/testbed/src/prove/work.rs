@@ -1,4 +1,4 @@
-//! Work shared out to a few threads, with progress, until it is done or the user interrupts.
+//! Work on several threads, with progress, until it is done or the user interrupts.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -7,7 +7,7 @@ use crate::interrupt;
 use crate::progress::Progress;
 use anyhow::bail;
 
-/// Does `work` on all of `items`, `jobs` at once, in their order; says `what` is being done. The first error ends it.
+/// Does `work` on all `items` in their order, `jobs` at a time, and shows progress of `what`. The first error ends it.
 ///
 /// # Errors
 /// The first error, or that the user interrupted.

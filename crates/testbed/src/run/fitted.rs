@@ -1,22 +1,22 @@
-//! What training found, for the summary of a run and for people.
+//! The results of training, for the summary of a run and for the terminal.
 
 use report::numbers::rounded;
 use serde::Serialize;
 use torque::{Gp, LagrangianConditioning, LagrangianGp, LagrangianPrior, Lengths};
 
-/// What training found for one joint: enough to repeat it.
+/// The hyperparameters of one joint's regression, which are sufficient to repeat it.
 #[derive(Serialize)]
 pub struct Regression {
     /// Standard deviation of the learned torque (N m or N).
     amplitude: f64,
-    /// Length scale of all inputs, or of each.
+    /// The length scale of all inputs, or one per input.
     length_scales: Vec<f64>,
     /// Standard deviation of the noise (N m or N).
     noise: f64,
     log_marginal_likelihood: f64,
     /// The numerical rank of the kernel matrix.
     rank: usize,
-    /// What was added to the kernel matrix's diagonal, and why.
+    /// The numerical treatment of the kernel matrix: the addition to its diagonal and the reason.
     conditioning: String,
 }
 
@@ -56,7 +56,7 @@ pub fn energies(gp: &LagrangianGp) -> Energies<'_> {
     }
 }
 
-/// A sentence on regressions that are approximated: by what, and how far off they can be.
+/// A sentence on approximated regressions: the number of inducing points, and the largest error.
 pub fn approximated(regressions: &[Gp]) -> String {
     let conditionings = regressions.iter().map(Gp::conditioning);
     let gaps: Vec<(f64, &torque::Conditioning)> = conditionings
@@ -67,8 +67,8 @@ pub fn approximated(regressions: &[Gp]) -> String {
     };
     let samples = worst.samples as f64;
     format!(
-        "{} of {} regressions are approximated by {} inducing points (variational free energy); at the worst they leave {} of the \
-         prior variance at the samples, and the exact log likelihood is at most {} nats a sample higher.\n",
+        "{} of {} regressions are approximated by {} inducing points (variational free energy); the worst of them neglects {} of the \
+         prior variance at the samples, and its exact log likelihood is at most {} nats per sample higher.\n",
         gaps.len(),
         regressions.len(),
         worst.rank,

@@ -1,4 +1,4 @@
-//! Where a run's results go: checked before the work, made after the training, removed if nothing came of it.
+//! The folder of a run: checked before any work, made after the training, removed if the run has no results.
 
 use std::path::{Path, PathBuf};
 
@@ -9,14 +9,14 @@ use crate::output;
 
 /// The folder of a run, removed again if the run fails and nothing else is in it.
 pub struct RunFolder {
-    /// Where it is.
+    /// Its path.
     pub path: PathBuf,
     created: bool,
     _alone: Option<Alone>,
 }
 
 impl RunFolder {
-    /// Checks that `out`, or else `runs/`, is or can be made a folder to write to.
+    /// Checks that `out` (or `runs/` without it) is a writable folder or can be made.
     ///
     /// # Errors
     /// If it cannot.
@@ -40,7 +40,7 @@ impl RunFolder {
         Ok(())
     }
 
-    /// Makes `out`, or a new `runs/<number>-<name>`, the number one above the largest there is.
+    /// Makes `out`, or a new `runs/<number>-<name>`, with a number one above the largest existing one.
     ///
     /// # Errors
     /// If the system refuses.
@@ -72,7 +72,7 @@ impl RunFolder {
                         _alone: None,
                     });
                 }
-                // Another run was quicker.
+                // Another run has taken this number.
                 Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error).with_context(|| remedy(&path)),
             }
@@ -84,7 +84,7 @@ impl RunFolder {
 impl Drop for RunFolder {
     fn drop(&mut self) {
         if self.created {
-            // Only an empty folder goes; one with results stays.
+            // Only an empty folder is removed; a folder with results remains.
             let _ = std::fs::remove_dir(&self.path);
         }
     }

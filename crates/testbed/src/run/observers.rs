@@ -9,7 +9,7 @@ use crate::scenario::Scenario;
 use crate::simulation::Observer;
 use crate::telemetry::Sample;
 
-/// Progress in simulated time.
+/// The progress of a run in simulated time.
 pub struct Simulating {
     progress: Progress,
     duration: f64,
@@ -43,7 +43,7 @@ impl Observer for Simulating {
     }
 }
 
-/// The file that `args` have Rerun save to, if they do.
+/// The file that Rerun saves to according to `args`; `None` if it saves none.
 pub fn rerun_file(args: &RunArgs, folder: &Path) -> Option<PathBuf> {
     match &args.rerun {
         None | Some(Rerun::Save(None)) if cfg!(feature = "viewer") => Some(folder.join("run.rrd")),
@@ -52,7 +52,7 @@ pub fn rerun_file(args: &RunArgs, folder: &Path) -> Option<PathBuf> {
     }
 }
 
-/// Refuses what Rerun could not do.
+/// Refuses a request that Rerun could not fulfil.
 ///
 /// # Errors
 /// If the program was built without it, or the file to save to is a folder.
@@ -74,7 +74,7 @@ pub struct View(Option<crate::viewer::Viewer>);
 
 #[cfg(feature = "viewer")]
 impl View {
-    /// Opens what `args` say.
+    /// Opens the viewer that `args` request.
     ///
     /// # Errors
     /// If the file cannot be created, or no viewer can be started.
@@ -92,7 +92,8 @@ impl View {
         Ok(Self(Some(viewer)))
     }
 
-    /// Ends the recording. A viewer's trouble is not the run's: it is a warning. Whether a file was saved.
+    /// Ends the recording, and returns whether a file was saved. An error of the viewer does not end the run; it is a
+    /// warning.
     pub fn finish(self) -> bool {
         match self.0.map(crate::viewer::Viewer::finish) {
             Some(Err(error)) => {

@@ -1,4 +1,4 @@
-//! A scenario as it is written: TOML, nothing checked but its shape.
+//! A scenario as it is written in TOML; only its structure is checked.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -109,7 +109,7 @@ pub struct RawSensors {
     pub torque_noise: Option<Spanned<PerJoint>>,
 }
 
-/// What the required keys look like.
+/// Examples of the required keys.
 const EXAMPLES: [(&str, &str); 6] = [
     ("robot", ": robot = \"puma560\", or the path of a URDF"),
     ("duration", ": duration = 10.0 (s)"),
@@ -125,7 +125,7 @@ const EXAMPLES: [(&str, &str); 6] = [
 /// Parses the text of a scenario.
 ///
 /// # Errors
-/// One line with file, line and reason; an unknown key comes with the nearest known one.
+/// In one line: file, line and reason; for an unknown key, also the most similar known one.
 pub fn parse(source: &Source) -> anyhow::Result<RawScenario> {
     toml::from_str(&source.text).map_err(|error| {
         if let Some(key) = error.message().strip_prefix("missing field `") {

@@ -1,4 +1,4 @@
-//! From a written scenario to a validated one.
+//! Validates a scenario.
 
 use std::path::Path;
 
@@ -15,25 +15,26 @@ use crate::cli::{ChainArgs, LengthScalesArg};
 use crate::models::ModelKind;
 use crate::sensors::SensorNoise;
 
-/// Defaults of the optional keys, as docs/scenarios.md gives them.
+/// Defaults of the optional keys, which docs/scenarios.md documents.
 const SAMPLE_RATE: f64 = 80.0;
 const CONTROL_RATE: f64 = 1000.0;
 const KP: f64 = 100.0;
 const KD: f64 = 20.0;
 
-/// The longest run (s), the most control steps and the most samples; more is surely a slip of units.
+/// The longest run (s), the most control steps and the most samples; larger values are taken for errors of units.
 const MAX_DURATION: f64 = 36_000.0;
 const MAX_STEPS: f64 = 1e7;
 const MAX_SAMPLES: f64 = 1e6;
 
-/// The largest number that a gain, an amplitude or the like can sensibly be, in any of the units.
+/// The largest absolute value of a gain, an amplitude and the like, in any of their units.
 const MAX_VALUE: f64 = 1e9;
 
-/// Checks `raw`, which `source` holds; what `chosen` says of the arm's joints takes the place of its `[chain]`.
+/// Checks `raw`, which was parsed from `source`. The joints of the arm that `flags` select take the place of its
+/// `[chain]`.
 ///
 /// # Errors
-/// One line that names file, line and key, what was found and how to mend it.
-pub fn scenario(source: &Source, raw: RawScenario, chosen: &ChainArgs) -> anyhow::Result<Scenario> {
+/// In one line: file, line, key, reason and remedy.
+pub fn scenario(source: &Source, raw: RawScenario, flags: &ChainArgs) -> anyhow::Result<Scenario> {
     let of_robot = || {
         let place = source.place(raw.robot.span());
         format!("{place}: robot")
@@ -45,7 +46,7 @@ pub fn scenario(source: &Source, raw: RawScenario, chosen: &ChainArgs) -> anyhow
         tip: raw.chain.tip,
         lock: raw.chain.lock.into_iter().collect(),
     };
-    let chain = if chosen.is_given() { chosen } else { &written };
+    let chain = if flags.is_given() { flags } else { &written };
     let arm = robot.arm(&chain.options(&[])).with_context(of_robot)?;
     let urdf = robot.path;
     let check = Check { source, arm: &arm };

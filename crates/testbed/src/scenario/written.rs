@@ -9,10 +9,11 @@ use torque::Reference;
 
 use study::robot;
 
-/// The robot as a scenario at `path` names it: `robot` if it comes with testbed, else where `urdf` is, seen from the scenario.
+/// The name of the robot in a scenario at `path`: `robot` if it comes with testbed, otherwise the path of `urdf` relative
+/// to the scenario.
 ///
 /// # Errors
-/// If the URDF or the scenario's folder is not there.
+/// If the URDF or the scenario's folder does not exist.
 pub fn robot_from(path: &Path, robot: &str, urdf: &Path) -> anyhow::Result<String> {
     if robot::is_built_in(robot) {
         Ok(robot.to_owned())
@@ -21,7 +22,7 @@ pub fn robot_from(path: &Path, robot: &str, urdf: &Path) -> anyhow::Result<Strin
     }
 }
 
-/// Where `urdf` is, seen from the folder of `path`: its name alone if it is there, too; else from the root.
+/// The path of `urdf` for a file at `path`: its name if both are in the same folder, otherwise its absolute path.
 fn beside(path: &Path, urdf: &Path) -> anyhow::Result<String> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let absolute = |path: &Path| path.canonicalize().with_context(|| path.display().to_string());
@@ -30,7 +31,7 @@ fn beside(path: &Path, urdf: &Path) -> anyhow::Result<String> {
     Ok(place.display().to_string())
 }
 
-/// The text after the comments, from an empty line on; numbers read back to the same bits.
+/// The text of the scenario after its comments; it begins with an empty line. Numbers are read back bit for bit.
 pub fn scenario(title: &str, robot: &str, arm: &Arm, duration: f64, motion: &Reference) -> String {
     let mut text = String::new();
     let list = |values: &[f64]| {
@@ -57,7 +58,7 @@ pub fn scenario(title: &str, robot: &str, arm: &Arm, duration: f64, motion: &Ref
     text
 }
 
-/// The table that chooses the arm among the robot's joints; nothing where the whole robot is the arm.
+/// The table that selects the arm among the robot's joints; empty if all joints belong to the arm.
 fn chain(arm: &Arm) -> String {
     if arm.fixed_joints().is_empty() {
         return String::new();

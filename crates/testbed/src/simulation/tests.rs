@@ -1,17 +1,17 @@
-//! The closed loop where the learned torque is beyond its range.
+//! The closed loop outside the range of the training data.
 
 use super::*;
 use crate::cli::ChainArgs;
 use crate::training;
 
-/// Root mean square over the joints (mrad).
+/// The root mean square tracking error over the joints (mrad).
 fn all_joints(outcome: &Outcome) -> f64 {
     let squares: f64 = outcome.rms_error.iter().map(|error| error * error).sum();
     1e3 * (squares / outcome.rms_error.len() as f64).sqrt()
 }
 
-/// Law: on the scenario that leaves the training tasks, the fade tracks better than the learned torque trusted everywhere, and
-/// better than the rigid body alone, with the paper's model as with the regression that has no rigid body below it.
+/// On the scenario that leaves the training tasks, the loop with the fade tracks better than with the full learned torque,
+/// and better than with the rigid body alone. This holds for the paper's model and for the regression without a rigid body.
 #[test]
 fn the_fade_tracks_better_beyond_the_training_tasks() {
     let mut scenario = Scenario::built_in("beyond").expect("it comes with testbed");
@@ -50,7 +50,7 @@ fn the_fade_tracks_better_beyond_the_training_tasks() {
     }
 }
 
-/// The paper's tasks keep the paper's controller, and other scenarios fade unless they say.
+/// The paper's tasks have the paper's controller without a fade; other scenarios fade by default.
 #[test]
 fn the_papers_tasks_do_not_fade() {
     for task in ["taskA", "taskB", "taskC", "taskD"] {

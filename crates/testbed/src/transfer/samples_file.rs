@@ -1,4 +1,4 @@
-//! The samples of tasks as CSV: what the models are trained and tested on.
+//! The samples of tasks as CSV, on which the models are trained and tested.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -10,8 +10,8 @@ use super::short;
 use crate::output;
 use crate::scenario::Scenario;
 
-/// Writes `samples`, one set a task, to files of the tasks' names in `folder`: positions, velocities, accelerations, torques and the
-/// torques of the nominal rigid body, joint by joint.
+/// Writes `samples`, one set per task, to files with the tasks' names in `folder`: positions, velocities, accelerations,
+/// torques and the torques of the nominal rigid body, joint by joint.
 ///
 /// # Errors
 /// If a file cannot be written.

@@ -1,4 +1,4 @@
-//! The tables of `testbed transfer` for people.
+//! The tables of `testbed transfer` as text for the terminal.
 
 use report::numbers::rounded;
 
@@ -8,7 +8,7 @@ use super::{Harm, Report, Row, short};
 pub fn text(report: &Report) -> String {
     let joints = report.joints.iter().cloned();
     let mut text = format!(
-        "{}: RMS torque error on a task that the model was not trained on, as a part of what the rigid body alone leaves (1: \
+        "{}: RMS torque error on a task that the model was not trained on, relative to that of the rigid body alone (1: \
          nothing learned)\n",
         report.model.title()
     );
@@ -28,8 +28,8 @@ pub fn text(report: &Report) -> String {
         table.add_row(cells);
     }
     text += &format!("{table}\n");
-    text += "predicted: the same part as the model expects it from its own variance, without a torque of the task. likelihood: of the \
-             torques of the task, which was left out, nats a sample, mean over the joints.\n\n";
+    text += "predicted: the same ratio as predicted by the model from its variance, without torques of the task. likelihood: log \
+             likelihood of the torques of the task, nats per sample, mean over the joints.\n\n";
     text += "Rank correlation with the measured error (1: the same order)\n";
     let mut table = report::terminal::table(
         ["of"]

@@ -1,4 +1,4 @@
-//! The layout that a run opens with: the arm at the left, a plot a joint at the right.
+//! The initial layout of a run: the arm on the left, one plot per joint on the right.
 
 use arm::{Arm, JointKind};
 use rerun::external::re_sdk_types::blueprint::archetypes::PlotLegend;
@@ -58,7 +58,7 @@ const LINES: [(&str, &str, [u8; 3], f32); 8] = [
     ("variance", "variance", VIOLET, 1.25),
 ];
 
-/// What the colours mean, for the eye; the entity it is logged to.
+/// The legend of the colours, and the entity to which it is logged.
 const KEY: &str = "\
 **position**: actual blue, reference amber  
 **error**: reference − actual  
@@ -81,7 +81,7 @@ pub fn log_styles(recording: &RecordingStream, arm: &Arm, title: &str) -> Record
     Ok(())
 }
 
-/// Sends the layout; the tab of the variance is left out where there is none.
+/// Sends the layout; the tab of the variance is omitted if there is none.
 pub fn send(
     recording: &RecordingStream,
     arm: &Arm,
@@ -108,12 +108,12 @@ fn write(layout: &mut Layout<'_>, arm: &Arm, has_variance: bool) -> RecordingStr
     })
 }
 
-/// A quantity's tab: one plot a joint.
+/// The tab of a quantity: one plot per joint.
 fn grid(layout: &mut Layout<'_>, arm: &Arm, quantity: &Quantity) -> RecordingStreamResult<Node> {
     let mut plots = Vec::new();
     for joint in arm.joints() {
         let unit = quantity.units[usize::from(joint.kind == JointKind::Prismatic)];
-        // In plots this small it would cover the data; the key below the arm serves all.
+        // In such small plots, a legend would cover the data; the legend below the arm applies to all plots.
         let legend = PlotLegend::new().with_visible(false);
         let origin = joint_entity(&joint.name).join(&EntityPath::from(quantity.entity));
         let title = format!("{} ({unit})", joint.name);

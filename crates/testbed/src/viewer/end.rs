@@ -1,4 +1,4 @@
-//! Where a recording ends up: a file, or a viewer that runs, is started, or is still to come.
+//! The destination of a recording: a file, or a viewer that runs already, is started, or will be started later.
 
 use std::str::FromStr as _;
 use std::time::{Duration, Instant};
@@ -13,14 +13,14 @@ use rerun::{ApplicationId, RecordingStream, RecordingStreamBuilder, SpawnError, 
 use super::Sink;
 use super::file::RrdFile;
 
-/// Where the recording ends up.
+/// The destination of the recording.
 pub enum End {
     File(RrdFile),
     Remote(ProxyUri),
 }
 
 impl End {
-    /// Opens it; with a viewer, also says until when to wait for its first answer.
+    /// Opens the destination; for a viewer, also returns the time until which to wait for its first answer.
     pub fn open(sink: &Sink) -> anyhow::Result<(Self, Option<Instant>)> {
         let wait = |seconds| Some(Instant::now() + Duration::from_secs(seconds));
         match sink {
@@ -30,16 +30,16 @@ impl End {
         }
     }
 
-    /// Starts the recording. A file's identity comes from its title and path, so that it repeats
-    /// and yet a viewer keeps two runs apart; a live one is new each time.
+    /// Starts the recording. The identifier of a file follows from its title and path, so that it is reproducible and a
+    /// viewer distinguishes two runs. A live recording has a new identifier each time.
     pub fn record(&self, title: &str, arm: &Arm) -> anyhow::Result<RecordingStream> {
-        // A viewer keeps one layout an application: one an arm.
+        // A viewer stores one layout per application, so that each arm is an application.
         let application = ApplicationId::try_new(format!("testbed_{}", arm.name()))?;
         let mut builder = RecordingStreamBuilder::new(application).enabled(true);
         let sink: Box<dyn LogSink> = match self {
             Self::File(file) => {
                 let id = format!("{title}, {}", file.path().display());
-                // Batched by what is logged and never by the clock.
+                // Batches depend on the data and not on the clock, so that the file is reproducible.
                 let batching = ChunkBatcherConfig::NEVER;
                 builder = builder.recording_id(id).send_properties(false).batcher_config(batching);
                 Box::new(file.clone())
@@ -66,7 +66,7 @@ fn parse(address: Option<&str>) -> anyhow::Result<ProxyUri> {
 fn spawn() -> anyhow::Result<ProxyUri> {
     let options = SpawnOptions {
         hide_welcome_screen: true,
-        // By itself, the viewer would take recordings from the whole network.
+        // By default, the viewer would accept recordings from the whole network.
         extra_args: vec!["--bind=127.0.0.1".to_owned()],
         extra_env: vec![("RUST_LOG".to_owned(), "error".to_owned())],
         ..SpawnOptions::default()

@@ -12,7 +12,7 @@ use rerun::external::re_log_encoding::{Encoder, EncodingOptions};
 use rerun::log::LogMsg;
 use rerun::sink::{LogSink, SinkFlushError};
 
-/// The file under way; as a sink it is cloned into the recording, and the last word is [`Self::finish`].
+/// The file that is being written. As a sink, it is cloned into the recording; [`Self::finish`] returns its errors.
 #[derive(Clone)]
 pub struct RrdFile {
     path: PathBuf,
@@ -26,7 +26,7 @@ struct State {
 }
 
 impl RrdFile {
-    /// Creates `.<name>.partial` beside `path`, and the folder if need be.
+    /// Creates `.<name>.partial` beside `path`, and the folder if it does not exist.
     pub fn create(path: &Path) -> anyhow::Result<Self> {
         let name = path
             .file_name()
@@ -49,12 +49,12 @@ impl RrdFile {
         })
     }
 
-    /// Where it will be.
+    /// The final path.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Whether all went well so far.
+    /// Returns the first error so far.
     pub fn check(&self) -> anyhow::Result<()> {
         match &self.lock().error {
             Some(error) => anyhow::bail!("writing {}: {error}", self.path.display()),
@@ -74,10 +74,11 @@ impl RrdFile {
         std::fs::rename(&self.partial, &self.path).with_context(context)
     }
 
-    /// Removes what there is of it, unless it has its name.
+    /// Removes the unfinished file; a finished one remains.
     pub fn abandon(&self) {
         self.lock().encoder = None;
-        // Gone already after `finish`; otherwise there is nothing better to do than to leave it.
+        // After `finish`, the partial file no longer exists. An error of the removal cannot be handled, and the file
+        // remains.
         let _ = std::fs::remove_file(&self.partial);
     }
 

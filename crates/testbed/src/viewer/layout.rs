@@ -1,6 +1,6 @@
 //! A layout for the viewer, written out component by component: views, containers, panels.
 //!
-//! The SDK's own builder sets neither the camera nor the legends, and draws its identifiers at random.
+//! The builder of the SDK sets neither the camera nor the legends, and its identifiers are random.
 
 use arm::Arm;
 use rerun::external::re_log_types::BlueprintActivationCommand;
@@ -16,7 +16,7 @@ use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStre
 use super::batch::TIMELINE;
 use super::shapes::reach;
 
-/// Sends the layout that `write` makes; it gives the root back.
+/// Sends the layout that `write` makes; `write` returns the root.
 pub fn send(
     recording: &RecordingStream,
     play_state: PlayState,
@@ -51,7 +51,7 @@ pub fn send(
     Ok(())
 }
 
-/// A blueprint under way; views and containers are numbered in the order they are written.
+/// A blueprint that is being written; views and containers are numbered in the order in which they are written.
 pub struct Layout<'a> {
     blueprint: &'a RecordingStream,
     used: u8,
@@ -82,7 +82,7 @@ impl Layout<'_> {
         self.blueprint.log("time_panel", &time)
     }
 
-    /// The 3D view; at a `distance` of one it sees the whole reach.
+    /// The 3D view; at a `distance` of one, it shows the whole reach.
     pub fn scene(&mut self, arm: &Arm, title: &str, distance: f64) -> RecordingStreamResult<Node> {
         let reach = reach(arm);
         let base = arm.joints().first().map(|joint| joint.parent_from_joint.translation);
@@ -130,7 +130,7 @@ impl Layout<'_> {
         Ok(node)
     }
 
-    /// A container of what was written before.
+    /// A container of nodes that were written before.
     pub fn container(
         &mut self,
         kind: ContainerKind,
@@ -153,7 +153,7 @@ impl Layout<'_> {
     }
 }
 
-/// Lines a round tenth to half of the reach apart (m).
+/// The distance between grid lines (m): a round number from a tenth to half of the reach.
 fn grid_spacing(reach: f64) -> f32 {
     10.0_f64.powf((0.5 * reach).log10().floor()) as f32
 }

@@ -7,10 +7,10 @@ const FORMATS: [&str; 5] = ["glb", "gltf", "obj", "stl", "dae"];
 
 /// The file behind a URDF's mesh `name`, if it is there and Rerun can show it.
 ///
-/// `package://<package>/<rest>` is `<package>/<rest>` in the URDF's folder or one above it, or `<rest>` in one
-/// of that name; `file://<path>` and plain paths are taken from the URDF's folder. A file outside the package's folder,
-/// or outside the folder that the URDF's is in, is none, whether dots or links lead there: a URDF of somebody else is no reason
-/// to show one's own files.
+/// `package://<package>/<rest>` is `<package>/<rest>` in the URDF's folder or one above it, or `<rest>` in one of that
+/// name; `file://<path>` and plain paths are taken from the URDF's folder. A file outside the package's folder, or outside
+/// the folder that contains the URDF's folder, is refused, whether dots or links lead there, because an untrusted URDF must
+/// not open private files.
 pub fn resolve(name: &str, urdf_path: &Path) -> Option<PathBuf> {
     let is_shown = Path::new(name)
         .extension()
@@ -20,7 +20,7 @@ pub fn resolve(name: &str, urdf_path: &Path) -> Option<PathBuf> {
     }
     let urdf_path = std::path::absolute(urdf_path).ok()?;
     let folder = urdf_path.parent()?;
-    // A file that cannot be opened is as good as none.
+    // A file that cannot be opened counts as missing.
     let existing = |path: PathBuf, within: &Path| {
         let [target, within] = [path.as_path(), within].map(|path| path.canonicalize().ok());
         let is_within = target?.starts_with(within?);
@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn meshes_elsewhere_are_none() {
+    fn meshes_outside_the_package_are_refused() {
         let root = tempfile::tempdir().expect("a folder");
         let urdf = root.path().join("downloads/my_arm/urdf/arm.urdf");
         let meshes = root.path().join("downloads/my_arm/meshes");

@@ -1,4 +1,4 @@
-//! The run in Rerun: the arm in 3D and a plot a joint, into a file or a viewer that may vanish.
+//! A run in Rerun: the arm in 3D and one plot per joint, in a file or in a viewer that may disappear during the run.
 //!
 //! Entities: `world/{actual,reference}/link_<i>`, and for every joint `joint/<name>/` with
 //! `position/{actual,reference}`, `error`, `torque/{applied,feedback,learned,model}`, `variance`.
@@ -25,26 +25,26 @@ use stream::{Sent, Stream};
 /// Time between two logged poses and two rows of scalars (s).
 const POSE_PERIOD: f64 = 1.0 / 60.0;
 const SCALAR_PERIOD: f64 = 1.0 / 100.0;
-/// Rows of scalars that go into a file together.
+/// The number of rows of scalars in one batch of a file.
 const FILE_ROWS: usize = 500;
 /// Wall-clock time between two batches to a live viewer.
 const LIVE_PERIOD: Duration = Duration::from_millis(100);
 
-/// Where a run is shown.
+/// The destination of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Sink {
-    /// Into an `.rrd` file; needs no viewer.
+    /// An `.rrd` file, which needs no viewer.
     Save(PathBuf),
-    /// In a viewer started from the `PATH` (or one that listens already at the default port).
+    /// A viewer that is started from the `PATH`, or one that already listens at the default port.
     Spawn,
-    /// In a viewer that listens at this address (`host:port` or a `rerun+http://` URL), or at Rerun's default one.
+    /// A viewer that listens at this address (`host:port` or a `rerun+http://` URL), by default at Rerun's own.
     Connect(Option<String>),
 }
 
-/// A run on its way to a viewer or a file.
+/// The connection of a run to a viewer or a file.
 ///
-/// A remote viewer that is slow, dead or was never there costs the run at most one warning and a
-/// bounded wait in [`Self::finish`].
+/// A remote viewer that is slow, has ended or never existed causes at most one warning and a bounded wait in
+/// [`Self::finish`].
 pub struct Viewer {
     stream: Stream,
     arm: Arm,
@@ -56,12 +56,12 @@ pub struct Viewer {
 }
 
 impl Viewer {
-    /// Opens `sink` and sends the static scene and the layout; `title` names the recording, and
-    /// meshes are looked for from the folder of `urdf_path`.
+    /// Opens `sink` and sends the static scene and the layout; `title` names the recording, and meshes are searched from
+    /// the folder of `urdf_path`.
     ///
     /// # Errors
-    /// If the file cannot be created, no `rerun` is to be found, or the address is not one. A
-    /// viewer that does not answer is no error: it may be late.
+    /// If the file cannot be created, no `rerun` is found, or the address is invalid. A viewer that does not answer is not
+    /// an error, because it may be started later.
     pub fn open(sink: &Sink, title: &str, arm: &Arm, urdf_path: &Path) -> anyhow::Result<Self> {
         Ok(Self {
             stream: Stream::open(sink, title, arm, urdf_path)?,
@@ -74,7 +74,7 @@ impl Viewer {
         })
     }
 
-    /// Takes one control step; call it at every one, it keeps what the eye can use.
+    /// Logs one control step. It must be called at every step; only steps at the rate of the display are kept.
     pub fn log(&mut self, sample: &Sample<'_>) {
         if !self.stream.is_alive() {
             return;
@@ -98,7 +98,7 @@ impl Viewer {
         }
     }
 
-    /// Sends what is left and closes; waits a few seconds at most for a live viewer.
+    /// Sends the remaining rows and closes; waits at most a few seconds for a live viewer.
     ///
     /// # Errors
     /// If a file could not be written; it is then absent. A lost viewer is a warning.
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_cannot_be_is_an_error_at_once() {
+    fn a_file_that_cannot_be_created_is_an_error_at_once() {
         let folder = tempfile::tempdir().expect("a folder");
         let arm = Arm::from_urdf_text(URDF, "one.urdf").expect("an arm");
         let sink = Sink::Save(folder.path().join("run.rrd/below"));
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_come_at_their_rate_whatever_the_control_period() {
+    fn rows_have_their_rate_for_any_control_period() {
         for (period, steps) in [(1e-3, 10_000), (0.75e-3, 13_334), (4e-3, 2500)] {
             let mut next = f64::NEG_INFINITY;
             let rows = (0..steps).filter(|&k| is_due(f64::from(k) * period, &mut next, SCALAR_PERIOD));

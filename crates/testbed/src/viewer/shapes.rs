@@ -16,11 +16,11 @@ use super::mesh;
 const LINKS: [[u8; 4]; 2] = [[92, 128, 168, 255], [186, 194, 204, 255]];
 const JOINT: [u8; 4] = [58, 66, 78, 255];
 const REFERENCE: [u8; 4] = [242, 165, 65, 34];
-/// How much larger the reference is drawn, so that it surrounds the arm it coincides with.
+/// The factor by which the reference is drawn larger, so that it surrounds the arm when both coincide.
 const SHELL: f64 = 1.3;
 const VISUAL_SHELL: f64 = 1.02;
 
-/// Logs everything in `world` that does not move, and the shapes that ride on the links of `arms` (of [`ARMS`]).
+/// Logs everything in `world` that does not move, and the shapes of the links of `arms` (of [`ARMS`]).
 pub fn log_scene(recording: &RecordingStream, arm: &Arm, urdf_path: &Path, arms: &[&str]) -> anyhow::Result<()> {
     recording.log_static("world", &rerun::ViewCoordinates::RIGHT_HAND_Z_UP())?;
     for &name in arms {
@@ -41,7 +41,7 @@ pub fn log_scene(recording: &RecordingStream, arm: &Arm, urdf_path: &Path, arms:
     Ok(())
 }
 
-/// How far the tool can be from the first joint (m).
+/// The largest distance of the tool from the first joint (m).
 pub fn reach(arm: &Arm) -> f64 {
     let between_joints = arm.joints().iter().skip(1).map(|joint| &joint.parent_from_joint);
     let tool = arm.tool_frame().link_from_frame;
@@ -60,7 +60,7 @@ struct Artist<'a> {
     arm: &'a Arm,
     urdf_path: &'a Path,
     name: &'a str,
-    /// The colour of everything, if the arm is a ghost.
+    /// The colour of all shapes if the arm is the transparent reference.
     ghost: Option<[u8; 4]>,
 }
 

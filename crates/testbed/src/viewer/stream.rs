@@ -1,4 +1,4 @@
-//! The thread between the run and Rerun, so that no viewer, slow, dead or absent, can hold the run up.
+//! The thread between the run and Rerun, so that a slow, ended or absent viewer cannot delay the run.
 
 use std::path::Path;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, channel, sync_channel};
@@ -13,27 +13,27 @@ use super::batch::Batch;
 use super::end::End;
 use super::worker::{Job, Worker};
 
-/// Batches on their way; more wait together in the sender's hands.
+/// The capacity of the queue of batches; further rows wait in the sender.
 const QUEUE: usize = 4;
-/// Rows that may wait for a live viewer that does not keep up.
+/// The largest number of rows that wait for a live viewer that is too slow.
 const MOST_WAITING_ROWS: usize = 100_000;
-/// How long a viewer that answered before may take for the end of the run.
+/// The time that a viewer that has answered before has for the end of the run.
 const FAREWELL: Duration = Duration::from_secs(3);
 
-/// What became of a batch.
+/// The outcome of sending a batch.
 pub enum Sent {
-    /// It is on its way, or the viewer is lost.
+    /// The batch is in the queue, or the viewer is lost.
     Done,
-    /// Not now; here it is again.
+    /// The queue is full; the batch is returned.
     Busy(Batch),
 }
 
-/// The sending end: a thread that owns the recording, and its verdict.
+/// The sending end of a thread that owns the recording, and the result of that thread.
 pub struct Stream {
     jobs: Option<SyncSender<Job>>,
     verdict: Receiver<anyhow::Result<()>>,
     failure: Option<anyhow::Error>,
-    /// When to stop waiting for a viewer that never answered; `None` for a file.
+    /// The time until which to wait for a viewer that has never answered; `None` for a file.
     patience: Option<Instant>,
 }
 
@@ -54,7 +54,7 @@ impl Stream {
         thread::Builder::new()
             .name("viewer".to_owned())
             .spawn(move || {
-                // Nobody listens any more if the viewer was given up.
+                // The receiver no longer exists if the viewer was given up.
                 let _ = report.send(worker.run(&inbox));
             })
             .context("starting the viewer's thread")?;
@@ -71,12 +71,12 @@ impl Stream {
         self.jobs.is_some()
     }
 
-    /// Whether somebody may be watching.
+    /// Whether the destination is a live viewer.
     pub fn is_live(&self) -> bool {
         self.patience.is_some()
     }
 
-    /// Passes a batch on; waits for a file, never for a viewer.
+    /// Passes a batch to the thread; waits for a file, but never for a viewer.
     pub fn send(&mut self, batch: Batch) -> Sent {
         let Some(jobs) = &self.jobs else {
             return Sent::Done;
@@ -104,17 +104,18 @@ impl Stream {
         }
     }
 
-    /// Passes the last batch on and waits for the end, without limit only for a file.
+    /// Passes the last batch to the thread and waits for the end: without limit for a file, for a limited time for a
+    /// viewer.
     pub fn finish(mut self, rest: Batch) -> anyhow::Result<()> {
         let Some(jobs) = self.jobs.take() else {
             return self.failure.take().map_or(Ok(()), Err);
         };
         let Some(patience) = self.patience else {
-            // A thread that is gone has left its verdict.
+            // A thread that has ended has left its result.
             let _ = jobs.send(Job::Last(rest));
             return self.verdict.recv().unwrap_or_else(|_| bail_lost());
         };
-        // A second more than the thread's own, so that it can say what is wrong.
+        // One second more than the thread's own limit, so that the thread can report the reason.
         let deadline = (patience + Duration::from_secs(1)).max(Instant::now() + FAREWELL);
         let mut job = Job::Last(rest);
         while let Err(TrySendError::Full(back)) = jobs.try_send(job) {
@@ -137,7 +138,7 @@ impl Stream {
         Ok(())
     }
 
-    /// The thread is gone: a warning for a viewer, the error of [`Self::finish`] for a file.
+    /// The thread has ended early: this is a warning for a viewer, and the error of [`Self::finish`] for a file.
     fn lose(&mut self) {
         self.jobs = None;
         let verdict = match self.verdict.recv_timeout(Duration::from_secs(1)) {
@@ -154,11 +155,11 @@ impl Stream {
 }
 
 impl Drop for Stream {
-    /// Without [`Stream::finish`]: gives the thread a moment to remove an unfinished file.
+    /// If [`Stream::finish`] was not called, gives the thread a moment to remove an unfinished file.
     fn drop(&mut self) {
         let was_open = self.jobs.take().is_some();
         if was_open && !self.is_live() {
-            // Gone or late, there is nothing more to do.
+            // Whether the thread has ended or is late, nothing more can be done.
             let _ = self.verdict.recv_timeout(FAREWELL);
         }
     }

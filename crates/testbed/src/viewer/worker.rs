@@ -1,4 +1,4 @@
-//! The viewer's thread: everything that talks to Rerun, and may have to wait for it.
+//! The viewer's thread: everything that communicates with Rerun and may have to wait for it.
 
 use std::path::PathBuf;
 use std::sync::mpsc::Receiver;
@@ -16,18 +16,18 @@ use super::batch::{ARMS, Batch};
 use super::end::End;
 use super::{blueprint, shapes};
 
-/// How long a viewer that answered before may take for a batch.
+/// The time that a viewer that has answered before has for a batch.
 const ANSWER: Duration = Duration::from_secs(10);
 
-/// What the thread is to do.
+/// A job of the thread.
 pub enum Job {
-    /// Pass these rows on.
+    /// Send these rows.
     Batch(Batch),
-    /// Pass these on and close.
+    /// Send these rows and close.
     Last(Batch),
 }
 
-/// What the thread owns.
+/// The data that the thread owns.
 pub struct Worker {
     pub recording: RecordingStream,
     pub end: End,
@@ -38,7 +38,7 @@ pub struct Worker {
 }
 
 impl Worker {
-    /// Logs the scene, then all batches; its verdict is the whole recording's.
+    /// Logs the scene, then all batches; the result is that of the whole recording.
     pub fn run(self, inbox: &Receiver<Job>) -> anyhow::Result<()> {
         let result = self.pass_on(inbox);
         let Self { recording, end, .. } = self;

@@ -157,7 +157,7 @@ mod tests {
 
     /// A rotor and a link on a spring, stepped in turn, oscillate at ω² = K (1/J + 1/M) and conserve energy.
     #[test]
-    fn rotor_and_link_swing_as_two_bodies() {
+    fn rotor_and_link_oscillate_as_two_bodies() {
         let (inertia, mass, stiffness, step) = (0.5, 1.0, 2000.0, 1e-3);
         let effects = [Effect::of(&JointElasticity)
             .on("a")

@@ -1,4 +1,4 @@
-//! Rollouts of the simulated cases beside the repository (`../shared`), which another engine made.
+//! Rollouts of simulated cases that another physics engine made (`../shared`).
 
 use std::path::{Path, PathBuf};
 
@@ -42,7 +42,7 @@ fn concealed(truth: &Path) -> Option<Vec<Effect>> {
 /// Stribeck and load-dependent friction, torque scale.
 #[test]
 #[ignore = "needs ../shared"]
-fn the_truth_moves_the_plant_as_the_other_engine_moved() {
+fn the_plant_with_the_injected_faults_moves_as_the_other_engine() {
     let folder = blind();
     for case in [2, 3, 9, 13, 17, 26] {
         let effects = concealed(&folder.join(format!("truth/case_{case:03}.json"))).expect("it is in the catalogue");
@@ -64,7 +64,7 @@ fn the_truth_moves_the_plant_as_the_other_engine_moved() {
 /// A delay alone changes the motion little.
 #[test]
 #[ignore = "needs ../shared"]
-fn a_delay_is_seen_where_it_is() {
+fn a_delay_shows_on_its_joint() {
     let folder = blind();
     let effects = concealed(&folder.join("truth/case_001.json")).expect("it is in the catalogue");
     let files = folder.join("case_001");

@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_cubic_is_met() {
+    fn a_cubic_is_reproduced() {
         let period = 0.01;
         let at = |t: f64| 1.0 + 2.0 * t - 3.0 * t * t + 40.0 * t * t * t;
         let values: Vec<f64> = (-4..=4).map(|k| at(f64::from(k) * period)).collect();

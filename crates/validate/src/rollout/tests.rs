@@ -1,4 +1,4 @@
-//! Rollouts of motions that the plant itself made.
+//! Rollouts of recordings that the plant itself made.
 
 use super::*;
 use effects::friction::{CoulombFriction, ViscousFriction};
@@ -85,7 +85,7 @@ fn assert_better(result: &Rollout, joints: std::ops::Range<usize>, factor: f64) 
 }
 
 #[test]
-fn friction_and_payload_named_are_friction_and_payload_simulated() {
+fn named_friction_and_payload_are_simulated() {
     let nominal = puma();
     let mut effects = every_joint(&nominal, |joint| {
         Effect::of(&ViscousFriction).on(joint).with("coefficient", 0.8)
@@ -121,7 +121,7 @@ fn friction_and_payload_named_are_friction_and_payload_simulated() {
 }
 
 #[test]
-fn drives_and_encoders_distort_and_are_put_right() {
+fn effects_of_drives_and_encoders_are_simulated() {
     let arm = puma();
     let name = |j: usize| arm.joints()[j].name.clone();
     let effects = [
@@ -140,7 +140,7 @@ fn drives_and_encoders_distort_and_are_put_right() {
 }
 
 #[test]
-fn what_cannot_be_run_is_said() {
+fn windows_that_cannot_be_simulated_are_reported() {
     let arm = puma();
     let mut recording = record(&arm, 0.0, 0.0, 1.0, as_it_is);
     let options = RolloutOptions {

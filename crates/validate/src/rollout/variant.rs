@@ -93,7 +93,7 @@ impl Variant {
             for (j, path) in q.iter_mut().enumerate() {
                 let measured = |tick: usize| course.recording.q[course.columns[j]][tick];
                 path.push(if ran_away {
-                    // The distance stays as it was.
+                    // After the arm is lost, the distance remains constant.
                     measured(tick + course.stride) + path[k - 1] - measured(tick)
                 } else {
                     self.encoder(j)
@@ -181,7 +181,7 @@ fn commanded(course: &Course<'_>, j: usize, tick: usize, into: f64) -> f64 {
     let recording = course.recording;
     let tau = &recording.tau[course.columns[j]];
     let at = |place: f64| {
-        // Only a delay can lead out of the segment, at its beginning.
+        // Only a delay can lead to times before the segment.
         let place = place.clamp(0.0, (tau.len() - 1) as f64);
         let before = place.floor() as usize;
         let share = place - before as f64;

@@ -1,4 +1,4 @@
-//! What columns add to a fit.
+//! The gains of columns that are added to a fit.
 
 use std::collections::HashMap;
 
@@ -12,7 +12,7 @@ use crate::regression::table::Table;
 /// Columns that may be added to a fit, without the part that its columns explain.
 pub struct Reduced(HashMap<usize, Column>);
 
-/// One of them.
+/// One such column.
 struct Column {
     /// The root of its weighted square.
     size: f64,
@@ -88,7 +88,7 @@ impl Products {
             own -= cross.tr_mul(&cross);
             right -= cross.tr_mul(&fit.reduced);
         }
-        // The span of the present columns must not be gained again.
+        // A part of the span of the present columns must not count as a gain again.
         for k in 0..c {
             own[(k, k)] += 1e-6;
         }

@@ -1,4 +1,4 @@
-//! The background eliminated from the normal equations at fixed weights, so that only the chosen columns remain.
+//! The background eliminated from the normal equations at fixed weights, so that only the selected columns remain.
 //!
 //! With A = BᵀWB + K = LLᵀ for the background's columns B, their precision K and W the weights of the evidence, a product of two
 //! columns becomes xᵀWx' − (L⁻¹BᵀWx)ᵀ(L⁻¹BᵀWx'), and the background costs ½ (ln det A − ln det K) + ½ δᵀKδ.
@@ -16,7 +16,7 @@ use crate::regression::table::Table;
 /// The number of weights for which the elimination is stored.
 const KEPT: usize = 12;
 
-/// A product that was not formed yet: bits of no number.
+/// Marks a product that is not computed yet: the bits of a NaN.
 const NOT_FORMED: u64 = u64::MAX;
 
 /// The background eliminated at given weights.
@@ -32,7 +32,8 @@ pub struct Eliminated {
     with_y: Vec<f64>,
     /// L⁻¹ BᵀW x of each requested column of the table.
     with_columns: Vec<OnceLock<Vec<f64>>>,
-    /// The products of a column of a fit with all others, as bits: every candidate asks for them, in every round.
+    /// The products of the columns of a fit with all others, as bits. They are cached, because every candidate needs them
+    /// in every round.
     with_others: Vec<OnceLock<Vec<AtomicU64>>>,
     /// ½ (ln det A − ln det K) (nats).
     pub occam: f64,
@@ -105,13 +106,13 @@ impl Eliminated {
         }
     }
 
-    /// The place where the product of two columns is stored, if that is wanted of one of them.
+    /// The place where the product of two columns is stored; `None` if products of neither are stored.
     fn place(&self, a: usize, b: usize) -> Option<&AtomicU64> {
         let of = |one: usize, other: usize| self.with_others[one].get().map(|row| &row[other]);
         of(b, a).or_else(|| of(a, b))
     }
 
-    /// The background's coefficients for `values` of the chosen `columns`.
+    /// The background's coefficients for `values` of the selected `columns`.
     pub fn coefficients(&self, products: &Products, table: &Table, columns: &[usize], values: &[f64]) -> Vec<f64> {
         let mut solution = self.with_y.clone();
         if let Some(background) = products.background.as_deref() {
@@ -175,7 +176,7 @@ impl Products {
         let Some(place) = b.and_then(|b| eliminated.place(a, b)) else {
             return form();
         };
-        // The product has the same bits whichever thread forms it, and in either order of the columns.
+        // The product has the same bits in every thread and in either order of the columns.
         match place.load(Ordering::Relaxed) {
             NOT_FORMED => {
                 let value = form();
@@ -195,7 +196,7 @@ impl Products {
         }
     }
 
-    /// L⁻¹ BᵀW x of up to [`LANES`] columns, which are stored, too.
+    /// L⁻¹ BᵀW x of up to [`LANES`] columns; the results are also stored.
     fn in_lanes(&self, table: &Table, eliminated: &Eliminated, group: &[usize]) -> Vec<Lanes> {
         let known = |&column: &usize| eliminated.with_columns[column].get();
         if let Some(known) = group.iter().map(known).collect::<Option<Vec<_>>>() {

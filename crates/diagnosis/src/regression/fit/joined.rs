@@ -20,12 +20,12 @@ impl Products {
         }
     }
 
-    /// These products and `more` of the same columns, whose rows have an error of variance `left` on each joint, with the
-    /// evidence and the floor of both together.
-    pub fn joined(&self, more: &Self, left: &[f64], evidence: Vec<f64>, floor: Vec<f64>) -> Self {
+    /// These products and `more` of the same columns, whose rows have an error of variance `variance` on each joint ((N m)²
+    /// or N²), with the evidence and the floor of both together.
+    pub fn joined(&self, more: &Self, variance: &[f64], evidence: Vec<f64>, floor: Vec<f64>) -> Self {
         let of = |joint: usize| {
             let grams = [&self.gram[joint], &more.gram[joint]];
-            let noise = left[joint] * more.count[joint];
+            let noise = variance[joint] * more.count[joint];
             Gram::sum(grams[0].len(), grams.into_iter()).with_noise(noise)
         };
         Self {

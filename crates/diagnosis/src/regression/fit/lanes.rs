@@ -1,4 +1,5 @@
-//! Inner products of several columns at a time, in the lanes of the processor's vectors. Each has the bits that it gets alone.
+//! Inner products of several columns at a time, in the lanes of the processor's vectors. Each product has the same bits as
+//! if it were computed alone.
 
 use gp::{Wide, on_widest};
 
@@ -171,9 +172,9 @@ mod tests {
         (0..rows).map(|k| ((seed * 31 + k * 7) as f64).sin()).collect()
     }
 
-    /// In lanes, everything has the bits that it has alone.
+    /// Results in lanes have the same bits as results that are computed alone.
     #[test]
-    fn lanes_have_the_bits_of_one() {
+    fn lanes_have_the_bits_of_single_columns() {
         for rows in [1, 3, 4, 7, 21] {
             let columns: [Vec<f64>; LANES] = std::array::from_fn(|lane| column(lane, rows));
             let lanes: Vec<Lanes> = (0..rows)

@@ -6,7 +6,8 @@ use super::{Products, RIDGE, cholesky, solved};
 use crate::regression::table::{Stretch, Table};
 use crate::thresholds::RECORDING_GROUPS;
 
-/// A fit on one joint, and the same with groups of recordings left out in turn: what columns are added to.
+/// A fit on one joint, and the fits without each group of recordings in turn (cross-validation), to which columns are
+/// added.
 pub struct LeftOut<'a> {
     joint: usize,
     /// The fitted columns of the table, and their places on the joint.
@@ -19,8 +20,8 @@ pub struct LeftOut<'a> {
     prior: DMatrix<f64>,
     /// The fit of all groups, then of all but one.
     fits: Vec<Normal>,
-    /// The residual sum of squares where it was fitted, and on the groups left out.
-    left: [f64; 2],
+    /// The residual sums of squares where it was fitted, and on the groups left out.
+    rss: [f64; 2],
 }
 
 impl Products {
@@ -39,13 +40,13 @@ impl Products {
             folds: Vec::new(),
             prior: self.prior(|column| table.place[joint][column].is_some(), scale),
             fits: Vec::new(),
-            left: [0.0; 2],
+            rss: [0.0; 2],
             places,
         };
         if base.groups.len() > 1 {
             base.folds = base.groups.iter().map(|group| gram(group, &base.places)).collect();
             let fit = |gram: &DMatrix<f64>| Normal::new(gram, base.places.len(), &base.prior);
-            (base.fits, base.left) = fitted(&base.folds, |gram, _| fit(gram));
+            (base.fits, base.rss) = fitted(&base.folds, |gram, _| fit(gram));
         }
         base
     }
@@ -61,8 +62,8 @@ impl Products {
         let with = [&base.places[..], &new].concat();
         let folds = base.groups.iter().zip(&base.folds);
         let folds: Vec<DMatrix<f64>> = folds.map(|(group, known)| extended(group, known, &with)).collect();
-        let (_, left) = fitted(&folds, |gram, k| base.fits[k].with(gram, with.len(), &base.prior));
-        let gain = |k: usize| self.joint_loss(base.joint, base.left[k]) - self.joint_loss(base.joint, left[k]);
+        let (_, rss) = fitted(&folds, |gram, k| base.fits[k].with(gram, with.len(), &base.prior));
+        let gain = |k: usize| self.joint_loss(base.joint, base.rss[k]) - self.joint_loss(base.joint, rss[k]);
         (gain(0), gain(1))
     }
 
@@ -71,7 +72,7 @@ impl Products {
     pub fn arm_gain(&self, table: &Table, columns: &[usize], added: &[usize], weights: &[f64]) -> f64 {
         let mut all: Vec<usize> = columns.to_vec();
         all.extend(added.iter().filter(|column| !columns.contains(column)));
-        // Each joint's columns, and their inner products over each group.
+        // The columns of each joint, with their inner products over each group.
         let joints: Vec<(Vec<usize>, Vec<DMatrix<f64>>)> = (0..table.dof())
             .map(|joint| {
                 let mine: Vec<usize> = (0..all.len())
@@ -110,7 +111,7 @@ impl Products {
                             mine.len(),
                             mine.iter().map(|&i| if i < p { solved[i] } else { 0.0 }),
                         );
-                        *rss += left(gram, &own);
+                        *rss += residual_square(gram, &own);
                     }
                 }
             }
@@ -186,17 +187,17 @@ fn extended(group: &[&Stretch], known: &DMatrix<f64>, places: &[usize]) -> DMatr
     gram
 }
 
-/// The fits of all groups and, in turn, of all but one, by `fit` of their inner products; and their residual sums of squares
-/// where they were fitted, and on what was left out.
+/// The fits of all groups and of all but one in turn, by `fit` of their inner products, and the residual sums of squares
+/// where they were fitted and on the groups left out.
 fn fitted(folds: &[DMatrix<f64>], fit: impl Fn(&DMatrix<f64>, usize) -> Normal) -> (Vec<Normal>, [f64; 2]) {
     let all = folds.iter().skip(1).fold(folds[0].clone(), |sum, fold| sum + fold);
     let mut fits = vec![fit(&all, 0)];
-    let inside = left(&all, &fits[0].solution(&all));
+    let inside = residual_square(&all, &fits[0].solution(&all));
     let mut outside = Vec::with_capacity(folds.len());
     for (k, fold) in folds.iter().enumerate() {
         let rest = &all - fold;
         let fit = fit(&rest, k + 1);
-        outside.push(left(fold, &fit.solution(&rest)));
+        outside.push(residual_square(fold, &fit.solution(&rest)));
         fits.push(fit);
     }
     (fits, [inside, outside.into_iter().sum()])
@@ -231,8 +232,8 @@ impl Normal {
         }
     }
 
-    /// The fit of the first `p` columns, of which these are the first: their factor stays, and gets more rows. It has the bits of
-    /// [`Self::new`].
+    /// The fit of the first `p` columns, of which this fit has the first ones: its factor is extended by rows. The result
+    /// has the bits of [`Self::new`].
     fn with(&self, gram: &DMatrix<f64>, p: usize, prior: &DMatrix<f64>) -> Self {
         let known = self.scale.len();
         let new = p - known;
@@ -246,7 +247,7 @@ impl Normal {
         for i in 0..new {
             own[(i, i)] += RIDGE;
         }
-        // Column by column, as the factorisation of the whole matrix goes on.
+        // Column by column, in the order of the factorisation of the whole matrix.
         for row in rows.column_iter() {
             for k in 0..new {
                 let mut column = own.column_mut(k);
@@ -272,7 +273,7 @@ impl Normal {
 }
 
 /// The residual sum of squares with coefficients of the first columns.
-fn left(gram: &DMatrix<f64>, coefficients: &DVector<f64>) -> f64 {
+fn residual_square(gram: &DMatrix<f64>, coefficients: &DVector<f64>) -> f64 {
     let (p, last) = (coefficients.len(), gram.nrows() - 1);
     let mut rss = gram[(last, last)];
     for i in 0..p {

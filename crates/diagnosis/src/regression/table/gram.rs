@@ -61,7 +61,7 @@ impl Stretch {
             self.gram.right.push(x.iter().zip(&y).map(|(x, y)| x * y).sum());
             self.gram.sums.push(x.iter().sum());
         }
-        // The columns one after the other, for this call only: kept, they would take as much memory as the table.
+        // The columns one after the other, for this call only, because they take as much memory as the table.
         let mut packed = Vec::with_capacity(total * y.len());
         for x in x {
             packed.extend(self.rows.iter().map(|&row| x[row]));
@@ -91,9 +91,9 @@ impl Stretch {
 pub struct Gram {
     /// The lower triangle, row by row.
     rows: Vec<Vec<f64>>,
-    /// With y.
+    /// Inner products with y.
     right: Vec<f64>,
-    /// y with itself.
+    /// The inner product of y with itself.
     square: f64,
     /// The sums of the columns.
     sums: Vec<f64>,

@@ -28,8 +28,9 @@ impl Problem<'_> {
             .collect()
     }
 
-    /// `chosen` with other wrong masses than its own: any one or two of them. Masses are coupled along the arm, so that two
-    /// wrong ones may resemble a third, and one may resemble two others; no exchange of one for one leads to the true ones.
+    /// `chosen` with one or two other wrong masses in place of its own. Masses are coupled along the arm, so that two wrong
+    /// masses may resemble a third one, and one may resemble two others. No exchange of one mass for one other leads to the
+    /// true masses then.
     fn other_masses(&self, chosen: &Chosen, allowed: &[usize]) -> Vec<Chosen> {
         let is_mass = |c: &usize| self.candidates[*c].hypothesis.is_wrong_mass();
         let rest: Vec<usize> = chosen.set.iter().copied().filter(|c| !is_mass(c)).collect();

@@ -40,7 +40,7 @@ impl Problem<'_> {
         };
         let gain = match self.candidates[candidate].joint {
             Some(joint) => log(drop, joint),
-            // At least the gain of an evenly distributed reduction.
+            // The promise is at least the gain of a reduction that is distributed evenly over the joints.
             None => {
                 let joints = self.products.count.len();
                 (0..joints).map(|joint| log(drop / joints as f64, joint)).sum::<f64>()

@@ -14,8 +14,8 @@ use crate::thresholds::ONSET_FROM_END;
 const STEP: f64 = 0.5;
 const FINE: f64 = 0.05;
 
-/// For each form on each joint, and for a payload, the candidate whose onset explains most of `residual` (N m or N, all rows).
-/// None if the recordings do not share one clock, because their order is unknown then.
+/// For each form on each joint, and for a payload, the candidate whose onset explains most of `residual` (N m or N, all
+/// rows). There are none if the recordings do not share one clock, because their order is unknown then.
 pub fn onsets(
     study: &Study,
     weights: &[f64],
@@ -122,7 +122,7 @@ impl Past<'_> {
         let (mut matrix, mut right) = (Matrix4::zeros(), Vector4::zeros());
         let mut found: Option<(f64, f64)> = None;
         let mut next = to;
-        // From the end to the beginning: what the columns explain since each time.
+        // From the end to the beginning, so that the sums contain all rows since each time.
         for &row in &self.rows {
             let time = times[row];
             while time < next && next >= from {

@@ -12,7 +12,7 @@ use crate::thresholds::{WAVE_CUTOFF, WAVE_FREQUENCIES};
 
 /// The number of bins per period of the highest frequency; each sample goes to the nearest bin.
 const BINS: f64 = 8.0;
-/// The longest time in which waves are looked for (s): the transform grows with it, and recordings may be days apart.
+/// The longest time in which sinusoids are searched (s). The transform grows with it, and recordings may be days apart.
 const LONGEST: f64 = 10_000.0;
 
 /// The frequencies (rad/s) of sinusoids in time that explain most of the residual of `joint`: peaks, best first.
@@ -70,12 +70,12 @@ pub fn waves(
     })
 }
 
-/// All samples, or those of the [`LONGEST`] time that has the most.
+/// All samples, or those of the window of length [`LONGEST`] that has the most samples.
 fn densest(samples: Vec<Sample>) -> Vec<Sample> {
     let mut times: Vec<f64> = samples.iter().map(|sample| sample.time).collect();
     times.sort_by(f64::total_cmp);
     let count = |from: usize| times.partition_point(|time| *time <= times[from] + LONGEST) - from;
-    // Of equal ones, the first.
+    // Of windows with equally many samples, the first one.
     let Some(from) = (0..times.len()).rev().max_by_key(|&from| count(from)) else {
         return samples;
     };
@@ -91,7 +91,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn of_days_the_densest_hours_are_searched() {
+    fn the_densest_hours_of_several_days_are_searched() {
         let at = |time: f64| Sample {
             time,
             q: 0.0,

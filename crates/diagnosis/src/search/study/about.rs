@@ -1,4 +1,4 @@
-//! The arm of a fit: about it, tilts, encoder offsets and payloads are small, so that their columns are linear.
+//! The arm of a fit, about which columns are linearised: the remaining tilts, encoder offsets and payloads are small.
 
 use arm::{Arm, Inertia, Vector3};
 use effects::arm::{INERTIAL_PARAMETER, body};
@@ -31,8 +31,9 @@ impl About {
         Self::with(study, fit, collected(study, fit, false))
     }
 
-    /// The arm since the recordings from before, with all effects of `fit`; `None` if it is the same as before. Torque constants,
-    /// and whatever else is in proportion to the joints' torques, then act on the torque of a new payload, too.
+    /// The arm since the recordings from before, with all effects of `fit`; `None` if it is the same as before. Torque
+    /// constants, and other effects that are proportional to the joints' torques, then also act on the torque of a new
+    /// payload.
     pub fn since_before(study: &Study, fit: &Fit) -> Option<Self> {
         let (found, carried) = collected(study, fit, true);
         let sets_in = carried.iter().any(|(term, _)| term.onset().is_some());

@@ -9,8 +9,9 @@ use crate::regression::fit::Fit;
 use crate::regression::table::Moving;
 
 impl Study {
-    /// Evaluates everything about the arm of `fit`, where tilts, encoder offsets and payloads are small. Unsuccessful trial
-    /// sizes are removed. Returns the new indices of the candidates `kept`, or `None` if nothing changes.
+    /// Evaluates everything about the arm of `fit`, so that the remaining tilts, encoder offsets and payloads are small.
+    /// Unsuccessful trial sizes are removed. Returns the new indices of the candidates `kept`, or `None` if nothing
+    /// changes.
     pub fn relinearise(&mut self, fit: &Fit, kept: &[usize]) -> Option<Vec<usize>> {
         self.about(fit, kept, false)
     }
@@ -24,9 +25,9 @@ impl Study {
     fn about(&mut self, fit: &Fit, kept: &[usize], anyway: bool) -> Option<Vec<usize>> {
         let about = About::new(self, fit);
         let since_before = About::since_before(self, fit);
-        // Those that always act are among those that act since the recordings from before.
+        // The effects that always act are among those that act since the recordings from before.
         let carried = &since_before.as_ref().unwrap_or(&about).carried;
-        // No effect to add to the arm, and none from an earlier selection.
+        // The arm contains no effect, neither of this fit nor of an earlier selection.
         let carries = !carried.is_empty() || about.bare.is_some();
         if !carries && !self.carries && !anyway {
             return None;

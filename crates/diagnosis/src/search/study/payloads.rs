@@ -1,4 +1,4 @@
-//! Payloads against the bodies of the links, which explain the same torque.
+//! Decides between payloads and bodies of links, which explain the same torque.
 
 use effects::arm::Payload;
 
@@ -7,7 +7,8 @@ use crate::data::statistics;
 use crate::search::problem::Chosen;
 use crate::thresholds::FELT;
 
-/// The last joints, on which a payload shows whatever its place: the axis of one may go through its centre of mass.
+/// The number of last joints on which the torque of a payload must show. There are two, because the axis of one may go
+/// through its centre of mass.
 const LAST_JOINTS: usize = 2;
 
 impl Study {
@@ -43,9 +44,9 @@ impl Study {
         }
     }
 
-    /// `chosen` without a payload that the last joints hardly feel, where the URDF's links are wrong, too: its centre of mass lies
-    /// where their axes meet, and a link before them that is heavier than in the URDF explains the same torque. What sets in later
-    /// is no link's.
+    /// `chosen` without a payload that has hardly any torque on the last joints, if the URDF's links are wrong as well. The
+    /// centre of mass of such a payload lies where these axes meet, and a heavier link before them explains the same
+    /// torque. A payload with an onset is kept, because a link cannot have one.
     pub fn without_payload_of_a_link(&mut self, chosen: Chosen) -> Chosen {
         let is_unfelt = |&c: &usize| {
             let sets_in = || self.terms(c).iter().any(|term| term.onset().is_some());
@@ -69,7 +70,8 @@ impl Study {
         self.grown(next, &allowed)
     }
 
-    /// Whether the torque of `candidate` is on one of the last joints as large a part of what is measured there as on the others.
+    /// Whether the share of `candidate` in the torque of one of the last joints is comparable to its largest share in any
+    /// joint.
     fn is_felt_at_the_end(&self, chosen: &Chosen, candidate: usize) -> bool {
         let columns = &self.candidates[candidate].columns;
         let values = chosen.fit.values(columns);

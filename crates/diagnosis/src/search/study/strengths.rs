@@ -1,4 +1,4 @@
-//! The strengths of the background, chosen together with the effects by the gain of the score.
+//! Selects the strengths of the background together with the effects, by the gain of the score.
 
 use effects::Scales;
 use rayon::prelude::*;
@@ -43,7 +43,7 @@ impl Study {
         self.prior.torque_constant(joint)
     }
 
-    /// The prior variances of a link's ten inertial parameters, at the strength chosen by evidence.
+    /// The prior variances of a link's ten inertial parameters, at the strength selected by evidence.
     pub fn prior_variances(&self, link: usize) -> [f64; PER_LINK] {
         self.prior.variances(link, self.strengths.links[link])
     }
@@ -139,8 +139,8 @@ impl Study {
         bare.with_background(self.prior.at(strengths))
     }
 
-    /// `chosen` with more of the candidates `allowed`, and with the strengths of the background that the evidence prefers. Each
-    /// step takes the one that gains more. Members that do not pay then are removed.
+    /// `chosen` with more of the candidates `allowed`, and with the strengths of the background that the evidence prefers.
+    /// Each step takes the candidate or the change of strengths that gains more. Members that no longer pay are removed.
     pub fn grown(&mut self, mut chosen: Chosen, allowed: &[usize]) -> Chosen {
         let bare = self.bare_products(|r| self.fitted[r]);
         let mut products = bare.with_background(self.background());
@@ -239,18 +239,19 @@ impl Study {
         chosen
     }
 
-    /// The evidence for `member` of `chosen`, each with the background that is best for it (nats): an effect that wrong inertials
-    /// resemble lets the background be smaller, which must not speak for it.
+    /// The evidence for `member` of `chosen` (nats): the difference of the scores without and with it, each with its own
+    /// best background. An effect that resembles wrong inertials allows a smaller background, which must not count as
+    /// evidence for the effect.
     pub fn evidence_beside_best_background(&mut self, chosen: &Chosen, member: usize) -> f64 {
         let bare = self.bare_products(|r| self.fitted[r]);
         let kept = self.strengths.clone();
         let products = bare.with_background(self.background());
         let without = self.problem(&products).without(chosen, member);
-        // Held-out recordings may have asked for a smaller background than the evidence.
+        // The present background may be smaller than the evidence prefers, because of the held-out recordings.
         let mut best = |mut fit: Chosen| {
             for _ in 0..MOST_MOVES {
                 let mut neighbours = self.strengths.neighbours();
-                // Friction of its own in each recording is another matter, and explains little elsewhere.
+                // The strength of friction that differs between recordings is kept: it has no relation to the effect.
                 neighbours.retain(|next| next.friction == kept.friction);
                 let Some((strengths, next)) = self.strengthened(&bare, &fit, neighbours) else {
                     break;
@@ -264,8 +265,8 @@ impl Study {
         best(without) - best(chosen.clone())
     }
 
-    /// `chosen` with another body of a link in the place of the effects on its joint that may together imitate it: a scale of
-    /// the link and a spring on a lever resemble a shifted centre of mass. Effects that are clearly better stay.
+    /// `chosen` with another body of a link in the place of the effects on its joint that may together imitate it: a scale
+    /// of the link and a spring on a lever resemble a shifted centre of mass. Effects that are clearly better are kept.
     pub fn without_imitations(&mut self, mut chosen: Chosen) -> Chosen {
         let bare = self.bare_products(|r| self.fitted[r]);
         for link in 0..self.arm.dof() {
@@ -310,7 +311,7 @@ impl Study {
                 let products = bare.with_background(self.prior.at(&strengths));
                 let problem = self.problem(&products);
                 let next = problem.choose(chosen.set.clone(), &chosen.fit.weights);
-                // Without any background, the weights may be far from the right ones.
+                // Without a background, the weights may be far from the final ones.
                 let next = if self.strengths.is_none() {
                     problem.reweighted(next)
                 } else {

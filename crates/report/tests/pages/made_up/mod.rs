@@ -15,14 +15,14 @@ use report::statistics::rms;
 
 use motion::{EFFECTS, Row, acts, arm, spread, trace};
 
-/// How much there is to be found.
+/// How much the made-up diagnosis finds.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Plot {
     /// Nothing.
     Clean,
-    /// An effect per joint, one of the whole arm, something without a name.
+    /// An effect on each joint, one of the whole arm, and an unmodelled residual.
     Rich,
-    /// Too little was recorded.
+    /// Too little data.
     TooShort,
 }
 

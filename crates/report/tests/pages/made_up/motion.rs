@@ -17,7 +17,7 @@ const NAMES: [&str; 7] = [
     "<b>tool & swivel</b>",
 ];
 
-/// An arm of that many joints, its links in the proportions of a common six-axis arm.
+/// An arm of `joints` joints, with links in the proportions of a common six-axis arm.
 pub fn arm(joints: usize) -> Arm {
     let origins = [
         "0 0 .18",
@@ -50,7 +50,7 @@ pub fn arm(joints: usize) -> Arm {
     Arm::from_urdf_text(&urdf, "six.urdf").expect("an arm")
 }
 
-/// Numbers that look random and are not.
+/// Pseudo-random numbers.
 struct Noise(u64);
 
 impl Noise {
@@ -145,7 +145,7 @@ pub const EFFECTS: [Row; 8] = [
     ),
 ];
 
-/// The whole-arm effects show on these joints, the others on their own.
+/// Whether an effect acts on the joint: whole-arm effects act on some of the joints, other effects on their own joint.
 pub fn acts(row: &Row, joint: usize, joints: usize) -> bool {
     row.1.map_or((1..5).contains(&joint) && joints > 1, |own| own == joint)
 }

@@ -1,4 +1,4 @@
-//! What the viewer opens with: the arm and the summary at the left, residuals, torques and effects at the right.
+//! The initial layout of the viewer: the arm and the summary at the left, residuals, torques and effects at the right.
 
 use arm::{Arm, JointKind};
 use diagnosis::Report;
@@ -70,7 +70,7 @@ pub fn log_styles(recording: &RecordingStream, arm: &Arm, report: &Report) -> Re
 
 /// Sends the layout; the plots show the `span` of time (s).
 pub fn send(recording: &RecordingStream, arm: &Arm, report: &Report, span: [f64; 2]) -> RecordingStreamResult<()> {
-    // A plot under way would move with the time: everything is to be seen at first.
+    // A plot that follows the time would move; the plots show the whole time from the beginning.
     layout::send(recording, PlayState::Paused, |layout| write(layout, arm, report, span))
 }
 
@@ -130,7 +130,7 @@ struct Tab {
     span: [f64; 2],
 }
 
-/// One plot a joint.
+/// One plot per joint.
 fn grid(layout: &mut Layout<'_>, arm: &Arm, tab: &Tab, is_shown: &dyn Fn(&str) -> bool) -> RecordingStreamResult<Node> {
     let [start, end] = tab
         .span

@@ -8,7 +8,7 @@ use super::{Disturbance, EFFECT, Factor, NamedEffect, Other, ROUNDING};
 use crate::models::ModelKind;
 use crate::tables::mean;
 
-/// The heading, what was found, and the table.
+/// The section: heading, findings and table.
 pub fn blocks(of: &Disturbance) -> Vec<Block> {
     let mut list = vec![
         Block::Heading("The paper's own disturbance"),
@@ -91,7 +91,7 @@ fn size(factor: &Factor) -> String {
     )
 }
 
-/// Models against the diagnosis, joint by joint.
+/// The torque errors of the diagnosed model and of the learned models, joint by joint.
 fn errors(of: &Disturbance) -> Block {
     let joints = of.others.first().map_or(0, |other| other.row.mse.len());
     let of_paper = |row: Option<[f64; 6]>| row.map_or_else(|| "–".to_owned(), |row| rounded(mean(&row), 3));

@@ -1,4 +1,4 @@
-//! The drawing of a proof on published recordings: each number found over the one published, with its interval.
+//! The figure of a proof on published recordings: the ratio of each estimated to the published value, with its interval.
 
 use report::chart::{Scale, Svg};
 use scoring::{Compared, Evidence};
@@ -10,10 +10,10 @@ const LEFT: f64 = 330.0;
 const RIGHT: f64 = 740.0;
 const TOP: f64 = 26.0;
 const STEP: f64 = 17.0;
-/// Found over published, at the ends of the axis and at its ticks.
+/// The ticks of the ratio; the first and the last one are the ends of the axis.
 const TICKS: [f64; 7] = [0.25, 0.5, 0.8, 1.0, 1.25, 2.0, 4.0];
 
-/// The numbers of all robots that were found, constants of models hollow; `None` if there are none.
+/// The figure of all values that were estimated, with hollow circles for constants of models; `None` if there are none.
 pub fn numbers(robots: &[Tried]) -> Option<String> {
     let mut rows: Vec<(String, Evidence, &Compared)> = Vec::new();
     for tried in robots {

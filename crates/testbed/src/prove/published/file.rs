@@ -1,4 +1,4 @@
-//! The file that says what publishers say: robots, their recordings, sources, effects with numbers and where they are said.
+//! The file of published values: robots, their recordings, their sources, and effects with values and references.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -8,7 +8,7 @@ use anyhow::{Context, anyhow, bail, ensure};
 use arm::{Arm, JointKind};
 use faults::{catalogue, sha256};
 use recording::{nearest, toml_reason};
-use scoring::{Denied, Evidence, Published, PublishedNumber, Said, compared_parameters};
+use scoring::{Denied, Evidence, Published, PublishedEffect, PublishedNumber, compared_parameters};
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -16,10 +16,10 @@ use super::ensure_some;
 use super::quantities::{is_on_the_arm, si};
 use study::Source;
 
-/// What the `schema` line says.
+/// The value of the key `schema`.
 const SCHEMA: &str = "testbed.published/1";
 
-/// The file as read; what needs the robots' URDFs is checked by [`File::published`].
+/// The file as it is read; [`File::published`] checks it against the robots' URDFs.
 pub struct File {
     /// SHA-256 of its text.
     pub sha256: String,
@@ -39,49 +39,49 @@ struct Raw {
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Robot {
-    /// The name, and its folder's.
+    /// The name of the robot and of its folder.
     pub name: String,
-    /// What it is, in a line.
+    /// A description in one line.
     pub title: String,
     /// The URDF's file.
     pub urdf: String,
-    /// Recordings to fit.
+    /// The training recordings.
     pub train: Vec<String>,
-    /// Recordings to hold out.
+    /// The held-out recordings.
     pub held_out: Vec<String>,
-    /// Where the public data come from.
+    /// The sources of the public data.
     pub source: Origin,
     says: Vec<Spanned<Says>>,
     #[serde(default)]
     denies: Vec<Spanned<Denies>>,
-    /// Notes of ours.
+    /// Notes by the authors of this file.
     #[serde(default)]
     pub notes: Vec<String>,
-    /// How many joints its URDF has; filled in with `published`.
+    /// The number of joints of its URDF; filled in with `published`.
     #[serde(skip)]
     pub dof: usize,
-    /// In SI and checked against the URDF; filled in by [`File::published`].
+    /// The published effects in SI units, checked against the URDF; filled in by [`File::published`].
     #[serde(skip)]
     pub published: Option<Published>,
 }
 
-/// Where public data come from.
+/// A source of public data.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Origin {
-    /// Who.
+    /// The authors.
     pub authors: String,
-    /// What.
+    /// The title.
     pub title: String,
-    /// When.
+    /// The year.
     pub year: Option<u16>,
-    /// Where.
+    /// The address.
     pub url: String,
-    /// Under which licence.
+    /// The licence.
     pub licence: String,
-    /// Which files there.
+    /// The files of the source that were used.
     pub files: String,
-    /// How the recordings and the URDF differ from them.
+    /// The differences of the recordings and the URDF from these files.
     pub converted: String,
 }
 
@@ -120,8 +120,8 @@ impl File {
     /// Reads the file at `path`.
     ///
     /// # Errors
-    /// With file, line, reason and remedy: unreadable, no such TOML, two robots of a name, an effect that is not in the
-    /// catalogue.
+    /// With file, line, reason and remedy, if the file is unreadable or not such a TOML file, if two robots have the same
+    /// name, or if an effect is not in the catalogue.
     pub fn load(path: &Path) -> anyhow::Result<Self> {
         let text = std::fs::read_to_string(path).with_context(|| {
             let path = path.display();
@@ -191,11 +191,11 @@ impl File {
         Ok(file)
     }
 
-    /// What is said of `robot`, whose arm is `arm`, in SI units.
+    /// The published effects of `robot`, whose arm is `arm`, in SI units.
     ///
     /// # Errors
-    /// With file, line, reason and remedy: a joint that the URDF has not, a parameter that the effect has not, a unit that
-    /// is none of it, not one number per joint.
+    /// With file, line, reason and remedy, if the URDF lacks a joint, the effect lacks a parameter, a unit does not fit, or
+    /// there is not one number per joint.
     pub fn published(&self, robot: &Robot, arm: &Arm) -> anyhow::Result<Published> {
         let mut said = Vec::new();
         for says in &robot.says {
@@ -219,7 +219,7 @@ impl File {
                 joints.collect::<anyhow::Result<_>>()?
             };
             for (k, joint) in joints.iter().enumerate() {
-                said.push(Said {
+                said.push(PublishedEffect {
                     effects: says.effects.iter().map(|effect| effect.get_ref().clone()).collect(),
                     joint: joint.as_ref().map(|(name, _)| name.clone()),
                     parameters: self.numbers(says, k, joints.len(), joint.as_ref().map(|(_, kind)| *kind))?,
@@ -319,7 +319,7 @@ impl File {
 }
 
 impl Robot {
-    /// How many names, effects on a joint or on the arm, what is published would contradict.
+    /// The number of names (an effect on a joint or on the arm) that the publication excludes.
     pub fn deniable(&self) -> usize {
         let mut pairs: BTreeSet<(&str, Option<&str>, usize)> = BTreeSet::new();
         for denies in &self.denies {

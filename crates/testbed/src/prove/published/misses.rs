@@ -1,19 +1,19 @@
-//! What does not agree with what is published, up front.
+//! The disagreements with the published values, for the beginning of the report.
 
 use report::block::{Block, text};
 use report::numbers::percent_to_a_tenth as percent;
-use scoring::{Evidence, SaidFate};
+use scoring::{Evidence, PublishedFate};
 
 use super::Tried;
 
 /// The relative difference above which a value is listed at the start.
 const FAR: f64 = 0.2;
 
-/// What was missed, and which of the publishers' own numbers are far from ours, robot by robot.
+/// The effects that were missed, and the published values that differ much from the estimates, robot by robot.
 pub fn blocks(robots: &[Tried]) -> Vec<Block> {
     let missed = each(robots, |tried| {
         let outcomes = tried.score.said.iter();
-        let missed = outcomes.filter(|o| matches!(o.fate, SaidFate::Missed | SaidFate::Unexplained));
+        let missed = outcomes.filter(|o| matches!(o.fate, PublishedFate::Missed | PublishedFate::Unexplained));
         missed
             .map(|outcome| {
                 let said = &outcome.said;

@@ -1,8 +1,8 @@
-//! What a proof on published recordings says, as blocks of its report.
+//! The report of a proof on published recordings, as blocks.
 
 use report::block::{Block, table, text};
 use report::numbers::{percent_to_a_tenth as percent, rounded};
-use scoring::{Compared, Evidence, SaidFate, quantile};
+use scoring::{Compared, Evidence, PublishedFate, quantile};
 
 use super::fold::{error, over_joints};
 use super::robots::names;
@@ -30,19 +30,19 @@ pub fn blocks(real: &Real) -> Vec<Block> {
     list
 }
 
-/// How many of what is said of a robot came out as one of `fates`.
-fn count(tried: &Tried, fates: &[SaidFate]) -> usize {
+/// The number of published effects of a robot whose fate is one of `fates`.
+fn count(tried: &Tried, fates: &[PublishedFate]) -> usize {
     let said = tried.score.said.iter();
     said.filter(|said| fates.contains(&said.fate)).count()
 }
 
-/// The robot's published numbers beside those found.
+/// The robot's published values with the estimates.
 fn numbers(tried: &Tried) -> impl Iterator<Item = &Compared> {
     let said = tried.score.said.iter().flat_map(|said| &said.numbers);
     said.filter(|number| number.found.is_some())
 }
 
-/// `k of n`, and the median of the differences' sizes.
+/// The number of published values within the intervals as `k of n`, and the median of the absolute differences.
 fn agreement<'a>(numbers: impl Iterator<Item = &'a Compared>) -> [String; 2] {
     let list: Vec<&Compared> = numbers.collect();
     let inside = list.iter().filter(|number| number.covered).count();
@@ -55,8 +55,8 @@ fn agreement<'a>(numbers: impl Iterator<Item = &'a Compared>) -> [String; 2] {
 }
 
 fn opening(real: &Real) -> Vec<Block> {
-    use SaidFate::{Confusable, Missed, Named, NotObservable, SameTorque, Unexplained};
-    let sum = |fates: &[SaidFate]| -> usize { real.robots.iter().map(|tried| count(tried, fates)).sum() };
+    use PublishedFate::{Confusable, Missed, Named, NotObservable, SameTorque, Unexplained};
+    let sum = |fates: &[PublishedFate]| -> usize { real.robots.iter().map(|tried| count(tried, fates)).sum() };
     let said: usize = real.robots.iter().map(|tried| tried.score.said.len()).sum();
     let besides = || real.robots.iter().flat_map(|tried| &tried.score.besides);
     let contradicted = besides().filter(|name| name.contradicted_by.is_some()).count();
@@ -112,9 +112,9 @@ fn opening(real: &Real) -> Vec<Block> {
     ]
 }
 
-/// How much the figures above could have failed.
+/// The limits of the test: how far the figures could have failed.
 fn how_hard(real: &Real) -> String {
-    let either = |tried: &Tried, fates: &[SaidFate]| {
+    let either = |tried: &Tried, fates: &[PublishedFate]| {
         let said = tried.score.said.iter().filter(|said| said.said.effects.len() > 1);
         said.filter(|said| fates.contains(&said.fate)).count()
     };
@@ -128,7 +128,7 @@ fn how_hard(real: &Real) -> String {
             .filter(|said| said.said.effects.len() > 1)
             .count()
     });
-    let found = [SaidFate::Named, SaidFate::SameTorque];
+    let found = [PublishedFate::Named, PublishedFate::SameTorque];
     let (named, named_of_several) = (sum(&|tried| count(tried, &found)), sum(&|tried| either(tried, &found)));
     let deniable: Vec<(&str, usize)> = real
         .robots
@@ -158,7 +158,7 @@ fn how_hard(real: &Real) -> String {
 }
 
 fn row(tried: &Tried) -> Vec<String> {
-    use SaidFate::{Confusable, Missed, Named, NotObservable, SameTorque, Unexplained};
+    use PublishedFate::{Confusable, Missed, Named, NotObservable, SameTorque, Unexplained};
     let score = &tried.score;
     let contradicted = score
         .besides
@@ -218,7 +218,7 @@ pub const ERRORS: [&str; 6] = [
     "diagnosed",
 ];
 
-/// How well it predicts what it was not fitted to.
+/// The errors on the held-out recordings.
 fn errors(real: &Real) -> Vec<Block> {
     let row = |tried: &Tried| {
         let (robot, score) = (&tried.robot, &tried.score);

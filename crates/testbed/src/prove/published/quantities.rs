@@ -1,10 +1,10 @@
-//! The units that a published number may be in, as factors to the SI unit at the joint.
+//! The units of published values, with their factors to the SI unit at the joint.
 
 use std::f64::consts::PI;
 
 use arm::JointKind;
 
-/// Effects that are on no joint.
+/// Whether an effect acts on the whole arm.
 pub fn is_on_the_arm(effect: &str) -> bool {
     effects::spec(effect).is_some_and(|spec| spec.scope == effects::Scope::Arm)
 }
@@ -48,7 +48,7 @@ fn units(effect: &str, parameter: &str, kind: Option<JointKind>) -> &'static [Un
     }
 }
 
-/// The factor that takes a number in `unit` to SI, and the SI unit; or what is wrong with the unit, with the remedy.
+/// The factor from `unit` to the SI unit, and the SI unit; the error states the possible units.
 pub fn si(effect: &str, parameter: &str, kind: Option<JointKind>, unit: &str) -> Result<(f64, &'static str), String> {
     let known = units(effect, parameter, kind);
     let found = known.iter().find(|(name, _)| *name == unit);
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn the_diagnosis_says_the_same_units() {
-        // One of each kind, as `diagnose --json` writes them.
+        // One parameter of each kind, with its unit in `diagnose --json`.
         for (effect, parameter, unit) in [
             ("coulomb_friction", "level", "N m"),
             ("torque_offset", "offset", "N m"),

@@ -1,4 +1,5 @@
-//! One robot in the report: what is said and found, what is named besides, what was not seen, and the errors by joint.
+//! One robot in the report: the published effects with the findings, further findings, effects that are not testable, and
+//! the errors by joint.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -6,7 +7,7 @@ use std::collections::BTreeMap;
 use report::block::{Block, table, text};
 use report::numbers::{percent_to_a_tenth as percent, rounded, scaled, short};
 use report::score::name;
-use scoring::{Besides, Compared, Evidence, SaidFate, SaidOutcome};
+use scoring::{Besides, Compared, Evidence, PublishedFate, PublishedOutcome};
 
 use super::Tried;
 use super::fold::error;
@@ -59,8 +60,8 @@ pub fn blocks(tried: &Tried) -> Vec<Block> {
     list
 }
 
-/// A row for each number, or one for what has none.
-fn said(outcome: &SaidOutcome) -> Vec<Vec<String>> {
+/// A row for each published value, or one row for an effect without a value.
+fn said(outcome: &PublishedOutcome) -> Vec<Vec<String>> {
     let said = &outcome.said;
     let effects: Vec<String> = said.effects.iter().map(|effect| format!("`{effect}`")).collect();
     let joint = said
@@ -99,19 +100,19 @@ fn said(outcome: &SaidOutcome) -> Vec<Vec<String>> {
         .collect()
 }
 
-fn came_of(outcome: &SaidOutcome) -> String {
+fn came_of(outcome: &PublishedOutcome) -> String {
     let other = outcome.named_as.as_ref().map(name).unwrap_or_default();
     match outcome.fate {
-        SaidFate::Named => "named".into(),
-        SaidFate::SameTorque => format!("same torque: {other}"),
-        SaidFate::Confusable => format!("alternative of {other}"),
-        SaidFate::NotObservable => "declared not testable".into(),
-        SaidFate::Unexplained => "**missed**; the joint is unexplained".into(),
-        SaidFate::Missed => "**missed**".into(),
+        PublishedFate::Named => "named".into(),
+        PublishedFate::SameTorque => format!("same torque: {other}"),
+        PublishedFate::Confusable => format!("alternative of {other}"),
+        PublishedFate::NotObservable => "declared not testable".into(),
+        PublishedFate::Unexplained => "**missed**; the joint is unexplained".into(),
+        PublishedFate::Missed => "**missed**".into(),
     }
 }
 
-/// Published, found with interval, difference, inside.
+/// The cells: published value, estimate with interval, difference, whether the interval contains the published value.
 fn compared(number: &Compared) -> [String; 4] {
     let scale = number.published;
     let published = quantity(number.published, scale, &number.unit, true);

@@ -1,4 +1,4 @@
-//! Which robots of the file are there, and copies of their files under the names that the protocol knows.
+//! The robots of the file whose recordings exist, and copies of their files under the names of the protocol.
 
 use std::path::Path;
 
@@ -10,10 +10,10 @@ use super::file::{File, Robot};
 use crate::output;
 use crate::prove::cases::Place;
 
-/// The robots whose folders are in `recordings`, with what is said of them in SI, and the names of the others.
+/// The robots whose folders are in `recordings`, with their published values in SI units, and the names of the others.
 ///
 /// # Errors
-/// If there is none, a file of one is missing, or what is said does not fit its URDF.
+/// If there is none, a file of one is missing, or a published effect does not fit its URDF.
 pub fn there(file: &File, recordings: &Path) -> anyhow::Result<(Vec<Robot>, Vec<String>)> {
     let (mut robots, mut absent) = (Vec::new(), Vec::new());
     for robot in &file.robots {
@@ -50,7 +50,7 @@ pub fn there(file: &File, recordings: &Path) -> anyhow::Result<(Vec<Robot>, Vec<
     Ok((robots, absent))
 }
 
-/// Where a robot's copies and its truth are in the proof's folder `out`.
+/// The place of a robot's copies and of its published values in the proof's folder `out`.
 pub fn place(number: usize, robot: &Robot, out: &Path) -> Place {
     Place {
         number,
@@ -73,10 +73,10 @@ pub fn names(robot: &Robot) -> Vec<(String, String)> {
     list
 }
 
-/// Copies the robot's files from `folder` and writes its truth beside them; what is there already must be the same.
+/// Copies the robot's files from `folder` and writes its published values. Files that exist already must be equal.
 ///
 /// # Errors
-/// If a file cannot be copied, or was changed since it was.
+/// If a file cannot be copied, or was changed since it was copied.
 pub fn stage(robot: &Robot, folder: &Path, place: &Place) -> anyhow::Result<()> {
     std::fs::create_dir_all(&place.folder).with_context(|| place.folder.display().to_string())?;
     for (from, to) in names(robot) {

@@ -7,15 +7,15 @@ use faults::{CasePlan, Robot};
 use super::TASK;
 use crate::scenario::Scenario;
 
-/// How many cases are tracked at most, and how many of them with something outside the catalogue.
+/// The largest number of tracked cases, and of those with an effect outside the catalogue.
 const MOST: usize = 12;
 const OUTSIDE: usize = 2;
-/// What acts in a window of a recording and nowhere else: it is not there when the task is tracked.
+/// The effect that acts only in a window of a recording, and not while the task is tracked.
 const PASSES: &str = "external_contact";
 
-/// The numbers of the cases that are tracked, of those on the task's robot: in the order they are drawn those that bring a family that none before
-/// them brought, two with something outside the catalogue among them; then, if these are fewer than a dozen, the first of the others that
-/// conceal something.
+/// The numbers of the cases that are tracked, of those on the task's robot with an injected fault: each case, in their
+/// order, that adds an effect family to the preceding ones, including two with an effect outside the catalogue; if these
+/// are fewer than a dozen, the first of the other cases complete the list.
 ///
 /// # Errors
 /// If the task's scenario cannot be read.
@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_dozen_of_different_families_is_chosen_by_the_plan() {
+    fn a_dozen_cases_of_different_families_is_selected_from_the_plan() {
         let robots =
             crate::conceal::robots(&[], &crate::cli::ChainArgs::default()).expect("they come with the program");
         let campaign = |cases: usize| Campaign {

@@ -1,4 +1,4 @@
-//! The closed loop on a case's machine: computed torque, the same gains whatever the model.
+//! The closed loop on a case's machine: computed torque with the same gains for all models.
 
 use arm::Arm;
 use faults::{CaseMachine, FaultError, VelocityFilter};
@@ -12,19 +12,20 @@ use crate::scenario::Scenario;
 
 /// A run under a model; `[tick × dof + joint]`.
 pub struct Run {
-    /// Where the links were (rad or m); empty if the loop left all bounds.
+    /// The positions of the links (rad or m); empty if the loop left all bounds.
     pub links: Vec<f64>,
-    /// The torques commanded (N m or N); empty likewise.
+    /// The commanded torques (N m or N); empty if the loop left all bounds.
     #[cfg_attr(not(feature = "viewer"), expect(dead_code, reason = "the viewer is its reader"))]
     pub tau: Vec<f64>,
-    /// In how many ticks an effort limit cut the torque, one per joint.
+    /// The number of ticks in which an effort limit cut the torque, one per joint.
     cut: Vec<usize>,
 }
 
-/// What the measured velocity, which is filtered, is compared with.
+/// The reference velocity with which the filtered measured velocity is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rate {
-    /// The reference's as it is, as in the loop that recordings are made in: the filter's lag is an error under every model.
+    /// The unfiltered reference velocity, as in the loop of the recordings. The lag of the filter is then an error with
+    /// every model.
     AsItIs,
     /// The reference velocity passes the same filter, so that only model errors remain.
     Filtered,
@@ -45,7 +46,7 @@ pub fn run(
     rate: Rate,
 ) -> anyhow::Result<Run> {
     let dof = course.dof;
-    // The feed-forward comes from the plan; the controller's own model is not asked.
+    // The feed-forward comes from the plan, not from the controller's own model.
     let model = RigidBody::new(arm.clone());
     let mut controller = Controller::new(&model, arm.clone(), task.feedback.clone())?;
     let mut command = Command::new(dof);
@@ -74,7 +75,7 @@ pub fn run(
     });
     let (links, tau) = match driven {
         Ok(driven) => (driven.links, driven.tau),
-        // An arm that runs away under a model is a result.
+        // An arm that leaves all bounds with a model is a result, not an error.
         Err(FaultError::Plant(_)) => (Vec::new(), Vec::new()),
         Err(error) => return Err(error.into()),
     };
@@ -82,7 +83,7 @@ pub fn run(
 }
 
 impl Run {
-    /// The links' distance from the task's reference; `other` is the same with [`Rate::Filtered`].
+    /// The tracking error of the links; `other` is the run of the same model with [`Rate::Filtered`].
     pub fn tracked(&self, model: Model, other: &Self, course: &Course) -> Tracked {
         let (rms, largest) = self.errors(course);
         Tracked {

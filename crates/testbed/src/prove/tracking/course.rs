@@ -1,13 +1,13 @@
-//! The task's reference at every tick of 1 ms, and the way into it from rest.
+//! The task's reference at every tick of 1 ms, preceded by a smooth start from rest.
 
 use crate::scenario::Scenario;
 use torque::Motion;
 
-/// A tick (s): the machine's own.
+/// The period of the machine's ticks (s).
 pub const TICK: f64 = 1e-3;
-/// How long the arm takes to come up to the task's speed (s).
+/// The duration of the start from rest to the task's speed (s).
 const RUN_IN: f64 = 3.0;
-/// How far beyond the end late drives must be told what to do (ticks): the longest delay that can be concealed.
+/// The number of ticks beyond the end for which delayed drives need commands: the longest delay that can be injected.
 const BEYOND: usize = 128;
 
 /// Positions, velocities and accelerations; `[tick × dof + joint]`, rad or m.
@@ -17,7 +17,7 @@ pub struct Table {
     pub qdd: Vec<f64>,
 }
 
-/// What is to be tracked.
+/// The motion to be tracked.
 pub struct Course {
     /// Joints.
     pub dof: usize,
@@ -29,7 +29,8 @@ pub struct Course {
     pub ticks: usize,
     /// At the ticks.
     pub at: Table,
-    /// In the middle between a tick and the next, where a torque that is held between them is right; some more than there are ticks.
+    /// The reference in the middle between each tick and the next, at which a torque that is held for the tick is exact. It
+    /// continues for [`BEYOND`] ticks.
     pub middle: Table,
 }
 
@@ -48,7 +49,7 @@ impl Course {
         }
     }
 
-    /// The task's own time of a tick (s); negative on the way into it.
+    /// The time of a tick on the task's clock (s); negative during the start from rest.
     #[cfg(any(test, feature = "viewer"))]
     pub fn time(&self, tick: usize) -> f64 {
         tick as f64 * TICK - RUN_IN
@@ -81,8 +82,8 @@ fn table(task: &Scenario, ticks: usize, after: f64) -> Table {
     table
 }
 
-/// Where on the task's own curve the arm is at `time` (s), how fast it goes along it, and that rate's rate: from rest it comes up to
-/// the task's speed at time 0.
+/// The time on the task's clock at which the reference is evaluated at `time` (s), with its first and second derivative. It
+/// starts at rest and reaches the rate of one at time 0.
 fn way(time: f64) -> [f64; 3] {
     if time >= 0.0 {
         return [time, 1.0, 0.0];
@@ -90,7 +91,7 @@ fn way(time: f64) -> [f64; 3] {
     let x = 1.0 + time / RUN_IN;
     let rate = x * x * x * (10.0 + x * (6.0 * x - 15.0));
     let change = 30.0 * x * x * (1.0 - x) * (1.0 - x) / RUN_IN;
-    // The integral of the rate, which is half of the time when the task begins.
+    // The integral of the rate, which is half of the elapsed time when the task begins.
     let along = RUN_IN * (x.powi(4) * (2.5 + x * (x - 3.0)) - 0.5);
     [along, rate, change]
 }
@@ -99,9 +100,9 @@ fn way(time: f64) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    /// From rest into the task without a jump; velocities and accelerations are the derivatives of positions.
+    /// The start from rest into the task has no jump; velocities and accelerations are the derivatives of positions.
     #[test]
-    fn the_way_into_the_task_is_smooth() {
+    fn the_start_of_the_task_is_smooth() {
         let task = Scenario::built_in("taskD").expect("it comes with the program");
         let course = Course::new(&task, 90.0);
         let n = course.dof;

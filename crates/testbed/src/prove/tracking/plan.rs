@@ -1,4 +1,4 @@
-//! The feed-forward of a model along the course: torques, and what the encoders are to say.
+//! The feed-forward of a model along the course: torques, and reference positions of the encoders.
 
 use arm::Arm;
 use effects::Effect;
@@ -8,16 +8,16 @@ use torque::{Corrected, Learned, Prediction, RigidBody, TorqueModel, Workspace};
 
 use super::course::{Course, TICK};
 
-/// What a model says of the middles of the course; `[tick × dof + joint]`.
+/// The feed-forward of a model at the middles between ticks; `[tick × dof + joint]`.
 #[derive(Clone)]
 pub struct Plan {
-    /// Torques of all that has a law (N m or N), as the drives report them.
+    /// The torques of the rigid body and of effects (N m or N), as the drives report them.
     pub known: Vec<f64>,
-    /// Torques that were learned.
+    /// The learned torques (N m or N).
     pub learned: Vec<f64>,
-    /// What the encoders say beyond the links' positions (rad or m).
+    /// The difference between the encoders' readings and the links' positions (rad or m).
     beyond: Vec<f64>,
-    /// How late each drive acts (s).
+    /// The delay of each drive (s).
     delays: Vec<f64>,
 }
 
@@ -32,7 +32,7 @@ impl Plan {
         }
     }
 
-    /// The URDF alone.
+    /// The feed-forward of the URDF.
     pub fn nominal(arm: &Arm, course: &Course) -> Self {
         let mut plan = Self::new(course);
         let model = RigidBody::new(arm.clone());
@@ -43,8 +43,8 @@ impl Plan {
         plan
     }
 
-    /// The URDF and the effects named: torques, delays made up for by commanding early, encoder offsets and the give of a spring by
-    /// where the encoder is sent. Limits and gaps stay what they are.
+    /// The feed-forward of the URDF with the named effects. A delay is compensated by an earlier command, an encoder offset
+    /// and the deflection of a spring by the reference of the encoder. Limits and gaps are not compensated.
     pub fn diagnosed(arm: &Arm, effects: &[Effect], course: &Course) -> anyhow::Result<Self> {
         let (model, mut plan) = (correction(arm, effects)?, Self::new(course));
         let offsets = model.encoder_offsets();
@@ -74,7 +74,8 @@ impl Plan {
         Ok(plan)
     }
 
-    /// A rotor behind a spring goes ahead of its link by the link's torque over the stiffness, and is accelerated accordingly.
+    /// A rotor that drives its link through a spring leads the link by the link's torque over the stiffness. Its
+    /// acceleration differs accordingly.
     fn stretch(
         &mut self,
         arm: &Arm,
@@ -102,7 +103,7 @@ impl Plan {
         Ok(())
     }
 
-    /// With what was learned on top of it.
+    /// This plan with the learned torques of `model`.
     pub fn with(mut self, model: &Learned, course: &Course) -> Self {
         along(course, |row, workspace, [q, qd, qdd], prediction| {
             model.predict(workspace, q, qd, qdd, prediction);
@@ -111,7 +112,7 @@ impl Plan {
         self
     }
 
-    /// The true machine's own laws.
+    /// The feed-forward by the true machine's own laws.
     pub fn exact(machine: &CaseMachine<'_>, course: &Course) -> Self {
         let inverse = machine.inverse(&LinkMotion {
             start: course.middle_time(0),
@@ -127,7 +128,7 @@ impl Plan {
         }
     }
 
-    /// The torques, known and learned, that joint `j` is to be commanded at a tick so that they act when they are needed.
+    /// The model's and the learned torque to command to joint `j` at a tick (N m or N), advanced by the delay of the drive.
     pub fn command(&self, tick: usize, j: usize) -> [f64; 2] {
         let dof = self.delays.len();
         let ticks = self.delays[j] / TICK;
@@ -137,7 +138,8 @@ impl Plan {
         [&self.known, &self.learned].map(|torque| torque[at] + part * (torque[next] - torque[at]))
     }
 
-    /// What the encoder of joint `j` is to say at a tick, and at what rate, beyond the course (rad or m).
+    /// The difference between the reference of the encoder of joint `j` and the course at a tick, and its rate (rad or m,
+    /// per s).
     pub fn beyond(&self, tick: usize, j: usize) -> [f64; 2] {
         let dof = self.delays.len();
         let [before, after] = [tick.saturating_sub(1), tick].map(|tick| self.beyond[tick * dof + j]);
@@ -145,13 +147,15 @@ impl Plan {
     }
 }
 
-/// The named effects as a model of what a drive must give: what cuts its torque is no reason to ask for less.
+/// The named effects as a model of the torque that a drive must give. Torque limits are omitted, because they are no reason
+/// to command less.
 pub fn correction(arm: &Arm, effects: &[Effect]) -> anyhow::Result<Corrected> {
     let asked = effects.iter().filter(|effect| !effect.is(&TorqueSaturation));
     Ok(Corrected::new(arm, &asked.cloned().collect::<Vec<_>>())?)
 }
 
-/// Goes along the middles of the course; `visit` gets the row's place, scratch, and the motion.
+/// Calls `visit` for each middle of the course, with the index of the row, scratch, the motion and scratch for a
+/// prediction.
 fn along(course: &Course, mut visit: impl FnMut(usize, &mut Workspace, [&[f64]; 3], &mut Prediction)) {
     let dof = course.dof;
     let (mut workspace, mut prediction) = (Workspace::new(dof), Prediction::new(dof));

@@ -39,7 +39,7 @@ const TABS: [(&str, &str, [&str; 2]); 2] = [
     ("Torque commanded", "torque", ["N m", "N"]),
 ];
 
-/// Writes the runs, one per model, to `path`; meshes are looked for from the folder of `urdf`.
+/// Writes the runs, one per model, to `path`; meshes are searched from the folder of `urdf`.
 ///
 /// # Errors
 /// If the file cannot be written; it is then absent.

@@ -1,4 +1,4 @@
-//! Tracking as a step of the protocol: a file per case, whole, that is not made again.
+//! Tracking as a step of the protocol, with one complete file per case. Finished files are not made again.
 
 use std::path::PathBuf;
 
@@ -24,7 +24,7 @@ pub fn track(source: &Cases, vault: &Vault, place: &Place, sealed: &SealedCase, 
     let (path, timeline) = (file(vault, place, "json"), file(vault, place, "rrd"));
     let done = file(vault, place, "done.json");
     let timeline = cfg!(feature = "viewer").then_some(timeline);
-    // What was changed since it was made is made again.
+    // A result whose inputs have changed is made again.
     let is_done = || -> Option<bool> {
         let there: Done = serde_json::from_str(&std::fs::read_to_string(&done).ok()?).ok()?;
         let as_it_was = there.sha256 == sha256(&std::fs::read(&path).ok()?);
@@ -44,7 +44,7 @@ pub fn track(source: &Cases, vault: &Vault, place: &Place, sealed: &SealedCase, 
         truth: &truth,
         named: model.as_deref(),
     };
-    // Cases are shared out to threads already.
+    // One thread per case, because cases already run in parallel.
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(1)
         .build()
@@ -55,10 +55,10 @@ pub fn track(source: &Cases, vault: &Vault, place: &Place, sealed: &SealedCase, 
     output::write_json(&done, &Done { made_of, sha256 })
 }
 
-/// What a finished step leaves beside its file.
+/// The record of a finished step.
 #[derive(Deserialize, Serialize)]
 struct Done {
-    /// SHA-256 of what it was made of.
+    /// SHA-256 of its inputs.
     made_of: String,
     /// SHA-256 of the file.
     sha256: String,

@@ -1,4 +1,4 @@
-//! A machine whose effects are known: what each model is worth on it.
+//! Tracking with each model on machines with known effects.
 
 use effects::Effect;
 use effects::drive::{ActuationDelay, JointElasticity, RotorInertia};
@@ -8,7 +8,7 @@ use faults::{Injected, Settings, conceal_effects, write_case};
 
 use super::*;
 
-/// Conceals `effects` in the PUMA 560, and tracks the task with `named` as what was diagnosed.
+/// Injects `effects` into the PUMA 560, and tracks the task with `named` as the diagnosed effects.
 fn tracked(effects: &[Injected], named: &[Effect]) -> CaseTracking {
     let robots = crate::conceal::robots(&["puma560".to_owned()], &crate::cli::ChainArgs::default())
         .expect("it comes with the program");
@@ -38,12 +38,12 @@ fn tracked(effects: &[Injected], named: &[Effect]) -> CaseTracking {
     case.track(String::new(), None).expect("it can be tracked")
 }
 
-/// Without the velocity filter's lag, which is an error under every model.
+/// The errors without the lag of the velocity filter, which is an error with every model.
 fn errors(tracking: &CaseTracking) -> [f64; 5] {
     Model::ALL.map(|model| tracking.error_without_lag(model).expect("no loop is lost"))
 }
 
-/// The true effect put in is as good as the exact model, and both are far better than none.
+/// The model with the true effect is as good as the exact model, and both are far better than the model without it.
 #[test]
 fn a_true_name_tracks_as_the_exact_model_does() {
     let joint = || "joint2".to_owned();
@@ -63,9 +63,10 @@ fn a_true_name_tracks_as_the_exact_model_does() {
     assert!(tracking.over_exact().is_some_and(|over| over < 1.05));
 }
 
-/// What is no torque: a late drive is commanded early, an encoder and a spring's rotor are sent where they belong.
+/// Effects that are not torques: a delayed drive is commanded earlier, and the references of an encoder with an offset and
+/// of a rotor behind a spring are shifted.
 #[test]
-fn drives_are_made_up_for() {
+fn delays_offsets_and_deflections_are_compensated() {
     let on = |name: &str| Some(format!("joint{name}"));
     let effects = [
         Injected::new("actuation_delay", on("1").as_deref()).with("delay", 0.0085),
@@ -87,7 +88,7 @@ fn drives_are_made_up_for() {
     ];
     let tracking = tracked(&effects, &named);
     let [nominal, diagnosed, learned, _, exact] = errors(&tracking);
-    // Nothing that is learned of torques sends an encoder elsewhere.
+    // A learned torque cannot correct the reference of an encoder.
     assert!(learned.min(nominal) > 0.9 * 0.03 / 6_f64.sqrt(), "{learned} {nominal}");
     assert!(exact < 0.05 * nominal, "{exact} {nominal}");
     assert!((diagnosed / exact - 1.0).abs() < 0.1, "{diagnosed} {exact}");

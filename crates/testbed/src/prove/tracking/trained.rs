@@ -1,4 +1,5 @@
-//! Independent Joint Learning on the recordings that a diagnosis was fitted to, alone and on top of what was named.
+//! Independent Joint Learning on the recordings that a diagnosis was fitted to, with the URDF alone and with the named
+//! effects.
 
 use std::path::Path;
 
@@ -13,7 +14,7 @@ use validate::learned::{self, LearnedOptions, RecordedMotion};
 
 use super::plan::correction;
 
-/// Samples learned from: twice those of a diagnosis, which only compares; the cost grows with the cube.
+/// The number of samples: twice that of a diagnosis, which needs them for a comparison only. The cost grows with the cube.
 const SAMPLES: usize = 300;
 
 /// The training recordings as a diagnosis filters and differentiates them.
@@ -43,7 +44,7 @@ impl Recorded {
                 before: false,
             })
             .collect();
-        // Nothing is fitted: what is wanted is its filtered motion.
+        // Nothing is fitted; only the filtered motion is needed.
         let options = Options {
             only: Some(Vec::new()),
             ..Options::default()
@@ -54,7 +55,7 @@ impl Recorded {
         })
     }
 
-    /// Learns what `arm` with `effects` leaves of the recorded torques.
+    /// Learns the residual of `arm` with `effects` on the recorded torques.
     ///
     /// # Errors
     /// If the effects do not fit the arm, or a regression fails.
@@ -65,7 +66,7 @@ impl Recorded {
         let mut rows = [vec![0.0; dof], vec![0.0; dof], vec![0.0; dof]];
         let mut changed: Vec<[Vec<Vec<f64>>; 2]> = Vec::new();
         for trace in &self.traces {
-            // What acts is to be explained, not what was commanded: that was earlier, or more.
+            // The applied torque must be explained, not the commanded one, which may be earlier or larger.
             let mut tau: Vec<Vec<f64>> = (0..dof)
                 .map(|j| applied(trace, j, effects, &arm.joints()[j].name))
                 .collect();
@@ -79,7 +80,7 @@ impl Recorded {
                 let [said, qd, qdd] = &rows;
                 model.predict_at(trace.time[row], &mut workspace, said, qd, qdd, &mut prediction);
                 for j in 0..dof {
-                    // Rigid torque and inputs are those of where the joint stands.
+                    // Rigid torque and inputs are those of the true positions, without encoder offsets.
                     q[j][row] += model.encoder_offsets()[j];
                     tau[j][row] -= prediction.effects[j];
                 }
@@ -106,7 +107,7 @@ impl Recorded {
     }
 }
 
-/// The torque that the drive of joint `j`, called `joint`, applied by the effects named: late, and limited.
+/// The torque that the drive of joint `j`, named `joint`, applied according to the named effects: delayed and limited.
 fn applied(trace: &Trace, j: usize, effects: &[Effect], joint: &str) -> Vec<f64> {
     let (mut late, mut most) = (0.0, f64::INFINITY);
     for effect in effects.iter().filter(|effect| effect.joint() == Some(joint)) {
@@ -123,7 +124,7 @@ fn applied(trace: &Trace, j: usize, effects: &[Effect], joint: &str) -> Vec<f64>
     tau
 }
 
-/// A signal's values so much earlier (s), linear between rows and the first before them.
+/// A signal delayed by `late` (s): linear between rows, and equal to the first value before the first row.
 fn shifted(time: &[f64], values: &[f64], late: f64) -> Vec<f64> {
     if late == 0.0 {
         return values.to_vec();

@@ -14,7 +14,7 @@ const BASELINE: [&str; 3] = ["coulomb_friction", "viscous_friction", "rotor_iner
 /// The target for the tracking error with a diagnosed model over that with the exact one.
 const WANTED: f64 = 1.5;
 
-/// The heading, what was done, and the table; `cases` may be none.
+/// The section: heading, description and table; `cases` may be empty.
 pub fn blocks(cases: &[CaseTracking]) -> Vec<Block> {
     let mut list = vec![Block::Heading("Closed-loop tracking with the diagnosed model")];
     if cases.is_empty() {
@@ -83,7 +83,7 @@ pub fn blocks(cases: &[CaseTracking]) -> Vec<Block> {
     list
 }
 
-/// mrad.
+/// An error in mrad.
 fn figure(error: Option<f64>) -> String {
     error.map_or_else(|| "unstable".to_owned(), |error| rounded(1e3 * error, 3))
 }
@@ -120,7 +120,7 @@ fn row(case: &CaseTracking) -> Vec<String> {
     cells
 }
 
-/// Where the diagnosed model is worse than the exact one, and which names are missing or too many.
+/// The joint on which the diagnosed model is worse than the exact one, and the names that are missing or false.
 fn why(case: &CaseTracking) -> String {
     let of = |model: Model| case.runs.iter().find(|run| run.model == model);
     let place = of(Model::Diagnosed)
