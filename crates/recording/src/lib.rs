@@ -5,9 +5,11 @@
 //! which the drive sampled; [`Quality`] describes the recording before anything is fitted to it.
 
 mod arrays;
+mod bag_course;
 mod bag_order;
 mod bag_windows;
 mod bytes;
+mod cdr;
 mod clock;
 mod column_map;
 mod csv_write;
@@ -25,6 +27,7 @@ mod joint_state;
 mod origin;
 mod parts;
 mod quality;
+mod quantity;
 mod regular;
 mod rows;
 mod series;
@@ -43,10 +46,11 @@ pub use column_map::ColumnMap;
 pub use error::{RecordingError, write_remedy};
 pub use origin::{Origin, OriginColumn};
 pub use quality::{Finding, FindingKind, JointQuality, Quality};
+pub use quantity::Quantity;
 pub use regular::{RegularRecording, Segment};
 pub use table::{Column, Place};
 pub use toml_error::{nearest, toml_reason};
-pub use warning::{Quantity, Warning};
+pub use warning::Warning;
 pub use whole_file::write_whole;
 
 /// One quantity of every joint: `signal[joint][sample]`.
