@@ -121,7 +121,7 @@ pub struct Fit {
     /// The factor of the model's torque.
     pub factor: Vec<f64>,
     /// The residual share without the model's torque.
-    without: Vec<f64>,
+    pub without: Vec<f64>,
     /// The measured torque's standard deviation over the model's.
     pub size: Vec<f64>,
 }
