@@ -3,6 +3,20 @@
 //! A simulation and a robot both make a [`Recording`]: time, positions, velocities and torques of named joints, on the
 //! joint side, in s, rad (m), rad/s (m/s) and N m (N). [`Recording::regular`] assigns its rows to the regular clock on
 //! which the drive sampled; [`Quality`] describes the recording before anything is fitted to it.
+//!
+//! ```
+//! use recording::{Quality, Recording};
+//!
+//! let recording = Recording::read("../../examples/double_pendulum/r143339.csv.gz".as_ref())?;
+//! let (regular, warnings) = recording.regular()?;
+//! assert_eq!(recording.joints, ["joint1", "joint2"]);
+//! assert!((1.0 / regular.period - 500.0).abs() < 0.1);
+//! for warning in recording.warnings.iter().chain(&warnings) {
+//!     println!("{warning}");
+//! }
+//! assert!(Quality::of(&recording, &regular).joints[0].moves);
+//! # Ok::<(), recording::RecordingError>(())
+//! ```
 
 mod arrays;
 mod bag_course;
