@@ -21,7 +21,7 @@ const KNOWN: &[(&[u8], &str, &str)] = &[
     (
         b"#ROSBAG",
         "a bag of ROS 1",
-        "it is not read; convert it with rosbags-convert into a bag of ROS 2",
+        "it is not read; convert it into a bag of ROS 2: pip install rosbags, then rosbags-convert --src run.bag --dst run",
     ),
     (
         b"ARROW1",
