@@ -76,6 +76,17 @@ fn torques_times_and_positions_in_another_unit_are_told_with_the_remedy() {
         &doubted_with(&scaled(0..1, 1e3)),
         &["its rows are 4.000 s apart", "unit = \"ms\"", "--map"],
     );
+    // Of rows so far apart, next to none are held.
+    let in_us = |torques: f64| {
+        changed(|cells| {
+            for (column, factor) in [(0, 1e6), (4, torques)] {
+                cells[column] = (cells[column].parse::<f64>().expect("a number") * factor).to_string();
+            }
+        })
+    };
+    let rare = case();
+    rare.sandbox.write("b.csv", &in_us(1.1));
+    says(&doubted(&rare, &in_us(1.0)), &["rows are 4000.000 s apart", "\"us\""]);
     let constant = changed(|cells| cells[4..].iter_mut().for_each(|cell| *cell = "5".into()));
     says(&refused_with(&constant), &["a.csv: all torques are constant", "--map"]);
     // Three times the torque is no unit.

@@ -6,6 +6,19 @@
 //!
 //! A link's frame is its URDF frame, at its joint. Poses are written `a_from_b`. In spatial vectors the angular part
 //! comes first.
+//!
+//! ```
+//! use arm::{Arm, Workspace};
+//!
+//! let arm = Arm::from_urdf("../../assets/puma560.urdf")?;
+//! let mut workspace = Workspace::new(&arm);
+//! let (q, rest) = ([0.0, -1.0, 1.0, 0.0, 0.5, 0.0], [0.0; 6]);
+//! let (mut holding, mut acceleration) = ([0.0; 6], [1.0; 6]);
+//! arm.gravity_torque(&mut workspace, &q, &mut holding);
+//! arm.forward_dynamics(&mut workspace, &q, &rest, &holding, &mut acceleration);
+//! assert!(acceleration.iter().all(|a| a.abs() < 1e-9));
+//! # Ok::<(), arm::ArmError>(())
+//! ```
 
 mod batch;
 mod chain;

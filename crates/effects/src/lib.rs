@@ -4,6 +4,16 @@
 //! relations, words), the forms to try, the law of its columns, what physics allows, how its parameters are read from an
 //! estimate, and how it is put into a [`Machine`]. The fit of a diagnosis and the feed-forward of a corrected model come
 //! from the same file. [`spec`](spec()) gives what is known of a name.
+//!
+//! ```
+//! use effects::Effect;
+//! use effects::friction::CoulombFriction;
+//!
+//! let friction = Effect::of(&CoulombFriction).on("elbow").with("level", 0.4);
+//! assert_eq!(friction.name(), "coulomb_friction");
+//! assert_eq!(friction.number("level"), 0.4);
+//! assert_eq!(effects::spec("coulomb_friction").map(|spec| spec.title), Some("Coulomb friction"));
+//! ```
 
 pub mod background;
 mod compliance;

@@ -5,6 +5,16 @@
 //! one, [`conceal_effects`] injects given effects. Both simulate the plant with the faults in a 1 kHz position loop,
 //! record what encoders and drives report, and return the [`Truth`]. [`write_case`] writes recordings and truth to
 //! different places, and a [`Seal`] contains their hashes.
+//!
+//! ```
+//! use faults::Campaign;
+//!
+//! let campaign = Campaign { seed: 7, cases: 12, lifelike: true, urdf_error: None };
+//! let plans = campaign.plans();
+//! assert_eq!(plans.len(), 12);
+//! assert_eq!(plans.iter().filter(|plan| plan.effects.is_empty()).count(), 4);
+//! assert_eq!(campaign.case(3), plans.get(3).cloned());
+//! ```
 
 mod campaign;
 mod case;

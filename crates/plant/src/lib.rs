@@ -18,6 +18,20 @@
 //! such event costs about five trial steps, and each step with a stuck joint two additional rapier steps.
 //!
 //! There are no contacts and no joint limits. The same inputs give bit-identical results.
+//!
+//! ```
+//! use arm::Arm;
+//! use plant::{Plant, PlantOptions};
+//!
+//! let arm = Arm::from_urdf("../../assets/puma560.urdf")?;
+//! let mut plant = Plant::new(&arm, &PlantOptions::default())?;
+//! plant.set_state(&[0.0, -1.0, 1.0, 0.0, 0.5, 0.0], &[0.0; 6])?;
+//! for _ in 0..100 {
+//!     plant.step(&[0.0; 6])?;
+//! }
+//! assert!((plant.time() - 0.1).abs() < 1e-9 && plant.qd()[1] != 0.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod bodies;
 mod complementarity;

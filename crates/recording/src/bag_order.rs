@@ -1,58 +1,34 @@
-//! The order of a bag's messages: a few that come late are used, and a clock that is set back is refused.
+//! What is said about the order of a bag's messages.
 
 use std::collections::BTreeMap;
 
 use crate::Warning;
 use crate::table::Place;
 
-/// A message that is earlier by more than this (ns) than one before it did not come late: the clock was set back.
-const LATEST: i64 = 1_000_000_000;
-/// Nor did so many messages of a joint one after the other, if more follow.
-const MOST_LATE: u64 = 10;
-
-/// A message, by its number in the bag.
+/// A message that is earlier than one before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Late {
+    /// Its number in the bag.
     number: u64,
     /// Its time, and how much earlier it is than one before it (ns).
     time: i64,
     late: i64,
 }
 
-/// The latest time of a joint in a topic (ns): by the stamps of the messages, and by the times at which those without a stamp
-/// were logged, which are another clock.
-#[derive(Debug, Default)]
-pub struct Latest([Option<i64>; 2], Option<(Late, u64)>);
-
-impl Latest {
-    /// Takes message `number` at `time` (ns): how late it is, if it is earlier than one before it.
-    ///
-    /// # Errors
-    /// The message from which on the clock was set back.
-    pub fn lateness(&mut self, (number, time): (u64, i64), is_stamped: bool) -> Result<Option<Late>, Late> {
-        let latest = self.0[usize::from(is_stamped)].get_or_insert(time);
+impl Late {
+    /// Message `number` at `time` (ns), after one at `latest`.
+    pub fn new(number: u64, time: i64, latest: i64) -> Self {
         let late = latest.saturating_sub(time);
-        *latest = time.max(*latest);
-        if late <= 0 {
-            self.1 = None;
-            return Ok(None);
-        }
-        let message = Late { number, time, late };
-        let (first, count) = self.1.get_or_insert((message, 0));
-        *count += 1;
-        if late > LATEST {
-            return Err(message);
-        }
-        if *count > MOST_LATE {
-            return Err(*first);
-        }
-        Ok(Some(message))
+        Self { number, time, late }
     }
 }
 
-/// The late messages of each topic.
+/// The late messages of each topic, and those with a wrong stamp.
 #[derive(Debug, Default)]
-pub struct Order(BTreeMap<String, Counted>);
+pub struct Order {
+    late: BTreeMap<String, Counted>,
+    wrong: BTreeMap<String, (u64, u64)>,
+}
 
 #[derive(Debug)]
 struct Counted {
@@ -66,7 +42,7 @@ struct Counted {
 impl Order {
     /// Counts a late message of `topic`.
     pub fn count(&mut self, Late { number, late, .. }: Late, topic: &str) {
-        let counted = self.0.entry(topic.to_owned()).or_insert(Counted {
+        let counted = self.late.entry(topic.to_owned()).or_insert(Counted {
             messages: 0,
             first: number,
             largest: 0,
@@ -75,49 +51,45 @@ impl Order {
         counted.largest = late.max(counted.largest);
     }
 
-    /// A warning about each topic with late messages.
+    /// Counts messages of `topic` with a wrong stamp, of which the first has this number.
+    pub fn count_wrong(&mut self, (first, messages): (u64, u64), topic: &str) {
+        let (least, all) = self.wrong.entry(topic.to_owned()).or_insert((first, 0));
+        *least = first.min(*least);
+        *all += messages;
+    }
+
+    /// A warning about each topic with such messages.
     pub fn warnings(&self) -> Vec<Warning> {
-        let warning = |(topic, late): (&String, &Counted)| Warning::OutOfOrder {
+        let late = |(topic, late): (&String, &Counted)| Warning::OutOfOrder {
             topic: topic.clone(),
             line: Place::Row(late.first),
             messages: late.messages,
             largest: late.largest as f64 * 1e-9,
         };
-        self.0.iter().map(warning).collect()
+        let wrong = |(topic, (first, messages)): (&String, &(u64, u64))| Warning::WrongStamps {
+            topic: topic.clone(),
+            line: Place::Row(*first),
+            messages: *messages,
+        };
+        let late = self.late.iter().map(late);
+        late.chain(self.wrong.iter().map(wrong)).collect()
     }
 }
 
 /// The error that the clock of `topic` was set back before a message.
 pub fn set_back(Late { number, time, late }: Late, topic: &str) -> String {
     format!(
-        "message {number} of joint states, in {topic}: time runs back by {:.3} s, to {:.3} s, within the same joints: was the clock \
-         set back, or is a message before it stamped too late? Cut the bag here or leave that message out, sort the messages by \
-         time, or leave the topic out (`topics` in a column map)",
+        "message {number} of joint states, in {topic}: time runs back by {:.3} s, to {:.3} s, within the same joints, and goes on from \
+         there: was the clock set back? Cut the bag here, sort the messages by time, or leave the topic out (`topics` in a column map)",
         late as f64 * 1e-9,
         time as f64 * 1e-9
     )
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn stamps_and_times_of_logging_are_two_clocks() {
-        let mut latest = Latest::default();
-        // Before a simulation begins, its messages have no stamp.
-        let messages = [
-            (5000, false),
-            (10, true),
-            (30, true),
-            (20, true),
-            (5100, false),
-            (31, true),
-        ];
-        let late = messages.map(|(time, is_stamped)| {
-            let late = latest.lateness((1, time), is_stamped).expect("it is late at most");
-            late.map_or(0, |late| late.late)
-        });
-        assert_eq!(late, [0, 0, 0, 10, 0, 0]);
-    }
+/// The error that time began again in other joint states than those of `topic`.
+pub fn not_set_back(number: u64, topic: &str) -> String {
+    format!(
+        "message {number} of joint states, in {topic}: time began again in other joint states before, and here it did not: were they \
+         stamped by two clocks? Cut the bag, or leave a topic out (`topics` in a column map)"
+    )
 }

@@ -157,8 +157,10 @@ impl Recording {
         // A format that holds all in memory has chosen the windows.
         let seconds = seconds.filter(|_| table.left_out == 0.0);
         let mut rows = Rows::new(path, has_lines, &plan, (most, seconds));
+        let mut number = 0;
         while let Some(row) = table.rows.next()? {
-            rows.take(&row)?;
+            rows.take(&row, table.breaks.contains(&number))?;
+            number += 1;
         }
         let mut recording = rows.finish(warnings, table.rows.warnings())?;
         recording.left_out += table.left_out;

@@ -3,11 +3,27 @@
 //! A simulation and a robot both make a [`Recording`]: time, positions, velocities and torques of named joints, on the
 //! joint side, in s, rad (m), rad/s (m/s) and N m (N). [`Recording::regular`] assigns its rows to the regular clock on
 //! which the drive sampled; [`Quality`] describes the recording before anything is fitted to it.
+//!
+//! ```
+//! use recording::{Quality, Recording};
+//!
+//! let recording = Recording::read("../../examples/double_pendulum/r143339.csv.gz".as_ref())?;
+//! let (regular, warnings) = recording.regular()?;
+//! assert_eq!(recording.joints, ["joint1", "joint2"]);
+//! assert!((1.0 / regular.period - 500.0).abs() < 0.1);
+//! for warning in recording.warnings.iter().chain(&warnings) {
+//!     println!("{warning}");
+//! }
+//! assert!(Quality::of(&recording, &regular).joints[0].moves);
+//! # Ok::<(), recording::RecordingError>(())
+//! ```
 
 mod arrays;
+mod bag_course;
 mod bag_order;
 mod bag_windows;
 mod bytes;
+mod cdr;
 mod clock;
 mod column_map;
 mod csv_write;
@@ -25,6 +41,7 @@ mod joint_state;
 mod origin;
 mod parts;
 mod quality;
+mod quantity;
 mod regular;
 mod rows;
 mod series;
@@ -43,10 +60,11 @@ pub use column_map::ColumnMap;
 pub use error::{RecordingError, write_remedy};
 pub use origin::{Origin, OriginColumn};
 pub use quality::{Finding, FindingKind, JointQuality, Quality};
+pub use quantity::Quantity;
 pub use regular::{RegularRecording, Segment};
 pub use table::{Column, Place};
 pub use toml_error::{nearest, toml_reason};
-pub use warning::{Quantity, Warning};
+pub use warning::Warning;
 pub use whole_file::write_whole;
 
 /// One quantity of every joint: `signal[joint][sample]`.

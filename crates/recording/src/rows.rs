@@ -90,8 +90,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds a row.
-    pub fn take(&mut self, row: &Row<'_>) -> Result<(), RecordingError> {
+    /// Adds a row; `begins_run` if its time is already that of another run.
+    pub fn take(&mut self, row: &Row<'_>, begins_run: bool) -> Result<(), RecordingError> {
         for (index, name) in &self.plan.names {
             if !matches!(row.cell(*index), Cell::Text(cell) if cell.trim_ascii() == name.as_bytes()) {
                 let found = row.cell(*index).shown();
@@ -106,6 +106,9 @@ impl<'a> Rows<'a> {
         let mut begins = self.new_run(row, stamp);
         if begins {
             self.shift += self.stamp + RUN_PAUSE - stamp;
+            self.first = stamp;
+        } else if begins_run {
+            begins = true;
             self.first = stamp;
         } else if self.in_run > 0 && stamp <= self.stamp {
             if stamp == self.stamp {

@@ -3,6 +3,9 @@
 /// Values are not interpolated over gaps of more periods.
 const GAP: i64 = 10;
 
+/// Position, velocity and effort of a joint in a message, as far as it has them.
+pub type Values = [Option<f64>; 3];
+
 /// Values with their times (ns).
 pub type Series = Vec<(i64, f64)>;
 

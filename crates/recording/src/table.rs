@@ -195,6 +195,8 @@ pub struct Table {
     pub warnings: Vec<Warning>,
     /// The time that was recorded and is not in the rows (s).
     pub left_out: f64,
+    /// The rows with which another run begins.
+    pub breaks: Vec<usize>,
 }
 
 impl Table {
@@ -209,6 +211,7 @@ impl Table {
             rows: Box::new(Held { columns, rows, next: 0 }),
             warnings: Vec::new(),
             left_out: 0.0,
+            breaks: Vec::new(),
         }
     }
 }

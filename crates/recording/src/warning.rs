@@ -4,50 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::Place;
-
-/// The quantity of a joint that a warning concerns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Quantity {
-    /// Position.
-    Position,
-    /// Velocity.
-    Velocity,
-    /// Acceleration.
-    Acceleration,
-    /// Torque or force.
-    Torque,
-    /// The second encoder's position.
-    SecondaryPosition,
-    /// Torque computed from current.
-    CurrentTorque,
-    /// Motor current.
-    Current,
-    /// Temperature.
-    Temperature,
-}
-
-impl Quantity {
-    /// Whether every joint must have it.
-    pub(crate) fn is_required(self) -> bool {
-        matches!(self, Self::Position | Self::Torque)
-    }
-
-    /// The prefix of its columns, with the underscore.
-    pub fn prefix(self) -> &'static str {
-        match self {
-            Self::Position => "q_",
-            Self::Velocity => "qd_",
-            Self::Acceleration => "qdd_",
-            Self::Torque => "tau_",
-            Self::SecondaryPosition => "q_secondary_",
-            Self::CurrentTorque => "tau_current_",
-            Self::Current => "current_",
-            Self::Temperature => "temperature_",
-        }
-    }
-}
+use crate::{Place, Quantity};
 
 /// The pause that is assumed between two runs if their clocks do not determine it (s).
 pub(crate) const RUN_PAUSE: f64 = 1.0;
@@ -134,6 +91,15 @@ pub enum Warning {
         messages: u64,
         /// By how much they are earlier, at most (s).
         largest: f64,
+    },
+    /// Messages of a bag whose stamps are far from those around them were omitted.
+    WrongStamps {
+        /// Their topic.
+        topic: String,
+        /// The first (the number of the message in the bag).
+        line: Place,
+        /// Their number.
+        messages: u64,
     },
     /// Something that is not used was omitted.
     LeftOut {
@@ -298,6 +264,18 @@ impl fmt::Display for Warning {
                     "{topic}: {messages} {are} earlier than one before of the same joints, by {largest:.4} s at most (the first is \
                      joint-state message {first} of the bag), and {were} put in order of time; if a clock was set back there, cut \
                      the bag"
+                )
+            }
+            Self::WrongStamps { topic, line, messages } => {
+                let (Place::Line(first) | Place::Row(first)) = line;
+                let (have, were) = match messages {
+                    1 => ("message has a stamp", "was"),
+                    _ => ("messages have stamps", "were"),
+                };
+                write!(
+                    f,
+                    "{topic}: {messages} {have} far from those before and after, and {were} left out (the first is joint-state \
+                     message {first} of the bag)"
                 )
             }
             Self::LeftOut { what } => write!(f, "{what}"),

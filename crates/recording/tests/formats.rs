@@ -194,7 +194,10 @@ fn topics_are_joined_by_time_or_chosen() {
         0.0,
     );
     let missing = read_with("ambiguous.mcap", "topics = [\"/c\"]").expect_err("there is no such topic");
-    assert!(missing.contains("in /c; its topics are /a, /b, /wanted"), "{missing}");
+    assert!(
+        missing.contains("in /c; its topics are /a (") && missing.contains("/b (") && missing.contains("/wanted ("),
+        "{missing}"
+    );
 }
 
 #[test]
@@ -259,6 +262,31 @@ fn arrays_of_numpy_and_matlab_are_read() {
         short.contains("q has 57 rows and 2 columns, and the longest vector has 60 values"),
         "{short}"
     );
+}
+
+/// What others write is named, with the way out.
+#[test]
+fn formats_that_are_not_read_are_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("run");
+    let cases: [(&[u8], &str, &str); 8] = [
+        (b"{\"t\":{\"0\":0.0,\"1\":0.01}}", "JSON", "pandas.read_json"),
+        (b"{\"t\": 0.0, \"q_a\": 1.0}\n{\"t\": 0.01}\n", "JSON", "lines=True"),
+        (b"[\n {\"t\": 0.0}]", "JSON", "pandas.read_json"),
+        (b"[[0.0, 1.0], [0.01, 1.0]]", "JSON", "pandas.read_json"),
+        (b"\x80\x05\x95rest of it", "a Python pickle", "as Parquet or CSV"),
+        (b"ARROW1\0\0rest", "Feather (Arrow)", "to_parquet"),
+        (b"\x89HDF\r\n\x1a\n", "HDF5", "numpy.savez"),
+        (b"#ROSBAG V2.0\n", "a bag of ROS 1", "rosbags-convert"),
+    ];
+    for (content, name, remedy) in cases {
+        std::fs::write(&path, content).expect("it writes");
+        let error = Recording::read(&path).expect_err("it is refused").to_string();
+        assert!(
+            error.contains(&format!("run: {name}: ")) && error.contains(remedy),
+            "{error}"
+        );
+    }
 }
 
 /// Every file of a format, cut and changed in many places, is read or refused, without a panic.

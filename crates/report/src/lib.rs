@@ -2,6 +2,16 @@
 //!
 //! A diagnosis is a [`page`](page()) with figures, a text for the [`terminal`], and [Markdown](diagnosis_markdown()). Any other
 //! report is a list of [`block`]s, which [`block_page`](block_page()) and [`markdown`](markdown()) both render; [`score`] makes those of a proof.
+//!
+//! ```
+//! use report::block::Block;
+//!
+//! let head = vec!["joint".to_owned(), "error".to_owned()];
+//! let rows = vec![vec!["elbow".to_owned(), "0.22".to_owned()]];
+//! let blocks = [Block::Title("A report".to_owned()), Block::Table { head, rows, words: 1 }];
+//! let text = report::markdown(&blocks, "made by hand");
+//! assert!(text.starts_with("# A report") && text.contains("| elbow | 0.22 |"));
+//! ```
 
 pub mod block;
 mod block_page;

@@ -3,6 +3,29 @@
 //! A [`Tried`] case contains its [`Truth`] and the [`Answer`]s to it; [`score()`] computes the score of all cases.
 //! [`Published`] contains the published values of a real robot, without a ground truth. Both kinds of files are read with this
 //! crate's own types.
+//!
+//! ```
+//! use scoring::{Answer, Tried, Truth, score};
+//!
+//! let truth: Truth = serde_json::from_str(
+//!     r#"{"case": "one", "torque_noise": [0.01],
+//!         "concealed": [{"effect": "torque_offset", "joint": "elbow", "offset": 0.4}]}"#,
+//! )?;
+//! let case = |answer| Tried {
+//!     truth: truth.clone(),
+//!     joints: vec!["elbow".to_owned()],
+//!     answer,
+//!     true_terms: None,
+//!     wrong_term: None,
+//!     tracking_over_exact: None,
+//!     tracking_over_exact_without_lag: None,
+//!     again: None,
+//! };
+//! // A program that finds nothing, and one that does not answer.
+//! let score = score(&[case(Some(Answer::default())), case(None)]);
+//! assert_eq!((score.cases, score.unanswered.len()), (2, 1));
+//! # Ok::<(), serde_json::Error>(())
+//! ```
 
 mod answer;
 mod calibration;

@@ -3,6 +3,32 @@
 //! A [`Request`] describes a diagnosis; [`Request::run`] reads the robot and the recordings, checks them against each other,
 //! diagnoses and completes the report. [`effect_file`], [`urdf_file`] and [`mjcf_file`] write the corrected model in three
 //! formats. The errors are sentences for users: place, reason and remedy.
+//!
+//! ```
+//! use study::inputs::{Given, Recordings};
+//! use study::notes::Notes;
+//! use study::{Listener, Request, Step};
+//!
+//! struct Quiet;
+//! impl Listener for Quiet {
+//!     fn doing(&self, _: Step<'_>) {}
+//!     fn note(&self, _: &str) {}
+//!     fn recordings(&self, _: &Notes, _: &[&str]) {}
+//! }
+//!
+//! let file = |name: &str| Given::File(format!("../../examples/double_pendulum/{name}.csv.gz").into());
+//! let recordings = Recordings {
+//!     train: vec![file("r143339"), file("r143524")],
+//!     held_out: vec![file("r154220")],
+//!     ..Recordings::default()
+//! };
+//! let robot = "../../examples/double_pendulum/robot.urdf".to_owned();
+//! let request = Request { robot, recordings, torques_only: true, ..Request::default() };
+//! let diagnosed = request.run(&Quiet)?;
+//! let names: Vec<&str> = diagnosed.effects.iter().map(|effect| effect.name()).collect();
+//! assert!(names.contains(&"coulomb_friction"), "{names:?}");
+//! # Ok::<(), anyhow::Error>(())
+//! ```
 
 pub mod check;
 pub mod effect_file;

@@ -3,6 +3,24 @@
 //! A [`TorqueModel`] predicts the joint torques (N m or N) that a motion q, q̇, q̈ requires, in parts: rigid-body
 //! dynamics, named effects, and a learned part. There are the paper's four models, one of the arm's energies
 //! ([`Lagrangian`]), the exact model as the reference, and the [`Corrected`] model of a diagnosis; the controller depends on the trait only.
+//!
+//! ```
+//! use arm::Arm;
+//! use effects::{Effect, friction::CoulombFriction};
+//! use torque::{Corrected, Prediction, RigidBody, TorqueModel, Workspace};
+//!
+//! let arm = Arm::from_urdf("../../assets/puma560.urdf")?;
+//! let friction = Effect::of(&CoulombFriction).on(&arm.joints()[1].name).with("level", 0.4);
+//! let corrected = Corrected::new(&arm, &[friction])?;
+//! let torque_of_joint_2 = |model: &dyn TorqueModel| {
+//!     let (mut workspace, mut prediction) = (Workspace::new(6), Prediction::new(6));
+//!     model.predict(&mut workspace, &[0.5; 6], &[1.0; 6], &[0.0; 6], &mut prediction);
+//!     prediction.torque(1)
+//! };
+//! let added = torque_of_joint_2(&corrected) - torque_of_joint_2(&RigidBody::new(arm));
+//! assert!((added - 0.4).abs() < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod controller;
 mod corrected;

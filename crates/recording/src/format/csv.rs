@@ -77,6 +77,7 @@ impl Format for Csv {
             rows: Box::new(rows),
             warnings: Vec::new(),
             left_out: 0.0,
+            breaks: Vec::new(),
         })
     }
 }

@@ -29,16 +29,28 @@ impl Format for Mcap {
 
     fn read(&self, input: Input, options: &Options<'_>) -> Result<Table, RecordingError> {
         let mut states = JointStates::new(options.seconds);
-        let warning = read_into(&input, options, &mut states)?;
+        let found = read_into(&input, options, &mut states)?;
+        if states.messages() == 0 {
+            return Err(input.error(NAME, no_states(found.topics, options)));
+        }
         let mut table = states.into_table(&input, NAME, options.topics)?;
-        table.warnings.extend(warning);
+        table.warnings.extend(found.warning);
         Ok(table)
     }
 }
 
-/// A channel: its topic if it has joint states and is requested.
+/// What a file of a bag holds beside its joint states.
+pub struct Found {
+    /// Its topics, with the type and the encoding of their messages.
+    pub topics: Vec<String>,
+    /// The warning that it is cut.
+    pub warning: Option<Warning>,
+}
+
+/// A channel: its topic, whether it has joint states and is requested, and what it has.
 struct Channel {
     topic: String,
+    kind: String,
     is_wanted: bool,
 }
 
@@ -51,15 +63,11 @@ struct Reader<'a> {
     room: u64,
 }
 
-/// Reads the joint states of an MCAP file; a warning if it is cut.
+/// Reads the joint states of an MCAP file.
 ///
 /// # Errors
-/// [`RecordingError::Format`] if it is damaged or has no joint states.
-pub fn read_into(
-    input: &Input,
-    options: &Options<'_>,
-    states: &mut JointStates,
-) -> Result<Option<Warning>, RecordingError> {
+/// [`RecordingError::Format`] if it is damaged.
+pub fn read_into(input: &Input, options: &Options<'_>, states: &mut JointStates) -> Result<Found, RecordingError> {
     let mut file = input.to_file()?;
     let failed = |reason: std::io::Error| RecordingError::Read {
         path: input.path.clone(),
@@ -69,7 +77,6 @@ pub fn read_into(
     let mut at = MAGIC.len() as u64;
     file.seek(SeekFrom::Start(at)).map_err(failed)?;
     let mut file = BufReader::new(file);
-    let before = states.messages();
     let mut reader = Reader {
         options,
         states,
@@ -103,18 +110,18 @@ pub fn read_into(
         }
         at += length;
     }
-    let has_some = reader.states.messages() > before;
-    if !has_some {
-        let found = reader.channels.values().map(|channel| channel.topic.as_str());
-        return Err(input.error(NAME, no_states(found.collect(), options)));
-    }
+    let topics = reader.channels.values();
+    let topics = topics.map(|channel| format!("{} ({})", channel.topic, channel.kind));
+    let topics = topics.collect();
     let place = Place::Row(states.messages() + 1);
-    Ok((!is_whole).then_some(Warning::CutFile { line: place }))
+    let warning = (!is_whole).then_some(Warning::CutFile { line: place });
+    Ok(Found { topics, warning })
 }
 
 /// The error that there are no joint states, with the existing topics.
-pub fn no_states(mut topics: Vec<&str>, options: &Options<'_>) -> String {
+pub fn no_states(mut topics: Vec<String>, options: &Options<'_>) -> String {
     topics.sort_unstable();
+    topics.dedup();
     let more = if topics.len() > 8 { ", …" } else { "" };
     topics.truncate(8);
     let of = if options.topics.is_empty() {
@@ -123,8 +130,8 @@ pub fn no_states(mut topics: Vec<&str>, options: &Options<'_>) -> String {
         format!(" in {}", options.topics.join(", "))
     };
     format!(
-        "there are no messages sensor_msgs/msg/JointState (in CDR){of}; its topics are {}{more}; record the joint states, \
-         and check `topics` in the column map",
+        "there are no messages sensor_msgs/msg/JointState in CDR, as ROS 2 writes them{of}; its topics are {}{more}; record the \
+         joint states, convert other messages into these or into CSV, and check `topics` in the column map",
         if topics.is_empty() {
             "none".to_owned()
         } else {
@@ -161,8 +168,13 @@ impl Reader<'_> {
         let is_wanted = TYPES.contains(&schema)
             && encoding == "cdr"
             && (wanted.is_empty() || wanted.iter().any(|wanted| wanted == topic));
+        let kind = match (schema, encoding) {
+            (_, "cdr") => schema.to_owned(),
+            ("", _) => format!("in {encoding}"),
+            _ => format!("{schema} in {encoding}"),
+        };
         let topic = topic.to_owned();
-        self.channels.insert(id, Channel { topic, is_wanted });
+        self.channels.insert(id, Channel { topic, kind, is_wanted });
         Some(())
     }
 

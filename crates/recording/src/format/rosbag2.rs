@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use rusqlite::limits::Limit;
 use rusqlite::{Connection, OpenFlags};
 
-use super::mcap::{self, no_states};
+use super::mcap::{self, Found, no_states};
 use super::{Format, Options};
 use crate::RecordingError;
 use crate::input::{Input, most_expanded};
@@ -29,7 +29,10 @@ impl Format for Rosbag2 {
     fn read(&self, input: Input, options: &Options<'_>) -> Result<Table, RecordingError> {
         let mut states = JointStates::new(options.seconds);
         if !input.is_folder() {
-            database(&input, options, &mut states)?;
+            let found = database(&input, options, &mut states)?;
+            if states.messages() == 0 {
+                return Err(input.error(NAME, no_states(found.topics, options)));
+            }
             return states.into_table(&input, NAME, options.topics);
         }
         let unreadable = |reason| RecordingError::Read {
@@ -53,14 +56,20 @@ impl Format for Rosbag2 {
         if files.is_empty() {
             return Err(input.error(NAME, no_bag(&input.path)));
         }
-        let mut warnings = Vec::new();
+        let (mut topics, mut warnings) = (Vec::new(), Vec::new());
         for path in files {
             let part = Input::open(&path)?;
-            if part.head.starts_with(SQLITE) {
-                database(&part, options, &mut states)?;
-            } else {
-                warnings.extend(mcap::read_into(&part, options, &mut states)?);
-            }
+            states.begin_file();
+            let found = match part.head.starts_with(SQLITE) {
+                true => database(&part, options, &mut states)?,
+                false => mcap::read_into(&part, options, &mut states)?,
+            };
+            topics.extend(found.topics);
+            warnings.extend(found.warning);
+        }
+        // A part of a bag may have none.
+        if states.messages() == 0 {
+            return Err(input.error(NAME, no_states(topics, options)));
         }
         let mut table = states.into_table(&input, NAME, options.topics)?;
         table.warnings.extend(warnings);
@@ -128,7 +137,7 @@ fn refuse_outside(input: &Input, path: &Path) -> Result<(), RecordingError> {
 }
 
 /// Reads the joint states of a database.
-fn database(input: &Input, options: &Options<'_>, states: &mut JointStates) -> Result<(), RecordingError> {
+fn database(input: &Input, options: &Options<'_>, states: &mut JointStates) -> Result<Found, RecordingError> {
     // An expanded file, or a pipe, has no path.
     let copy = if input.is_unchanged() {
         None
@@ -147,11 +156,7 @@ fn database(input: &Input, options: &Options<'_>, states: &mut JointStates) -> R
         .map_or(input.path.as_path(), tempfile::NamedTempFile::path);
     let size = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
     match messages(path, most_expanded(size), options, states) {
-        Ok(topics) if states.messages() == 0 => {
-            let topics = topics.iter().map(String::as_str).collect();
-            Err(input.error(NAME, no_states(topics, options)))
-        }
-        Ok(_) => Ok(()),
+        Ok(topics) => Ok(Found { topics, warning: None }),
         Err(Failure::Database(error)) => Err(input.error(
             NAME,
             format!("the database cannot be read ({error}); copy the bag again, with all files of its folder"),
@@ -227,7 +232,8 @@ fn messages(path: &Path, most: u64, options: &Options<'_>, states: &mut JointSta
         }
     }
     drop(rows);
-    Ok(topics.into_iter().map(|(_, topic, _, _)| topic).collect())
+    let named = |(_, topic, kind, _)| format!("{topic} ({kind})");
+    Ok(topics.into_iter().map(named).collect())
 }
 
 /// The expanded message; its size is subtracted from `room` (bytes).

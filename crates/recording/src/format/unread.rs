@@ -21,7 +21,12 @@ const KNOWN: &[(&[u8], &str, &str)] = &[
     (
         b"#ROSBAG",
         "a bag of ROS 1",
-        "it is not read; convert it with rosbags-convert into a bag of ROS 2",
+        "it is not read; convert it into a bag of ROS 2: pip install rosbags, then rosbags-convert --src run.bag --dst run",
+    ),
+    (
+        b"ARROW1",
+        "Feather (Arrow)",
+        "it is not read; save the table as Parquet: pandas.read_feather(\"run.feather\").to_parquet(\"run.parquet\")",
     ),
     (
         b"\x93NUMPY",
@@ -33,14 +38,34 @@ const KNOWN: &[(&[u8], &str, &str)] = &[
 /// The format that is recognised but not read.
 pub struct Unread;
 
+/// The name and the remedy of a format with this beginning.
+fn known(head: &[u8]) -> Option<(&'static str, &'static str)> {
+    let known = KNOWN.iter().find(|(mark, _, _)| head.starts_with(mark));
+    if let Some((_, name, remedy)) = known {
+        return Some((name, remedy));
+    }
+    // A pickle begins with its protocol, 2 to 5. JSON has no signature: an object begins with a name, an array with a value.
+    if let [0x80, 2..=5, ..] = head {
+        let remedy = "it is not read, because to open one is to run it; save the table as Parquet or CSV";
+        return Some(("a Python pickle", remedy));
+    }
+    let mut text = head.iter().filter(|letter| !letter.is_ascii_whitespace());
+    let is_json = matches!(
+        (text.next(), text.next()),
+        (Some(b'{'), Some(b'"' | b'}')) | (Some(b'['), Some(b'{' | b'['))
+    );
+    let remedy = "it is not read; save the table as Parquet or CSV: pandas.read_json(\"run.json\").to_csv(\"run.csv\", \
+                  index=False), with lines=True for one object a line";
+    is_json.then_some(("JSON", remedy))
+}
+
 impl Format for Unread {
     fn matches(&self, input: &Input) -> bool {
-        KNOWN.iter().any(|(mark, _, _)| input.head.starts_with(mark))
+        known(&input.head).is_some()
     }
 
     fn read(&self, input: Input, _: &Options<'_>) -> Result<Table, RecordingError> {
-        let known = KNOWN.iter().find(|(mark, _, _)| input.head.starts_with(mark));
-        let (name, remedy) = known.map_or(("a format", "it is not read"), |(_, name, remedy)| (*name, *remedy));
+        let (name, remedy) = known(&input.head).unwrap_or(("a format", "it is not read"));
         Err(input.error(name, remedy))
     }
 }

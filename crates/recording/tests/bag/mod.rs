@@ -13,6 +13,8 @@ pub struct Message {
     topic: &'static str,
     joint: &'static str,
     stamp: i64,
+    /// The time of logging.
+    logged: i64,
     /// Positions, velocities and efforts.
     fields: [Vec<f64>; 3],
 }
@@ -29,6 +31,7 @@ fn message(topic: &'static str, stamp: f64, fields: [Vec<f64>; 3]) -> Message {
         topic,
         joint,
         stamp,
+        logged: stamp,
         fields,
     }
 }
@@ -50,6 +53,17 @@ pub fn efforts(t: f64) -> Message {
 }
 
 impl Message {
+    /// The message without a stamp.
+    pub fn unstamped(self) -> Self {
+        Self { stamp: 0, ..self }
+    }
+
+    /// The message with the stamp of a simulation, which begins at 0 s.
+    pub fn simulated(self) -> Self {
+        let stamp = self.stamp - EPOCH as i64 * 1_000_000_000;
+        Self { stamp, ..self }
+    }
+
     /// The message of another joint.
     pub fn of(self, joint: &'static str) -> Self {
         Self { joint, ..self }
@@ -121,9 +135,9 @@ pub fn write_mcap(path: &Path, messages: &[Message]) {
         record(4, &[&id.to_le_bytes(), &one, &text(topic), &text("cdr"), &[0; 4]]);
     }
     for message in messages {
-        let stamp = message.stamp.to_le_bytes();
+        let logged = message.logged.to_le_bytes();
         let channel = number(&topics, message).to_le_bytes();
-        record(5, &[&channel, &[0; 4], &stamp, &stamp, &message.cdr()]);
+        record(5, &[&channel, &[0; 4], &logged, &logged, &message.cdr()]);
     }
     record(15, &[&[0; 4]]);
     std::fs::write(path, file).expect("it is written");
@@ -145,7 +159,7 @@ pub fn write_database(path: &Path, messages: &[Message]) {
     let insert = "INSERT INTO messages (topic_id, timestamp, data) VALUES (?1, ?2, ?3)";
     let mut insert = all.prepare(insert).expect("it is prepared");
     for message in messages {
-        let row = params![number(&topics, message), message.stamp, message.cdr()];
+        let row = params![number(&topics, message), message.logged, message.cdr()];
         insert.execute(row).expect("it is written");
     }
     drop(insert);

@@ -122,7 +122,7 @@ pub struct Fit {
     /// The factor of the model's torque, by joint.
     pub factor: Vec<f64>,
     /// The residual variance over the variance of the torque in a fit without the model's torque, by joint.
-    without: Vec<f64>,
+    pub without: Vec<f64>,
     /// The standard deviation of the measured torque over that of the model's, by joint.
     pub size: Vec<f64>,
 }

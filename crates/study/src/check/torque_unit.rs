@@ -10,6 +10,9 @@ pub const MOTOR_SIDE: f64 = 0.05;
 const LARGE_EVERYWHERE: f64 = 30.0;
 /// With less than this ratio on all joints, the torques are motor currents or in another unit.
 const SMALL_EVERYWHERE: f64 = 0.2;
+/// So they are if half of the joints have less than that and all others less than this: torque constants differ from drive to drive,
+/// and a payload and friction make the ratio larger.
+const SMALL_BESIDE: f64 = 0.7;
 /// A unit of torque that is a power of ten of N m.
 struct Unit {
     /// The ratio of the recorded torque to the model's.
@@ -86,16 +89,18 @@ pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Chan
     }
     let large = all(&|size| size > LARGE_EVERYWHERE);
     let small = all(&|size| size < MOTOR_SIDE);
-    // A joint with more friction than weight does not show the unit. All others must agree, and there must be more than
-    // one.
-    let agree = evident.iter().all(|&joint| fit.factor[joint] < SMALL_EVERYWHERE);
-    let currents = evident.len() > 1 && agree;
+    // A joint with more friction than weight does not show the unit. All others must agree, or most of them, and there must be
+    // more than one.
+    let mut factors: Vec<f64> = evident.iter().map(|&joint| fit.factor[joint]).collect();
+    factors.sort_by(f64::total_cmp);
+    let largest = factors[factors.len() - 1];
+    let agree = largest < SMALL_EVERYWHERE;
+    let most_agree = factors.len() > 2 && factors[factors.len() / 2] < SMALL_EVERYWHERE && largest < SMALL_BESIDE;
+    let currents = evident.len() > 1 && (agree || most_agree);
     if !(large || small || currents) {
         return None;
     }
-    let mut factors: Vec<f64> = evident.iter().map(|&joint| fit.factor[joint]).collect();
-    factors.sort_by(f64::total_cmp);
-    let (least, most) = (factors[0], factors[factors.len() - 1]);
+    let (least, most) = (factors[0], largest);
     let middle = factors[factors.len() / 2];
     // The masses of a URDF are accurate to about a third, and all joints have the same unit.
     let decimal = UNITS.into_iter().find(|unit| {
@@ -135,4 +140,42 @@ pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Chan
             (text, all.iter().map(scale).collect())
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is said of joints whose torques are so many times the model's.
+    fn said(factors: &[f64]) -> Option<String> {
+        let count = factors.len();
+        let fit = Fit {
+            left: vec![0.01; count],
+            factor: factors.to_vec(),
+            without: vec![1.0; count],
+            size: factors.to_vec(),
+        };
+        of(&["a", "b", "c", "d", "e"][..count], &vec![true; count], &fit).map(|(text, _)| text)
+    }
+
+    #[test]
+    fn currents_of_drives_with_different_constants_are_told() {
+        // Of 12 to 4 N m per A, and with a payload that the URDF does not have.
+        for currents in [&[0.08, 0.07, 0.15, 0.3, 0.55][..], &[0.1, 0.12, 0.22], &[0.1, 0.15]] {
+            let said = said(currents);
+            assert!(
+                said.as_ref().is_some_and(|said| said.contains("motor currents")),
+                "{said:?}"
+            );
+        }
+        // A model may be wrong by much, and on single joints by more.
+        for torques in [
+            &[0.3, 0.4, 0.3, 0.35, 0.3][..],
+            &[0.1, 0.12, 0.15, 0.19, 0.8],
+            &[0.1, 0.3],
+            &[1.0, 0.9, 0.1],
+        ] {
+            assert_eq!(said(torques), None, "{torques:?}");
+        }
+    }
 }
