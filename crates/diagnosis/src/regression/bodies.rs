@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, Matrix3, Matrix4, SymmetricEigen};
 
-use crate::thresholds::{LEAST_BODY_LEFT, LEAST_BODY_MASS, LEAST_BODY_RADIUS, OF_DISTANCE};
+use crate::thresholds::{LEAST_BODY_LEFT, LEAST_BODY_MASS, LEAST_BODY_RADIUS};
 
 /// Parameters of a link: m, m c (3), Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the link frame's origin.
 pub const PER_LINK: usize = 10;
@@ -55,7 +55,7 @@ fn parameters_of(pseudo: &Matrix4<f64>) -> [f64; PER_LINK] {
 /// The physically consistent body nearest to `nominal` + `change` (ten inertial parameters each): relative to the nominal one,
 /// its pseudo-inertia has no eigenvalue below [`LEAST_BODY_LEFT`].
 pub fn physical(nominal: &[f64], change: &[f64]) -> [f64; PER_LINK] {
-    let Some(factor) = Cholesky::new(enlarged(nominal, 0.0)) else {
+    let Some(factor) = Cholesky::new(floored(nominal)) else {
         return std::array::from_fn(|k| nominal[k] + change[k]);
     };
     let sum: Vec<f64> = nominal.iter().zip(change).map(|(a, b)| a + b).collect();
@@ -73,9 +73,7 @@ pub fn physical(nominal: &[f64], change: &[f64]) -> [f64; PER_LINK] {
 
 /// H of a link (10 × 10) at its inertial `parameters`.
 pub fn precision(parameters: &[f64]) -> DMatrix<f64> {
-    let inverse = enlarged(parameters, OF_DISTANCE)
-        .try_inverse()
-        .unwrap_or_else(Matrix4::identity);
+    let inverse = floored(parameters).try_inverse().unwrap_or_else(Matrix4::identity);
     let directions: Vec<Matrix4<f64>> = (0..PER_LINK)
         .map(|k| {
             let mut unit = [0.0; PER_LINK];
@@ -86,27 +84,25 @@ pub fn precision(parameters: &[f64]) -> DMatrix<f64> {
     DMatrix::from_fn(PER_LINK, PER_LINK, |a, b| (directions[a] * directions[b]).trace())
 }
 
-/// The pseudo-inertia of a body, enlarged where a radius of gyration about the centre of mass is too small: too small to be inverted,
-/// or less than the part `of_distance` of the centre of mass's distance from the link frame's origin.
-fn enlarged(parameters: &[f64], of_distance: f64) -> Matrix4<f64> {
+/// The pseudo-inertia of a body, enlarged where it is too small to be inverted.
+fn floored(parameters: &[f64]) -> Matrix4<f64> {
     let pseudo = pseudo_inertia(parameters);
     let mass = pseudo[(3, 3)].max(LEAST_BODY_MASS);
     let com = pseudo.fixed_view::<3, 1>(0, 3) / mass;
     let about_com: Matrix3<f64> = pseudo.fixed_view::<3, 3>(0, 0) - mass * com * com.transpose();
-    let radius = LEAST_BODY_RADIUS.max(of_distance * com.norm());
     let mut eigen = SymmetricEigen::new(about_com);
     eigen
         .eigenvalues
-        .apply(|value| *value = value.max(mass * radius * radius));
+        .apply(|value| *value = value.max(mass * LEAST_BODY_RADIUS * LEAST_BODY_RADIUS));
     let second = eigen.recompose() + mass * com * com.transpose();
-    let mut enlarged = Matrix4::zeros();
-    enlarged.fixed_view_mut::<3, 3>(0, 0).copy_from(&second);
-    enlarged.fixed_view_mut::<3, 1>(0, 3).copy_from(&(mass * com));
-    enlarged
+    let mut floored = Matrix4::zeros();
+    floored.fixed_view_mut::<3, 3>(0, 0).copy_from(&second);
+    floored.fixed_view_mut::<3, 1>(0, 3).copy_from(&(mass * com));
+    floored
         .fixed_view_mut::<1, 3>(3, 0)
         .copy_from(&(mass * com.transpose()));
-    enlarged[(3, 3)] = mass;
-    enlarged
+    floored[(3, 3)] = mass;
+    floored
 }
 
 #[cfg(test)]

@@ -48,11 +48,6 @@ pub const GAIN_STRENGTHS: [f64; 3] = [0.0, 1.0, 2.0];
 pub const LEAST_BODY_RADIUS: f64 = 0.05;
 /// The mass about which a link without mass in the URDF may have (kg).
 pub const LEAST_BODY_MASS: f64 = 0.05;
-/// The least radius of gyration of a link about its centre of mass in the prior of its inertial parameters, as a part of the distance
-/// of the centre of mass from the link frame's origin: that of a rod as long as this distance, 1/√12. The prior would otherwise hardly
-/// allow that the centre of mass of a slender link far from its frame is shifted. Source: 75 URDFs that were wrong by known errors
-/// (1.4 nats a link more likely).
-pub const OF_DISTANCE: f64 = 0.289;
 /// The least eigenvalue of a body's pseudo-inertia relative to that of the URDF's body, so that a link never vanishes.
 pub const LEAST_BODY_LEFT: f64 = 0.02;
 /// The URDF may be wrong in a single direction by this multiple of the background's strength, which is a mean over all links and
