@@ -1,5 +1,22 @@
 //! From recordings to named effects: locates the residual of a rigid model, names the effects that the model omits, and
 //! reports residuals that no effect in the catalogue explains.
+//!
+//! ```
+//! use std::path::Path;
+//!
+//! use arm::Arm;
+//! use diagnosis::{Input, Options, diagnose};
+//! use recording::Recording;
+//!
+//! let folder = Path::new("../../examples/double_pendulum");
+//! let arm = Arm::from_urdf(folder.join("robot.urdf"))?;
+//! let (recording, _warnings) = Recording::read(&folder.join("r143339.csv.gz"))?.regular()?;
+//! let inputs = [Input { name: "r143339", recording: &recording, held_out: false, before: false }];
+//! let diagnosis = diagnose(&arm, &inputs, &Options::default(), &|_| ())?;
+//! let names: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.name()).collect();
+//! assert!(names.contains(&"coulomb_friction"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod data;
 mod diagnose;

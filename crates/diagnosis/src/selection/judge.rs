@@ -8,7 +8,8 @@ use crate::search::physics::is_at_its_size;
 use crate::search::problem::{Chosen, IMPOSSIBLE, Problem};
 use crate::search::study::Study;
 use crate::thresholds::{
-    ABOVE_THE_REST, HARMLESS, IDLE_EFFECT, LEAST_DRIVE, LEAST_OF_MISMATCH, MOST_OF_A_RECORDING, NEARLY_CONSTANT, WORSE,
+    ABOVE_THE_REST, HARMLESS, IDLE_EFFECT, LEAST_BEYOND_WITHOUT_FRICTION, LEAST_DRIVE, LEAST_OF_MISMATCH,
+    MOST_OF_A_RECORDING, NEARLY_CONSTANT, WORSE,
 };
 
 mod held_out;
@@ -263,10 +264,10 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             // Beside larger unmodelled structure, a rotor inertia may be a part of that structure.
             return hypothesis(member).is_drive_inertia() && share < unmodelled.max(LEAST_DRIVE);
         }
-        let needed = if hypothesis(member).plain().is_some() {
-            study.thresholds.least_beyond
-        } else {
-            study.thresholds.least_evidence
+        let needed = match hypothesis(member).plain() {
+            Some(_) if study.strengths.friction == 0.0 => LEAST_BEYOND_WITHOUT_FRICTION,
+            Some(_) => study.thresholds.least_beyond,
+            None => study.thresholds.least_evidence,
         };
         // An effect on several joints need not stand out on all of them.
         let stands_out = |joint: usize| {
