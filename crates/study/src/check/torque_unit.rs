@@ -150,7 +150,7 @@ mod tests {
     fn said(factors: &[f64]) -> Option<String> {
         let count = factors.len();
         let fit = Fit {
-            left: vec![0.01; count],
+            residual_share: vec![0.01; count],
             factor: factors.to_vec(),
             without: vec![1.0; count],
             size: factors.to_vec(),
