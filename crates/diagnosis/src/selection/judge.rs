@@ -8,8 +8,8 @@ use crate::search::physics::is_at_its_size;
 use crate::search::problem::{Chosen, IMPOSSIBLE, Problem};
 use crate::search::study::Study;
 use crate::thresholds::{
-    ABOVE_THE_REST, HARMLESS, IDLE_EFFECT, LEAST_BEYOND_WITHOUT_FRICTION, LEAST_DRIVE, LEAST_OF_MISMATCH,
-    MOST_OF_A_RECORDING, NEARLY_CONSTANT, WORSE,
+    ABOVE_THE_REST, HARMLESS, IDLE_EFFECT, LEAST_DRIVE, LEAST_OF_MISMATCH, MOST_OF_A_RECORDING, NEARLY_CONSTANT,
+    OF_BEYOND, WORSE,
 };
 
 mod held_out;
@@ -265,7 +265,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             return hypothesis(member).is_drive_inertia() && share < unmodelled.max(LEAST_DRIVE);
         }
         let needed = match hypothesis(member).plain() {
-            Some(_) if study.strengths.friction == 0.0 => LEAST_BEYOND_WITHOUT_FRICTION,
+            Some(_) if study.strengths.friction == 0.0 => OF_BEYOND * study.thresholds.least_beyond,
             Some(_) => study.thresholds.least_beyond,
             None => study.thresholds.least_evidence,
         };
