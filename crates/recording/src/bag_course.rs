@@ -116,10 +116,21 @@ impl Course {
             self.begin(sample);
             return Ok(Taken::Used(None));
         };
-        if std::mem::take(&mut self.is_new_file) && self.held_back.is_empty() && !self.is_within(time) {
-            self.stretches.push((self.start, latest));
-            self.begin(sample);
-            return Ok(Taken::Used(None));
+        if std::mem::take(&mut self.is_new_file) && self.held_back.is_empty() {
+            let mut settled = self.give_up_far();
+            let latest = self.latest.unwrap_or(latest);
+            if !self.is_within(time) {
+                self.stretches.push((self.start, latest));
+                self.begin(sample);
+                if settled.wrong.is_none() {
+                    return Ok(Taken::Used(None));
+                }
+                settled.used.push(sample);
+                return Ok(Taken::Settled(Box::new(settled)));
+            }
+            if settled.wrong.is_some() {
+                return Err(Late::new(number, time, latest));
+            }
         }
         let is_beyond = self.ceiling.is_some_and(|ceiling| time - ceiling > LATEST);
         let goes_on_early = !self.held_back.is_empty() && time < latest;
@@ -193,17 +204,25 @@ impl Course {
 
     /// What is left at the end: samples that were held back, or that are alone far ahead.
     pub fn finish(&mut self) -> Settled {
-        let is_far = |doubted: &Doubted| {
-            let step = |before| doubted.times.iter().all(|time| time.saturating_sub(before) > FAR);
-            doubted.before.is_some_and(step)
-        };
-        let mut settled = match self.doubted.as_ref().is_some_and(is_far) {
-            true => self.give_up_doubted(),
-            false => Settled::default(),
-        };
+        let mut settled = self.give_up_far();
         settled.count(&self.held_back);
         self.held_back.clear();
         settled
+    }
+
+    /// Gives up the last samples if they are alone far ahead, at the end of a file or of the bag.
+    fn give_up_far(&mut self) -> Settled {
+        let Some(doubted) = &self.doubted else {
+            return Settled::default();
+        };
+        let Some(before) = doubted.before else {
+            return Settled::default();
+        };
+        if !doubted.times.iter().all(|time| time.saturating_sub(before) > FAR) {
+            return Settled::default();
+        }
+        self.latest = Some(before);
+        self.give_up_doubted()
     }
 
     /// Begins a stretch.
@@ -263,11 +282,11 @@ impl Course {
         if *count > FEW { Err(*first) } else { Ok(Some(message)) }
     }
 
-    /// Whether a time lies within a stretch of this run.
+    /// Whether a time lies within a stretch of this run, or so shortly before one that the stretch would be run into.
     fn is_within(&self, time: i64) -> bool {
         let own = self.latest.map(|latest| (self.start, latest));
         let mut all = self.stretches.iter().copied().chain(own);
-        all.any(|(start, end)| time.saturating_sub(start) > LATEST && end.saturating_sub(time) > LATEST)
+        all.any(|(start, end)| start.saturating_sub(time) <= LATEST && end.saturating_sub(time) > LATEST)
     }
 
     /// Whether a run may begin at a time: that of the first of this run, or before it.

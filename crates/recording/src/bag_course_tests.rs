@@ -77,3 +77,45 @@ fn eleven_early_ones_are_no_wrong_stamps() {
     assert!(used(&again(60)).is_ok_and(|(used, _)| used.len() == 90));
     assert!(used(&again(49)).is_err());
 }
+
+/// Takes the samples of several files; whether a run restarts, and the number of wrong stamps.
+fn files(all: &[Vec<f64>]) -> Result<(bool, u64), Late> {
+    let mut course = Course::default();
+    let (mut restarts, mut wrong, mut number) = (false, 0, 0);
+    let mut count = |settled: &Settled| wrong += settled.wrong.map_or(0, |(_, count)| count);
+    for file in all {
+        course.begin_file();
+        for time in file {
+            number += 1;
+            let time = (time * 1e9).round() as i64;
+            let values = [None; 3];
+            if let Taken::Settled(settled) = course.take(Sample { number, time, values })? {
+                restarts |= settled.restarts_after.is_some();
+                count(&settled);
+            }
+        }
+    }
+    count(&course.finish());
+    Ok((restarts, wrong))
+}
+
+#[test]
+fn files_that_overlap_are_not_mixed() {
+    for start in [0.0, 0.4, 0.5, 1.0] {
+        // The second file begins where the first one did: another run.
+        assert_eq!(
+            files(&[from(0.5, 2000), from(start, 2000)]).unwrap(),
+            (true, 0),
+            "{start}"
+        );
+    }
+    assert!(files(&[from(0.0, 2000), from(50.0, 2000)]).is_err());
+    assert_eq!(files(&[from(200.0, 2000), from(0.0, 2000)]).unwrap(), (false, 0));
+    assert_eq!(files(&[from(0.0, 2000), from(199.9, 2000)]).unwrap(), (false, 0));
+}
+
+#[test]
+fn a_wrong_stamp_at_the_end_of_a_file_is_left_out() {
+    let first = [from(100.0, 200), vec![1e7]].concat();
+    assert_eq!(files(&[first, from(20.0, 200)]).unwrap(), (false, 1));
+}

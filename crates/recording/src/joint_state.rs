@@ -180,7 +180,7 @@ impl JointStates {
 
     /// Keeps the samples of joints that lie in the windows.
     fn keep(&mut self, topic: &str, is_stamped: usize, used: &[(usize, Sample)]) -> Result<(), String> {
-        // All samples of a message have one time.
+        // Samples of one time share the answer of the windows.
         let mut wanted = None;
         for (joint, sample) in used {
             let Some(joints) = self.topics.get_mut(topic) else {

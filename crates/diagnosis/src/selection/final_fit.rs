@@ -24,7 +24,7 @@ use crate::thresholds::{
 };
 
 /// Fits the named effects about the arm with them, with the rows near reversals. Removes effects that increase a joint's
-/// held-out error, that do not reduce it, or whose size may be zero.
+/// held-out error, that do not reduce it, or whose size may be zero unless there is much evidence for them.
 pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
     let mut constants_tried = Vec::new();
     loop {
@@ -157,7 +157,7 @@ fn give_up(study: &Study, judged: &mut Selection) {
     }
 }
 
-/// The weakest name whose size may be zero or is physically impossible, and whether it is impossible.
+/// The weakest name that may be nothing or is physically impossible, and whether it is impossible.
 fn unclear(study: &mut Study, judged: &Selection, resampled: &Resampled) -> Option<(usize, bool)> {
     let resampled = &resampled.evenly();
     let nothing = nothing(study, judged, resampled);
