@@ -8,12 +8,11 @@ use crate::bag_order::Late;
 use crate::series::Values;
 
 const SECOND: i64 = 1_000_000_000;
-/// A message that is earlier by more than this (ns) than one before it did not come late.
+/// A message that is earlier by more than this (ns) than one before it did not come late. After a step ahead of more than this, the
+/// messages before it may be the ones that are right.
 const LATEST: i64 = SECOND;
 /// Nor did so many messages of a joint one after the other, if more follow; nor are more stamps wrong one after the other.
 const FEW: usize = 10;
-/// After a step of more than this (ns), the messages before it may be the ones that are right.
-const AHEAD: i64 = 10 * SECOND;
 /// A step that no bag has (ns): a few messages on one side of it have a wrong stamp.
 const FAR: i64 = 86_400 * SECOND;
 /// The smallest number of messages of a run, and how far from its first time another one may begin, as a share of its duration.
@@ -150,7 +149,7 @@ impl Course {
         settled.count(&self.held_back);
         self.held_back.clear();
         settled.late = self.lateness(sample, latest)?;
-        if step > AHEAD && self.doubted.as_ref().is_none_or(is_start) {
+        if step > LATEST && self.doubted.as_ref().is_none_or(is_start) {
             self.doubt(Some(latest), number);
         }
         self.use_at(time);
@@ -171,7 +170,7 @@ impl Course {
             self.held_back.clear();
             self.latest = Some(before);
             settled.late = self.lateness(sample, before)?;
-            if sample.time.saturating_sub(before) > AHEAD {
+            if sample.time.saturating_sub(before) > LATEST {
                 self.doubt(Some(before), sample.number);
             }
             self.use_at(sample.time);

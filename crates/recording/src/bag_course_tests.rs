@@ -45,6 +45,7 @@ fn every_sample_is_used_or_wrong() {
     let cases = [
         (from(0.0, 30), 0),
         ([from(0.0, 30), vec![500.0], from(3.0, 30)].concat(), 1),
+        ([from(0.0, 30), vec![6.0], from(3.0, 60)].concat(), 1),
         ([from(0.0, 30), vec![500.0, 1e7, 400.0], from(3.0, 30)].concat(), 3),
         ([from(100.0, 30), vec![5.0], from(103.0, 30)].concat(), 1),
         (

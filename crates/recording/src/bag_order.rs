@@ -62,13 +62,13 @@ impl Order {
     pub fn warnings(&self) -> Vec<Warning> {
         let late = |(topic, late): (&String, &Counted)| Warning::OutOfOrder {
             topic: topic.clone(),
-            line: Place::Row(late.first),
+            line: Place::Message(late.first),
             messages: late.messages,
             largest: late.largest as f64 * 1e-9,
         };
         let wrong = |(topic, (first, messages)): (&String, &(u64, u64))| Warning::WrongStamps {
             topic: topic.clone(),
-            line: Place::Row(*first),
+            line: Place::Message(*first),
             messages: *messages,
         };
         let late = self.late.iter().map(late);

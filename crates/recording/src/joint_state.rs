@@ -169,10 +169,10 @@ impl JointStates {
             let shift = start.saturating_sub(first.time);
             self.runs.push(Run { shift, start });
             self.restarts.push(Warning::ClockRestart {
-                line: Place::Row(first.number),
-                before: before as f64 * 1e-9,
-                after: first.time as f64 * 1e-9,
-                placed: start as f64 * 1e-9,
+                line: Place::Message(first.number),
+                before: before as f64 / 1e9,
+                after: first.time as f64 / 1e9,
+                placed: start as f64 / 1e9,
             });
         }
         *run = self.runs.len();
@@ -247,9 +247,14 @@ impl JointStates {
                 self.order.count_wrong((first, count), &topic);
             }
             if let (messages @ 1.., which) = unused {
-                let (with, those) = [("without a", "a stamp"), ("with a", "none")][which];
-                let what =
-                    format!("{topic}: {messages} messages {with} stamp were left out, because most have {those}");
+                let (with, those) = [
+                    ("without a stamp, or with the stamp 0,", "a stamp"),
+                    ("with a stamp", "none"),
+                ][which];
+                let what = match messages {
+                    1 => format!("{topic}: 1 message {with} was left out, because most have {those}"),
+                    _ => format!("{topic}: {messages} messages {with} were left out, because most have {those}"),
+                };
                 self.restarts.push(Warning::LeftOut { what });
             }
             read.insert(topic, of_topic);

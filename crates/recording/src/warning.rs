@@ -254,7 +254,6 @@ impl fmt::Display for Warning {
                 messages,
                 largest,
             } => {
-                let (Place::Line(first) | Place::Row(first)) = line;
                 let (are, were) = match messages {
                     1 => ("message is", "was"),
                     _ => ("messages are", "were"),
@@ -262,20 +261,18 @@ impl fmt::Display for Warning {
                 write!(
                     f,
                     "{topic}: {messages} {are} earlier than one before of the same joints, by {largest:.4} s at most (the first is \
-                     joint-state message {first} of the bag), and {were} put in order of time; if a clock was set back there, cut \
+                     {line}), and {were} put in order of time; if a clock was set back there, cut \
                      the bag"
                 )
             }
             Self::WrongStamps { topic, line, messages } => {
-                let (Place::Line(first) | Place::Row(first)) = line;
                 let (have, were) = match messages {
                     1 => ("message has a stamp", "was"),
                     _ => ("messages have stamps", "were"),
                 };
                 write!(
                     f,
-                    "{topic}: {messages} {have} far from those before and after, and {were} left out (the first is joint-state \
-                     message {first} of the bag)"
+                    "{topic}: {messages} {have} far from those before and after, and {were} left out (the first is {line})"
                 )
             }
             Self::LeftOut { what } => write!(f, "{what}"),

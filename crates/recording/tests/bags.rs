@@ -263,7 +263,7 @@ fn messages_without_a_stamp_are_not_mixed_with_others() {
             );
             let said = said(&read, |warning| matches!(warning, Warning::LeftOut { .. }));
             let expected = if unstamped == 20 {
-                "20 messages without a stamp"
+                "20 messages without a stamp, or with the stamp 0,"
             } else {
                 "20 messages with a stamp"
             };
@@ -302,7 +302,7 @@ fn a_file_without_joint_states_is_no_error_in_a_bag() {
     bag::write_database(&folder.path().join("b.db3"), &[]);
     let error = Recording::read(folder.path()).expect_err("it is refused").to_string();
     assert!(
-        error.contains("there are no messages sensor_msgs/msg/JointState"),
+        error.contains("there are no messages: was anything recorded?"),
         "{error}"
     );
     let messages: Vec<Message> = (0..60 * RATE).map(|at| state(time(at), time(at))).collect();

@@ -113,7 +113,7 @@ pub fn read_into(input: &Input, options: &Options<'_>, states: &mut JointStates)
     let topics = reader.channels.values();
     let topics = topics.map(|channel| format!("{} ({})", channel.topic, channel.kind));
     let topics = topics.collect();
-    let place = Place::Row(states.messages() + 1);
+    let place = Place::Message(states.messages() + 1);
     let warning = (!is_whole).then_some(Warning::CutFile { line: place });
     Ok(Found { topics, warning })
 }
@@ -129,14 +129,13 @@ pub fn no_states(mut topics: Vec<String>, options: &Options<'_>) -> String {
     } else {
         format!(" in {}", options.topics.join(", "))
     };
+    if topics.is_empty() {
+        return format!("there are no messages{of}: was anything recorded?");
+    }
     format!(
         "there are no messages sensor_msgs/msg/JointState in CDR, as ROS 2 writes them{of}; its topics are {}{more}; record the \
          joint states, convert other messages into these or into CSV, and check `topics` in the column map",
-        if topics.is_empty() {
-            "none".to_owned()
-        } else {
-            topics.join(", ")
-        }
+        topics.join(", ")
     )
 }
 
