@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use effects::arm::InertialParameters;
 
 use crate::findings::report::{Finding, JointFit};
+use crate::selection::naming::may_be_nothing;
 
 /// A number with three significant digits, with an exponent only when it is very small or very large.
 fn number(value: f64) -> String {
@@ -40,7 +41,7 @@ pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> S
         }
         text.push_str(rest);
     }
-    if is_undetermined(finding) {
+    if may_be_nothing(finding.as_effect.kind().get().spec(), &finding.parameters) {
         text.push_str(", of a size that these recordings do not determine");
     }
     match finding.parameters.get("onset") {
@@ -48,13 +49,6 @@ pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> S
         Some(onset) => format!("{text} from {} on", quantity(onset.value, onset.unit)),
         None => text,
     }
-}
-
-/// Whether zero lies within the interval of the parameter that measures the finding's size.
-fn is_undetermined(finding: &Finding) -> bool {
-    let main = finding.as_effect.kind().get().spec().main;
-    let size = main.iter().find_map(|name| finding.parameters.get(name));
-    size.is_some_and(|size| size.ci95[0] < 0.0 && size.ci95[1] > 0.0)
 }
 
 /// A ratio of standard deviations in words; a ratio above one is not given as a percentage.

@@ -1,13 +1,11 @@
 //! The final fit: about the arm with the named effects, and without effects that fail the last tests.
 
-use std::collections::BTreeMap;
-
+use effects::Effect;
 use effects::sensor::TorqueScale;
-use effects::{Effect, Spec};
 use torque::Corrected;
 
 use crate::findings::found::useless;
-use crate::findings::report::{JointFit, Parameter};
+use crate::findings::report::JointFit;
 use crate::findings::rivals::standing;
 use crate::findings::verdict::structured;
 use crate::regression::background::Strengths;
@@ -15,7 +13,7 @@ use crate::regression::bootstrap::{Resampled, resample};
 use crate::search::problem::{Chosen, IMPOSSIBLE, Problem};
 use crate::search::study::Study;
 use crate::selection::judge::{self, Selection};
-use crate::selection::naming::{Named, name};
+use crate::selection::naming::{Named, may_be_nothing, name};
 use crate::selection::predict::{augmented, errors};
 use crate::selection::torque_constants;
 
@@ -235,16 +233,6 @@ fn undecided(study: &mut Study, judged: &Selection) -> Option<(usize, &'static s
         .find_map(|member| Some((member.candidate, rule(member)?)))
 }
 
-/// Whether the intervals of all main parameters contain the value without effect. One clear parameter is sufficient.
-fn may_be_nothing(spec: &Spec, parameters: &BTreeMap<&'static str, Parameter>) -> bool {
-    let sizes = spec.main.iter().filter_map(|main| parameters.get_key_value(main));
-    let holds_nothing = |(key, size): (&&'static str, &Parameter)| {
-        let nothing = spec.parameter(key).map_or(0.0, |parameter| parameter.neutral);
-        size.ci95[0] <= nothing && nothing <= size.ci95[1]
-    };
-    sizes.clone().next().is_some() && sizes.into_iter().all(holds_nothing)
-}
-
 /// Whether it is an effect that hardly exceeds the residual structure beside it, of a kind that may be a part of that structure.
 fn is_part_of_the_rest(study: &Study, judged: &Selection, member: &judge::Member) -> bool {
     let candidate = &study.candidates[member.candidate];
@@ -321,28 +309,4 @@ fn better_outside(study: &Study, chosen: &Chosen) -> Option<(Strengths, Chosen)>
         });
     let (best, strengths, next) = trials.min_by(|a, b| a.0.total_cmp(&b.0))?;
     (best < loss(chosen)).then_some((strengths, next))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Every searched effect has a main parameter, so that its name is removed where the interval contains no effect.
-    #[test]
-    fn an_interval_that_holds_no_effect_is_seen_in_every_effect() {
-        for kind in effects::CATALOGUE {
-            let spec = kind.spec();
-            let with = |half: f64| -> BTreeMap<&'static str, Parameter> {
-                let size = |&key: &&'static str| {
-                    let neutral = spec.parameter(key).map_or(0.0, |parameter| parameter.neutral);
-                    let (value, unit) = (neutral + 1.0, "1");
-                    let ci95 = [value - half, value + half];
-                    (key, Parameter { value, ci95, unit })
-                };
-                spec.main.iter().map(size).collect()
-            };
-            assert!(may_be_nothing(spec, &with(1.1)), "{}", spec.name);
-            assert!(!may_be_nothing(spec, &with(0.9)), "{}", spec.name);
-        }
-    }
 }

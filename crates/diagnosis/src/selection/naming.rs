@@ -5,7 +5,7 @@ mod onset;
 use std::collections::BTreeMap;
 
 use arm::Arm;
-use effects::{Effect, Estimate, Kind, Law, Size, Systematic, Term};
+use effects::{Effect, Estimate, Kind, Law, Size, Spec, Systematic, Term};
 
 use crate::data::statistics::NORMAL_95;
 use crate::findings::report::Parameter;
@@ -144,6 +144,16 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
     std::iter::once(named).chain(brought.filter(is_clear)).collect()
 }
 
+/// Whether the intervals of all main parameters contain the value without effect. One clear parameter is sufficient.
+pub fn may_be_nothing(spec: &Spec, parameters: &BTreeMap<&'static str, Parameter>) -> bool {
+    let sizes = spec.main.iter().filter_map(|main| parameters.get_key_value(main));
+    let holds_nothing = |(key, size): (&&'static str, &Parameter)| {
+        let nothing = spec.parameter(key).map_or(0.0, |parameter| parameter.neutral);
+        size.ci95[0] <= nothing && nothing <= size.ci95[1]
+    };
+    sizes.clone().next().is_some() && sizes.into_iter().all(holds_nothing)
+}
+
 impl Reader<'_> {
     /// The effect of a kind with its parameters.
     fn read(&mut self, kind: Kind) -> Option<Named> {
@@ -154,5 +164,29 @@ impl Reader<'_> {
             effect,
             parameters: std::mem::take(&mut self.parameters),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every searched effect has a main parameter, so that its name is removed where the interval contains no effect.
+    #[test]
+    fn an_interval_that_holds_no_effect_is_seen_in_every_effect() {
+        for kind in effects::CATALOGUE {
+            let spec = kind.spec();
+            let with = |half: f64| -> BTreeMap<&'static str, Parameter> {
+                let size = |&key: &&'static str| {
+                    let neutral = spec.parameter(key).map_or(0.0, |parameter| parameter.neutral);
+                    let (value, unit) = (neutral + 1.0, "1");
+                    let ci95 = [value - half, value + half];
+                    (key, Parameter { value, ci95, unit })
+                };
+                spec.main.iter().map(size).collect()
+            };
+            assert!(may_be_nothing(spec, &with(1.1)), "{}", spec.name);
+            assert!(!may_be_nothing(spec, &with(0.9)), "{}", spec.name);
+        }
     }
 }
