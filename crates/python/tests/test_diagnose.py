@@ -207,6 +207,8 @@ def test_ctrl_c_interrupts(tmp_path):
     script = textwrap.dedent(
         f"""
         import os, signal, jointwise
+        # A process that was begun in the background ignores Ctrl-C, and so do its children.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         def started(_):
             global started
             os.kill(os.getpid(), signal.SIGINT)
