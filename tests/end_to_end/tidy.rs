@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use arm::JointKind;
 use effects::{EffectKind, Shape};
 
+mod modules;
+
 const LONGEST_FILE: usize = 400;
 
 fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {

@@ -4,10 +4,12 @@ use arm::Arm;
 use effects::{Effect, Scales};
 use rayon::prelude::*;
 
-use crate::diagnose::Options;
 use crate::error::DiagnosisError;
+use crate::options::Options;
 
 pub mod channels;
+pub mod cutoff;
+pub mod input;
 pub mod known;
 pub mod measure;
 pub mod motion;
@@ -44,10 +46,10 @@ impl Data {
     ///
     /// # Errors
     /// [`DiagnosisError`], if a known effect does not fit the arm.
-    pub fn new(arm: &Arm, inputs: &[motion::Input<'_>], options: &Options) -> Result<Self, DiagnosisError> {
+    pub fn new(arm: &Arm, inputs: &[input::Input<'_>], options: &Options) -> Result<Self, DiagnosisError> {
         let known = known::Known::new(arm, &options.known)?;
         let arm = &known.arm;
-        let mut motions = motion::Motions::new(inputs, options.cutoff, arm);
+        let mut motions = cutoff::filtered(inputs, options.cutoff, arm);
         let measured: Vec<Vec<f64>> = (0..motions.dof)
             .map(|joint| {
                 let chunks = motions.chunks.iter();

@@ -25,7 +25,8 @@ use bounds::Allowed;
 use criterion::Criterion;
 use fourier::Series;
 
-use crate::data::motion::{Input, Motions};
+use crate::data::cutoff::filtered;
+use crate::data::input::Input;
 use crate::next::designs::DURATION;
 
 /// The rate at which a motion is checked against the limits (Hz).
@@ -181,7 +182,7 @@ pub fn quality_of(
 ) -> Result<Quality, ExcitationError> {
     let allowed = Allowed::new(arm, limits)?;
     let base = Base::new(arm, &allowed);
-    let motions = Motions::new(inputs, None, arm);
+    let motions = filtered(inputs, None, arm);
     let samples = motions.chunks.iter().flat_map(|chunk| {
         (0..chunk.ticks()).map(|tick| {
             [&chunk.q, &chunk.qd, &chunk.qdd].map(|signal| signal.iter().map(|values| values[tick]).collect())

@@ -20,27 +20,29 @@
 
 mod data;
 mod diagnose;
+mod diagnosis;
 mod error;
 mod excitation;
 mod findings;
 mod next;
+mod options;
 mod regression;
+mod report;
 mod search;
 mod selection;
 mod thresholds;
 mod trace;
 
-pub use data::motion::Input;
+pub use data::input::Input;
 pub use data::used::{WORTH_HOLDING, worth_using};
-pub use diagnose::{Diagnosis, Options, Step, diagnose};
+pub use diagnose::diagnose;
+pub use diagnosis::Diagnosis;
 pub use error::DiagnosisError;
 pub use excitation::{
     Determined, Excitation, ExcitationError, ExcitationOptions, JointUse, MotionLimits, Quality, excite, quality_of,
 };
-pub use findings::report::*;
-pub use findings::schema::json_schema;
 pub use findings::sentences::described;
-pub use next::{JointLimits, NextExperiment, NotSeparated, Obstacle, Separation, Shows};
-pub use search::hypothesis::Wanted;
+pub use options::{Options, Step, Wanted};
+pub use report::*;
 pub use thresholds::{LEAST_ROWS, Thresholds};
 pub use trace::{Action, Decision};

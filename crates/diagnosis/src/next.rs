@@ -2,7 +2,7 @@
 //!
 //! A motion that has not been recorded is added to the recordings by prediction: the torque that it needs by the findings, the
 //! columns of the findings and of their alternatives along it, and an error as large as the recordings'. The alternatives are
-//! then fitted in the findings' place as in the recordings ([`crate::findings::rivals`]), with all other effects refitted.
+//! then fitted in the findings' place as in the recordings ([`crate::selection::rivals`]), with all other effects refitted.
 
 use std::collections::BTreeSet;
 
@@ -12,19 +12,16 @@ use rayon::prelude::*;
 use torque::Reference;
 
 use crate::findings::observability;
-use crate::findings::report::{Confusable, Finding, NotObservable, Unexplained};
-use crate::findings::rivals;
 use crate::regression::fit::Products;
+use crate::report::{Confusable, Finding, NextExperiment, NotObservable, Obstacle, Separation, Shows, Unexplained};
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
+use crate::selection::rivals;
 
 mod advice;
 pub(crate) mod designs;
 pub(crate) mod limits;
 mod prospect;
-mod report;
-
-pub use report::{JointLimits, NextExperiment, NotSeparated, Obstacle, Separation, Shows};
 
 use designs::{DURATION, Design, FINE};
 use limits::Limits;

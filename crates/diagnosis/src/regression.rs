@@ -1,8 +1,7 @@
-//! Phase 2, regression: hypotheses as columns of torque, inner products, weighted least squares, background, resampling.
+//! Phase 2, regression: hypotheses as columns of torque, inner products, weighted least squares, background.
 
 pub mod background;
 pub mod bodies;
-pub mod bootstrap;
 pub mod columns;
 pub mod fit;
 pub mod small;

@@ -1,7 +1,6 @@
 //! Phase 3, search: the effects, forms and sizes that together explain the training recordings.
 
 pub mod candidate;
-pub mod hypothesis;
 pub mod physics;
 pub mod plan;
 pub mod problem;

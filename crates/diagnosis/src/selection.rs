@@ -2,18 +2,22 @@
 
 use rayon::prelude::*;
 
-use crate::diagnose::{Options, Step};
 use crate::error::DiagnosisError;
-use crate::regression::bootstrap::Resampled;
+use crate::options::{Options, Step};
 use crate::regression::fit::Products;
+use crate::search::plan;
 use crate::search::study::Study;
-use crate::search::{hypothesis, plan};
+use crate::selection::bootstrap::Resampled;
 use crate::thresholds::MOST_REFUSED;
 
+pub mod bootstrap;
 pub mod final_fit;
+pub mod gain;
+pub mod hypothesis;
 pub mod judge;
 pub mod naming;
 pub mod predict;
+pub mod rivals;
 pub mod torque_constants;
 pub mod unmounted;
 

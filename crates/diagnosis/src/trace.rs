@@ -4,9 +4,6 @@
 use std::fmt;
 use std::sync::Mutex;
 
-use crate::search::problem::Chosen;
-use crate::search::study::Study;
-
 /// A decision on an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
@@ -54,7 +51,7 @@ pub struct Trace(Mutex<Vec<Decision>>);
 
 impl Trace {
     /// Adds the decisions of the next step.
-    fn step(&self, decisions: impl IntoIterator<Item = (Action, String, Option<String>, &'static str, f64)>) {
+    pub fn step(&self, decisions: impl IntoIterator<Item = (Action, String, Option<String>, &'static str, f64)>) {
         let mut list = self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let step = list.last().map_or(0, |last| last.step) + 1;
         list.extend(
@@ -74,52 +71,5 @@ impl Trace {
     /// Returns and removes all decisions.
     pub fn take(&self) -> Vec<Decision> {
         std::mem::take(&mut self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner))
-    }
-}
-
-impl Study {
-    fn described(&self, candidate: usize) -> (String, Option<String>) {
-        let candidate = &self.candidates[candidate];
-        let joint = candidate.joint.map(|joint| self.arm.joints()[joint].name.clone());
-        (candidate.hypothesis.spec().name.to_owned(), joint)
-    }
-
-    /// Records the decisions that lead from `before` to `after` by `rule`.
-    pub fn note(&self, rule: &'static str, before: &Chosen, after: &Chosen) {
-        let nats = before.score - after.score;
-        let row = |action: Action| {
-            move |&candidate: &usize| {
-                let (effect, joint) = self.described(candidate);
-                (action, effect, joint, rule, nats)
-            }
-        };
-        let dropped = before.set.iter().filter(|c| !after.set.contains(c));
-        let taken = after.set.iter().filter(|c| !before.set.contains(c));
-        let rows: Vec<_> = dropped
-            .map(row(Action::Dropped))
-            .chain(taken.map(row(Action::Taken)))
-            .collect();
-        if !rows.is_empty() {
-            self.trace.step(rows);
-        }
-    }
-
-    /// Records candidates that were fitted in addition to `chosen` and not taken, each with the score that it would have given.
-    pub fn note_tried(&self, chosen: &Chosen, tried: &[(usize, f64, &'static str)]) {
-        let rows = tried.iter().map(|&(candidate, score, rule)| {
-            let (effect, joint) = self.described(candidate);
-            (Action::Tried, effect, joint, rule, chosen.score - score)
-        });
-        if !tried.is_empty() {
-            self.trace.step(rows);
-        }
-    }
-
-    /// Records a change of the background's strengths since `before`.
-    pub fn note_strengths(&self, rule: &'static str, before: &Chosen, after: &Chosen) {
-        let strengths = self.strengths.to_string();
-        let nats = before.score - after.score;
-        self.trace.step([(Action::Background, strengths, None, rule, nats)]);
-        self.note(rule, before, after);
     }
 }

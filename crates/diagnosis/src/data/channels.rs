@@ -5,8 +5,9 @@ use std::collections::HashMap;
 use effects::{Scales, sign};
 use nalgebra::{DMatrix, DVector};
 
+use crate::data::input::Input;
 use crate::data::measure;
-use crate::data::motion::{Input, Motions};
+use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
 use crate::data::statistics::mean;
 use crate::thresholds::{CHANNEL_MOVES, FAR_TOO_SMALL, IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED};

@@ -1,11 +1,16 @@
 //! Measurements on the recordings before any fit: scales, noise, the largest torques.
 
+use arm::{Arm, Workspace};
 use effects::Scales;
+use nalgebra::DMatrix;
 
-use crate::data::motion::{Chunk, Motions};
+use crate::data::motion::{Chunk, Motions, SourceRecording};
 use crate::data::rigid::Rigid;
 use crate::data::statistics::{deviation, mean};
 use crate::thresholds::{DEAD, NEEDED_QUANTILE, NOISE_ALONE, RANGE_QUANTILES, REST, REST_NOISE, SPEED_QUANTILE};
+
+/// The number of poses of a section at which the mass matrix is evaluated to judge the noise.
+const POSES: usize = 10;
 
 /// The largest measured torque of each joint (N m or N).
 pub fn largest(motions: &Motions) -> Vec<f64> {
@@ -66,6 +71,36 @@ pub fn deviations(motions: &Motions) -> Vec<f64> {
     (0..motions.dof)
         .map(|joint| deviation(chunks().flat_map(move |chunk| &chunk.tau[joint])))
         .collect()
+}
+
+/// The largest part of a joint's torque that the noise of the positions causes through the mass matrix, and the joint.
+pub fn noise_share(motions: &Motions, arm: &Arm) -> (f64, usize) {
+    let mut workspace = Workspace::new(arm);
+    let mut mass = DMatrix::zeros(motions.dof, motions.dof);
+    let mut largest = DMatrix::<f64>::zeros(motions.dof, motions.dof);
+    let fitted = |chunk: &&Chunk| !motions.sources[chunk.recording].held_out;
+    for chunk in motions.chunks.iter().filter(fitted) {
+        for tick in (0..chunk.ticks()).step_by((chunk.ticks() / POSES).max(1)) {
+            let q: Vec<f64> = chunk.q.iter().map(|q| q[tick]).collect();
+            arm.mass_matrix(&mut workspace, &q, &mut mass);
+            largest = largest.zip_map(&mass, |a, b| a.max(b.abs()));
+        }
+    }
+    let torque = deviations(motions);
+    let share = |joint: usize| {
+        if torque[joint] <= 0.0 || motions.tempo[joint] == 0.0 {
+            return 0.0;
+        }
+        let of = |source: &SourceRecording| -> f64 {
+            let parts = (0..motions.dof).map(|by| (largest[(joint, by)] * source.acceleration_noise[by]).powi(2));
+            parts.sum::<f64>().sqrt() / torque[joint]
+        };
+        let shares = motions.sources.iter().filter(|source| !source.held_out).map(of);
+        shares.fold(0.0, f64::max)
+    };
+    (0..motions.dof)
+        .map(|joint| (share(joint), joint))
+        .fold((0.0, 0), |most, next| if next.0 > most.0 { next } else { most })
 }
 
 /// The joints with dead channels: their `torque` does not vary while the model's does, apart from noise.

@@ -2,18 +2,13 @@
 
 use std::ops::Range;
 
-use arm::Arm;
 use rayon::prelude::*;
-use recording::RegularRecording;
 
+use crate::data::input::Input;
 use crate::data::noise::{WhiteNoise, band_noise};
 use crate::data::signal::{Kernel, outputs};
-use crate::data::statistics::median;
 use crate::data::used::{Section, Used};
-use crate::thresholds::{
-    CUTOFF, CUTOFF_PERIODS, HIGHEST_CUTOFF, LARGEST_CUTOFF, LEAST_CUTOFF, LEAST_CUTOFF_PERIODS, MOST_NOISE, STILL,
-    WORTH_RAISING,
-};
+use crate::thresholds::{LARGEST_CUTOFF, STILL};
 
 /// The ratio of the first filter's cut-off to the second's; nonlinear functions are evaluated between the two.
 const WIDER: f64 = 3.0;
@@ -28,19 +23,6 @@ const MOST_ROWS: f64 = 12_000.0;
 
 /// The pause between recordings without a common clock (s).
 const BETWEEN: f64 = 10.0;
-
-/// A recording to be diagnosed, with its name and role.
-#[derive(Clone, Copy, Debug)]
-pub struct Input<'a> {
-    /// The name that the user gave.
-    pub name: &'a str,
-    /// The recording on its regular clock, with the joints in the arm's order.
-    pub recording: &'a RegularRecording,
-    /// Whether it is held out: not to be fitted.
-    pub held_out: bool,
-    /// Whether it was made before a change of the robot (`--before`). Such recordings come first.
-    pub before: bool,
-}
 
 /// A chunk of a recording on the fine grid, all signals after the first filter: `[joint][tick]`.
 #[derive(Clone, Debug)]
@@ -137,45 +119,9 @@ pub struct Motions {
 }
 
 impl Motions {
-    /// Filters `inputs` with the second filter at `cutoff` (Hz), or at the highest frequency that the slowest recording
-    /// allows. Without a `cutoff`, it follows from the data: it is higher than usual if the motion is quick, and lower if
-    /// the noise of the positions would be a large part of the torques of `arm`.
-    pub fn new(inputs: &[Input<'_>], cutoff: Option<f64>, arm: &Arm) -> Self {
-        let wanted = cutoff.unwrap_or(CUTOFF);
-        let white: Vec<WhiteNoise> = inputs.iter().map(|input| WhiteNoise::of(input.recording)).collect();
-        let at = |cutoff: f64| Self::at(inputs, &white, cutoff);
-        let mut motions = at(wanted);
-        if motions.cutoff < wanted {
-            motions.remarks.push(format!(
-                "the lowest sampling rate limits the filter to {:.1} Hz instead of {wanted:.0} Hz; faster effects are not detectable",
-                motions.cutoff
-            ));
-        }
-        if cutoff.is_some() {
-            return motions;
-        }
-        let tempo = median(motions.tempo.iter().copied().filter(|&tempo| tempo > 0.0).collect());
-        let quick = (CUTOFF_PERIODS * tempo).min(HIGHEST_CUTOFF);
-        if quick > WORTH_RAISING * motions.cutoff {
-            motions = at(quick);
-        }
-        let (share, joint) = motions.noise_share(arm);
-        if share > MOST_NOISE {
-            // The noise of the acceleration grows with the power 5/2 of the cut-off.
-            let quiet = motions.cutoff * (MOST_NOISE / share).powf(0.4);
-            let least = LEAST_CUTOFF.max(LEAST_CUTOFF_PERIODS * tempo).min(motions.cutoff);
-            let before = motions.cutoff;
-            motions = at(quiet.max(least));
-            motions.remarks.push(format!(
-                "filtered at {:.1} Hz: at {before:.0} Hz, the noise of the positions alone would be {share:.2} times the torque of {}",
-                motions.cutoff,
-                arm.joints()[joint].name
-            ));
-        }
-        motions
-    }
-
-    fn at(inputs: &[Input<'_>], white: &[WhiteNoise], wanted: f64) -> Self {
+    /// Filters `inputs` with the second filter at `wanted` (Hz), or at the highest frequency that the slowest recording allows.
+    /// `white` is the noise of each.
+    pub fn at(inputs: &[Input<'_>], white: &[WhiteNoise], wanted: f64) -> Self {
         let slowest = inputs
             .iter()
             .map(|input| 1.0 / input.recording.period)

@@ -2,15 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use arm::{Arm, Workspace};
-use nalgebra::DMatrix;
 use rayon::prelude::*;
 use recording::RegularRecording;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
-use crate::data::measure;
-use crate::data::motion::{Chunk, Motions, SourceRecording};
 use crate::data::statistics::median;
 use crate::thresholds::NOISE_BAND;
 
@@ -20,41 +16,6 @@ const LEAST_BINS: usize = 16;
 const LONGEST_HOLD: usize = 20;
 /// The number of changes of a value that show whether it is held.
 const LEAST_CHANGES: usize = 20;
-
-/// The number of poses of a section at which the mass matrix is evaluated to judge the noise.
-const POSES: usize = 10;
-
-impl Motions {
-    /// The largest part of a joint's torque that the noise of the positions causes through the mass matrix, and the joint.
-    pub fn noise_share(&self, arm: &Arm) -> (f64, usize) {
-        let mut workspace = Workspace::new(arm);
-        let mut mass = DMatrix::zeros(self.dof, self.dof);
-        let mut largest = DMatrix::<f64>::zeros(self.dof, self.dof);
-        let fitted = |chunk: &&Chunk| !self.sources[chunk.recording].held_out;
-        for chunk in self.chunks.iter().filter(fitted) {
-            for tick in (0..chunk.ticks()).step_by((chunk.ticks() / POSES).max(1)) {
-                let q: Vec<f64> = chunk.q.iter().map(|q| q[tick]).collect();
-                arm.mass_matrix(&mut workspace, &q, &mut mass);
-                largest = largest.zip_map(&mass, |a, b| a.max(b.abs()));
-            }
-        }
-        let torque = measure::deviations(self);
-        let share = |joint: usize| {
-            if torque[joint] <= 0.0 || self.tempo[joint] == 0.0 {
-                return 0.0;
-            }
-            let of = |source: &SourceRecording| -> f64 {
-                let parts = (0..self.dof).map(|by| (largest[(joint, by)] * source.acceleration_noise[by]).powi(2));
-                parts.sum::<f64>().sqrt() / torque[joint]
-            };
-            let shares = self.sources.iter().filter(|source| !source.held_out).map(of);
-            shares.fold(0.0, f64::max)
-        };
-        (0..self.dof)
-            .map(|joint| (share(joint), joint))
-            .fold((0.0, 0), |most, next| if next.0 > most.0 { next } else { most })
-    }
-}
 
 /// The standard deviations of the white noise of a recording's signals, one per joint.
 pub struct WhiteNoise {

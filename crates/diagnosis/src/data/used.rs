@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use recording::RegularRecording;
 
-use crate::data::motion::Input;
+use crate::data::input::Input;
 
 /// The total duration of the recordings of a role (training, held out) up to which they are used whole (s).
 const MOST_SECONDS: f64 = 900.0;

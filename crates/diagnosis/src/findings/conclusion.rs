@@ -10,16 +10,16 @@ use super::found::findings;
 use super::inertials::{Inertials, inertials};
 use super::locate::locate;
 use super::observability::not_testable;
-use super::report::{
-    Finding, JointFit, Located, NotObservable, RecordingNames, Report, SCHEMA, Traces, Unexplained, UsedPart,
-};
 use super::traces::traces;
 use super::verdict::{not_enough, only_located, poorly_predicted, unexplained, verdict};
 use super::{dual_sensor, sentences, transients};
-use crate::data::motion::{Input, SourceRecording};
-use crate::diagnose::{Diagnosis, Options, Step};
-use crate::error::DiagnosisError;
-use crate::next::{self, Next};
+use crate::data::input::Input;
+use crate::data::motion::SourceRecording;
+use crate::diagnosis::Diagnosis;
+use crate::options::Options;
+use crate::report::{
+    Finding, JointFit, Located, NotObservable, RecordingNames, Report, SCHEMA, Traces, Unexplained, UsedPart,
+};
 use crate::search::study::Study;
 use crate::selection::FinalFit;
 use crate::selection::predict::{errors, exported};
@@ -27,13 +27,16 @@ use crate::selection::predict::{errors, exported};
 /// The conclusions from the final fit.
 pub struct Conclusion {
     /// The findings, the largest share first, each with its candidate.
-    findings: Vec<(Finding, Option<usize>)>,
+    pub findings: Vec<(Finding, Option<usize>)>,
     inertials: Inertials,
     located: Vec<Located>,
-    not_enough_data: Vec<String>,
+    /// The reasons why the data are not sufficient for a diagnosis; empty if they are.
+    pub not_enough_data: Vec<String>,
     fit: BTreeMap<String, JointFit>,
-    unexplained: Vec<Unexplained>,
-    not_observable: Vec<NotObservable>,
+    /// Structured residuals that no effect in the catalogue explains.
+    pub unexplained: Vec<Unexplained>,
+    /// Effects that are not testable with these recordings.
+    pub not_observable: Vec<NotObservable>,
     changed: Option<Vec<String>>,
     traces: Traces,
 }
@@ -109,55 +112,21 @@ impl Conclusion {
         }
     }
 
-    /// The next experiment on `arm`, if `options` request one and there are enough data to propose it.
-    ///
-    /// # Errors
-    /// If the effects cannot be added to the model.
-    pub fn next(
-        &self,
-        study: &mut Study,
-        last: &FinalFit,
-        (arm, options): (&Arm, &Options),
-        progress: &dyn Fn(Step<'_>),
-    ) -> Result<Option<Next>, DiagnosisError> {
-        if !options.next {
-            return Ok(None);
-        }
-        if !self.not_enough_data.is_empty() {
-            let remark = "no motion is proposed, because the recordings do not contain enough data";
-            study.motions.remarks.push(remark.to_owned());
-            return Ok(None);
-        }
-        progress(Step::new(0.8, "next experiment"));
-        let effects: Vec<Effect> = options.known.iter().cloned().chain(self.effects()).collect();
-        let next = next::propose(
-            study,
-            &last.products,
-            &last.judged.named,
-            (arm, &effects),
-            &self.findings,
-            &self.not_observable,
-            &self.unexplained,
-        )?;
-        Ok(Some(next))
-    }
-
     /// The effects that correct the torque model.
-    fn effects(&self) -> impl Iterator<Item = Effect> {
+    pub fn effects(&self) -> impl Iterator<Item = Effect> {
         let found = self.findings.iter().filter(|(finding, _)| finding.corrects);
         let found = found.map(|(finding, _)| &finding.as_effect);
         found.chain(&self.inertials.effects).cloned()
     }
 
-    /// The report, with the next experiment.
-    pub fn diagnosis(self, arm: &Arm, mut study: Study, next: Option<Next>) -> Diagnosis {
+    /// The diagnosis of `arm`, without a next experiment.
+    pub fn diagnosis(self, arm: &Arm, mut study: Study) -> Diagnosis {
         let names = |held_out: bool| {
             let sources = study.motions.sources.iter();
             let chosen = sources.filter(|source| source.held_out == held_out);
             chosen.map(|source| source.name.clone()).collect()
         };
         let effects = self.effects().collect();
-        let (next_experiment, next) = next.map_or((None, None), |next| (Some(next.report), next.motion));
         let findings: Vec<Finding> = self.findings.into_iter().map(|(finding, _)| finding).collect();
         let report = Report {
             schema: SCHEMA,
@@ -177,14 +146,14 @@ impl Conclusion {
             changed: self.changed,
             inertials: self.inertials.links,
             rollout: BTreeMap::new(),
-            next_experiment,
+            next_experiment: None,
             findings,
         };
         Diagnosis {
             report,
             traces: self.traces,
             effects,
-            next,
+            next: None,
             remarks: std::mem::take(&mut study.motions.remarks),
             trace: study.trace.take(),
         }

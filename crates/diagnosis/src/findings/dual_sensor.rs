@@ -7,10 +7,10 @@ use effects::friction::{CoulombFriction, ViscousFriction};
 use effects::{Effect, Quantity};
 use nalgebra::{DMatrix, DVector};
 
-use crate::data::motion::Input;
+use crate::data::input::Input;
 use crate::data::signal::Kernel;
 use crate::data::statistics::{NORMAL_95, deviation};
-use crate::findings::report::{Finding, Parameter, Place};
+use crate::report::{Finding, Parameter, Place};
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
 use crate::thresholds::{

@@ -3,18 +3,19 @@
 use std::collections::BTreeMap;
 
 use effects::laws::ACCELERATION;
-use rayon::prelude::*;
 
-use crate::findings::report::{Confusable, Finding, Place};
-use crate::findings::rivals::{Named, Standing, standing};
-use crate::regression::bootstrap::Resampled;
-use crate::regression::fit::{Fit, Products};
+use crate::regression::fit::Products;
+use crate::report::{Confusable, Finding, Place};
 use crate::search::candidate::Hypothesis;
 use crate::search::problem::Problem;
 use crate::search::study::Study;
+use crate::selection::bootstrap::Resampled;
+use crate::selection::gain::held_out_gain;
 use crate::selection::judge::{Member, Selection};
 use crate::selection::naming::name;
-use crate::thresholds::{AS_WELL, CLEAR_DRIVE, GAIN_PIECE, LEAST_OF_HALF, LISTED_SHARE, POWER_PIECES};
+use crate::selection::predict::deviation;
+use crate::selection::rivals::{Named, Standing, standing};
+use crate::thresholds::LISTED_SHARE;
 
 /// The findings, each with its candidate.
 pub fn findings(
@@ -36,29 +37,6 @@ pub fn findings(
                 .collect::<Vec<_>>()
         })
         .collect()
-}
-
-/// The member of `judged` that helps least on recordings that it was not fitted to, if it does not help at all.
-pub fn useless(study: &Study, products: &Products, held: &Products, judged: &Selection) -> Option<usize> {
-    let problem = study.problem(products);
-    let gains: Vec<(f64, usize)> = judged
-        .members
-        .par_iter()
-        .filter_map(|member| {
-            let gain = held_out_gain(study, &problem, Some(held), judged, member)?;
-            // The background in its place predicts nearly as well, but costs more evidence.
-            let allowed = if problem.is_background_too(&study.candidates[member.candidate]) {
-                AS_WELL
-            } else {
-                0.0
-            };
-            Some((gain + allowed, member.candidate))
-        })
-        .collect();
-    let least = gains
-        .into_iter()
-        .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
-    (least.0 <= 0.0).then_some(least.1)
 }
 
 fn finding(
@@ -149,97 +127,7 @@ fn rotor_share(study: &Study, judged: &Selection, candidate: usize) -> f64 {
         .filter(|&column| study.table.terms[column].is(&ACCELERATION))
         .collect();
     let torque = study.table.torque(joint, &rotor, &judged.named.fit.values(&rotor));
-    crate::selection::predict::deviation(&torque, &study.training_rows(joint)) / study.scales.torque[joint].max(1e-300)
-}
-
-/// The relative reduction of the NRMSE by the finding on recordings that it was not fitted to, on the joint where it is
-/// largest; `None` if that joint does not move in them. A contact is in one recording only: its force is fitted to every other
-/// piece of its window and tested on the rest.
-fn held_out_gain(
-    study: &Study,
-    problem: &Problem<'_>,
-    held: Option<&Products>,
-    judged: &Selection,
-    member: &Member,
-) -> Option<f64> {
-    let table = &study.table;
-    let without = problem.choose(judged.named.others(member.candidate), &judged.named.fit.weights);
-    if study.window(member.candidate).is_some() {
-        let columns = &study.candidates[member.candidate].columns;
-        return Some(crate::search::scan::contact_gain(study, &without.fit, columns));
-    }
-    let joint = (0..table.dof()).max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b]))?;
-    let held = held?;
-    if crate::selection::judge::is_idle(study, &judged.named, member.candidate) {
-        let fit = &judged.named.fit;
-        return Some(gain_in_pieces(study, fit, &without.fit, member.candidate, joint));
-    }
-    let fit = &judged.named.fit;
-    let (with, without) = (
-        held.rss(table, &fit.columns, &fit.coefficients),
-        held.rss(table, &without.fit.columns, &without.fit.coefficients),
-    );
-    let gain = |without: &[f64]| 1.0 - (with[joint].max(0.0) / without[joint].max(1e-300)).sqrt();
-    let mut gains = vec![gain(&without)];
-    // Every drive has friction, and most have a rotor: they also count as useful if the fit without refitting predicts
-    // worse without them. In a refit, the inertial parameters may change by more than the friction of a joint with a large
-    // load.
-    let hypothesis = study.candidates[member.candidate].hypothesis;
-    if hypothesis.is_friction() || hypothesis.is_drive_inertia() && member.evidence >= CLEAR_DRIVE {
-        let of_others = |column: &usize| !study.candidates[member.candidate].columns.contains(column);
-        let (columns, values): (Vec<usize>, Vec<f64>) = fit
-            .columns
-            .iter()
-            .copied()
-            .zip(fit.coefficients.iter().copied())
-            .filter(|(column, _)| of_others(column))
-            .unzip();
-        gains.push(gain(&held.rss(table, &columns, &values)));
-    }
-    (held.count[joint] > 0.0).then(|| gains.into_iter().fold(f64::MIN, f64::max))
-}
-
-/// The relative reduction of the error on `joint` by `candidate` where it was not fitted: its torque is scaled to the residual
-/// `without` it in every other piece of the training recordings, and tested on the rest.
-fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joint: usize) -> f64 {
-    let columns = &study.candidates[candidate].columns;
-    let torque = study.table.torque(joint, columns, &fit.values(columns));
-    let residual = study.table.residual(joint, &without.columns, &without.coefficients);
-    let rows = study.training_rows(joint);
-    let is_odd = odd_pieces(&study.motions.row_times(), study.motions.begins, &rows, &torque);
-    let (mut with, mut bare) = (0.0, 0.0);
-    for fitted in [false, true] {
-        let (mut power, mut product) = (0.0, 0.0);
-        for (&row, _) in rows.iter().zip(&is_odd).filter(|(_, odd)| **odd == fitted) {
-            power += torque[row] * torque[row];
-            product += torque[row] * residual[row];
-        }
-        let scale = product / f64::max(power, 1e-300);
-        for (&row, _) in rows.iter().zip(&is_odd).filter(|(_, odd)| **odd != fitted) {
-            with += (residual[row] - scale * torque[row]).powi(2);
-            bare += residual[row].powi(2);
-        }
-    }
-    1.0 - (with / f64::max(bare, 1e-300)).sqrt()
-}
-
-/// Whether each of the `rows` is in an odd piece. Pieces are [`GAIN_PIECE`] long; where the effect with this `torque` acts for so
-/// short a time that every other piece would hold hardly any of it, they hold equal parts of its power instead.
-fn odd_pieces(times: &[f64], begins: f64, rows: &[usize], torque: &[f64]) -> Vec<bool> {
-    let power = |row: usize| torque[row] * torque[row];
-    let all: f64 = rows.iter().map(|&row| power(row)).sum();
-    let in_time = |&row: &usize| ((times[row] - begins) / GAIN_PIECE).floor() as i64 % 2 != 0;
-    let odd: f64 = rows.iter().filter(|row| in_time(row)).map(|&row| power(row)).sum();
-    if odd.min(all - odd) >= LEAST_OF_HALF * all {
-        return rows.iter().map(in_time).collect();
-    }
-    let mut before = 0.0;
-    let in_power = |&row: &usize| {
-        let piece = (POWER_PIECES * before / all).floor();
-        before += power(row);
-        piece as i64 % 2 != 0
-    };
-    rows.iter().map(in_power).collect()
+    deviation(&torque, &study.training_rows(joint)) / study.scales.torque[joint].max(1e-300)
 }
 
 fn place(study: &Study, hypothesis: Hypothesis, candidate: usize) -> Place {

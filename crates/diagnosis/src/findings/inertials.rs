@@ -6,32 +6,16 @@ use std::collections::BTreeMap;
 use arm::Inertia;
 use effects::arm::{INERTIAL_PARAMETER, InertialParameters, Payload, body};
 use effects::{Effect, EffectKind};
-use schemars::JsonSchema;
-use serde::Serialize;
 
-use crate::findings::report::{Confusable, Finding, Parameter};
-use crate::findings::rivals::{allowance, probability};
 use crate::regression::bodies::{PER_LINK, physical};
-use crate::regression::bootstrap::Resampled;
 use crate::regression::fit::Products;
+use crate::report::{Confusable, Finding, LinkInertials, Parameter};
 use crate::search::study::{About, Study};
+use crate::selection::bootstrap::Resampled;
 use crate::selection::judge::Selection;
 use crate::selection::predict::{augmented, deviation, errors};
+use crate::selection::rivals::{allowance, probability};
 use crate::thresholds::{LEAST_WRONG_EVERYWHERE, LINK_STANDS_OUT, LISTED_SHARE, PARTLY, SYSTEMATIC};
-
-/// The estimate of a link's inertial parameters.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct LinkInertials {
-    /// The URDF's mass (kg).
-    pub nominal_mass: f64,
-    /// Mass, centre of mass (m, in the link's frame), moments of inertia about it (kg m²), with 95 % intervals.
-    pub parameters: BTreeMap<&'static str, Parameter>,
-    /// For each of m, m c (x, y, z) and Ixx … Izz about the link frame's origin, the relative reduction of the prior's variance
-    /// by the recordings: 1 where they determine the parameter, 0 where only the prior does.
-    pub determined: [f64; PER_LINK],
-    /// The standard deviation of the torque of the change over that of the measured torque, the largest of the joints.
-    pub share: f64,
-}
 
 /// The links that differ from the URDF.
 #[derive(Clone, Debug, Default)]

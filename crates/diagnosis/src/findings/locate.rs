@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::data::statistics::rms;
-use crate::findings::report::{Located, Region, TimeWindow};
+use crate::report::{Located, Region, TimeWindow};
 use crate::search::study::Study;
 use crate::thresholds::{OVER_NOISE, REGION_STANDS_OUT, SAME_MOTION, WINDOW, WINDOW_STANDS_OUT};
 

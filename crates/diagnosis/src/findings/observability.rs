@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use effects::{Detectability, Kind};
 use rayon::prelude::*;
 
-use crate::findings::report::NotObservable;
 use crate::regression::fit::Products;
+use crate::report::NotObservable;
 use crate::search::candidate::Candidate;
 use crate::search::physics::is_beyond_physics;
 use crate::search::problem::Chosen;

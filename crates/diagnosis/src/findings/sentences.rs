@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use effects::arm::InertialParameters;
 
-use crate::findings::report::{Finding, JointFit};
+use crate::report::{Finding, JointFit};
 use crate::selection::naming::may_be_nothing;
 
 /// A number with three significant digits, with an exponent only when it is very small or very large.

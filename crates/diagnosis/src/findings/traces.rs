@@ -3,7 +3,7 @@
 use effects::laws::ACCELERATION;
 use rayon::prelude::*;
 
-use crate::findings::report::{Finding, Trace, Traces};
+use crate::report::{Finding, Trace, Traces};
 use crate::search::study::Study;
 use crate::selection::judge::Selection;
 

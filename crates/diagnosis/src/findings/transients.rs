@@ -7,8 +7,8 @@ use effects::arm::ExternalContact;
 use nalgebra::Vector3;
 
 use crate::data::statistics::{median, rms};
-use crate::findings::report::{Finding, Parameter, Place, TimeWindow};
 use crate::regression::small::ForceFit;
+use crate::report::{Finding, Parameter, Place, TimeWindow};
 use crate::search::scan;
 use crate::search::study::Study;
 use crate::selection::judge::Selection;

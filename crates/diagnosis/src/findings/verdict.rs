@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 
 use crate::findings::locate::locate;
-use crate::findings::report::{Finding, JointFit, Located, TimeWindow, Unexplained, Verdict};
 use crate::findings::sentences;
 use crate::findings::transients::Bursts;
 use crate::regression::fit::Products;
+use crate::report::{Finding, JointFit, Located, TimeWindow, Unexplained, Verdict};
 use crate::search::study::Study;
 use crate::selection::judge::Selection;
-use crate::thresholds::{LEAST_MOTION, POOR, POOR_ABOVE_NOISE, REMEMBERS, STRUCTURED, STRUCTURED_ABOVE_NOISE};
+use crate::selection::predict::structured;
+use crate::thresholds::{LEAST_MOTION, POOR, POOR_ABOVE_NOISE};
 
 /// The structured residuals on each joint that no effect in the catalogue explains.
 pub fn unexplained(study: &Study, judged: &Selection, bursts: &Bursts, residual: &[Vec<f64>]) -> Vec<Unexplained> {
@@ -59,16 +60,6 @@ pub fn unexplained(study: &Study, judged: &Selection, bursts: &Bursts, residual:
             }
         })
         .collect()
-}
-
-/// The error (NRMSE) of a joint with the findings, if it is too large and too regular to be noise.
-pub fn structured(fit: &JointFit) -> Option<f64> {
-    let error = fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented);
-    let least = error.min(fit.train_nrmse_augmented);
-    let is_structured = least >= STRUCTURED
-        && least * fit.torque_std >= STRUCTURED_ABOVE_NOISE * fit.noise
-        && fit.residual_autocorrelation > REMEMBERS;
-    is_structured.then_some(error)
 }
 
 /// Adds the joints that are poorly predicted with the findings.

@@ -2,8 +2,7 @@
 
 use effects::Spec;
 
-use super::report::{NotSeparated, Obstacle};
-use crate::findings::report::Confusable;
+use crate::report::{Confusable, NotSeparated, Obstacle};
 
 /// Evidence below this (nats), or below this part of the needed evidence, counts as none: the two effects have the same torque.
 const ALIAS: (f64, f64) = (1.0, 0.1);

@@ -5,8 +5,8 @@ use effects::Effect;
 use effects::drive::TorqueSaturation;
 use torque::{Corrected, Motion, Prediction, Reference, TorqueError, Workspace};
 
-use super::report::JointLimits;
 use crate::data::statistics::median;
+use crate::report::JointLimits;
 use crate::search::study::Study;
 
 /// The part of a joint's range that is kept free at either end.

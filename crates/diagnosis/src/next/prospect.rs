@@ -8,13 +8,13 @@ use crate::data::motion::{Chunk, Motions};
 use crate::data::rigid::Rigid;
 use crate::data::signal::Kernel;
 use crate::findings::observability::Visibility;
-use crate::findings::rivals;
 use crate::regression::columns::values;
 use crate::regression::fit::{Products, evidence_rate};
 use crate::regression::table::{Moving, Table};
 use crate::search::physics::is_possible;
 use crate::search::problem::Chosen;
 use crate::search::study::{About, Study};
+use crate::selection::rivals;
 
 /// The pause between the last recording and the motion (s).
 const BETWEEN: f64 = 10.0;

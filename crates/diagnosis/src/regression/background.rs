@@ -12,7 +12,7 @@ use effects::Term;
 use effects::arm::INERTIAL_PARAMETER;
 use effects::background::{FRICTION_CURVE, GAIN as GAIN_LAW, OWN_FRICTION};
 
-use crate::diagnose::Options;
+use crate::options::Options;
 use crate::regression::bodies::{PER_LINK, precision};
 use crate::thresholds::{
     FINER_STRENGTH, FRICTION_PRIOR, FRICTION_STRENGTHS, GAIN_PRIOR, GAIN_STRENGTHS, LINK_STRENGTHS, OWN_STRENGTHS,

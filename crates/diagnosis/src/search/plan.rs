@@ -1,6 +1,6 @@
 //! The order of the search: suggest, grow, refine, relinearise, swap.
 
-use crate::diagnose::Step;
+use crate::options::Step;
 use crate::search::problem::Chosen;
 use crate::search::refine::refine;
 use crate::search::study::Study;

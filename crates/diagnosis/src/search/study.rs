@@ -9,18 +9,18 @@ use crate::data::measure::{self, spans};
 use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
 use crate::data::statistics::mean;
-use crate::diagnose::Options;
+use crate::options::Options;
 use crate::regression::background::{Background, Prior, Stated, Strengths};
 use crate::regression::fit::Products;
 use crate::regression::table::{Moving, Table};
 use crate::search::candidate::{Candidate, Hypothesis, catalogue};
-use crate::search::hypothesis;
 use crate::search::problem::Problem;
 use crate::thresholds::{LEAST_FOR_DYNAMICS, RESTING, RESTING_REACH, Thresholds};
 use crate::trace::Trace;
 
 mod about;
 mod anew;
+mod notes;
 mod payloads;
 mod strengths;
 
@@ -124,7 +124,9 @@ impl Study {
         if motions.cutoff < LEAST_FOR_DYNAMICS {
             list.retain(|(hypothesis, ..)| !hypothesis.is_unit());
         }
-        list.retain(|(hypothesis, joint, _)| hypothesis::may_be(options, &arm, *hypothesis, *joint));
+        list.retain(|(hypothesis, joint, _)| {
+            options.may_be(hypothesis.name(), joint.map(|joint| &arm.joints()[joint].name))
+        });
         if let Some(at) = motions.changed_at {
             // Every named effect may have begun after the recordings from before.
             let new: Vec<_> = list

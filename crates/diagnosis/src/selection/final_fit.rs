@@ -4,17 +4,16 @@ use effects::Effect;
 use effects::sensor::TorqueScale;
 use torque::Corrected;
 
-use crate::findings::found::useless;
-use crate::findings::report::JointFit;
-use crate::findings::rivals::standing;
-use crate::findings::verdict::structured;
 use crate::regression::background::Strengths;
-use crate::regression::bootstrap::{Resampled, resample};
+use crate::report::JointFit;
 use crate::search::problem::{Chosen, IMPOSSIBLE, Problem};
 use crate::search::study::Study;
+use crate::selection::bootstrap::{Resampled, resample};
+use crate::selection::gain::useless;
 use crate::selection::judge::{self, Selection};
 use crate::selection::naming::{Named, may_be_nothing, name};
-use crate::selection::predict::{augmented, errors};
+use crate::selection::predict::{augmented, errors, structured};
+use crate::selection::rivals::standing;
 use crate::selection::torque_constants;
 
 use crate::thresholds::{

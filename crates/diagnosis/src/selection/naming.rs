@@ -8,9 +8,9 @@ use arm::Arm;
 use effects::{Effect, Estimate, Kind, Law, Size, Spec, Systematic, Term};
 
 use crate::data::statistics::NORMAL_95;
-use crate::findings::report::Parameter;
-use crate::regression::bootstrap::Resampled;
+use crate::report::Parameter;
 use crate::search::study::Study;
+use crate::selection::bootstrap::Resampled;
 use crate::thresholds::{OF_ARM, OF_FORM, SYSTEMATIC};
 
 /// A named effect with its parameters.

@@ -6,10 +6,10 @@ use effects::background::{FRICTION_CURVE, GAIN, OWN_FRICTION};
 use effects::{Cone, Term};
 
 use crate::data::statistics::{self, rms};
-use crate::findings::report::JointFit;
+use crate::report::JointFit;
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
-use crate::thresholds::{LEAST_ROWS, RESIDUAL_LAG};
+use crate::thresholds::{LEAST_ROWS, REMEMBERS, RESIDUAL_LAG, STRUCTURED, STRUCTURED_ABOVE_NOISE};
 
 /// The residual of the model with named effects and background on all rows of one joint. At rest, dry friction may hold any
 /// torque within its cone, and the error is the distance to the cone.
@@ -134,6 +134,16 @@ pub fn errors(study: &Study, joint: usize, augmented: &[f64]) -> JointFit {
         residual_autocorrelation: autocorrelation(study, augmented, moving),
         residual_autocorrelation_nominal: autocorrelation(study, nominal, moving),
     }
+}
+
+/// The error (NRMSE) of a joint with the findings, if it is too large and too regular to be noise.
+pub fn structured(fit: &JointFit) -> Option<f64> {
+    let error = fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented);
+    let least = error.min(fit.train_nrmse_augmented);
+    let is_structured = least >= STRUCTURED
+        && least * fit.torque_std >= STRUCTURED_ABOVE_NOISE * fit.noise
+        && fit.residual_autocorrelation > REMEMBERS;
+    is_structured.then_some(error)
 }
 
 fn autocorrelation(study: &Study, signal: &[f64], moving: &[bool]) -> f64 {

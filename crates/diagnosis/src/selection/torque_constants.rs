@@ -2,9 +2,9 @@
 
 use effects::sensor::TorqueScale;
 
-use crate::regression::bootstrap::resample;
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
+use crate::selection::bootstrap::resample;
 use crate::selection::judge::{self, Selection};
 use crate::thresholds::{LEAST_TORQUE_ACCURACY, SYSTEMATIC, TOLERANCE};
 

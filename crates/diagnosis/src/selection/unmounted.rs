@@ -6,14 +6,14 @@
 
 use effects::arm::Payload;
 
-use crate::findings::rivals::{allowance, standing};
 use crate::regression::background::Strengths;
 use crate::regression::bodies::PER_LINK;
-use crate::regression::bootstrap::{Resampled, resample};
 use crate::search::problem::Chosen;
 use crate::search::study::Study;
+use crate::selection::bootstrap::{Resampled, resample};
 use crate::selection::judge::{self, Selection};
 use crate::selection::naming::name;
+use crate::selection::rivals::{allowance, standing};
 use crate::thresholds::{LEAST_OF_THE_LINK, NEARLY_ALL, UNDECIDED_NATS};
 
 /// Names a body that is missing at the tool, if the background represents one and no other effect explains nearly as much in its

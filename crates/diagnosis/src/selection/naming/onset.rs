@@ -1,7 +1,7 @@
 //! The onset of an effect, and its interval.
 
 use super::Reader;
-use crate::findings::report::Parameter;
+use crate::report::Parameter;
 use crate::thresholds::{ONSET_INTERVAL, PUSH_START};
 
 impl Reader<'_> {

@@ -2,12 +2,16 @@
 
 use std::collections::BTreeMap;
 
+use arm::PARAMETERS_PER_LINK;
 use effects::{CATALOGUE, Effect};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-pub use crate::findings::inertials::LinkInertials;
-use crate::next::NextExperiment;
+mod next_experiment;
+mod schema;
+
+pub use next_experiment::{JointLimits, NextExperiment, NotSeparated, Obstacle, Separation, Shows};
+pub use schema::json_schema;
 
 /// The value of [`Report::schema`].
 pub(crate) const SCHEMA: &str = "testbed.diagnosis/1";
@@ -319,6 +323,20 @@ pub struct JointFit {
     pub residual_autocorrelation: f64,
     /// Autocorrelation of the nominal residual at a lag of 0.1 s.
     pub residual_autocorrelation_nominal: f64,
+}
+
+/// The estimate of a link's inertial parameters.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct LinkInertials {
+    /// The URDF's mass (kg).
+    pub nominal_mass: f64,
+    /// Mass, centre of mass (m, in the link's frame), moments of inertia about it (kg m²), with 95 % intervals.
+    pub parameters: BTreeMap<&'static str, Parameter>,
+    /// For each of m, m c (x, y, z) and Ixx … Izz about the link frame's origin, the relative reduction of the prior's variance
+    /// by the recordings: 1 where they determine the parameter, 0 where only the prior does.
+    pub determined: [f64; PARAMETERS_PER_LINK],
+    /// The standard deviation of the torque of the change over that of the measured torque, the largest of the joints.
+    pub share: f64,
 }
 
 /// How closely the simulated joint follows the recorded one.

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::findings::report::Confusable;
+use super::Confusable;
 
 /// The proposed motion, and what it distinguishes.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]

@@ -4,7 +4,7 @@ use schemars::Schema;
 use schemars::generate::SchemaSettings;
 use schemars::transform::RecursiveTransform;
 
-use crate::findings::report::Report;
+use super::Report;
 
 /// The JSON Schema (draft 2020-12) of what `testbed diagnose --json` writes. Fields that are omitted where they are empty are not
 /// required; further fields may be added in later versions of the program.

@@ -1,13 +1,11 @@
 //! A hypothesis of the user (`--only`): the requested effects are fitted together, without search and selection.
 
-use arm::Arm;
 use effects::drive::FARTHEST_COUPLED;
 use effects::{CATALOGUE, Scope};
 use recording::nearest;
 
-use crate::diagnose::Options;
 use crate::error::DiagnosisError;
-use crate::search::candidate::Hypothesis;
+use crate::options::Wanted;
 use crate::search::problem::{Chosen, Problem};
 use crate::search::refine::resize;
 use crate::search::study::Study;
@@ -18,17 +16,13 @@ const SWEEPS: usize = 4;
 /// The number of linearisations about the arm with the effects.
 const ROUNDS: usize = 2;
 
-/// An effect to be fitted, by its name.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Wanted {
-    /// The catalogue's name.
-    pub effect: String,
-    /// The joint, or `None` for the whole arm.
-    pub joint: Option<String>,
-    /// The other joint of a coupling, if a particular one is requested.
-    pub other: Option<String>,
-    /// Whether it has an onset, which is searched; `None` if that is open.
-    pub sets_in: Option<bool>,
+/// The error that the request `one` is refused.
+fn refused(one: &Wanted, reason: impl Into<String>) -> DiagnosisError {
+    DiagnosisError::Wanted {
+        effect: one.effect.clone(),
+        joint: one.joint.clone(),
+        reason: reason.into(),
+    }
 }
 
 /// A request, with indices of the study.
@@ -37,29 +31,6 @@ struct Place<'a> {
     wanted: &'a Wanted,
     joint: Option<usize>,
     other: Option<usize>,
-}
-
-impl Wanted {
-    fn refused(&self, reason: impl Into<String>) -> DiagnosisError {
-        DiagnosisError::Wanted {
-            effect: self.effect.clone(),
-            joint: self.joint.clone(),
-            reason: reason.into(),
-        }
-    }
-}
-
-/// Whether a hypothesis is a candidate on a joint or (`None`) on the whole arm: all are, unless particular effects are
-/// requested.
-pub fn may_be(options: &Options, arm: &Arm, hypothesis: Hypothesis, joint: Option<usize>) -> bool {
-    options.only.as_ref().is_none_or(|wanted| {
-        let joint = joint.map(|joint| &arm.joints()[joint].name);
-        let is_wanted = |one: &Wanted| {
-            let is_there = joint == one.joint.as_ref() || (joint.is_some() && joint == one.other.as_ref());
-            hypothesis.name() == Some(&one.effect) && is_there
-        };
-        wanted.iter().any(is_wanted)
-    })
 }
 
 /// Fits the `wanted` effects, each in the form and at the size that explain the training recordings best.
@@ -127,7 +98,9 @@ fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, Diag
     for (k, one) in wanted.iter().enumerate() {
         let number = |name: &String| study.arm.joints().iter().position(|joint| joint.name == *name);
         let joint_of = |name: &Option<String>| match name {
-            Some(name) => number(name).map(Some).ok_or_else(|| one.refused(no_joint(name, study))),
+            Some(name) => number(name)
+                .map(Some)
+                .ok_or_else(|| refused(one, no_joint(name, study))),
             None => Ok(None),
         };
         let (mut joint, mut other) = (joint_of(&one.joint)?, joint_of(&one.other)?);
@@ -138,18 +111,21 @@ fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, Diag
         if let (Some(joint), Some(other)) = (joint, other)
             && !(1..=FARTHEST_COUPLED).contains(&(joint - other))
         {
-            return Err(one.refused("acts on joints that are neighbours or have one joint between them"));
+            return Err(refused(
+                one,
+                "acts on joints that are neighbours or have one joint between them",
+            ));
         }
         let Some(spec) = effects::spec(&one.effect) else {
-            return Err(one.refused(no_effect(&one.effect)));
+            return Err(refused(one, no_effect(&one.effect)));
         };
         match (joint, spec.scope) {
-            (Some(_), Scope::Arm) => return Err(one.refused("is on the whole arm; leave the joint out")),
-            (None, Scope::Joint) => return Err(one.refused("is on a joint; give it as effect:joint")),
+            (Some(_), Scope::Arm) => return Err(refused(one, "is on the whole arm; leave the joint out")),
+            (None, Scope::Joint) => return Err(refused(one, "is on a joint; give it as effect:joint")),
             _ => {}
         }
         if !spec.may_repeat && wanted[..k].contains(one) {
-            return Err(one.refused("is given twice; give it once"));
+            return Err(refused(one, "is given twice; give it once"));
         }
         let wanted = one;
         places.push(Place { wanted, joint, other });

@@ -1,0 +1,50 @@
+//! The cut-off of the filter, from the speed of the motion and the noise of the positions.
+
+use arm::Arm;
+
+use crate::data::input::Input;
+use crate::data::measure::noise_share;
+use crate::data::motion::Motions;
+use crate::data::noise::WhiteNoise;
+use crate::data::statistics::median;
+use crate::thresholds::{
+    CUTOFF, CUTOFF_PERIODS, HIGHEST_CUTOFF, LEAST_CUTOFF, LEAST_CUTOFF_PERIODS, MOST_NOISE, WORTH_RAISING,
+};
+
+/// Filters `inputs` with the second filter at `cutoff` (Hz), or at the highest frequency that the slowest recording
+/// allows. Without a `cutoff`, it follows from the data: it is higher than usual if the motion is quick, and lower if
+/// the noise of the positions would be a large part of the torques of `arm`.
+pub fn filtered(inputs: &[Input<'_>], cutoff: Option<f64>, arm: &Arm) -> Motions {
+    let wanted = cutoff.unwrap_or(CUTOFF);
+    let white: Vec<WhiteNoise> = inputs.iter().map(|input| WhiteNoise::of(input.recording)).collect();
+    let at = |cutoff: f64| Motions::at(inputs, &white, cutoff);
+    let mut motions = at(wanted);
+    if motions.cutoff < wanted {
+        motions.remarks.push(format!(
+            "the lowest sampling rate limits the filter to {:.1} Hz instead of {wanted:.0} Hz; faster effects are not detectable",
+            motions.cutoff
+        ));
+    }
+    if cutoff.is_some() {
+        return motions;
+    }
+    let tempo = median(motions.tempo.iter().copied().filter(|&tempo| tempo > 0.0).collect());
+    let quick = (CUTOFF_PERIODS * tempo).min(HIGHEST_CUTOFF);
+    if quick > WORTH_RAISING * motions.cutoff {
+        motions = at(quick);
+    }
+    let (share, joint) = noise_share(&motions, arm);
+    if share > MOST_NOISE {
+        // The noise of the acceleration grows with the power 5/2 of the cut-off.
+        let quiet = motions.cutoff * (MOST_NOISE / share).powf(0.4);
+        let least = LEAST_CUTOFF.max(LEAST_CUTOFF_PERIODS * tempo).min(motions.cutoff);
+        let before = motions.cutoff;
+        motions = at(quiet.max(least));
+        motions.remarks.push(format!(
+            "filtered at {:.1} Hz: at {before:.0} Hz, the noise of the positions alone would be {share:.2} times the torque of {}",
+            motions.cutoff,
+            arm.joints()[joint].name
+        ));
+    }
+    motions
+}

@@ -1,0 +1,57 @@
+//! The result of a diagnosis: the report, and what is beside it.
+
+use std::collections::BTreeMap;
+
+use effects::Effect;
+use torque::Reference;
+
+use crate::report::{Doubt, RecordingNames, Report, SCHEMA, Traces, Verdict};
+use crate::trace::Decision;
+
+/// A diagnosis, and the data of its figures.
+#[derive(Clone, Debug)]
+pub struct Diagnosis {
+    /// The report.
+    pub report: Report,
+    /// The signals on the diagnosis' own grid.
+    pub traces: Traces,
+    /// The named effects that correct the torque model.
+    pub effects: Vec<Effect>,
+    /// The motion of the next experiment, if one was requested and gives more information.
+    pub next: Option<Reference>,
+    /// Notes on the use of the recordings, in sentences.
+    pub remarks: Vec<String>,
+    /// Every decision of the search, in order.
+    pub trace: Vec<Decision>,
+}
+
+impl Diagnosis {
+    /// The diagnosis of recordings that contradict the URDF of `robot`: it contains the `doubts` and no effects.
+    pub fn units_first(robot: &str, recordings: RecordingNames, doubts: Vec<Doubt>) -> Self {
+        let report = Report {
+            schema: SCHEMA,
+            robot: robot.to_owned(),
+            recordings,
+            verdict: Verdict::UnitsFirst,
+            doubts,
+            findings: Vec::new(),
+            unexplained: Vec::new(),
+            not_observable: Vec::new(),
+            not_enough_data: Vec::new(),
+            located: Vec::new(),
+            fit: BTreeMap::new(),
+            changed: None,
+            inertials: BTreeMap::new(),
+            rollout: BTreeMap::new(),
+            next_experiment: None,
+        };
+        Self {
+            report,
+            traces: Traces::default(),
+            effects: Vec::new(),
+            next: None,
+            remarks: Vec::new(),
+            trace: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! The study's decisions, as rows of the record.
+
+use super::Study;
+use crate::search::problem::Chosen;
+use crate::trace::Action;
+
+impl Study {
+    fn described(&self, candidate: usize) -> (String, Option<String>) {
+        let candidate = &self.candidates[candidate];
+        let joint = candidate.joint.map(|joint| self.arm.joints()[joint].name.clone());
+        (candidate.hypothesis.spec().name.to_owned(), joint)
+    }
+
+    /// Records the decisions that lead from `before` to `after` by `rule`.
+    pub fn note(&self, rule: &'static str, before: &Chosen, after: &Chosen) {
+        let nats = before.score - after.score;
+        let row = |action: Action| {
+            move |&candidate: &usize| {
+                let (effect, joint) = self.described(candidate);
+                (action, effect, joint, rule, nats)
+            }
+        };
+        let dropped = before.set.iter().filter(|c| !after.set.contains(c));
+        let taken = after.set.iter().filter(|c| !before.set.contains(c));
+        let rows: Vec<_> = dropped
+            .map(row(Action::Dropped))
+            .chain(taken.map(row(Action::Taken)))
+            .collect();
+        if !rows.is_empty() {
+            self.trace.step(rows);
+        }
+    }
+
+    /// Records candidates that were fitted in addition to `chosen` and not taken, each with the score that it would have given.
+    pub fn note_tried(&self, chosen: &Chosen, tried: &[(usize, f64, &'static str)]) {
+        let rows = tried.iter().map(|&(candidate, score, rule)| {
+            let (effect, joint) = self.described(candidate);
+            (Action::Tried, effect, joint, rule, chosen.score - score)
+        });
+        if !tried.is_empty() {
+            self.trace.step(rows);
+        }
+    }
+
+    /// Records a change of the background's strengths since `before`.
+    pub fn note_strengths(&self, rule: &'static str, before: &Chosen, after: &Chosen) {
+        let strengths = self.strengths.to_string();
+        let nats = before.score - after.score;
+        self.trace.step([(Action::Background, strengths, None, rule, nats)]);
+        self.note(rule, before, after);
+    }
+}
