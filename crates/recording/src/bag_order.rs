@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::Warning;
-use crate::table::Place;
+use crate::place::Place;
 
 /// A message that is earlier than one before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use crate::RecordingError;
 use crate::header::Channel;
-use crate::table::{Cell, Place};
+use crate::place::Place;
+use crate::table::Cell;
 
 /// What a value is, and how to mend it.
 pub type Doubt = (&'static str, &'static str);

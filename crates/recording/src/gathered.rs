@@ -2,7 +2,7 @@
 
 use crate::header::Plan;
 use crate::origin::Origin;
-use crate::table::Place;
+use crate::place::Place;
 use crate::{PartialSignal, Quantity, Recording, Signal, Warning, wraps};
 
 /// The state of a channel while it is read.

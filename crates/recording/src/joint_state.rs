@@ -9,8 +9,9 @@ use crate::bag_order::{Order, not_set_back, set_back};
 use crate::bag_windows::BagWindows;
 use crate::cdr::{FIELDS, decode};
 use crate::input::Input;
+use crate::place::Place;
 use crate::series::{Series, at};
-use crate::table::{Column, Place, Table};
+use crate::table::{Column, Table};
 use crate::warning::RUN_PAUSE;
 
 /// The type's names: of ROS 2, and of an older form.

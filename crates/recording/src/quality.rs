@@ -3,6 +3,7 @@
 mod findings;
 mod joint;
 mod measures;
+mod slopes;
 mod velocity;
 
 use serde::Serialize;
@@ -42,10 +43,10 @@ pub struct Quality {
 impl Quality {
     /// The quality of `recording`, where `regular` is the same recording on its clock.
     pub fn of(recording: &Recording, regular: &RegularRecording) -> Self {
-        let motions: Vec<velocity::Slopes> = regular
+        let motions: Vec<slopes::Slopes> = regular
             .q
             .iter()
-            .map(|q| velocity::Slopes::of(q, &regular.segments, regular.period))
+            .map(|q| slopes::Slopes::of(q, &regular.segments, regular.period))
             .collect();
         let mut joints: Vec<JointQuality> = (0..regular.joints.len())
             .map(|joint| JointQuality::of(recording, regular, joint, &motions[joint]))

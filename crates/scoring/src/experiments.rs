@@ -7,16 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::answer::{Answer, EffectOnJoint};
 use crate::intervals::Counted;
 use crate::rules::{Key, Name, counted_findings, found, is_declared_unseen};
-use crate::score::Tried;
-
-/// A second diagnosis, with the recording of the motion that the first proposed.
-#[derive(Clone, Debug)]
-pub enum Again {
-    /// The second diagnosis.
-    Answer(Box<Answer>),
-    /// The reason why there is no second diagnosis: the motion could not be recorded, or the program gave no answer.
-    Failed(String),
-}
+use crate::tried::{Again, Tried};
 
 /// The outcome of a confusion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -41,7 +41,9 @@ mod rules;
 mod score;
 mod strict;
 mod summary;
+mod sums;
 mod targets;
+mod tried;
 mod truth;
 
 pub use answer::{
@@ -50,7 +52,7 @@ pub use answer::{
 };
 pub use calibration::{Bin, Calibration};
 pub use controls::{HeldOut, WrongTerm, true_terms, wrong_term};
-pub use experiments::{After, Again, Confusion, Experiments, InCase};
+pub use experiments::{After, Confusion, Experiments, InCase};
 pub use intervals::{Counted, quantile, wilson};
 pub use numbers::ScoredNumber;
 pub use outcome::{FalseName, Fate, Outcome, OutsideOutcome};
@@ -60,8 +62,9 @@ pub use published::{
     PublishedOutcome, RobotScore, compared_parameters,
 };
 pub use rules::{LEAST_SHARE, Name};
-pub use score::{Family, Score, Tried, score};
+pub use score::{Family, Figure, Score, Target};
 pub use strict::{SIZE_WITHIN, Strict, StrictFamily, UrdfError, UrdfGroup};
 pub use summary::{Curve, Errors, ParameterScore, SizeBin};
-pub use targets::{Figure, Target};
+pub use sums::score;
+pub use tried::{Again, Tried};
 pub use truth::{Injected, Truth};

@@ -8,7 +8,7 @@ use crate::numbers::{ScoredNumber, sized};
 use crate::rules::{
     Key, LEAST_SHARE, Name, counted_findings, found, found_or_confusable, is_baseline, is_declared_unseen, same_machine,
 };
-use crate::score::Tried;
+use crate::tried::Tried;
 use crate::truth::Injected;
 
 /// The outcome of an injected fault.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::answer::Answer;
 use crate::rules::{Key, Name, found, found_or_confusable, is_baseline, plainly_counted_findings};
-use crate::score::Tried;
+use crate::tried::Tried;
 
 /// The results of the script.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

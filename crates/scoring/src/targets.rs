@@ -1,61 +1,8 @@
 //! The figures that a proof must reach, and whether it does.
 
-use serde::Serialize;
-
 use crate::intervals::Counted;
-use crate::score::{Family, Score};
+use crate::score::{Family, Figure, Score, Target};
 use crate::strict::{UrdfError, UrdfGroup};
-
-/// The identifier of a figure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Figure {
-    /// F1 averaged over the families, counted strictly.
-    Strict,
-    /// Cases with a false name, of all cases.
-    FalseCases,
-    /// F1 averaged over the families.
-    MacroF1,
-    /// Cases with a false name, of those with only baseline effects.
-    EmptyCases,
-    /// Effects outside the catalogue that are refused on the right joint.
-    OutsideRefused,
-    /// Cases with an effect outside the catalogue and a wrong name.
-    OutsideNamed,
-    /// Relative errors of the main parameters.
-    ParameterErrors,
-    /// Intervals that contain the true value.
-    Intervals,
-    /// Injected effects that are named or are an alternative of a finding.
-    Covered,
-    /// Held-out errors over those with the true terms.
-    HeldOut,
-    /// Tracking errors over those with the exact model.
-    Tracking,
-    /// Confusions that the proposed experiment resolved.
-    Confusions,
-}
-
-/// A figure with its target.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Target {
-    /// The figure.
-    #[serde(skip)]
-    pub id: Figure,
-    /// The label.
-    pub what: String,
-    /// The value; `None` if there was nothing to count.
-    pub figure: Option<f64>,
-    /// The smallest value that meets it.
-    pub at_least: Option<f64>,
-    /// The largest value that meets it.
-    pub at_most: Option<f64>,
-    /// The counts, if the figure is a share.
-    pub counted: Option<Counted>,
-    /// The number of items.
-    pub of: usize,
-    /// Whether it is reached; `None` if there was nothing to count, or if there is no target.
-    pub reached: Option<bool>,
-}
 
 fn target(id: Figure, what: &str, figure: Option<f64>, [at_least, at_most]: [Option<f64>; 2], of: usize) -> Target {
     let is_within = |figure: f64| at_least.is_none_or(|low| figure >= low) && at_most.is_none_or(|high| figure <= high);

@@ -8,7 +8,8 @@ use csv::ByteRecord;
 use super::csv_text::{self, Separator, Squeezed};
 use super::{Format, Options};
 use crate::input::Input;
-use crate::table::{Cell, Place, Row, RowSource, Table};
+use crate::place::Place;
+use crate::table::{Cell, Row, RowSource, Table};
 use crate::{RecordingError, Warning, header};
 
 /// Comma-separated values, or with another separator.

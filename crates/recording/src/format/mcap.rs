@@ -7,7 +7,8 @@ use super::{Format, Options};
 use crate::bytes::Bytes;
 use crate::input::{Input, most_expanded};
 use crate::joint_state::{JointStates, TYPES};
-use crate::table::{Place, Table};
+use crate::place::Place;
+use crate::table::Table;
 use crate::{RecordingError, Warning};
 
 const NAME: &str = "MCAP";

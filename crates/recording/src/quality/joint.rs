@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::measures;
-use super::velocity::Slopes;
+use super::slopes::Slopes;
 use crate::{Recording, RegularRecording};
 
 /// The smallest range of a motion (rad or m).

@@ -5,7 +5,6 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use arm::{Arm, JointKind, Vector3, Workspace};
 
 use super::smooth::Smooth;
-use super::torque_unit::deviation;
 
 /// A joint's torque is explained if its residual has at most this share of its variance.
 pub const EXPLAINED: f64 = 0.2;
@@ -147,6 +146,13 @@ impl Fit {
             .map(|residual_share| residual_share.max(0.01).ln())
             .sum()
     }
+}
+
+/// The standard deviation of `values`, with their number as the divisor.
+fn deviation(values: &[f64]) -> f64 {
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
 /// The fit of the torques by the model of `arm` under a `supposition`.

@@ -52,13 +52,6 @@ const UNITS: [Unit; 4] = [
     },
 ];
 
-/// The standard deviation of `values`, with their number as the divisor.
-pub fn deviation(values: &[f64]) -> f64 {
-    let count = values.len().max(1) as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
-}
-
 /// The message on a wrong unit of the torques, if all joints that move have the same error, and the keys of a column map
 /// that correct it.
 pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Change>)> {
