@@ -232,8 +232,8 @@ pub fn of_torque_spread(ratio: f64) -> String {
     }
 }
 
-/// Two significant digits below ten, whole numbers above, powers of ten far above.
-fn factor(ratio: f64) -> String {
+/// A ratio: two significant digits below ten, whole numbers above, powers of ten far above.
+pub fn factor(ratio: f64) -> String {
     fixed(ratio, usize::from(ratio < 9.95))
 }
 

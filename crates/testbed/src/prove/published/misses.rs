@@ -5,6 +5,7 @@ use report::numbers::percent_to_a_tenth as percent;
 use scoring::{Evidence, PublishedFate};
 
 use super::Tried;
+use super::quantities::difference;
 
 /// The relative difference above which a value is listed at the start.
 const FAR: f64 = 0.2;
@@ -31,14 +32,9 @@ pub fn blocks(robots: &[Tried]) -> Vec<Block> {
         for outcome in own {
             let said = &outcome.said;
             for number in &outcome.numbers {
-                if let Some(difference) = number.difference.filter(|difference| difference.abs() > FAR) {
-                    let sign = if difference < 0.0 { "−" } else { "+" };
+                if let Some(relative) = number.difference.filter(|relative| relative.abs() > FAR) {
                     let name = name(&said.effects, said.joint.as_deref());
-                    list.push(format!(
-                        "{name}, {} {sign}{}",
-                        number.parameter,
-                        percent(difference.abs())
-                    ));
+                    list.push(format!("{name}, {} {}", number.parameter, difference(relative)));
                 }
             }
         }

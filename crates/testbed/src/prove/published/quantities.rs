@@ -3,10 +3,22 @@
 use std::f64::consts::PI;
 
 use arm::JointKind;
+use report::numbers::{factor, percent_to_a_tenth as percent};
 
 /// Whether an effect acts on the whole arm.
 pub fn is_on_the_arm(effect: &str) -> bool {
     effects::spec(effect).is_some_and(|spec| spec.scope == effects::Scope::Arm)
+}
+
+/// A relative difference from a published value in per cent with its sign, or the ratio to that value from 2 on.
+pub fn difference(relative: f64) -> String {
+    let text = percent(relative.abs());
+    match relative {
+        relative if text == "0 %" || relative == 0.0 => text,
+        relative if relative < 0.0 => format!("−{text}"),
+        relative if relative >= 1.0 => format!("{} times", factor(1.0 + relative)),
+        _ => format!("+{text}"),
+    }
 }
 
 /// A unit's name, and its factor to the first of its list.

@@ -5,13 +5,14 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use report::block::{Block, table, text};
-use report::numbers::{percent_to_a_tenth as percent, rounded, scaled, short};
+use report::numbers::{rounded, scaled, share, short};
 use report::score::name;
 use scoring::{Besides, Compared, Evidence, PublishedFate, PublishedOutcome};
 
 use super::Tried;
 use super::fold::error;
 use super::page::ERRORS;
+use super::quantities::difference;
 
 /// The robot's section.
 pub fn blocks(tried: &Tried) -> Vec<Block> {
@@ -126,7 +127,7 @@ fn compared(number: &Compared) -> [String; 4] {
     [
         published,
         format!("{found} ({low} … {high})"),
-        number.difference.map_or_else(String::new, signed_percent),
+        number.difference.map_or_else(String::new, difference),
         if number.covered { "yes" } else { "no" }.to_owned(),
     ]
 }
@@ -142,15 +143,6 @@ fn quantity(value: f64, scale: f64, unit: &str, with_unit: bool) -> String {
     }
 }
 
-fn signed_percent(share: f64) -> String {
-    let text = percent(share.abs());
-    match share {
-        share if text == "0 %" || share == 0.0 => text,
-        share if share < 0.0 => format!("−{text}"),
-        _ => format!("+{text}"),
-    }
-}
-
 fn besides(besides: &Besides) -> Vec<String> {
     let published = match (&besides.contradicted_by, besides.comes_with) {
         (Some(place), _) => format!("**contradicts** {place}"),
@@ -163,7 +155,7 @@ fn besides(besides: &Besides) -> Vec<String> {
         published,
         in_short(&besides.sentence).to_owned(),
         others.join(", "),
-        percent(besides.share),
+        share(besides.share),
         besides
             .probability
             .map_or_else(|| "–".to_owned(), |p| format!("{p:.2}")),
