@@ -27,7 +27,8 @@ impl Evaluation {
         }
     }
 
-    /// The same for `all` samples, all / n times each, where C has the noise of their means on its diagonal: `rho` for the single ones.
+    /// The evaluation for `all` samples, of which this is the evaluation for their n means: each sample occurs all / n times, and C has the
+    /// noise of the means on its diagonal. The noise of a single sample is `rho`.
     ///
     /// With k = all / n, the matrix of all is ρ I + E (C - ρ / k I) Eᵀ with n columns of E, of k ones each.
     pub(crate) fn repeated(self, all: usize, rho: f64) -> Self {

@@ -111,7 +111,7 @@ impl<F: FnMut(f64) -> f64> Line<F> {
         }
     }
 
-    /// With lower values on both sides of the largest.
+    /// The outlook if the values on both sides of the largest are lower.
     fn within(&self, best: usize, goal: Goal) -> Outlook {
         let (at, value) = self.known[best];
         let distance = |side: usize| (self.known[side].0 - at).abs();
@@ -152,7 +152,7 @@ impl<F: FnMut(f64) -> f64> Line<F> {
         }
     }
 
-    /// With the largest value at an end.
+    /// The outlook if the largest value is at an end.
     fn beyond(&self, best: usize, curvature: Option<f64>, goal: Goal) -> Outlook {
         let (at, value) = self.known[best];
         let Some(&(other, lower)) = self.known.get(if best == 0 { 1 } else { best - 1 }) else {

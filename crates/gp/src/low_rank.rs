@@ -288,7 +288,7 @@ impl LowRank {
         self.slope_with(&inverse_of_lower(self.outer.as_ref()))
     }
 
-    /// The same with G⁻¹ known.
+    /// Derivative of the profiled log marginal likelihood by log ρ, with G⁻¹ known.
     fn slope_with(&self, outer_inverse: &Mat<f64>) -> f64 {
         let (n, r) = (self.misfit.len(), self.outer.nrows());
         let amplitude_squared = self.quadratic / n as f64;

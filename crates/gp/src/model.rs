@@ -26,17 +26,19 @@ pub enum LengthScales {
 /// Options of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitOptions {
-    /// One length scale, or one an input.
+    /// Whether all inputs share one length scale, or each input has its own.
     pub lengths: LengthScales,
-    /// Least noise variance as a share of amplitude²; n ε (n samples) holds if it is larger, as it is for the default of 0.
+    /// The least noise variance as a share of amplitude². It is never below n ε for n samples, which is the least with the default
+    /// of 0.
     pub min_relative_noise: f64,
-    /// Number of starts that are climbed from, the best and distinct ones of a fixed grid; at least 1.
+    /// The number of starts of the search, at least 1: the best distinct points of a fixed grid.
     pub starts: usize,
-    /// Iterations of L-BFGS from each start; of no account for one length scale without noise.
+    /// The largest number of L-BFGS iterations from each start. It is not used for one length scale without noise.
     pub max_iterations: u64,
-    /// With more samples than this, approximate: at most so many of them, chosen one after the other where the variance left
-    /// is largest, carry the posterior (variational free energy, Titsias 2009; the choice of Burt, Rasmussen and van der
-    /// Wilk 2020). The cost is n m² in place of n³. `None` is exact. [`Gp::conditioning`] says what it leaves out.
+    /// The largest number of inducing points, or `None` for an exact posterior. More samples than this are approximated by inducing
+    /// points, which are selected one after the other where the remaining variance is largest (variational free energy, Titsias
+    /// 2009; selection by Burt, Rasmussen and van der Wilk 2020). The cost is n m² in place of n³. [`Gp::conditioning`] returns
+    /// the variance that the points leave out.
     pub inducing: Option<usize>,
 }
 

@@ -121,7 +121,7 @@ struct Climbed {
 /// Part of the samples.
 struct Part {
     training: TrainingSet,
-    /// Of all samples.
+    /// The number of all samples.
     all: usize,
     floor: f64,
 }

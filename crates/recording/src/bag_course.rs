@@ -1,17 +1,17 @@
 //! The course of a joint's time in a bag: a few messages that come late are used, a few with a stamp far from all others are left
 //! out, a simulation that starts again begins another run, and a clock that is set back is refused.
 //!
-//! Which of two times is the wrong one shows in what follows. So messages far before those before them are held back, and those
-//! far ahead are doubted, until there are more of them than a few.
+//! Only the following messages show which of two times is wrong. Messages far behind the one before are therefore held back, and
+//! messages far ahead of it are doubted, until there are more of them than a few.
 
 use crate::bag_order::Late;
 use crate::series::Values;
 
 const SECOND: i64 = 1_000_000_000;
-/// A message that is earlier by more than this (ns) than one before it did not come late. After a step ahead of more than this, the
-/// messages before it may be the ones that are right.
+/// The largest delay of a message that comes late (ns). A larger step back is a wrong stamp or a clock that was set back. After a
+/// step ahead of more than this, either the messages before it or those after it may be right.
 const LATEST: i64 = SECOND;
-/// Nor did so many messages of a joint one after the other, if more follow; nor are more stamps wrong one after the other.
+/// The largest number of consecutive messages of a joint that come late or have a wrong stamp.
 const FEW: usize = 10;
 /// A step that no bag has (ns): a few messages on one side of it have a wrong stamp.
 const FAR: i64 = 86_400 * SECOND;
@@ -35,7 +35,7 @@ pub struct Sample {
 pub enum Taken {
     /// It is used; how late it is, if it is.
     Used(Option<Late>),
-    /// What follows will tell.
+    /// The following samples decide whether it is used.
     HeldBack,
     /// More than this sample is decided.
     Settled(Box<Settled>),

@@ -26,7 +26,7 @@ pub struct ColumnMap {
     time: Option<Time>,
     /// The columns whose cells are the joints' names.
     names: Option<String>,
-    /// In the order of the file; one with `{joint}` in it stands for all joints whose columns are there.
+    /// The joints in the order of the file. A name with `{joint}` in it stands for all joints whose columns are there.
     joints: Vec<String>,
     entries: Vec<Entry>,
 }

@@ -37,7 +37,7 @@ pub(crate) struct Options<'a> {
     pub delimiter: Option<u8>,
     /// The topics to read of a file that has topics; all if there are none.
     pub topics: &'a [String],
-    /// Of a longer recording, windows of this time in all are read (s).
+    /// The time that is read of a longer recording, as windows (s).
     pub seconds: Option<f64>,
 }
 

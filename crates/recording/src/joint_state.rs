@@ -35,7 +35,7 @@ pub struct JointStates {
 #[derive(Debug)]
 struct Joint {
     name: String,
-    /// Of messages without a stamp, at the time of logging, which is another clock; and of those with one.
+    /// The two clocks of its messages: first that of the logger, for messages without a stamp, then that of the stamps.
     clocks: [Clock; 2],
 }
 
@@ -79,7 +79,7 @@ fn shift(runs: &[Run], run: usize) -> i64 {
 }
 
 impl JointStates {
-    /// None yet; of bags that last longer than `seconds` (s), windows of that time in all are kept.
+    /// An empty collection of messages. Of bags that last longer than `seconds` (s), it keeps windows of that duration together.
     pub fn new(seconds: Option<f64>) -> Self {
         Self {
             windows: seconds.map(BagWindows::new),

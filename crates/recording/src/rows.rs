@@ -60,7 +60,8 @@ pub struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    /// None yet, of which at most `most` values are kept, of a longer recording in windows of `seconds` in all if there are any.
+    /// An empty list of rows, which keeps at most `most` values. If `seconds` are given, it keeps windows of that duration together of
+    /// a longer recording.
     pub fn new(path: &'a Path, has_lines: bool, plan: &'a Plan, (most, seconds): (usize, Option<f64>)) -> Self {
         let values = Thinned::new(1 + plan.channels.len() + plan.others.len(), most);
         Self {

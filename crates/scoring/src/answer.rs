@@ -143,7 +143,7 @@ pub struct JointErrors {
     /// The error of the nominal model on the held-out recording.
     #[serde(default)]
     pub held_out_nrmse_nominal: Option<f64>,
-    /// With the effects named.
+    /// The error with the effects named.
     #[serde(default)]
     pub held_out_nrmse_augmented: Option<f64>,
     /// The error with a learned correction instead of effects.
@@ -154,10 +154,10 @@ pub struct JointErrors {
 /// Root mean square distance of a joint's simulated motion from the recorded one (rad or m).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Rollout {
-    /// With the nominal model.
+    /// The distance with the nominal model.
     #[serde(rename = "nominal_rms_rad")]
     pub nominal: f64,
-    /// With the effects named.
+    /// The distance with the effects named.
     #[serde(rename = "augmented_rms_rad")]
     pub diagnosed: f64,
 }

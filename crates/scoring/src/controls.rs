@@ -67,13 +67,13 @@ pub struct HeldOut {
     pub beside_the_terms: bool,
     /// The nominal model.
     pub nominal: Option<f64>,
-    /// With the findings.
+    /// The model with the findings.
     pub diagnosed: Option<f64>,
-    /// With the true terms.
+    /// The model with the true terms.
     pub true_terms: Option<f64>,
-    /// With a wrong term in place of a true one.
+    /// The model with a wrong term in place of a true one.
     pub wrong_term: Option<f64>,
-    /// With a learned correction and no names.
+    /// The model with a learned correction and no names.
     pub learned: Option<f64>,
 }
 

@@ -149,7 +149,7 @@ pub struct Besides {
 pub struct HeldOutErrors {
     /// The error of the URDF's model.
     pub nominal: Option<f64>,
-    /// With the findings.
+    /// The error with the findings.
     pub diagnosed: Option<f64>,
     /// The error with the published effects, fitted to the same recordings.
     pub said: Option<f64>,

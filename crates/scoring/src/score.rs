@@ -65,12 +65,12 @@ pub struct Score {
     pub intervals: Counted,
     /// The prediction error on the held-out recording over that of the true terms, case by case.
     pub over_true_terms: Errors,
-    /// The same ratio, joint by joint.
+    /// The prediction error on the held-out recording over that of the true terms, joint by joint.
     pub over_true_terms_by_joint: Errors,
     /// The tracking error with the diagnosed effects over that with the exact model, of the cases in which a task was
     /// tracked.
     pub tracking_over_exact: Errors,
-    /// The same ratio without the lag of the velocity filter.
+    /// The ratio of these tracking errors in a loop without the lag of the velocity filter.
     pub tracking_over_exact_without_lag: Errors,
     /// The confusion matrix: injected effects (rows) against the names given (columns).
     pub confusion: BTreeMap<String, BTreeMap<String, usize>>,

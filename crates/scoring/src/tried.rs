@@ -16,9 +16,10 @@ pub struct Tried {
     pub true_terms: Option<Answer>,
     /// A wrong term in place of a true one.
     pub wrong_term: Option<Answer>,
-    /// The tracking error of a task with the diagnosed effects over that with the exact model, where a task was tracked.
+    /// The ratio of the tracking error of a task with the diagnosed effects to that with the exact model; `None` if no task was
+    /// tracked.
     pub tracking_over_exact: Option<f64>,
-    /// The same ratio in a loop without the lag of the velocity filter, in which only the model differs.
+    /// The ratio of these tracking errors in a loop without the lag of the velocity filter, in which only the model differs.
     pub tracking_over_exact_without_lag: Option<f64>,
     /// A second diagnosis, with the proposed experiment; `None` if there was none.
     pub again: Option<Again>,

@@ -69,7 +69,7 @@ pub fn write_text(path: &Path, text: &str) -> anyhow::Result<()> {
 pub struct OutputFile<'a> {
     pub option: &'static str,
     pub path: &'a Path,
-    /// In lower case, without the dot.
+    /// The endings of the file's name that are accepted, in lower case and without the dot.
     pub endings: &'static [&'static str],
 }
 

@@ -17,7 +17,7 @@ pub struct Lagrangian {
     rigid_body: Option<Arm>,
     regression: LagrangianGp,
     range: LagrangianRange,
-    /// Of each joint, the share of the prior variance from which its torque fades.
+    /// The share of the prior variance from which the torque fades, one per joint.
     from: Vec<f64>,
 }
 

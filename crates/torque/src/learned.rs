@@ -19,7 +19,7 @@ pub struct TrainingOptions {
     pub starts: usize,
     /// Iterations from each start: [`FitOptions::max_iterations`].
     pub max_iterations: u64,
-    /// With more samples than this, the regressions are approximated by this many inducing points:
+    /// The number of inducing points by which the regressions are approximated if there are more samples than that:
     /// [`FitOptions::inducing`].
     pub inducing: Option<usize>,
 }

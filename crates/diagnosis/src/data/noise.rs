@@ -19,9 +19,9 @@ const LEAST_CHANGES: usize = 20;
 
 /// The standard deviations of the white noise of a recording's signals, one per joint.
 pub struct WhiteNoise {
-    /// Of the positions (rad or m).
+    /// The noise of the positions (rad or m).
     pub q: Vec<f64>,
-    /// Of the torques (N m or N).
+    /// The noise of the torques (N m or N).
     pub tau: Vec<f64>,
 }
 

@@ -24,7 +24,7 @@ const BATCH: usize = 12;
 pub enum Moving {
     /// Rows away from rest, where the sign of the velocity is certain.
     Steadily,
-    /// Also rows near quick reversals, which contain most information about dry friction.
+    /// The steady rows and rows near quick reversals, which contain most information about dry friction.
     ThroughReversals,
 }
 

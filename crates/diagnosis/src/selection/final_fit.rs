@@ -1,4 +1,4 @@
-//! The final fit: about the arm with the named effects, and without effects that fail the last tests.
+//! The final fit: the named effects are linearised about the arm that contains them, and effects that fail the last tests are removed.
 
 use effects::Effect;
 use effects::sensor::TorqueScale;
@@ -20,8 +20,8 @@ use crate::thresholds::{
     CLEAR_THOUGH_UNDETERMINED, HOPELESS, LEAST_FINAL_SHARE, LEAST_UNDECIDED, PARTLY, UNDECIDED_NATS,
 };
 
-/// Fits the named effects about the arm with them, with the rows near reversals. Removes effects that increase a joint's
-/// held-out error, that do not reduce it, or whose size may be zero unless there is much evidence for them.
+/// Fits the named effects about the arm that contains them, including the rows near reversals. Removes effects that increase the
+/// held-out error of a joint, effects that do not reduce it, and effects with little evidence whose size may be zero.
 pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
     let mut constants_tried = Vec::new();
     loop {
@@ -56,7 +56,7 @@ pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
     }
 }
 
-/// Fits the named effects about the arm with them, without removing any.
+/// Fits the named effects about the arm that contains them, and removes none.
 pub fn as_given(study: &mut Study, judged: &mut Selection) -> Resampled {
     settle(study, judged, true);
     resample(study, &judged.named)
@@ -84,7 +84,7 @@ fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Selection, set: Vec<
     judged.members = judge::describe(study, problem, &judged.named);
 }
 
-/// Evaluates everything about the arm with exactly the named effects, with the rows near reversals, and fits again.
+/// Evaluates all columns about the arm that contains exactly the named effects, including the rows near reversals, and fits again.
 fn settle(study: &mut Study, judged: &mut Selection, as_given: bool) {
     let kept = study.settle(&judged.named.fit, &judged.candidates());
     let named = judged.named.set.len();
@@ -105,7 +105,7 @@ fn settle(study: &mut Study, judged: &mut Selection, as_given: bool) {
     }
 }
 
-/// Removes names that became impossible, until there are none.
+/// Removes effects that are physically impossible in this fit, one by one.
 fn make_possible(study: &mut Study, judged: &mut Selection) {
     let impossible = |study: &Study, named: &Chosen| {
         let products = study.training_products();
@@ -117,7 +117,7 @@ fn make_possible(study: &mut Study, judged: &mut Selection) {
     }
 }
 
-/// Removes names that do not improve the prediction of recordings they were not fitted to, until there are none.
+/// Removes effects that do not improve the prediction of held-out recordings, one by one.
 fn prove(study: &mut Study, judged: &mut Selection) {
     let Some(held) = study.held_products() else { return };
     while let Some(useless) = useless(study, &study.training_products(), &held, judged) {
@@ -130,7 +130,7 @@ fn prove(study: &mut Study, judged: &mut Selection) {
     }
 }
 
-/// Removes the names on joints that are still predicted worse than by a constant: the channel measures something else.
+/// Removes the effects on joints whose torque is predicted worse than by a constant: such a channel measures something else.
 fn give_up(study: &Study, judged: &mut Selection) {
     let left: Vec<JointFit> = (0..study.motions.dof)
         .map(|joint| errors(study, joint, &augmented(study, &judged.named, joint)))
@@ -154,7 +154,7 @@ fn give_up(study: &Study, judged: &mut Selection) {
     }
 }
 
-/// The weakest name that may be nothing or is physically impossible, and whether it is impossible.
+/// The weakest effect whose size may be zero or that is physically impossible, and whether it is impossible.
 fn unclear(study: &mut Study, judged: &Selection, resampled: &Resampled) -> Option<(usize, bool)> {
     let resampled = &resampled.evenly();
     let nothing = nothing(study, judged, resampled);
@@ -165,9 +165,9 @@ fn unclear(study: &mut Study, judged: &Selection, resampled: &Resampled) -> Opti
     let accuracy = torque_constants::accuracy(study, &judged.named.set);
     let contradicted = |member: &judge::Member| {
         let named = name(study, resampled, member.candidate);
-        // With its sizes corrected it may be impossible, such as a negative level.
+        // The correction of its sizes may make the effect impossible, for example by a negative level.
         let is_impossible = |named: &Named| Corrected::new(&study.arm, std::slice::from_ref(&named.effect)).is_err();
-        // Its own rows contradict it.
+        // The intervals of its parameters, or the other effects, exclude it.
         let is_contradicted = |named: &Named| {
             let interval = |key: &str| named.parameters.get(key).map(|parameter| parameter.ci95);
             let kind = named.effect.kind().get();
@@ -186,9 +186,9 @@ fn unclear(study: &mut Study, judged: &Selection, resampled: &Resampled) -> Opti
     Some((weakest.candidate, contradicted(weakest)))
 }
 
-/// The members whose main parameters may be those of no effect. With much evidence beside the background that is best without it, an
-/// effect is not nothing although its size is undetermined: wrong inertials of the last links leave a payload's mass undetermined
-/// while its moments are clear, and drift relative to a low level of friction is as uncertain as that level.
+/// The members whose size may be zero. A member is not listed if its evidence against the background that fits best without it is large,
+/// even if its size is undetermined. For example, wrong inertial parameters of the last links leave the mass of a payload undetermined
+/// while its moments are clear, and a drift relative to a low level of friction is as uncertain as that level.
 fn nothing(study: &mut Study, judged: &Selection, resampled: &Resampled) -> Vec<usize> {
     let may_be = |study: &Study, member: usize| {
         let named = name(study, resampled, member);
@@ -203,9 +203,9 @@ fn nothing(study: &mut Study, judged: &Selection, resampled: &Resampled) -> Vec<
     list
 }
 
-/// The weakest effect whose name is as likely wrong as right: a small one in whose place another explains nearly as much; one that
-/// wrong inertials resemble, with little evidence beside the background that is best without it; or one that is nothing in the final
-/// fit.
+/// The weakest effect whose name is as likely wrong as right, with the rule that removes it: it is too
+/// small in the final fit; or another effect explains nearly as much in its place; or wrong inertial parameters resemble it, and its
+/// evidence against the background that fits best without it is small.
 fn undecided(study: &mut Study, judged: &Selection) -> Option<(usize, &'static str)> {
     let products = study.training_products();
     let mut members: Vec<&judge::Member> = judged.members.iter().collect();
@@ -215,13 +215,13 @@ fn undecided(study: &mut Study, judged: &Selection) -> Option<(usize, &'static s
         if !hypothesis.is_baseline() && !hypothesis.is_passing() && member.share() < LEAST_FINAL_SHARE {
             return Some("too small in the final fit");
         }
-        // Some payload or factor on inertials fits any wrong inertials better than nothing.
+        // A payload or a factor on the inertial parameters improves the fit whenever the inertial parameters are wrong in any way.
         let is_small = !hypothesis.is_friction() && member.share() < LEAST_UNDECIDED;
         let margin = || standing(study, &study.problem(&products), &judged.named, member.candidate).margin;
         if (is_small || hypothesis.is_wrong_mass() || hypothesis.is(&TorqueScale)) && margin() < UNDECIDED_NATS {
             return Some("another effect explains nearly as much in its place");
         }
-        // Where most links are as the URDF says, one wrong link is the less likely explanation.
+        // If most links agree with the URDF, one wrong link is an unlikely explanation.
         let is_wrong = study.strengths.common() > 0.0;
         let least = hypothesis.spec().least_beside_inertials.filter(|_| is_wrong)?;
         let evidence = study.evidence_beside_best_background(&judged.named, member.candidate);
@@ -232,7 +232,7 @@ fn undecided(study: &mut Study, judged: &Selection) -> Option<(usize, &'static s
         .find_map(|member| Some((member.candidate, rule(member)?)))
 }
 
-/// Whether it is an effect that hardly exceeds the residual structure beside it, of a kind that may be a part of that structure.
+/// Whether the effect is hardly larger than the structured residual of its joint, and of a kind that may be a part of that residual.
 fn is_part_of_the_rest(study: &Study, judged: &Selection, member: &judge::Member) -> bool {
     let candidate = &study.candidates[member.candidate];
     let Some(factor) = candidate.hypothesis.spec().least_beside_residual else {
@@ -240,7 +240,7 @@ fn is_part_of_the_rest(study: &Study, judged: &Selection, member: &judge::Member
     };
     let Some(joint) = candidate.joint else { return false };
     let fit = errors(study, joint, &augmented(study, &judged.named, joint));
-    // Unmodelled forms also stand for parts of named effects: what counts is what the named effects leave.
+    // Unmodelled forms may represent parts of named effects. Therefore the residual of the named effects alone is compared.
     let has_forms = judged.unmodelled.iter().any(|member| member.shares[joint] > 0.0);
     let left = structured(&fit)
         .into_iter()
@@ -292,7 +292,7 @@ fn harmed(study: &Study, chosen: &Chosen) -> Option<usize> {
 }
 
 /// The smaller background with the smallest held-out errors of all joints together, if they are smaller than now. Errors at rest
-/// count, too: wrong links that explain the motions of some joints are felt as weight on joints that stand still.
+/// are included, because wrong links that explain the motion of some joints change the weight on joints at rest.
 fn better_outside(study: &Study, chosen: &Chosen) -> Option<(Strengths, Chosen)> {
     let loss = |chosen: &Chosen| {
         let errors = (0..study.motions.dof).filter_map(|joint| held_out(study, chosen, joint).1);

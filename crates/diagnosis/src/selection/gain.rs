@@ -17,7 +17,7 @@ pub fn useless(study: &Study, products: &Products, held: &Products, judged: &Sel
         .par_iter()
         .filter_map(|member| {
             let gain = held_out_gain(study, &problem, Some(held), judged, member)?;
-            // The background in its place predicts nearly as well, but costs more evidence.
+            // The background predicts nearly as well without the effect, but costs more evidence.
             let allowed = if problem.is_background_too(&study.candidates[member.candidate]) {
                 AS_WELL
             } else {

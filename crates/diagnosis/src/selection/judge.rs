@@ -1,4 +1,4 @@
-//! The decision which of the chosen candidates keep their name.
+//! Decides which of the selected candidates are named.
 
 use rayon::prelude::*;
 
@@ -94,7 +94,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
     let mut kept = problem.choose(named.iter().map(|m| m.candidate).collect(), &chosen.fit.weights);
     if !unmodelled.is_empty() {
         // Unmodelled forms may have replaced simple effects. A constant is allowed if no other form remains on its joint, or if it
-        // is much larger than all that the named effects leave there: the forms also stand for constants.
+        // is much larger than the residual of the named effects there, because unmodelled forms also represent constants.
         let candidates = &study.candidates;
         let simple: Vec<usize> = (0..candidates.len())
             .filter(|&c| candidates[c].hypothesis.is_simple())
@@ -222,7 +222,7 @@ fn shares(study: &Study, chosen: &Chosen, candidate: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Whether a candidate is inactive in the held-out recordings, so that they do not test its prediction.
+/// Whether a candidate has no torque in the held-out recordings, so that they do not test it.
 pub fn is_idle(study: &Study, chosen: &Chosen, candidate: usize) -> bool {
     let columns = &study.candidates[candidate].columns;
     let values = chosen.fit.values(columns);
@@ -261,7 +261,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
         }
         let unmodelled = largest(&|m| !is_named(m), at);
         if hypothesis(member).is_baseline() {
-            // Beside larger unmodelled structure, a rotor inertia may be a part of that structure.
+            // If the unmodelled forms on the joint are larger, a rotor inertia may be a part of what they represent.
             return hypothesis(member).is_drive_inertia() && share < unmodelled.max(LEAST_DRIVE);
         }
         let needed = match hypothesis(member).plain() {

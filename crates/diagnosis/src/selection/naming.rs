@@ -40,7 +40,7 @@ impl Reader<'_> {
         self.kind.spec().unit(key, joint.kind).unwrap_or_default()
     }
 
-    /// How wrong the URDF's links are that the joint moves, relative, by the background that the recordings ask for.
+    /// The relative error of the URDF's links that the joint moves, according to the strengths of the background.
     fn links_wrong_by(&self) -> f64 {
         let moved = self.study.strengths.links.iter().skip(self.joint());
         moved.fold(0.0, |most: f64, &strength| most.max(strength))

@@ -111,8 +111,7 @@ pub fn errors(study: &Study, joint: usize, augmented: &[f64]) -> JointFit {
         let error = rms(held.iter().filter(|&&row| resting[row]).map(|&row| signal[row]))?;
         over_spread(error, deviation(tau, &held))
     };
-    // The error is that of the samples in motion; at rest, friction, a brake or the last motion determine the measured
-    // torque.
+    // Only samples in motion count. At rest, the measured torque depends on friction, a brake or the previous motion.
     let moves = held.iter().filter(|&&row| moving[row]).count() >= LEAST_ROWS;
     let counted = if moves {
         moving.clone()

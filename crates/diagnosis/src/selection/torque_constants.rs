@@ -8,7 +8,8 @@ use crate::selection::bootstrap::resample;
 use crate::selection::judge::{self, Selection};
 use crate::thresholds::{LEAST_TORQUE_ACCURACY, SYSTEMATIC, TOLERANCE};
 
-/// The relative standard deviation of the torque constants: stated, or by what the recordings need beside the effects of `set`.
+/// The relative standard deviation of the torque constants: the stated one, or the one that the recordings require beside the effects of
+/// `set`.
 pub fn accuracy(study: &Study, set: &[usize]) -> f64 {
     let strengths = &study.strengths;
     let all_are_exact = strengths.gain == 0.0 && strengths.links.iter().all(|&rho| rho == 0.0);
@@ -27,14 +28,15 @@ fn names(study: &Study, candidate: usize) -> Option<usize> {
     study.candidates[candidate].joint.filter(|_| is_scale && always)
 }
 
-/// Keeps the torque constants that `set` names out of the background: else a name would explain only what the background leaves.
+/// Removes the torque constants that `set` names from the background. Otherwise a named torque constant would explain only the part that
+/// the background does not.
 pub fn keep_named_ones(study: &mut Study, set: &[usize]) {
     study.strengths.named_constants = set.iter().filter_map(|&c| names(study, c)).collect();
 }
 
 /// Adds a torque scale on each joint, except those `tried`, whose torque constant deviates in the background by more than such
-/// constants usually do, and clearly from one. They are added one by one, the farthest first: what it explains is then no longer
-/// spread over the others.
+/// constants usually do, and clearly from one. They are added one by one, that with the largest deviation first, because the background
+/// otherwise spreads this deviation over the other joints.
 pub fn name_those_beyond_tolerance(study: &mut Study, judged: &mut Selection, tried: &mut Vec<usize>) {
     while let Some((joint, scale)) = farthest(study, judged, tried) {
         tried.push(joint);
@@ -42,7 +44,7 @@ pub fn name_those_beyond_tolerance(study: &mut Study, judged: &mut Selection, tr
         keep_named_ones(study, &set);
         let products = study.training_products();
         let next = study.problem(&products).choose(set, &judged.named.fit.weights);
-        // Wrong inertials of all links and the constants of all drives imitate each other.
+        // Wrong inertial parameters of all links resemble wrong torque constants of all drives.
         if is_clear(study, &next, scale) {
             study.note(
                 "its torque constant is beyond the usual tolerance",

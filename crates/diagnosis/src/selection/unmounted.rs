@@ -1,4 +1,4 @@
-//! A tool that the URDF draws and that is not mounted: the effect behind the background's change of the last link.
+//! A tool that the URDF contains and that is not mounted, which the background represents as a change of the last link.
 //!
 //! Any change of the last link may be a body on the tool, because the ten columns are the same. A general change of all links'
 //! inertial parameters costs fewer nats than ten coefficients, so that the search leaves a missing tool to the background. If

@@ -13,7 +13,7 @@ impl Lanes {
     pub(crate) const ZERO: Self = Self([0.0; LANES]);
     pub(crate) const ONE: Self = Self([1.0; LANES]);
 
-    /// The same number in every lane.
+    /// `value` in every lane.
     #[inline(always)]
     pub(crate) fn splat(value: f64) -> Self {
         Self([value; LANES])

@@ -9,7 +9,7 @@ use crate::wide::{Wide, on_widest};
 /// Weights of samples, which make the posterior prior: Σ weights · T' k.
 #[derive(Clone, Debug)]
 pub(crate) struct Weights {
-    /// In blocks, of each joint; zero in the padding.
+    /// The weights of each joint in blocks of samples, with zeros in the padding.
     values: Vec<Lanes>,
     /// Coefficient of viscous friction and level of Coulomb friction of each joint.
     friction: Vec<[f64; 2]>,
@@ -39,9 +39,11 @@ impl Weights {
 #[derive(Clone, Debug)]
 pub(crate) struct Scratch {
     factors: Factors,
-    /// Π of the kinetic factors by q_c; and that along the sample's speeds, and along the weights.
+    /// The derivatives of Π, the product of the kinetic factors, by q_c: those of Π itself, of Π along the sample's speeds, and of Π along
+    /// the weights.
     by: [Vec<Lanes>; 3],
-    /// The same of the potential factors, without speeds.
+    /// The derivatives of the product of the potential factors by q_c: those of the product itself, and of the product along the
+    /// weights.
     potential_by: [Vec<Lanes>; 2],
     torque: Vec<Lanes>,
 }

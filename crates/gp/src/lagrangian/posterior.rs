@@ -26,14 +26,14 @@ const BATCH: usize = 128;
 pub(crate) struct Posterior {
     pub(crate) units: Vec<f64>,
     pub(crate) motions: Motions,
-    /// In the order of [`Motions::entry`]; torques are Σ K weights.
+    /// The weights in the order of [`Motions::entry`]; torques are Σ K weights.
     pub(crate) alpha: Vec<f64>,
     weights: Weights,
     /// The mean prior variance, by which the matrices of the factors are divided.
     pub(crate) mean_variance: f64,
     /// G with G Gᵀ = K + noise (or + the floor, if `projected` is there) of the support.
     pub(crate) support: Mat<f64>,
-    /// With F = K_n· G⁻ᵀ of all samples: the factor of Fᵀ Λ⁻¹ F + I, Λ being the noise.
+    /// The factor of Fᵀ Λ⁻¹ F + I, where F = K_n· G⁻ᵀ of all samples and Λ is the noise.
     pub(crate) projected: Option<Mat<f64>>,
 }
 

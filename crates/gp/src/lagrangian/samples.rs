@@ -116,7 +116,7 @@ impl TorqueSamples {
         (column.map(|value| value * value).sum::<f64>() / self.len() as f64).sqrt()
     }
 
-    /// Of each joint, the unit of its position within energies: 1 for angles, the root mean square of a prismatic joint's position.
+    /// The unit of each joint's position within energies: 1 for angles, the root mean square of a prismatic joint's position.
     pub(crate) fn scales(&self) -> Vec<f64> {
         let scale = |(c, joint): (usize, &JointType)| match joint {
             JointType::Revolute => 1.0,
@@ -152,7 +152,7 @@ pub(crate) struct Motions {
     joints: Vec<JointType>,
     scales: Vec<f64>,
     len: usize,
-    /// Of each block: for each joint (cos q, sin q) or (q / scale, 0), q̇ and q̈.
+    /// The values of each block and, in it, of each joint: (cos q, sin q) or (q / scale, 0), q̇ and q̈.
     values: Vec<[Lanes; 4]>,
 }
 

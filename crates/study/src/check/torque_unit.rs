@@ -10,9 +10,10 @@ pub const MOTOR_SIDE: f64 = 0.05;
 const LARGE_EVERYWHERE: f64 = 30.0;
 /// With less than this ratio on all joints, the torques are motor currents or in another unit.
 const SMALL_EVERYWHERE: f64 = 0.2;
-/// So they are if half of the joints have less than that and all others less than this: torque constants differ from drive to drive,
-/// and a payload and friction make the ratio larger.
+/// The torques are also motor currents or in another unit if half of the joints have a ratio below [`SMALL_EVERYWHERE`] and all others
+/// a ratio below this one: torque constants differ from drive to drive, and a payload and friction make the ratio larger.
 const SMALL_BESIDE: f64 = 0.7;
+
 /// A unit of torque that is a power of ten of N m.
 struct Unit {
     /// The ratio of the recorded torque to the model's.

@@ -42,9 +42,9 @@ impl Kind {
 
 /// The values of one column in one recording.
 enum Values<'a> {
-    /// The same text in every row.
+    /// One text, in every row.
     Text(&'a str),
-    /// The same truth in every row.
+    /// One truth value, in every row.
     Same(bool),
     /// One a row.
     Each(&'a [bool]),

@@ -128,7 +128,7 @@ impl CaseTracking {
         over(self.error(Model::Diagnosed), self.error(Model::Exact))
     }
 
-    /// The same ratio in the loop without the lag of the velocity filter.
+    /// The tracking error with the diagnosed effects over that with the exact model, in the loop without the lag of the velocity filter.
     pub fn over_exact_without_lag(&self) -> Option<f64> {
         over(
             self.error_without_lag(Model::Diagnosed),

@@ -6,7 +6,7 @@ use gp::{Wide, on_widest};
 /// The number of columns that are treated together.
 pub const LANES: usize = 8;
 
-/// The same entry of several columns.
+/// One entry of several columns, a column in each lane.
 pub type Lanes = [f64; LANES];
 
 /// The number of partial sums of an inner product.

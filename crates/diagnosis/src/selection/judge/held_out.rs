@@ -54,14 +54,15 @@ pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut 
                 let removed = set.remove(k);
                 let rest = problem.choose(set, &chosen.fit.weights);
                 let without = rss(&rest);
-                // It predicts if it does on all joints together or on those that it acts on: on the others, only the background
-                // changes.
+                // An effect passes if it improves the prediction of all joints together, or of the joints on which it acts. On the other
+                // joints, only the background changes.
                 let this = &study.candidates[removed];
                 let acts = |joint: usize| this.columns.iter().any(|&column| table.place[joint][column].is_some());
                 let lost = |joint| held.joint_loss(joint, without[joint]) - held.joint_loss(joint, with[joint]);
                 let there: f64 = (0..with.len()).filter(|&joint| acts(joint)).map(lost).sum();
                 let mut gain = there.max(held.loss(&without) - held.loss(&with));
-                // The background in its place predicts as well, for more nats. Every drive has friction: all recordings decide.
+                // The background in its place predicts as well, but costs more evidence. Friction is present in every drive, so that
+                // all recordings decide on it.
                 if problem.is_background_too(this) || this.hypothesis.is_friction() {
                     gain += rest.score - chosen.score;
                 }
@@ -83,8 +84,8 @@ pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut 
             gains
                 .iter()
                 .filter(|(candidate, _, without)| {
-                    // An effect on all joints is judged by the likelihood of all, and one that does not act on this joint is
-                    // not judged by it: there, the background may be the reason, which the final fit reduces.
+                    // An effect on all joints is judged by the likelihood of all joints. An effect that does not act on this joint is
+                    // not judged by this joint's error: its reason may be the background, which the final fit reduces.
                     let this = &study.candidates[*candidate];
                     let acts = this.columns.iter().any(|&column| table.place[joint][column].is_some());
                     this.joint.is_some() && acts && without[joint] < with[joint]
