@@ -1,4 +1,4 @@
-//! Recordings that the tests of the diagnosis make themselves: a known motion, the rigid torque, and what is concealed.
+//! Recordings that the tests of the diagnosis make themselves: a known motion, the rigid torque, and what is injected.
 
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -15,8 +15,8 @@ use crate::support::Sandbox;
 mod made;
 pub use made::{ELBOW, Motion, SHOULDER, TRIO as URDF, TURN, trio};
 
-/// A recording of `seconds` at 250 Hz of the robot that is `arm` and `concealed`: what is added to its torques.
-pub fn recording(arm: &Arm, variant: usize, seconds: f64, concealed: &dyn Fn(&Motion, &mut [f64])) -> String {
+/// A recording of `seconds` at 250 Hz of the robot that is `arm` and `injected`: what is added to its torques.
+pub fn recording(arm: &Arm, variant: usize, seconds: f64, injected: &dyn Fn(&Motion, &mut [f64])) -> String {
     let mut random = ChaCha8Rng::seed_from_u64(variant as u64);
     let noise = Normal::new(0.0, 0.02).expect("a spread");
     let mut workspace = Workspace::new(arm);
@@ -26,7 +26,7 @@ pub fn recording(arm: &Arm, variant: usize, seconds: f64, concealed: &dyn Fn(&Mo
         let time = k as f64 / 250.0;
         let motion = made::motion(3, time, variant);
         arm.inverse_dynamics(&mut workspace, &motion.q, &motion.qd, &motion.qdd, &mut tau);
-        concealed(&motion, &mut tau);
+        injected(&motion, &mut tau);
         let _ = write!(text, "{:.4}", time + 40.0 * variant as f64);
         for q in &motion.q {
             let _ = write!(text, ",{q:.6}");
@@ -46,12 +46,12 @@ pub struct Case {
 }
 
 impl Case {
-    /// Recordings of `arm` and what is `concealed`, beside the URDF that its user believes.
-    pub fn new(arm: &Arm, concealed: &dyn Fn(&Motion, &mut [f64])) -> Self {
+    /// Recordings of `arm` and what is `injected`, beside the URDF that its user believes.
+    pub fn new(arm: &Arm, injected: &dyn Fn(&Motion, &mut [f64])) -> Self {
         let sandbox = Sandbox::new();
         sandbox.write("robot.urdf", URDF);
         for (variant, name, seconds) in [(0, "a.csv", 16.0), (1, "b.csv", 16.0), (2, "c.csv", 10.0)] {
-            sandbox.write(name, &recording(arm, variant, seconds, concealed));
+            sandbox.write(name, &recording(arm, variant, seconds, injected));
         }
         Self { sandbox }
     }

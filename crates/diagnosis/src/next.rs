@@ -14,7 +14,7 @@ use torque::Reference;
 use crate::findings::observability;
 use crate::regression::fit::Products;
 use crate::report::{Confusable, Finding, NextExperiment, NotObservable, Obstacle, Separation, Shows, Unexplained};
-use crate::search::problem::Chosen;
+use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::selection::rivals;
 
@@ -87,7 +87,7 @@ struct Tried {
 pub fn propose(
     study: &Study,
     products: &Products,
-    chosen: &Chosen,
+    chosen: &Selection,
     (arm, effects): (&Arm, &[Effect]),
     findings: &[(Finding, Option<usize>)],
     hidden: &[NotObservable],
@@ -213,7 +213,7 @@ fn shows(prospect: &Prospect<'_>, outlook: &Outlook, hidden: &[Hidden<'_>]) -> V
 /// omitted.
 fn confusions(
     study: &Study,
-    chosen: &Chosen,
+    chosen: &Selection,
     findings: &[(Finding, Option<usize>)],
     unexplained: &[Unexplained],
 ) -> Vec<Confusion> {
@@ -275,7 +275,7 @@ fn confusions(
 }
 
 /// The `hidden` effects whose size can be predicted without simulation: torque limits, and linear effects.
-fn visible<'a>(study: &Study, chosen: &Chosen, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> {
+fn visible<'a>(study: &Study, chosen: &Selection, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> {
     let of = |entry: &'a NotObservable| {
         let name = entry.joint.as_deref()?;
         let joint = study.arm.joints().iter().position(|joint| joint.name == name)?;

@@ -24,7 +24,7 @@ pub mod unmounted;
 /// The final fit: the named effects, their uncertainty, and the residuals.
 pub struct FinalFit {
     /// The named effects and the unmodelled forms.
-    pub judged: judge::Selection,
+    pub judged: judge::Judged,
     /// The resampled coefficients of the named effects.
     pub resampled: Resampled,
     /// Inner products over the training recordings.
@@ -65,7 +65,7 @@ impl FinalFit {
 }
 
 /// Repeats search and selection until the final fit refuses no further name.
-fn selected(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> (judge::Selection, Resampled) {
+fn selected(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> (judge::Judged, Resampled) {
     loop {
         let refused = study.refused();
         let chosen = plan::search(study, progress);
@@ -73,7 +73,7 @@ fn selected(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> (judge::Selection
         let (products, held) = (study.training_products(), study.held_products());
         let mut judged = judge::judge(study, &products, held.as_ref(), chosen);
         progress(Step::new(0.61, "final fit and intervals"));
-        let resampled = final_fit::settled(study, &mut judged);
+        let resampled = final_fit::confirmed(study, &mut judged);
         // A refused name may have prevented that another effect was found.
         if study.refused() == refused || refused > MOST_REFUSED {
             let resampled = unmounted::unmounted(study, &mut judged).unwrap_or(resampled);

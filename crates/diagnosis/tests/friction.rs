@@ -24,7 +24,7 @@ fn friction_that_grows_gradually_is_not_stribeck_friction() {
     }
 }
 
-/// Friction that is larger throughout the held-out recording is not a burst.
+/// Friction that is larger throughout the held-out recording is not a transient.
 #[test]
 fn more_friction_in_the_held_out_recording_is_not_a_burst() {
     let injected = |motion: &mut Motion, tau: &mut [f64]| {

@@ -4,13 +4,13 @@ use crate::signals::{Rigid, Signals};
 
 /// The motion δ (link minus drive) of the link behind a compliant joint, tick by tick.
 #[derive(Clone, Debug)]
-pub struct Behind {
+pub struct LinkSide {
     at: usize,
     /// δ, δ̇, δ̈ (rad or m, and so on).
     ticks: Vec<[f64; 3]>,
 }
 
-impl Behind {
+impl LinkSide {
     /// The link of joint `at` with a motion δ from `sprung` or `gap`.
     pub fn new(at: usize, ticks: Vec<[f64; 3]>) -> Self {
         Self { at, ticks }

@@ -90,8 +90,8 @@ pub enum Turn {
     Link,
     /// Errors of the whole arm.
     Arm,
-    /// Simulated drives.
-    Behind,
+    /// Simulated drives: a spring or a gap between drive and link.
+    Compliance,
     /// Torque limits.
     Limit,
 }
@@ -101,7 +101,7 @@ impl Turn {
     fn round(self) -> u8 {
         match self {
             Self::Link | Self::Arm => 1,
-            Self::Behind | Self::Limit => 2,
+            Self::Compliance | Self::Limit => 2,
             _ => 0,
         }
     }

@@ -33,7 +33,7 @@ mod term;
 #[cfg(test)]
 mod test_support;
 
-pub use compliance::Behind;
+pub use compliance::LinkSide;
 pub use effect::{Effect, Value};
 pub use error::EffectError;
 pub use estimate::{Estimate, Systematic};

@@ -280,7 +280,7 @@ pub struct Spec {
     /// Whether it means that masses differ from the model's.
     pub is_wrong_mass: bool,
     /// Whether it acts on the link side of an elastic drive.
-    pub is_behind_the_drive: bool,
+    pub is_beyond_the_drive: bool,
     /// What a URDF can hold of it.
     pub in_urdf: InUrdf,
     /// The state against which figures show it.
@@ -330,7 +330,7 @@ impl Spec {
         least_beside_residual: None,
         is_simulated: false,
         is_wrong_mass: false,
-        is_behind_the_drive: false,
+        is_beyond_the_drive: false,
         in_urdf: InUrdf::Nothing,
         against: Against::Predicted,
         depends_on: "",

@@ -4,7 +4,7 @@ use std::fmt;
 
 use arm::Arm;
 
-use crate::compliance::Behind;
+use crate::compliance::LinkSide;
 use crate::signals::Signals;
 
 /// A size on which a column depends nonlinearly.
@@ -80,7 +80,7 @@ pub struct Law {
     /// How it takes part in dry friction.
     pub cone: Cone,
     /// The link's motion behind a compliant joint, simulated once for all joints.
-    pub behind: Option<fn(&Term, &Signals<'_>) -> Behind>,
+    pub link_side: Option<fn(&Term, &Signals<'_>) -> LinkSide>,
     /// Adds what a fit found to the arm about which columns are evaluated.
     pub carry: Option<fn(&Term, f64, &mut Carried)>,
     /// Whether it is computed from the measured torque, which is not known for a planned motion.
@@ -103,7 +103,7 @@ impl Law {
         softened: |_, _| Vec::new(),
         is_sound: |_| true,
         cone: Cone::No,
-        behind: None,
+        link_side: None,
         carry: None,
         is_of_torque: false,
         cuts: false,

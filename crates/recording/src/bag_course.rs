@@ -38,12 +38,12 @@ pub enum Taken {
     /// The following samples decide whether it is used.
     HeldBack,
     /// More than this sample is decided.
-    Settled(Box<Settled>),
+    Decided(Box<Decided>),
 }
 
 /// What is decided about several samples.
 #[derive(Debug, Default, PartialEq)]
-pub struct Settled {
+pub struct Decided {
     /// The times of samples that were used and have a wrong stamp. They are the last ones that were used.
     pub removed: Vec<i64>,
     /// The messages with a wrong stamp: the number of the first, and how many there are.
@@ -116,18 +116,18 @@ impl Course {
             return Ok(Taken::Used(None));
         };
         if std::mem::take(&mut self.is_new_file) && self.held_back.is_empty() {
-            let mut settled = self.give_up_far();
+            let mut decided = self.give_up_far();
             let latest = self.latest.unwrap_or(latest);
             if !self.is_within(time) {
                 self.stretches.push((self.start, latest));
                 self.begin(sample);
-                if settled.wrong.is_none() {
+                if decided.wrong.is_none() {
                     return Ok(Taken::Used(None));
                 }
-                settled.used.push(sample);
-                return Ok(Taken::Settled(Box::new(settled)));
+                decided.used.push(sample);
+                return Ok(Taken::Decided(Box::new(decided)));
             }
-            if settled.wrong.is_some() {
+            if decided.wrong.is_some() {
                 return Err(Late::new(number, time, latest));
             }
         }
@@ -140,24 +140,24 @@ impl Course {
         let step = time.saturating_sub(latest);
         if step > FAR && self.doubted.as_ref().is_some_and(is_start) {
             // The few messages of the beginning are a day or more before all others.
-            let mut settled = self.give_up_doubted();
+            let mut decided = self.give_up_doubted();
             self.begin(sample);
-            settled.used.push(sample);
-            return Ok(Taken::Settled(Box::new(settled)));
+            decided.used.push(sample);
+            return Ok(Taken::Decided(Box::new(decided)));
         }
-        let mut settled = Settled::default();
-        settled.count(&self.held_back);
+        let mut decided = Decided::default();
+        decided.count(&self.held_back);
         self.held_back.clear();
-        settled.late = self.lateness(sample, latest)?;
+        decided.late = self.lateness(sample, latest)?;
         if step > LATEST && self.doubted.as_ref().is_none_or(is_start) {
             self.doubt(Some(latest), number);
         }
         self.use_at(time);
-        if settled.wrong.is_none() {
-            return Ok(Taken::Used(settled.late));
+        if decided.wrong.is_none() {
+            return Ok(Taken::Used(decided.late));
         }
-        settled.used.push(sample);
-        Ok(Taken::Settled(Box::new(settled)))
+        decided.used.push(sample);
+        Ok(Taken::Decided(Box::new(decided)))
     }
 
     /// Takes a sample far before the one before it.
@@ -165,17 +165,17 @@ impl Course {
         let before = self.doubted.as_ref().and_then(|doubted| doubted.before);
         if let Some(before) = before.filter(|before| before.saturating_sub(sample.time) <= LATEST) {
             // It goes on where the step ahead was.
-            let mut settled = self.give_up_doubted();
-            settled.count(&self.held_back);
+            let mut decided = self.give_up_doubted();
+            decided.count(&self.held_back);
             self.held_back.clear();
             self.latest = Some(before);
-            settled.late = self.lateness(sample, before)?;
+            decided.late = self.lateness(sample, before)?;
             if sample.time.saturating_sub(before) > LATEST {
                 self.doubt(Some(before), sample.number);
             }
             self.use_at(sample.time);
-            settled.used.push(sample);
-            return Ok(Taken::Settled(Box::new(settled)));
+            decided.used.push(sample);
+            return Ok(Taken::Decided(Box::new(decided)));
         }
         self.held_back.push(sample);
         if self.held_back.len() <= FEW {
@@ -183,11 +183,11 @@ impl Course {
         }
         let used = std::mem::take(&mut self.held_back);
         let first = used[0];
-        let mut settled = Settled::default();
+        let mut decided = Decided::default();
         if self.doubted.as_ref().is_some_and(|doubted| doubted.before.is_none()) {
-            settled = self.give_up_doubted();
+            decided = self.give_up_doubted();
         } else if self.may_restart(first.time) {
-            settled.restarts_after = self.latest();
+            decided.restarts_after = self.latest();
             self.stretches.clear();
             self.in_run = 0;
         } else {
@@ -197,28 +197,28 @@ impl Course {
         for sample in &used[1..] {
             self.use_at(sample.time);
         }
-        settled.used = used;
-        Ok(Taken::Settled(Box::new(settled)))
+        decided.used = used;
+        Ok(Taken::Decided(Box::new(decided)))
     }
 
     /// What is left at the end: samples that were held back, or that are alone far ahead.
-    pub fn finish(&mut self) -> Settled {
-        let mut settled = self.give_up_far();
-        settled.count(&self.held_back);
+    pub fn finish(&mut self) -> Decided {
+        let mut decided = self.give_up_far();
+        decided.count(&self.held_back);
         self.held_back.clear();
-        settled
+        decided
     }
 
     /// Gives up the last samples if they are alone far ahead, at the end of a file or of the bag.
-    fn give_up_far(&mut self) -> Settled {
+    fn give_up_far(&mut self) -> Decided {
         let Some(doubted) = &self.doubted else {
-            return Settled::default();
+            return Decided::default();
         };
         let Some(before) = doubted.before else {
-            return Settled::default();
+            return Decided::default();
         };
         if !doubted.times.iter().all(|time| time.saturating_sub(before) > FAR) {
-            return Settled::default();
+            return Decided::default();
         }
         self.latest = Some(before);
         self.give_up_doubted()
@@ -253,16 +253,16 @@ impl Course {
         }
     }
 
-    fn give_up_doubted(&mut self) -> Settled {
+    fn give_up_doubted(&mut self) -> Decided {
         let Some(doubted) = self.doubted.take() else {
-            return Settled::default();
+            return Decided::default();
         };
         self.messages -= doubted.times.len();
         self.in_run -= doubted.times.len();
-        Settled {
+        Decided {
             wrong: Some((doubted.number, doubted.times.len() as u64)),
             removed: doubted.times,
-            ..Settled::default()
+            ..Decided::default()
         }
     }
 
@@ -296,7 +296,7 @@ impl Course {
     }
 }
 
-impl Settled {
+impl Decided {
     /// Counts samples with a wrong stamp.
     fn count(&mut self, samples: &[Sample]) {
         if let Some(first) = samples.first() {

@@ -21,16 +21,16 @@ fn used(times: &[f64]) -> Result<(Vec<u64>, u64), Late> {
         match course.take(sample)? {
             Taken::Used(_) => used.push(sample),
             Taken::HeldBack => {}
-            Taken::Settled(settled) => {
-                forget(&mut used, &settled.removed);
-                used.extend(settled.used);
-                wrong += settled.wrong.map_or(0, |(_, count)| count);
+            Taken::Decided(decided) => {
+                forget(&mut used, &decided.removed);
+                used.extend(decided.used);
+                wrong += decided.wrong.map_or(0, |(_, count)| count);
             }
         }
     }
-    let settled = course.finish();
-    forget(&mut used, &settled.removed);
-    wrong += settled.wrong.map_or(0, |(_, count)| count);
+    let decided = course.finish();
+    forget(&mut used, &decided.removed);
+    wrong += decided.wrong.map_or(0, |(_, count)| count);
     assert_eq!(course.messages, used.len());
     Ok((used.iter().map(|sample| sample.number).collect(), wrong))
 }
@@ -83,16 +83,16 @@ fn eleven_early_ones_are_no_wrong_stamps() {
 fn files(all: &[Vec<f64>]) -> Result<(bool, u64), Late> {
     let mut course = Course::default();
     let (mut restarts, mut wrong, mut number) = (false, 0, 0);
-    let mut count = |settled: &Settled| wrong += settled.wrong.map_or(0, |(_, count)| count);
+    let mut count = |decided: &Decided| wrong += decided.wrong.map_or(0, |(_, count)| count);
     for file in all {
         course.begin_file();
         for time in file {
             number += 1;
             let time = (time * 1e9).round() as i64;
             let values = [None; 3];
-            if let Taken::Settled(settled) = course.take(Sample { number, time, values })? {
-                restarts |= settled.restarts_after.is_some();
-                count(&settled);
+            if let Taken::Decided(decided) = course.take(Sample { number, time, values })? {
+                restarts |= decided.restarts_after.is_some();
+                count(&decided);
             }
         }
     }

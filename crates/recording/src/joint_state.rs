@@ -134,12 +134,12 @@ impl JointStates {
                     used.push((known, sample));
                 }
                 Taken::HeldBack => {}
-                Taken::Settled(settled) => {
-                    late = late.max(settled.late);
-                    wrong = wrong.max(settled.wrong.map(|(first, count)| (count, first)));
-                    clock.remove(&settled.removed, shift(&self.runs, clock.run));
-                    restarted.extend(settled.restarts_after.map(|before| (known, before, settled.used[0])));
-                    used.extend(settled.used.into_iter().map(|sample| (known, sample)));
+                Taken::Decided(decided) => {
+                    late = late.max(decided.late);
+                    wrong = wrong.max(decided.wrong.map(|(first, count)| (count, first)));
+                    clock.remove(&decided.removed, shift(&self.runs, clock.run));
+                    restarted.extend(decided.restarts_after.map(|before| (known, before, decided.used[0])));
+                    used.extend(decided.used.into_iter().map(|sample| (known, sample)));
                 }
             }
         }
@@ -228,9 +228,9 @@ impl JointStates {
             let mut of_topic = Vec::new();
             for Joint { name, mut clocks } in joints {
                 for clock in &mut clocks {
-                    let settled = clock.course.finish();
-                    clock.remove(&settled.removed, shift(&self.runs, clock.run));
-                    wrong = wrong.max(settled.wrong.map(|(first, count)| (count, first)));
+                    let decided = clock.course.finish();
+                    clock.remove(&decided.removed, shift(&self.runs, clock.run));
+                    wrong = wrong.max(decided.wrong.map(|(first, count)| (count, first)));
                 }
                 let [unstamped, stamped] = clocks;
                 let counts = [unstamped.course.messages, stamped.course.messages];

@@ -17,7 +17,7 @@ pub struct Answer {
     pub unexplained: Vec<Refused>,
     /// The effects that are not testable with the recordings.
     #[serde(default)]
-    pub not_observable: Vec<DeclaredUnseen>,
+    pub not_observable: Vec<NotTestable>,
     /// Errors of prediction, by joint.
     #[serde(default)]
     pub fit: BTreeMap<String, JointErrors>,
@@ -121,7 +121,7 @@ pub struct Refused {
 
 /// An effect that is declared not testable.
 #[derive(Clone, Debug, Deserialize)]
-pub struct DeclaredUnseen {
+pub struct NotTestable {
     /// The catalogue's name.
     pub effect: String,
     /// The joint; `None` for the whole arm.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::answer::{Answer, EffectOnJoint};
 use crate::intervals::Counted;
-use crate::rules::{Key, Name, counted_findings, found, is_declared_unseen};
+use crate::rules::{Key, Name, counted_findings, found, is_declared_not_testable};
 use crate::tried::{Again, Tried};
 
 /// The outcome of a confusion.
@@ -117,7 +117,7 @@ pub fn experiments(cases: &[Tried]) -> Experiments {
         let (before, now) = (found(first), found(second));
         for concealed in case.truth.of_note() {
             let name = (concealed.name().to_owned(), concealed.joint.clone());
-            if !before.contains(&name) && is_declared_unseen(first, concealed) {
+            if !before.contains(&name) && is_declared_not_testable(first, concealed) {
                 unseen.push(now.contains(&name));
             }
         }

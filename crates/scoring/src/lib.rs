@@ -47,7 +47,7 @@ mod tried;
 mod truth;
 
 pub use answer::{
-    Answer, DeclaredUnseen, EffectOnJoint, JointErrors, Named, NextExperiment, NotSeparated, Number, Refused, Rollout,
+    Answer, EffectOnJoint, JointErrors, Named, NextExperiment, NotSeparated, NotTestable, Number, Refused, Rollout,
     Separated,
 };
 pub use calibration::{Bin, Calibration};

@@ -6,7 +6,8 @@ use crate::answer::{Answer, EffectOnJoint, Named};
 use crate::intervals::quantile;
 use crate::numbers::{ScoredNumber, sized};
 use crate::rules::{
-    Key, LEAST_SHARE, Name, counted_findings, found, found_or_confusable, is_baseline, is_declared_unseen, same_machine,
+    Key, LEAST_SHARE, Name, counted_findings, found, found_or_confusable, is_baseline, is_declared_not_testable,
+    same_machine,
 };
 use crate::tried::Tried;
 use crate::truth::Injected;
@@ -205,7 +206,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
             Fate::SameMachine
         } else if covered.contains(name) {
             Fate::Covered
-        } else if is_declared_unseen(answer, injected) {
+        } else if is_declared_not_testable(answer, injected) {
             Fate::NotObservable
         } else if name.1.as_ref().is_some_and(|joint| unexplained.contains(joint)) {
             Fate::Refused

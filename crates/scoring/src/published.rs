@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::answer::{Answer, Named, Rollout};
 use crate::catalogue::{brings, parameters};
-use crate::rules::{Name, is_declared_unseen};
+use crate::rules::{Name, is_declared_not_testable};
 use crate::truth::Injected;
 use readings::{Reading, readings};
 
@@ -208,10 +208,10 @@ impl Published {
         let readings = readings(given);
         let said: Vec<PublishedOutcome> = self.said.iter().map(|said| outcome(said, given, &readings)).collect();
         let mut not_observable: BTreeMap<String, Vec<String>> = BTreeMap::new();
-        for unseen in &given.not_observable {
-            if let Some(joint) = &unseen.joint {
+        for declared in &given.not_observable {
+            if let Some(joint) = &declared.joint {
                 not_observable
-                    .entry(unseen.effect.clone())
+                    .entry(declared.effect.clone())
                     .or_default()
                     .push(joint.clone());
             }
@@ -296,13 +296,13 @@ impl PublishedEffect {
     }
 
     /// Whether each possible effect is declared not testable; if the size is unknown, it is sufficient that it is listed.
-    fn is_unseen(&self, answer: &Answer) -> bool {
+    fn is_not_testable(&self, answer: &Answer) -> bool {
         self.effects.iter().all(|effect| {
             if !self.parameters.is_empty() {
-                return is_declared_unseen(answer, &self.concealed(effect));
+                return is_declared_not_testable(answer, &self.concealed(effect));
             }
             let mut listed = answer.not_observable.iter();
-            listed.any(|unseen| unseen.effect == *effect && unseen.joint == self.joint)
+            listed.any(|declared| declared.effect == *effect && declared.joint == self.joint)
         })
     }
 }
@@ -330,7 +330,7 @@ fn outcome(said: &PublishedEffect, answer: &Answer, readings: &[Reading]) -> Pub
         (Some(reading), _) if reading.is_rewritten() => (PublishedFate::SameTorque, reading.first(answer)),
         (Some(reading), _) => (PublishedFate::Named, reading.first(answer)),
         (None, Some(finding)) => (PublishedFate::Confusable, Some(name_of(finding))),
-        (None, None) if said.is_unseen(answer) => (PublishedFate::NotObservable, None),
+        (None, None) if said.is_not_testable(answer) => (PublishedFate::NotObservable, None),
         (None, None) if said.joint.as_ref().is_some_and(refused) => (PublishedFate::Unexplained, None),
         (None, None) => (PublishedFate::Missed, None),
     };

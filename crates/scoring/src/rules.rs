@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::answer::{Answer, DeclaredUnseen};
+use crate::answer::{Answer, NotTestable};
 use crate::catalogue::{ALL_INERTIALS, INERTIALS, LINK_INERTIAL, brings, is_dry_friction, neutral};
 use crate::numbers::truth_value;
 use crate::truth::{Injected, Truth};
@@ -190,16 +190,16 @@ fn is_of_the_urdf(truth: &Truth, scale: &Injected) -> bool {
 }
 
 /// Whether a diagnosis declares an effect of this size not testable with these recordings.
-pub fn is_declared_unseen(answer: &Answer, injected: &Injected) -> bool {
+pub fn is_declared_not_testable(answer: &Answer, injected: &Injected) -> bool {
     answer
         .not_observable
         .iter()
-        .filter(|unseen| unseen.effect == injected.name() && unseen.joint == injected.joint)
-        .any(|unseen| hides(unseen, injected))
+        .filter(|declared| declared.effect == injected.name() && declared.joint == injected.joint)
+        .any(|declared| hides(declared, injected))
 }
 
-fn hides(unseen: &DeclaredUnseen, injected: &Injected) -> bool {
-    let (above, below) = (&unseen.would_be_seen_above, &unseen.would_be_seen_below);
+fn hides(declared: &NotTestable, injected: &Injected) -> bool {
+    let (above, below) = (&declared.would_be_seen_above, &declared.would_be_seen_below);
     if above.is_empty() && below.is_empty() {
         return true;
     }

@@ -63,11 +63,11 @@ impl Conclusion {
             !study.past.iter().any(same)
         });
         let mut inertials = inertials(study, products, held.as_ref(), judged, resampled);
-        let bursts = transients::bursts(study, judged, residual);
+        let transients = transients::search(study, judged, residual);
         let mut others = std::mem::take(&mut inertials.findings);
         if options.only.is_none() {
             others.splice(0..0, dual_sensor::findings(study, &judged.named, inputs));
-            others.extend(bursts.contact.clone());
+            others.extend(transients.contact.clone());
         }
         findings.extend(others.into_iter().map(|finding| (finding, None)));
         let not_enough_data = not_enough(study, products);
@@ -80,7 +80,7 @@ impl Conclusion {
             .map(|joint| exported(study, &judged.named, joint))
             .collect();
         let fit = fit(study, [residual, &by_exported], identified);
-        let mut unexplained = unexplained(study, judged, &bursts, residual);
+        let mut unexplained = unexplained(study, judged, &transients, residual);
         poorly_predicted(study, &fit, &mut unexplained);
         let located = locate(study, residual);
         if findings.is_empty() && unexplained.is_empty() && not_enough_data.is_empty() {

@@ -11,7 +11,7 @@ use crate::data::input::Input;
 use crate::data::signal::Kernel;
 use crate::data::statistics::{NORMAL_95, deviation};
 use crate::report::{Finding, Parameter, Place};
-use crate::search::problem::Chosen;
+use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::thresholds::{
     CLEAR_COMPLIANCE, CLEAR_FRICTION, FOLLOWS, FRICTION_EXPLAINS, LARGEST_CUTOFF, LARGEST_DEFLECTION, LEAST_BEND,
@@ -35,7 +35,7 @@ struct Regression {
 }
 
 /// Findings from second encoders, and from motor currents beside torque sensors.
-pub fn findings(study: &Study, named: &Chosen, inputs: &[Input<'_>]) -> Vec<Finding> {
+pub fn findings(study: &Study, named: &Selection, inputs: &[Input<'_>]) -> Vec<Finding> {
     let mut list = Vec::new();
     for joint in 0..study.motions.dof {
         let already = named.set.iter().any(|&c| {

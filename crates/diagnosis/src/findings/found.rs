@@ -11,7 +11,7 @@ use crate::search::problem::Problem;
 use crate::search::study::Study;
 use crate::selection::bootstrap::Resampled;
 use crate::selection::gain::held_out_gain;
-use crate::selection::judge::{Member, Selection};
+use crate::selection::judge::{Judged, Member};
 use crate::selection::naming::name;
 use crate::selection::predict::deviation;
 use crate::selection::rivals::{Named, Standing, standing};
@@ -22,7 +22,7 @@ pub fn findings(
     study: &Study,
     products: &Products,
     held: Option<&Products>,
-    judged: &Selection,
+    judged: &Judged,
     resampled: &Resampled,
 ) -> Vec<(Finding, Option<usize>)> {
     let problem = study.problem(products);
@@ -43,7 +43,7 @@ fn finding(
     study: &Study,
     problem: &Problem<'_>,
     held: Option<&Products>,
-    judged: &Selection,
+    judged: &Judged,
     resampled: &Resampled,
     member: &Member,
     standing: &Standing,
@@ -116,7 +116,7 @@ fn finding(
 }
 
 /// The share of the drive's inertia that is named with a spring or a gap.
-fn rotor_share(study: &Study, judged: &Selection, candidate: usize) -> f64 {
+fn rotor_share(study: &Study, judged: &Judged, candidate: usize) -> f64 {
     let columns = &study.candidates[candidate].columns;
     let Some(joint) = study.candidates[candidate].joint else {
         return 0.0;

@@ -12,7 +12,7 @@ use crate::regression::fit::Products;
 use crate::report::{Confusable, Finding, LinkInertials, Parameter};
 use crate::search::study::{About, Study};
 use crate::selection::bootstrap::Resampled;
-use crate::selection::judge::Selection;
+use crate::selection::judge::Judged;
 use crate::selection::predict::{augmented, deviation, errors};
 use crate::selection::rivals::{allowance, probability};
 use crate::thresholds::{LEAST_WRONG_EVERYWHERE, LINK_STANDS_OUT, LISTED_SHARE, PARTLY, SYSTEMATIC};
@@ -57,7 +57,7 @@ pub fn inertials(
     study: &Study,
     products: &Products,
     held: Option<&Products>,
-    judged: &Selection,
+    judged: &Judged,
     resampled: &Resampled,
 ) -> Inertials {
     let strengths = &study.strengths;

@@ -9,7 +9,7 @@ use crate::regression::fit::Products;
 use crate::report::NotObservable;
 use crate::search::candidate::Candidate;
 use crate::search::physics::is_beyond_physics;
-use crate::search::problem::Chosen;
+use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::selection::predict::deviation;
 use crate::thresholds::{BEYOND, HIDDEN};
@@ -42,7 +42,7 @@ impl Visibility {
 }
 
 /// The effects that are not testable in addition to the selection `chosen`.
-pub fn not_testable(study: &Study, products: &Products, chosen: &Chosen) -> Vec<NotObservable> {
+pub fn not_testable(study: &Study, products: &Products, chosen: &Selection) -> Vec<NotObservable> {
     let dof = study.motions.dof;
     let mut list: Vec<NotObservable> = (0..dof)
         .into_par_iter()
@@ -71,7 +71,7 @@ pub fn not_testable(study: &Study, products: &Products, chosen: &Chosen) -> Vec<
     list
 }
 
-fn on_joint(study: &Study, products: &Products, chosen: &Chosen, joint: usize) -> Vec<NotObservable> {
+fn on_joint(study: &Study, products: &Products, chosen: &Selection, joint: usize) -> Vec<NotObservable> {
     let name = &study.arm.joints()[joint].name;
     if products.count[joint] == 0.0 {
         return Vec::new();
@@ -202,7 +202,7 @@ pub fn needed(study: &Study, candidate: &Candidate) -> f64 {
 }
 
 /// Whether an effect with a coefficient of one would have been detected at its size.
-fn is_seen(study: &Study, products: &Products, chosen: &Chosen, candidate: &Candidate, joint: usize) -> bool {
+fn is_seen(study: &Study, products: &Products, chosen: &Selection, candidate: &Candidate, joint: usize) -> bool {
     let column = candidate.columns[0];
     let drop = products.drop_of(&study.table, &chosen.fit, column);
     let nats = 0.5 * products.evidence[joint] * (1.0 + drop / products.count[joint].max(1.0)).ln();

@@ -5,12 +5,12 @@ use rayon::prelude::*;
 
 use crate::report::{Finding, Trace, Traces};
 use crate::search::study::Study;
-use crate::selection::judge::Selection;
+use crate::selection::judge::Judged;
 
 /// All signals on the rows; `residuals` are those of the augmented and of the exported model (`[joint][row]`, N m or N).
 pub fn traces(
     study: &Study,
-    judged: &Selection,
+    judged: &Judged,
     findings: &[(Finding, Option<usize>)],
     residuals: [&[Vec<f64>]; 2],
 ) -> Traces {

@@ -1,4 +1,4 @@
-//! Bursts in the held-out recordings: contacts that no training recording has.
+//! Transients in the held-out recordings: contacts that no training recording has.
 
 use std::collections::BTreeMap;
 
@@ -11,25 +11,25 @@ use crate::regression::small::ForceFit;
 use crate::report::{Finding, Parameter, Place, TimeWindow};
 use crate::search::scan;
 use crate::search::study::Study;
-use crate::selection::judge::Selection;
+use crate::selection::judge::Judged;
 use crate::thresholds::{
-    BURST_PIECE, BURST_STRETCH, LEAST_BURST_ROWS, LEAST_MOVING, LEAST_PUSHED, LEAST_STRETCHES, MOST_BURSTS, ONE_FORCE,
-    OVER_THE_REST,
+    ABOVE_USUAL, LEAST_MOVING, LEAST_PUSHED, LEAST_STRETCHES, LEAST_TRANSIENT_ROWS, MOST_TRANSIENTS, ONE_FORCE,
+    TRANSIENT_PIECE, TRANSIENT_STRETCH,
 };
 
-/// The largest number of bursts that are searched.
+/// The largest number of transients that are searched.
 const MOST: usize = 12;
 
-/// The bursts that were found.
+/// The transients that were found.
 #[derive(Clone, Debug, Default)]
-pub struct Bursts {
+pub struct Transients {
     /// Contacts: one force explains the joints' residuals.
     pub contact: Option<Finding>,
-    /// Bursts that no force on the tool explains: the joint, its share, the place in time.
+    /// Transients that no force on the tool explains: the joint, its share, the place in time.
     pub unexplained: BTreeMap<usize, (f64, Vec<TimeWindow>)>,
 }
 
-/// A burst that one force on the tool explains.
+/// A transient that one force on the tool explains.
 #[derive(Clone, Debug)]
 struct Push {
     /// Start and end (s).
@@ -38,22 +38,22 @@ struct Push {
     source: usize,
     /// The force in the base's frame (N).
     force: Vector3<f64>,
-    /// The part of the burst's power that the force explains.
+    /// The part of the transient's power that the force explains.
     explained: f64,
 }
 
-/// Searches bursts in the residuals of the named effects (`[joint][row]`) in the held-out recordings.
-pub fn bursts(study: &Study, judged: &Selection, residual: &[Vec<f64>]) -> Bursts {
-    let mut bursts = Bursts::default();
+/// Searches transients in the residuals of the named effects (`[joint][row]`) in the held-out recordings.
+pub fn search(study: &Study, judged: &Judged, residual: &[Vec<f64>]) -> Transients {
+    let mut transients = Transients::default();
     let held: Vec<bool> = study.fitted.iter().map(|fitted| !fitted).collect();
     if !held.contains(&true) {
-        return bursts;
+        return transients;
     }
     let times = study.motions.row_times();
     let weights: Vec<f64> = (0..study.motions.dof)
         .map(|joint| {
             // The usual residual of a joint that was never fitted is unknown.
-            if study.training_rows(joint).len() < LEAST_BURST_ROWS {
+            if study.training_rows(joint).len() < LEAST_TRANSIENT_ROWS {
                 return 0.0;
             }
             1.0 / usual(study, joint, residual)
@@ -69,7 +69,7 @@ pub fn bursts(study: &Study, judged: &Selection, residual: &[Vec<f64>]) -> Burst
         let Some((recording, powers)) = power(study, &times, residual, &weights, (from, to)) else {
             continue;
         };
-        let felt = powers.iter().filter(|power| power.sqrt() > OVER_THE_REST).count();
+        let felt = powers.iter().filter(|power| power.sqrt() > ABOVE_USUAL).count();
         if felt < study.motions.dof.min(LEAST_PUSHED) {
             continue;
         }
@@ -83,14 +83,14 @@ pub fn bursts(study: &Study, judged: &Selection, residual: &[Vec<f64>]) -> Burst
                 explained,
             });
         } else {
-            // The joint on which the burst exceeds the usual residual most.
+            // The joint on which the transient exceeds the usual residual most.
             let window = (from, to);
             let at = (0..study.motions.dof)
                 .map(|joint| (powers[joint], joint))
                 .max_by(|a, b| a.0.total_cmp(&b.0));
             if let Some((_, joint)) = at {
                 let rms = joint_rms(study, &times, residual, joint, window) / study.scales.torque[joint].max(1e-300);
-                let entry = bursts.unexplained.entry(joint).or_default();
+                let entry = transients.unexplained.entry(joint).or_default();
                 entry.0 = entry.0.max(rms);
                 entry.1.push(TimeWindow {
                     recording: name,
@@ -100,26 +100,33 @@ pub fn bursts(study: &Study, judged: &Selection, residual: &[Vec<f64>]) -> Burst
             }
         }
     }
-    // Bursts that recur are an error of the model and not contacts.
-    if pushes.len() + bursts.unexplained.values().map(|entry| entry.1.len()).sum::<usize>() > MOST_BURSTS {
-        return Bursts::default();
+    // Transients that recur are an error of the model and not contacts.
+    if pushes.len()
+        + transients
+            .unexplained
+            .values()
+            .map(|entry| entry.1.len())
+            .sum::<usize>()
+        > MOST_TRANSIENTS
+    {
+        return Transients::default();
     }
-    bursts.contact = contact(study, residual, &pushes);
-    for (_, windows) in bursts.unexplained.values_mut() {
+    transients.contact = contact(study, residual, &pushes);
+    for (_, windows) in transients.unexplained.values_mut() {
         windows.sort_by(|a, b| a.recording.cmp(&b.recording).then(a.start.total_cmp(&b.start)));
     }
-    bursts
+    transients
 }
 
 /// The usual residual of a joint: the median over stretches of all moving rows, or that of a held-out recording alone where
-/// it is larger. Friction or loads that differ in one recording raise all its residuals, and a burst must exceed these as
+/// it is larger. Friction or loads that differ in one recording raise all its residuals, and a transient must exceed these as
 /// well.
 fn usual(study: &Study, joint: usize, residual: &[Vec<f64>]) -> f64 {
     let moving = &study.table.joints[joint].moving;
     let mut all = Vec::new();
     let mut largest = 0.0_f64;
     for (recording, rows) in study.table.rows.iter().enumerate() {
-        let length = ((BURST_STRETCH / study.seconds[recording]) as usize).max(3);
+        let length = ((TRANSIENT_STRETCH / study.seconds[recording]) as usize).max(3);
         let mut stretches = Vec::new();
         let mut from = rows.start;
         while from < rows.end {
@@ -204,7 +211,7 @@ fn force(
         let x = Vector3::from(
             columns.map(|column| study.table.place[joint][column].map_or(0.0, |place| this.x[place][row])),
         );
-        let is_fitted = ((times[row] - window.0) / BURST_PIECE) as i64 % 2 == 0;
+        let is_fitted = ((times[row] - window.0) / TRANSIENT_PIECE) as i64 % 2 == 0;
         fit.add(is_fitted, weights[joint], residual[joint][row], x);
     }
     let Some((force, [before, after])) = fit.solved() else {

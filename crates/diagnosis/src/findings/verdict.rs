@@ -4,16 +4,16 @@ use std::collections::BTreeMap;
 
 use crate::findings::locate::locate;
 use crate::findings::sentences;
-use crate::findings::transients::Bursts;
+use crate::findings::transients::Transients;
 use crate::regression::fit::Products;
 use crate::report::{Finding, JointFit, Located, TimeWindow, Unexplained, Verdict};
 use crate::search::study::Study;
-use crate::selection::judge::Selection;
+use crate::selection::judge::Judged;
 use crate::selection::predict::structured;
 use crate::thresholds::{LEAST_MOTION, POOR, POOR_ABOVE_NOISE};
 
 /// The structured residuals on each joint that no effect in the catalogue explains.
-pub fn unexplained(study: &Study, judged: &Selection, bursts: &Bursts, residual: &[Vec<f64>]) -> Vec<Unexplained> {
+pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, residual: &[Vec<f64>]) -> Vec<Unexplained> {
     let mut by_joint: BTreeMap<usize, (f64, Vec<(f64, String)>)> = BTreeMap::new();
     for member in &judged.unmodelled {
         let candidate = &study.candidates[member.candidate];
@@ -29,8 +29,8 @@ pub fn unexplained(study: &Study, judged: &Selection, bursts: &Bursts, residual:
             entry.1.push((member.share(), on));
         }
     }
-    let mut in_bursts = bursts.unexplained.clone();
-    for (&joint, (share, _)) in &bursts.unexplained {
+    let mut in_transients = transients.unexplained.clone();
+    for (&joint, (share, _)) in &transients.unexplained {
         let entry = by_joint.entry(joint).or_default();
         if !entry.1.iter().any(|(_, known)| known == "time") {
             entry.0 = entry.0.max(*share);
@@ -43,8 +43,8 @@ pub fn unexplained(study: &Study, judged: &Selection, bursts: &Bursts, residual:
         .map(|(joint, (share, mut on))| {
             on.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             let name = study.arm.joints()[joint].name.clone();
-            let bursts = in_bursts.remove(&joint).map(|(_, windows)| windows);
-            let time: Vec<TimeWindow> = bursts.unwrap_or_else(|| {
+            let transients = in_transients.remove(&joint).map(|(_, windows)| windows);
+            let time: Vec<TimeWindow> = transients.unwrap_or_else(|| {
                 located
                     .iter()
                     .find(|located| located.joint == name && on.iter().any(|(_, on)| on == "time"))

@@ -12,7 +12,7 @@ use crate::regression::columns::values;
 use crate::regression::fit::{Products, evidence_rate};
 use crate::regression::table::{Moving, Table};
 use crate::search::physics::is_possible;
-use crate::search::problem::Chosen;
+use crate::search::problem::Selection;
 use crate::search::study::{About, Study};
 use crate::selection::rivals;
 
@@ -34,7 +34,7 @@ pub struct Pair {
 /// The recordings reduced to some columns, to which a motion can be added.
 pub struct Prospect<'a> {
     study: &'a Study,
-    chosen: &'a Chosen,
+    chosen: &'a Selection,
     about: About,
     nominal: Vec<f64>,
     /// Indices of the study's columns, in ascending order.
@@ -65,7 +65,7 @@ pub struct Outlook {
 
 impl<'a> Prospect<'a> {
     /// The recordings fitted in `study`, reduced to `columns`; `None` if there are none.
-    pub fn new(study: &'a Study, products: &Products, chosen: &'a Chosen, mut columns: Vec<usize>) -> Option<Self> {
+    pub fn new(study: &'a Study, products: &Products, chosen: &'a Selection, mut columns: Vec<usize>) -> Option<Self> {
         columns.extend(&chosen.fit.columns);
         columns.sort_unstable();
         columns.dedup();

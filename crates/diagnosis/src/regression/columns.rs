@@ -1,6 +1,6 @@
 //! Columns of the joint fit, evaluated on the ticks of a chunk.
 
-use effects::{Behind, Scales, Signals, Term};
+use effects::{LinkSide, Scales, Signals, Term};
 
 use crate::data::motion::Chunk;
 use crate::data::rigid::Rigid;
@@ -37,12 +37,12 @@ pub fn values(term: Term, joint: usize, chunk: &Chunk, rigid: &Rigid, scales: &S
 }
 
 /// The link's motion behind a compliant joint along a chunk; `None` for other terms.
-pub fn behind(term: Term, chunk: &Chunk, rigid: &Rigid, scales: &Scales) -> Option<Behind> {
-    let simulate = term.law.behind?;
+pub fn link_side(term: Term, chunk: &Chunk, rigid: &Rigid, scales: &Scales) -> Option<LinkSide> {
+    let simulate = term.law.link_side?;
     Some(simulate(&term, &along(chunk, rigid, scales)))
 }
 
 /// The torque (N m or N) that a link behind a compliant joint adds on `joint`.
-pub fn behind_torque(behind: &Behind, joint: usize, chunk: &Chunk, rigid: &Rigid, scales: &Scales) -> Vec<f64> {
-    behind.torque(joint, along(chunk, rigid, scales).rigid)
+pub fn link_side_torque(link: &LinkSide, joint: usize, chunk: &Chunk, rigid: &Rigid, scales: &Scales) -> Vec<f64> {
+    link.torque(joint, along(chunk, rigid, scales).rigid)
 }

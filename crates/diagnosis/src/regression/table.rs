@@ -3,13 +3,13 @@
 use std::ops::Range;
 
 use effects::arm::INERTIAL_PARAMETER;
-use effects::{Behind, Scales, Term};
+use effects::{LinkSide, Scales, Term};
 use rayon::prelude::*;
 
 use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
 use crate::regression::bodies;
-use crate::regression::columns::{behind, behind_torque, values};
+use crate::regression::columns::{link_side, link_side_torque, values};
 use crate::thresholds::{CORE, REVERSAL, YIELDING};
 
 mod gram;
@@ -214,12 +214,12 @@ impl Table {
         };
         for (terms, copies) in terms.chunks(BATCH).zip(copies.chunks(BATCH)) {
             // The motion behind a compliant joint is simulated once for all joints on which it acts.
-            let links: Vec<Vec<Behind>> = terms
+            let links: Vec<Vec<LinkSide>> = terms
                 .par_iter()
                 .map(|&term| {
                     let along = motions.chunks.iter().zip(rigid);
                     along
-                        .filter_map(|(chunk, rigid)| behind(term, chunk, rigid, scales))
+                        .filter_map(|(chunk, rigid)| link_side(term, chunk, rigid, scales))
                         .collect()
                 })
                 .collect();
@@ -237,7 +237,7 @@ impl Table {
                 } else {
                     for (c, (chunk, rigid)) in motions.chunks.iter().zip(rigid).enumerate() {
                         let values = match links.get(c) {
-                            Some(link) => Some(behind_torque(link, joint, chunk, rigid, scales)),
+                            Some(link) => Some(link_side_torque(link, joint, chunk, rigid, scales)),
                             None => values(term, joint, chunk, rigid, scales),
                         };
                         match values {

@@ -1,7 +1,7 @@
 //! The order of the search: suggest, grow, refine, relinearise, swap.
 
 use crate::options::Step;
-use crate::search::problem::Chosen;
+use crate::search::problem::Selection;
 use crate::search::refine::refine;
 use crate::search::study::Study;
 
@@ -16,7 +16,7 @@ const SWAPS: usize = 4;
 const LAST: usize = 3;
 
 /// Searches the candidates that together explain the training recordings. `progress` receives each step.
-pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Chosen {
+pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
     let baseline: Vec<usize> = (0..study.candidates.len())
         .filter(|&c| study.candidates[c].hypothesis.is_friction())
         .collect();

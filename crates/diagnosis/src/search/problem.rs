@@ -28,7 +28,7 @@ const BATCHES: usize = 6;
 
 /// Selected candidates with their fit.
 #[derive(Clone, Debug)]
-pub struct Chosen {
+pub struct Selection {
     /// Indices into the candidates.
     pub set: Vec<usize>,
     /// The fit of all of them.
@@ -37,7 +37,7 @@ pub struct Chosen {
     pub score: f64,
 }
 
-impl Chosen {
+impl Selection {
     /// Its set without one member.
     pub fn others(&self, member: usize) -> Vec<usize> {
         self.set.iter().copied().filter(|&c| c != member).collect()
@@ -96,17 +96,17 @@ impl Problem<'_> {
     }
 
     /// Fits a set, starting with the weights of `near`.
-    pub fn choose(&self, set: Vec<usize>, near: &[f64]) -> Chosen {
+    pub fn choose(&self, set: Vec<usize>, near: &[f64]) -> Selection {
         let fit = self.products.fit(self.table, &self.columns(&set), near);
         let score = fit.loss + self.cost(&set) + self.misfit(&set, &fit);
-        Chosen { set, fit, score }
+        Selection { set, fit, score }
     }
 
     /// `chosen` with the joints weighted by their residuals.
-    pub fn reweighted(&self, chosen: Chosen) -> Chosen {
+    pub fn reweighted(&self, chosen: Selection) -> Selection {
         let fit = self.products.reweighted(self.table, chosen.fit);
         let score = fit.loss + self.cost(&chosen.set) + self.misfit(&chosen.set, &fit);
-        Chosen { fit, score, ..chosen }
+        Selection { fit, score, ..chosen }
     }
 
     /// The cost of a simulated effect whose coefficient differs from one (nats).
@@ -127,7 +127,7 @@ impl Problem<'_> {
     }
 
     /// The best addition to `chosen` among `allowed`, if one pays. Candidates that `growth` refused before are not tried again.
-    pub fn grow(&self, chosen: &Chosen, allowed: &[usize], growth: &mut Growth) -> Option<Chosen> {
+    pub fn grow(&self, chosen: &Selection, allowed: &[usize], growth: &mut Growth) -> Option<Selection> {
         let free: Vec<usize> = allowed
             .iter()
             .copied()
@@ -183,7 +183,7 @@ impl Problem<'_> {
             if batch.is_empty() {
                 break;
             }
-            let tried: Vec<Chosen> = batch
+            let tried: Vec<Selection> = batch
                 .par_iter()
                 .map(|&candidate| self.choose(self.with(&chosen.set, candidate), &chosen.fit.weights))
                 .collect();
@@ -253,7 +253,7 @@ impl Problem<'_> {
 
     /// Whether `candidate` improves the prediction of recordings that it was not fitted to. `bases` are the fits of `chosen` on
     /// the joints.
-    fn predicts<'a>(&'a self, chosen: &'a Chosen, candidate: usize, bases: &[OnceLock<LeftOut<'a>>]) -> bool {
+    fn predicts<'a>(&'a self, chosen: &'a Selection, candidate: usize, bases: &[OnceLock<LeftOut<'a>>]) -> bool {
         let candidate = &self.candidates[candidate];
         if candidate.hypothesis.is_passing() || candidate.hypothesis.is_baseline() || self.is_background_too(candidate)
         {
@@ -278,7 +278,7 @@ impl Problem<'_> {
     }
 
     /// Removes members that do not pay, or that are impossible, one by one.
-    pub fn prune(&self, mut chosen: Chosen) -> Chosen {
+    pub fn prune(&self, mut chosen: Selection) -> Selection {
         loop {
             let best = (0..chosen.set.len())
                 .into_par_iter()
@@ -300,7 +300,7 @@ impl Problem<'_> {
     }
 
     /// Adds candidates of `allowed` that pay, then removes those that no longer do.
-    pub fn forward(&self, mut chosen: Chosen, allowed: &[usize]) -> Chosen {
+    pub fn forward(&self, mut chosen: Selection, allowed: &[usize]) -> Selection {
         let mut growth = Growth::default();
         while chosen.set.len() < MOST {
             match self.grow(&chosen, allowed, &mut growth) {
@@ -312,7 +312,7 @@ impl Problem<'_> {
     }
 
     /// `chosen` without one of its members. A form of a simpler effect is replaced by that, if it pays.
-    pub fn without(&self, chosen: &Chosen, member: usize) -> Chosen {
+    pub fn without(&self, chosen: &Selection, member: usize) -> Selection {
         let set = chosen.others(member);
         let bare = self.choose(set.clone(), &chosen.fit.weights);
         let candidate = &self.candidates[member];

@@ -4,7 +4,7 @@ use effects::{Size, Term};
 use rayon::prelude::*;
 
 use crate::data::statistics::mean;
-use crate::search::problem::Chosen;
+use crate::search::problem::Selection;
 use crate::search::study::Study;
 
 /// The factors on a size in each round of refinement.
@@ -140,7 +140,7 @@ fn nudged(term: &Term, kind: usize, step: f64) -> Option<Term> {
 }
 
 /// Refines the sizes in `chosen`, coarsely first if they were not refined before, and removes members that no longer pay.
-pub fn refine(study: &mut Study, chosen: Chosen, again: bool) -> Chosen {
+pub fn refine(study: &mut Study, chosen: Selection, again: bool) -> Selection {
     let before = chosen.clone();
     let chosen = resize(study, chosen, again);
     study.note("a better size or form", &before, &chosen);
@@ -151,7 +151,7 @@ pub fn refine(study: &mut Study, chosen: Chosen, again: bool) -> Chosen {
 }
 
 /// Refines the sizes in `chosen`; all members stay, in their order.
-pub fn resize(study: &mut Study, mut chosen: Chosen, again: bool) -> Chosen {
+pub fn resize(study: &mut Study, mut chosen: Selection, again: bool) -> Selection {
     for round in (if again { 2 } else { 0 })..ROUNDS.len() {
         let mut options: Vec<(usize, Vec<Vec<Term>>)> = Vec::new();
         let mut missing = Vec::new();

@@ -8,14 +8,14 @@ use rayon::prelude::*;
 
 use crate::data::measure;
 use crate::search::candidate::Hypothesis;
-use crate::search::problem::Chosen;
+use crate::search::problem::Selection;
 use crate::search::scan;
 use crate::search::study::Study;
 use crate::thresholds::{MOST_CONTACTS, MOST_OF_A_RECORDING, MOST_RIPPLES, MOST_WAVES};
 
 impl Study {
     /// Adds the candidates that the residual of `chosen` suggests.
-    pub fn suggest(&mut self, chosen: &Chosen) {
+    pub fn suggest(&mut self, chosen: &Selection) {
         let residual = scan::residuals(&self.table, &chosen.fit);
         let times = self.motions.row_times();
         let dof = self.motions.dof;

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::data::statistics::NORMAL_95;
-use crate::search::problem::Chosen;
+use crate::search::problem::Selection;
 use crate::search::refine::{sizes, varied};
 use crate::search::study::Study;
 use crate::thresholds::{BLOCK, INFLATION, INFLATION_IN_DRIVES, UNEVEN};
@@ -81,7 +81,7 @@ impl Resampled {
 }
 
 /// Resamples the fit of `chosen`.
-pub fn resample(study: &mut Study, chosen: &Chosen) -> Resampled {
+pub fn resample(study: &mut Study, chosen: &Selection) -> Resampled {
     let mut all: Vec<(usize, Size)> = Vec::new();
     let mut missing: Vec<Term> = Vec::new();
     for &member in &chosen.set {
@@ -145,7 +145,7 @@ type ScaledBy = (usize, usize);
 /// The columns of `chosen` that a torque scale of their joint multiplies. The scale's own column is the rigid torque alone, so
 /// that the other effects on the joint are fitted in measured newton metres. Effects carried in the arm are rigid torque
 /// already.
-fn scaled(study: &Study, chosen: &Chosen) -> Vec<ScaledBy> {
+fn scaled(study: &Study, chosen: &Selection) -> Vec<ScaledBy> {
     let columns = &chosen.fit.columns;
     let term = |k: usize| study.table.terms[columns[k]];
     let is_scale = |&k: &usize| term(k).is(&RIGID) && term(k).onset().is_none();
@@ -215,7 +215,7 @@ impl PriorDraws {
 /// The weighted normal equations of each block.
 fn systems(
     study: &Study,
-    chosen: &Chosen,
+    chosen: &Selection,
     columns: &[usize],
     sizes: &[(usize, Size)],
 ) -> Vec<(DMatrix<f64>, DVector<f64>)> {

@@ -6,11 +6,11 @@ use torque::Corrected;
 
 use crate::regression::background::Strengths;
 use crate::report::JointFit;
-use crate::search::problem::{Chosen, IMPOSSIBLE, Problem};
+use crate::search::problem::{IMPOSSIBLE, Problem, Selection};
 use crate::search::study::Study;
 use crate::selection::bootstrap::{Resampled, resample};
 use crate::selection::gain::useless;
-use crate::selection::judge::{self, Selection};
+use crate::selection::judge::{self, Judged};
 use crate::selection::naming::{Named, may_be_nothing, name};
 use crate::selection::predict::{augmented, errors, structured};
 use crate::selection::rivals::standing;
@@ -22,10 +22,10 @@ use crate::thresholds::{
 
 /// Fits the named effects about the arm that contains them, including the rows near reversals. Removes effects that increase the
 /// held-out error of a joint, effects that do not reduce it, and effects with little evidence whose size may be zero.
-pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
+pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
     let mut constants_tried = Vec::new();
     loop {
-        settle(study, judged, false);
+        relinearise(study, judged, false);
         torque_constants::name_those_beyond_tolerance(study, judged, &mut constants_tried);
         make_possible(study, judged);
         let before = judged.named.set.len();
@@ -57,13 +57,13 @@ pub fn settled(study: &mut Study, judged: &mut Selection) -> Resampled {
 }
 
 /// Fits the named effects about the arm that contains them, and removes none.
-pub fn as_given(study: &mut Study, judged: &mut Selection) -> Resampled {
-    settle(study, judged, true);
+pub fn as_given(study: &mut Study, judged: &mut Judged) -> Resampled {
+    relinearise(study, judged, true);
     resample(study, &judged.named)
 }
 
 /// Removes one name, or replaces it by the simpler effect that it generalises, and fits the others again.
-fn drop_name(study: &mut Study, judged: &mut Selection, candidate: usize, rule: &'static str) {
+fn drop_name(study: &mut Study, judged: &mut Judged, candidate: usize, rule: &'static str) {
     torque_constants::keep_named_ones(study, &judged.named.others(candidate));
     let products = study.training_products();
     let problem = study.problem(&products);
@@ -73,7 +73,7 @@ fn drop_name(study: &mut Study, judged: &mut Selection, candidate: usize, rule: 
     judged.members = judge::describe(study, &problem, &judged.named);
 }
 
-fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Selection, set: Vec<usize>) {
+fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Judged, set: Vec<usize>) {
     let next = problem.choose(set, &judged.named.fit.weights);
     study.note(
         "its joint is still predicted worse than by a constant",
@@ -85,8 +85,8 @@ fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Selection, set: Vec<
 }
 
 /// Evaluates all columns about the arm that contains exactly the named effects, including the rows near reversals, and fits again.
-fn settle(study: &mut Study, judged: &mut Selection, as_given: bool) {
-    let kept = study.settle(&judged.named.fit, &judged.candidates());
+fn relinearise(study: &mut Study, judged: &mut Judged, as_given: bool) {
+    let kept = study.linearise_for_final_fit(&judged.named.fit, &judged.candidates());
     let named = judged.named.set.len();
     torque_constants::keep_named_ones(study, &kept[..named]);
     let products = study.training_products();
@@ -106,8 +106,8 @@ fn settle(study: &mut Study, judged: &mut Selection, as_given: bool) {
 }
 
 /// Removes effects that are physically impossible in this fit, one by one.
-fn make_possible(study: &mut Study, judged: &mut Selection) {
-    let impossible = |study: &Study, named: &Chosen| {
+fn make_possible(study: &mut Study, judged: &mut Judged) {
+    let impossible = |study: &Study, named: &Selection| {
         let products = study.training_products();
         let problem = study.problem(&products);
         named.set.iter().copied().find(|&c| !problem.is_possible(c, &named.fit))
@@ -118,7 +118,7 @@ fn make_possible(study: &mut Study, judged: &mut Selection) {
 }
 
 /// Removes effects that do not improve the prediction of held-out recordings, one by one.
-fn prove(study: &mut Study, judged: &mut Selection) {
+fn prove(study: &mut Study, judged: &mut Judged) {
     let Some(held) = study.held_products() else { return };
     while let Some(useless) = useless(study, &study.training_products(), &held, judged) {
         drop_name(
@@ -131,7 +131,7 @@ fn prove(study: &mut Study, judged: &mut Selection) {
 }
 
 /// Removes the effects on joints whose torque is predicted worse than by a constant: such a channel measures something else.
-fn give_up(study: &Study, judged: &mut Selection) {
+fn give_up(study: &Study, judged: &mut Judged) {
     let left: Vec<JointFit> = (0..study.motions.dof)
         .map(|joint| errors(study, joint, &augmented(study, &judged.named, joint)))
         .collect();
@@ -155,7 +155,7 @@ fn give_up(study: &Study, judged: &mut Selection) {
 }
 
 /// The weakest effect whose size may be zero or that is physically impossible, and whether it is impossible.
-fn unclear(study: &mut Study, judged: &Selection, resampled: &Resampled) -> Option<(usize, bool)> {
+fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Option<(usize, bool)> {
     let resampled = &resampled.evenly();
     let nothing = nothing(study, judged, resampled);
     let study = &*study;
@@ -176,7 +176,7 @@ fn unclear(study: &mut Study, judged: &Selection, resampled: &Resampled) -> Opti
         named.iter().any(|named| is_impossible(named) || is_contradicted(named))
     };
     let is_unclear = |member: &&judge::Member| {
-        if contradicted(member) || is_part_of_the_rest(study, judged, member) {
+        if contradicted(member) || is_part_of_the_residual(study, judged, member) {
             return true;
         }
         nothing.contains(&member.candidate)
@@ -189,7 +189,7 @@ fn unclear(study: &mut Study, judged: &Selection, resampled: &Resampled) -> Opti
 /// The members whose size may be zero. A member is not listed if its evidence against the background that fits best without it is large,
 /// even if its size is undetermined. For example, wrong inertial parameters of the last links leave the mass of a payload undetermined
 /// while its moments are clear, and a drift relative to a low level of friction is as uncertain as that level.
-fn nothing(study: &mut Study, judged: &Selection, resampled: &Resampled) -> Vec<usize> {
+fn nothing(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Vec<usize> {
     let may_be = |study: &Study, member: usize| {
         let named = name(study, resampled, member);
         let first = named.first();
@@ -206,7 +206,7 @@ fn nothing(study: &mut Study, judged: &Selection, resampled: &Resampled) -> Vec<
 /// The weakest effect whose name is as likely wrong as right, with the rule that removes it: it is too
 /// small in the final fit; or another effect explains nearly as much in its place; or wrong inertial parameters resemble it, and its
 /// evidence against the background that fits best without it is small.
-fn undecided(study: &mut Study, judged: &Selection) -> Option<(usize, &'static str)> {
+fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str)> {
     let products = study.training_products();
     let mut members: Vec<&judge::Member> = judged.members.iter().collect();
     members.sort_by(|a, b| a.evidence.total_cmp(&b.evidence));
@@ -233,7 +233,7 @@ fn undecided(study: &mut Study, judged: &Selection) -> Option<(usize, &'static s
 }
 
 /// Whether the effect is hardly larger than the structured residual of its joint, and of a kind that may be a part of that residual.
-fn is_part_of_the_rest(study: &Study, judged: &Selection, member: &judge::Member) -> bool {
+fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Member) -> bool {
     let candidate = &study.candidates[member.candidate];
     let Some(factor) = candidate.hypothesis.spec().least_beside_residual else {
         return false;
@@ -249,7 +249,7 @@ fn is_part_of_the_rest(study: &Study, judged: &Selection, member: &judge::Member
 }
 
 /// Reduces the background, and removes findings, until no joint's held-out error is larger than the nominal model's.
-fn guard(study: &mut Study, judged: &mut Selection) {
+fn guard(study: &mut Study, judged: &mut Judged) {
     while let Some(joint) = harmed(study, &judged.named) {
         if let Some((strengths, next)) = better_outside(study, &judged.named) {
             study.strengths = strengths;
@@ -278,13 +278,13 @@ fn guard(study: &mut Study, judged: &mut Selection) {
 }
 
 /// The held-out errors of `joint` with the nominal model and with `chosen`.
-fn held_out(study: &Study, chosen: &Chosen, joint: usize) -> (Option<f64>, Option<f64>) {
+fn held_out(study: &Study, chosen: &Selection, joint: usize) -> (Option<f64>, Option<f64>) {
     let fit = errors(study, joint, &augmented(study, chosen, joint));
     (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented)
 }
 
 /// The first joint whose held-out error is larger with `chosen` than with the nominal model.
-fn harmed(study: &Study, chosen: &Chosen) -> Option<usize> {
+fn harmed(study: &Study, chosen: &Selection) -> Option<usize> {
     (0..study.motions.dof).find(|&joint| match held_out(study, chosen, joint) {
         (Some(nominal), Some(augmented)) => judge::harms(nominal, augmented),
         _ => false,
@@ -293,8 +293,8 @@ fn harmed(study: &Study, chosen: &Chosen) -> Option<usize> {
 
 /// The smaller background with the smallest held-out errors of all joints together, if they are smaller than now. Errors at rest
 /// are included, because wrong links that explain the motion of some joints change the weight on joints at rest.
-fn better_outside(study: &Study, chosen: &Chosen) -> Option<(Strengths, Chosen)> {
-    let loss = |chosen: &Chosen| {
+fn better_outside(study: &Study, chosen: &Selection) -> Option<(Strengths, Selection)> {
+    let loss = |chosen: &Selection| {
         let errors = (0..study.motions.dof).filter_map(|joint| held_out(study, chosen, joint).1);
         errors.map(|error| error.max(f64::MIN_POSITIVE).ln()).sum::<f64>()
     };

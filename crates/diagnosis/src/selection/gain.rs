@@ -6,11 +6,11 @@ use crate::regression::fit::{Fit, Products};
 use crate::search::problem::Problem;
 use crate::search::scan::contact_gain;
 use crate::search::study::Study;
-use crate::selection::judge::{Member, Selection, is_idle};
+use crate::selection::judge::{Judged, Member, is_idle};
 use crate::thresholds::{AS_WELL, CLEAR_DRIVE, GAIN_PIECE, LEAST_OF_HALF, POWER_PIECES};
 
 /// The member of `judged` that helps least on recordings that it was not fitted to, if it does not help at all.
-pub fn useless(study: &Study, products: &Products, held: &Products, judged: &Selection) -> Option<usize> {
+pub fn useless(study: &Study, products: &Products, held: &Products, judged: &Judged) -> Option<usize> {
     let problem = study.problem(products);
     let gains: Vec<(f64, usize)> = judged
         .members
@@ -39,7 +39,7 @@ pub fn held_out_gain(
     study: &Study,
     problem: &Problem<'_>,
     held: Option<&Products>,
-    judged: &Selection,
+    judged: &Judged,
     member: &Member,
 ) -> Option<f64> {
     let table = &study.table;

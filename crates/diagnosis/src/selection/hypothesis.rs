@@ -6,10 +6,10 @@ use recording::nearest;
 
 use crate::error::DiagnosisError;
 use crate::options::Wanted;
-use crate::search::problem::{Chosen, Problem};
+use crate::search::problem::{Problem, Selection};
 use crate::search::refine::resize;
 use crate::search::study::Study;
-use crate::selection::judge::{self, Selection};
+use crate::selection::judge::{self, Judged};
 
 /// The largest number of sweeps over the forms of all effects.
 const SWEEPS: usize = 4;
@@ -37,7 +37,7 @@ struct Place<'a> {
 ///
 /// # Errors
 /// [`DiagnosisError::Wanted`], if an effect is given twice, is not in the catalogue, or not possible on such a joint.
-pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Selection, DiagnosisError> {
+pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisError> {
     let mut waiting = check(study, wanted)?;
     let mut placed: Vec<Place<'_>> = Vec::new();
     let products = study.training_products();
@@ -85,7 +85,7 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Selection, DiagnosisE
     }
     let products = study.training_products();
     let members = judge::describe(study, &study.problem(&products), &chosen);
-    Ok(Selection {
+    Ok(Judged {
         named: chosen,
         members,
         unmodelled: Vec::new(),
@@ -160,10 +160,10 @@ fn no_joint(name: &str, study: &Study) -> String {
 /// `chosen` with the best form of an effect in the place of the member at `instead`, or added.
 fn best(
     problem: &Problem<'_>,
-    chosen: &Chosen,
+    chosen: &Selection,
     instead: Option<usize>,
     Place { wanted, joint, other }: Place<'_>,
-) -> Option<Chosen> {
+) -> Option<Selection> {
     let mut others = chosen.set.clone();
     if let Some(at) = instead {
         others.remove(at);
@@ -204,7 +204,7 @@ fn best(
 }
 
 /// `chosen` with each effect in the form that is best with the others' forms.
-fn swept(problem: &Problem<'_>, mut chosen: Chosen, placed: &[Place<'_>]) -> Chosen {
+fn swept(problem: &Problem<'_>, mut chosen: Selection, placed: &[Place<'_>]) -> Selection {
     for _ in 0..SWEEPS {
         let before = chosen.set.clone();
         for (at, &place) in placed.iter().enumerate() {

@@ -5,10 +5,10 @@ use rayon::prelude::*;
 use crate::data::statistics::{moments, rms};
 use crate::regression::fit::Products;
 use crate::search::physics::is_at_its_size;
-use crate::search::problem::{Chosen, IMPOSSIBLE, Problem};
+use crate::search::problem::{IMPOSSIBLE, Problem, Selection};
 use crate::search::study::Study;
 use crate::thresholds::{
-    ABOVE_THE_REST, HARMLESS, IDLE_EFFECT, LEAST_DRIVE, LEAST_OF_MISMATCH, MOST_OF_A_RECORDING, NEARLY_CONSTANT,
+    ABOVE_RESIDUAL, HARMLESS, IDLE_EFFECT, LEAST_DRIVE, LEAST_OF_MISMATCH, MOST_OF_A_RECORDING, NEARLY_CONSTANT,
     OF_BEYOND, WORSE,
 };
 
@@ -39,16 +39,16 @@ impl Member {
 
 /// The named effects, and the unmodelled forms.
 #[derive(Clone, Debug)]
-pub struct Selection {
+pub struct Judged {
     /// The named candidates, fitted together.
-    pub named: Chosen,
+    pub named: Selection,
     /// Their contributions.
     pub members: Vec<Member>,
     /// The unmodelled forms that remain.
     pub unmodelled: Vec<Member>,
 }
 
-impl Selection {
+impl Judged {
     /// The named candidates, then the unmodelled forms.
     pub fn candidates(&self) -> Vec<usize> {
         let unmodelled = self.unmodelled.iter().map(|member| member.candidate);
@@ -57,9 +57,9 @@ impl Selection {
 }
 
 /// Judges `chosen`; `held` are the products of the held-out recordings, if there are any.
-pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut chosen: Chosen) -> Selection {
+pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut chosen: Selection) -> Judged {
     let problem = study.problem(products);
-    let off = |chosen: &Chosen| -> Option<usize> {
+    let off = |chosen: &Selection| -> Option<usize> {
         let is_off = |&c: &usize| !is_at_its_size(&study.candidates[c], &chosen.fit);
         chosen.set.iter().copied().find(is_off)
     };
@@ -108,7 +108,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
             let Some(joint) = candidates[c].joint else { return false };
             let rest = (with_all.fit.rss[joint].max(0.0) / products.count[joint].max(1.0)).sqrt();
             with_all.set.contains(&c)
-                && shares(study, &with_all, c)[joint] > ABOVE_THE_REST * rest / study.scales.torque[joint].max(1e-300)
+                && shares(study, &with_all, c)[joint] > ABOVE_RESIDUAL * rest / study.scales.torque[joint].max(1e-300)
         };
         let mut allowed = simple;
         allowed.retain(|&c| {
@@ -129,7 +129,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
     }
     let members = describe(study, &problem, &kept);
     let unmodelled = beside(study, &problem, &kept, &unmodelled);
-    Selection {
+    Judged {
         named: kept,
         members,
         unmodelled,
@@ -137,7 +137,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
 }
 
 /// The longest contact in a recording of which contacts cover too much: together they replace another effect.
-fn lasting(study: &Study, chosen: &Chosen) -> Option<usize> {
+fn lasting(study: &Study, chosen: &Selection) -> Option<usize> {
     let window = |&c: &usize| Some((c, study.window(c)?));
     let windows: Vec<(usize, [f64; 2])> = chosen.set.iter().filter_map(window).collect();
     let (recording, share) = study.contact_share(&windows.iter().map(|(_, window)| *window).collect::<Vec<_>>())?;
@@ -153,7 +153,7 @@ fn lasting(study: &Study, chosen: &Chosen) -> Option<usize> {
 }
 
 /// The unmodelled forms that remain in addition to `kept`, with their contributions.
-fn beside(study: &Study, problem: &Problem<'_>, kept: &Chosen, unmodelled: &[Member]) -> Vec<Member> {
+fn beside(study: &Study, problem: &Problem<'_>, kept: &Selection, unmodelled: &[Member]) -> Vec<Member> {
     let mut set = kept.set.clone();
     set.extend(unmodelled.iter().map(|member| member.candidate));
     loop {
@@ -182,7 +182,7 @@ fn beside(study: &Study, problem: &Problem<'_>, kept: &Chosen, unmodelled: &[Mem
 }
 
 /// Shares and evidence of all chosen candidates.
-pub fn describe(study: &Study, problem: &Problem<'_>, chosen: &Chosen) -> Vec<Member> {
+pub fn describe(study: &Study, problem: &Problem<'_>, chosen: &Selection) -> Vec<Member> {
     (0..chosen.set.len())
         .into_par_iter()
         .map(|k| {
@@ -204,7 +204,7 @@ pub fn describe(study: &Study, problem: &Problem<'_>, chosen: &Chosen) -> Vec<Me
 
 /// The standard deviation of a candidate's torque over the measured one's, on moving training rows, one per joint. For a nearly
 /// constant torque, the root mean square is used instead.
-fn shares(study: &Study, chosen: &Chosen, candidate: usize) -> Vec<f64> {
+fn shares(study: &Study, chosen: &Selection, candidate: usize) -> Vec<f64> {
     let columns = &study.candidates[candidate].columns;
     let values = chosen.fit.values(columns);
     (0..study.motions.dof)
@@ -223,7 +223,7 @@ fn shares(study: &Study, chosen: &Chosen, candidate: usize) -> Vec<f64> {
 }
 
 /// Whether a candidate has no torque in the held-out recordings, so that they do not test it.
-pub fn is_idle(study: &Study, chosen: &Chosen, candidate: usize) -> bool {
+pub fn is_idle(study: &Study, chosen: &Selection, candidate: usize) -> bool {
     let columns = &study.candidates[candidate].columns;
     let values = chosen.fit.values(columns);
     let rows = crate::selection::predict::rows_of(study, |recording| !study.fitted[recording]);

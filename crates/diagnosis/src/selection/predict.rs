@@ -7,24 +7,24 @@ use effects::{Cone, Term};
 
 use crate::data::statistics::{self, rms};
 use crate::report::JointFit;
-use crate::search::problem::Chosen;
+use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::thresholds::{LEAST_ROWS, REMEMBERS, RESIDUAL_LAG, STRUCTURED, STRUCTURED_ABOVE_NOISE};
 
 /// The residual of the model with named effects and background on all rows of one joint. At rest, dry friction may hold any
 /// torque within its cone, and the error is the distance to the cone.
-pub fn augmented(study: &Study, named: &Chosen, joint: usize) -> Vec<f64> {
+pub fn augmented(study: &Study, named: &Selection, joint: usize) -> Vec<f64> {
     residual(study, named, joint, |_| true)
 }
 
 /// The residual of the exported model: the links' inertial parameters and the named effects, without the background's
 /// corrections of friction and torque constants, which no file holds.
-pub fn exported(study: &Study, named: &Chosen, joint: usize) -> Vec<f64> {
+pub fn exported(study: &Study, named: &Selection, joint: usize) -> Vec<f64> {
     let is_exported = |term: &Term| [&OWN_FRICTION, &FRICTION_CURVE, &GAIN].iter().all(|law| !term.is(law));
     residual(study, named, joint, is_exported)
 }
 
-fn residual(study: &Study, named: &Chosen, joint: usize, counts: impl Fn(&Term) -> bool) -> Vec<f64> {
+fn residual(study: &Study, named: &Selection, joint: usize, counts: impl Fn(&Term) -> bool) -> Vec<f64> {
     let table = &study.table;
     let fit = &named.fit;
     let (columns, coefficients): (Vec<usize>, Vec<f64>) = fit

@@ -6,7 +6,7 @@ use effects::sensor::TorqueOffset;
 use rayon::prelude::*;
 
 use crate::search::candidate::{Candidate, Hypothesis};
-use crate::search::problem::{Chosen, Problem};
+use crate::search::problem::{Problem, Selection};
 use crate::search::study::Study;
 use crate::thresholds::{MARGIN_SCALE, NEARLY, NEARLY_NATS, SUREST};
 
@@ -52,7 +52,7 @@ pub fn allowance(explained: f64) -> f64 {
 }
 
 /// The set beside which alternatives of `member` are tried: all other members, and the effect that `member` generalises.
-pub fn beside(study: &Study, chosen: &Chosen, member: usize) -> Vec<usize> {
+pub fn beside(study: &Study, chosen: &Selection, member: usize) -> Vec<usize> {
     let finding = &study.candidates[member];
     let mut set: Vec<usize> = chosen.others(member);
     // An effect that generalises a simpler one competes with that simpler effect plus another effect.
@@ -74,7 +74,7 @@ pub fn beside(study: &Study, chosen: &Chosen, member: usize) -> Vec<usize> {
 /// The equivalent name of `member`, if there is one: a constant torque from an onset on, beside larger dry friction, equals
 /// friction that depends on the direction from then on. No motion distinguishes the two. `set` is the set [`beside`] the
 /// finding.
-pub fn alias(study: &Study, chosen: &Chosen, member: usize, set: &[usize]) -> Option<(Hypothesis, Option<usize>)> {
+pub fn alias(study: &Study, chosen: &Selection, member: usize, set: &[usize]) -> Option<(Hypothesis, Option<usize>)> {
     let finding = &study.candidates[member];
     let constant = *finding.columns.first()?;
     let sets_in = finding.hypothesis.is(&TorqueOffset) && study.table.terms[constant].onset().is_some();
@@ -88,7 +88,7 @@ pub fn alias(study: &Study, chosen: &Chosen, member: usize, set: &[usize]) -> Op
 }
 
 /// Tries every other hypothesis in the place of `member`.
-pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: usize) -> Standing {
+pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member: usize) -> Standing {
     let finding = &study.candidates[member];
     let set = beside(study, chosen, member);
     let without = problem.choose(set.clone(), &chosen.fit.weights);
@@ -129,12 +129,12 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
         }
     }
     // Every hypothesis alone in the finding's place.
-    let alone: Vec<(usize, Chosen)> = tried
+    let alone: Vec<(usize, Selection)> = tried
         .into_par_iter()
         .map(|c| (c, problem.choose([&set[..], &[c]].concat(), &chosen.fit.weights)))
         .filter(|(c, next)| problem.is_possible(*c, &next.fit))
         .collect();
-    let result = |c: usize, next: &Chosen| -> (f64, f64, Hypothesis, Option<usize>) {
+    let result = |c: usize, next: &Selection| -> (f64, f64, Hypothesis, Option<usize>) {
         let Candidate { hypothesis, joint, .. } = study.candidates[c];
         (
             next.fit.loss - chosen.fit.loss,
@@ -161,7 +161,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
     if finding.hypothesis.spec().may_be_inertial {
         let hypothesis = Hypothesis::of(&InertialParameters);
         let trials = study.in_the_background(problem.products, &set, chosen);
-        let results_of = |(link, next): (Option<usize>, Chosen)| {
+        let results_of = |(link, next): (Option<usize>, Selection)| {
             (
                 next.fit.loss - chosen.fit.loss,
                 next.score - chosen.score,
@@ -208,7 +208,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Chosen, member: u
 struct Paired<'a> {
     study: &'a Study,
     problem: &'a Problem<'a>,
-    chosen: &'a Chosen,
+    chosen: &'a Selection,
     /// The set beside which alternatives are tried.
     set: &'a [usize],
     /// The largest loss of an alternative (nats).
@@ -220,7 +220,7 @@ struct Paired<'a> {
 impl Paired<'_> {
     /// Each pair with its loss and its score beyond those of the finding (nats). One effect of a pair is among those fitted
     /// `alone` that are nearest to an alternative, the other among `others`.
-    fn pairs(&self, mut alone: Vec<(usize, Chosen)>, others: &[usize]) -> Vec<(f64, f64, [Named; 2])> {
+    fn pairs(&self, mut alone: Vec<(usize, Selection)>, others: &[usize]) -> Vec<(f64, f64, [Named; 2])> {
         alone.retain(|(c, _)| !self.rivals.contains(&self.named(*c)));
         alone.sort_by(|a, b| a.1.fit.loss.total_cmp(&b.1.fit.loss).then(a.0.cmp(&b.0)));
         let mut pairs: Vec<(f64, f64, [Named; 2])> = Vec::new();

@@ -2,10 +2,10 @@
 
 use effects::sensor::TorqueScale;
 
-use crate::search::problem::Chosen;
+use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::selection::bootstrap::resample;
-use crate::selection::judge::{self, Selection};
+use crate::selection::judge::{self, Judged};
 use crate::thresholds::{LEAST_TORQUE_ACCURACY, SYSTEMATIC, TOLERANCE};
 
 /// The relative standard deviation of the torque constants: the stated one, or the one that the recordings require beside the effects of
@@ -37,7 +37,7 @@ pub fn keep_named_ones(study: &mut Study, set: &[usize]) {
 /// Adds a torque scale on each joint, except those `tried`, whose torque constant deviates in the background by more than such
 /// constants usually do, and clearly from one. They are added one by one, that with the largest deviation first, because the background
 /// otherwise spreads this deviation over the other joints.
-pub fn name_those_beyond_tolerance(study: &mut Study, judged: &mut Selection, tried: &mut Vec<usize>) {
+pub fn name_those_beyond_tolerance(study: &mut Study, judged: &mut Judged, tried: &mut Vec<usize>) {
     while let Some((joint, scale)) = farthest(study, judged, tried) {
         tried.push(joint);
         let set = [&judged.named.set[..], &[scale]].concat();
@@ -60,7 +60,7 @@ pub fn name_those_beyond_tolerance(study: &mut Study, judged: &mut Selection, tr
 }
 
 /// The joint whose torque constant deviates most beyond tolerance, with the candidate that names it.
-fn farthest(study: &Study, judged: &Selection, tried: &[usize]) -> Option<(usize, usize)> {
+fn farthest(study: &Study, judged: &Judged, tried: &[usize]) -> Option<(usize, usize)> {
     // Without a background of torque constants, none deviates there.
     if study.strengths.gain == 0.0 {
         return None;
@@ -80,7 +80,7 @@ fn farthest(study: &Study, judged: &Selection, tried: &[usize]) -> Option<(usize
 }
 
 /// Whether the interval of a torque scale of `chosen` excludes one.
-fn is_clear(study: &mut Study, chosen: &Chosen, scale: usize) -> bool {
+fn is_clear(study: &mut Study, chosen: &Selection, scale: usize) -> bool {
     let column = study.candidates[scale].columns[0];
     let resampled = resample(study, chosen);
     resampled.column(column).is_some_and(|at| {

@@ -8,17 +8,17 @@ use effects::arm::Payload;
 
 use crate::regression::background::Strengths;
 use crate::regression::bodies::PER_LINK;
-use crate::search::problem::Chosen;
+use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::selection::bootstrap::{Resampled, resample};
-use crate::selection::judge::{self, Selection};
+use crate::selection::judge::{self, Judged};
 use crate::selection::naming::name;
 use crate::selection::rivals::{allowance, standing};
 use crate::thresholds::{LEAST_OF_THE_LINK, NEARLY_ALL, UNDECIDED_NATS};
 
 /// Names a body that is missing at the tool, if the background represents one and no other effect explains nearly as much in its
 /// place; returns the new resamplings. Other payloads are unchanged: a part of the background, or named by the search.
-pub fn unmounted(study: &mut Study, judged: &mut Selection) -> Option<Resampled> {
+pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
     let is_payload = |c: usize| study.candidates[c].hypothesis.is(&Payload);
     if study.strengths.links.last().is_none_or(|&rho| rho == 0.0) || judged.named.set.iter().any(|&c| is_payload(c)) {
         return None;
@@ -56,7 +56,7 @@ pub fn unmounted(study: &mut Study, judged: &mut Selection) -> Option<Resampled>
 
 /// `chosen` with a missing `body` and a smaller background, if the body explains nearly as much as that background and both
 /// predict held-out recordings nearly as well.
-fn instead(study: &Study, chosen: &Chosen, body: usize) -> Option<(Strengths, Chosen)> {
+fn instead(study: &Study, chosen: &Selection, body: usize) -> Option<(Strengths, Selection)> {
     let with = [chosen.set.as_slice(), &[body]].concat();
     let fit = |strengths: &Strengths, set: &[usize]| {
         let products = study.products_at(strengths);
@@ -88,7 +88,8 @@ fn instead(study: &Study, chosen: &Chosen, body: usize) -> Option<(Strengths, Ch
         return None;
     }
     if let Some(held) = study.held_products() {
-        let loss = |chosen: &Chosen| held.loss(&held.rss(&study.table, &chosen.fit.columns, &chosen.fit.coefficients));
+        let loss =
+            |chosen: &Selection| held.loss(&held.rss(&study.table, &chosen.fit.columns, &chosen.fit.coefficients));
         if loss(&next) - loss(chosen) > allowance(loss(&bare) - loss(chosen)) {
             return None;
         }

@@ -18,22 +18,22 @@ pub const LINK_STANDS_OUT: f64 = 2.0;
 /// correction may explain something else. Source: 240 simulated cases; 0.05 and more where URDFs are wrong by 3 %, and
 /// 0.014 where one is exact.
 pub const LEAST_WRONG_EVERYWHERE: f64 = 0.02;
-/// A burst exceeds the median of all windows of its length, and the usual residual of the model, by this factor.
-pub const OVER_THE_REST: f64 = 6.0;
-/// One force on the tool must explain this part of a burst's power, on pieces it was not fitted to.
+/// A transient exceeds the median of all windows of its length, and the usual residual of the model, by this factor.
+pub const ABOVE_USUAL: f64 = 6.0;
+/// One force on the tool must explain this part of a transient's power, on pieces it was not fitted to.
 pub const ONE_FORCE: f64 = 0.8;
-/// More bursts than this in the held-out recordings are an error of the model.
-pub const MOST_BURSTS: usize = 4;
+/// More transients than this in the held-out recordings are an error of the model.
+pub const MOST_TRANSIENTS: usize = 4;
 /// The usual residual of a joint that moves on fewer training rows is not known.
-pub const LEAST_BURST_ROWS: usize = 50;
-/// The length of the stretches whose residuals are compared with a burst (s).
-pub const BURST_STRETCH: f64 = 0.4;
+pub const LEAST_TRANSIENT_ROWS: usize = 50;
+/// The length of the stretches whose residuals are compared with a transient (s).
+pub const TRANSIENT_STRETCH: f64 = 0.4;
 /// A held-out recording with fewer stretches of motion has no usual residual of its own.
 pub const LEAST_STRETCHES: usize = 8;
-/// A joint takes part in a burst if it moves on this part of the burst's rows.
+/// A joint takes part in a transient if it moves on this part of the transient's rows.
 pub const LEAST_MOVING: f64 = 0.5;
-/// The length of the pieces of a burst of which every other is fitted (s).
-pub const BURST_PIECE: f64 = 0.1;
+/// The length of the pieces of a transient of which every other is fitted (s).
+pub const TRANSIENT_PIECE: f64 = 0.1;
 /// A contact acts on at least this many joints, if the arm has more.
 pub const LEAST_PUSHED: usize = 2;
 /// A regression between two sensors needs this many rows per coefficient, and as many held-out rows.

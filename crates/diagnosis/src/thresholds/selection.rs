@@ -42,7 +42,7 @@ pub const UNDECIDED_NATS: f64 = 2.0;
 /// A constant beside unmodelled structure on its joint must be at least this multiple of the residual of the named effects
 /// there. Source: constants that were a part of such structure reached 0.9 in five simulated cases; the offset of joint 1
 /// of an iiwa 14 has 3.3.
-pub const ABOVE_THE_REST: f64 = 2.5;
+pub const ABOVE_RESIDUAL: f64 = 2.5;
 /// The evidence of a rotor inertia from which its prediction is also tested without refitting the other effects (nats).
 /// Source: 180 simulated cases and 15 others; eight true ones from 28 nats on were refused otherwise, and a false one had
 /// 12.

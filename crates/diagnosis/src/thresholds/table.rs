@@ -15,7 +15,7 @@ const FILES: [(&str, &str); 6] = [
     ("Data", include_str!("data.rs")),
     ("Regression", include_str!("regression.rs")),
     ("Search", include_str!("search.rs")),
-    ("Selection", include_str!("selection.rs")),
+    ("Judged", include_str!("selection.rs")),
     ("Findings", include_str!("findings.rs")),
 ];
 

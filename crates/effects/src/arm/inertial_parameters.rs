@@ -27,7 +27,7 @@ static SPEC: Spec = Spec {
     main: &["mass"],
     is_certain_in_form: true,
     is_wrong_mass: true,
-    is_behind_the_drive: true,
+    is_beyond_the_drive: true,
     in_urdf: InUrdf::Inertials,
     ..Spec::EMPTY
 };

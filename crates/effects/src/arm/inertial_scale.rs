@@ -26,7 +26,7 @@ static SPEC: Spec = Spec {
     may_be_inertial: true,
     same_on_all_joints: Some("torque_scale"),
     is_wrong_mass: true,
-    is_behind_the_drive: true,
+    is_beyond_the_drive: true,
     in_urdf: InUrdf::Inertials,
     ..Spec::EMPTY
 };

@@ -37,7 +37,7 @@ static SPEC: Spec = Spec {
     is_certain_in_form: true,
     may_be_inertial: true,
     is_wrong_mass: true,
-    is_behind_the_drive: true,
+    is_beyond_the_drive: true,
     in_urdf: InUrdf::Inertials,
     experiment: Some(Experiment {
         rank: 9,

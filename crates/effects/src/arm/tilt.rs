@@ -30,7 +30,7 @@ static SPEC: Spec = Spec {
     may_be_inertial: true,
     // Shifted centres of mass resemble a tilt. In simulated cases with wrong URDFs, injected tilts had 175 nats and more.
     least_beside_inertials: Some(60.0),
-    is_behind_the_drive: true,
+    is_beyond_the_drive: true,
     experiment: Some(Experiment {
         rank: 7,
         text: "level the base with a spirit level and record again: an effect that remains is not a tilt",

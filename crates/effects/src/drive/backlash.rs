@@ -1,7 +1,7 @@
 //! A gap in the gear.
 
 use super::delay::SECOND_ENCODER;
-use crate::compliance::{Behind, gap, sprung};
+use crate::compliance::{LinkSide, gap, sprung};
 use crate::fitted::is_near_one;
 use crate::laws::ACCELERATION;
 use crate::{
@@ -41,7 +41,7 @@ static SPEC: Spec = Spec {
 /// bounce).
 pub static GAP: Law = Law {
     name: "gap",
-    column: |term, joint, motion| Some(behind(term, motion).torque(joint, motion.rigid)),
+    column: |term, joint, motion| Some(link_side(term, motion).torque(joint, motion.rigid)),
     needs_model: true,
     needs_derivatives: true,
     sizes: &[(Size::Main, 0), (Size::Stop, 1)],
@@ -54,11 +54,11 @@ pub static GAP: Law = Law {
         (other, factor != 1.0)
     }),
     softened,
-    behind: Some(behind),
+    link_side: Some(link_side),
     ..Law::PLAIN
 };
 
-fn behind(term: &Term, motion: &Signals<'_>) -> Behind {
+fn link_side(term: &Term, motion: &Signals<'_>) -> LinkSide {
     let (joint, [halfgap, stop, ratio, _]) = (term.of[0], term.sizes);
     let ticks = if stop.is_finite() {
         let damping = |mass: f64| 2.0 * ratio * (stop * mass.max(0.0)).sqrt();
@@ -66,7 +66,7 @@ fn behind(term: &Term, motion: &Signals<'_>) -> Behind {
     } else {
         gap(joint, halfgap, motion)
     };
-    Behind::new(joint, ticks)
+    LinkSide::new(joint, ticks)
 }
 
 /// The damping ratios of a gap's ends that are tried first: one without bouncing, one with it.
@@ -121,7 +121,7 @@ impl EffectKind for Backlash {
             }
             for halfgap in halfgaps.into_iter().filter(|_| mass > 0.0) {
                 for ratio in STOP_RATIOS {
-                    add(Turn::Behind, [halfgap, stop(mass, STOP_FREQUENCY), ratio]);
+                    add(Turn::Compliance, [halfgap, stop(mass, STOP_FREQUENCY), ratio]);
                 }
             }
         }

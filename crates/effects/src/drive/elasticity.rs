@@ -1,7 +1,7 @@
 //! A drive that turns its link through a spring.
 
 use super::delay::SECOND_ENCODER;
-use crate::compliance::{Behind, sprung};
+use crate::compliance::{LinkSide, sprung};
 use crate::fitted::is_near_one;
 use crate::laws::ACCELERATION;
 use crate::{
@@ -43,17 +43,17 @@ static SPEC: Spec = Spec {
 /// (N m s/rad).
 pub static ELASTIC: Law = Law {
     name: "elastic",
-    column: |term, joint, motion| Some(behind(term, motion).torque(joint, motion.rigid)),
+    column: |term, joint, motion| Some(link_side(term, motion).torque(joint, motion.rigid)),
     needs_model: true,
     needs_derivatives: true,
     sizes: &[(Size::Main, 0), (Size::Damping, 1)],
-    behind: Some(behind),
+    link_side: Some(link_side),
     ..Law::PLAIN
 };
 
-fn behind(term: &Term, motion: &crate::Signals<'_>) -> Behind {
+fn link_side(term: &Term, motion: &crate::Signals<'_>) -> LinkSide {
     let (joint, [stiffness, damping, ..]) = (term.of[0], term.sizes);
-    Behind::new(joint, sprung(joint, 0.0, stiffness, |_| damping, motion))
+    LinkSide::new(joint, sprung(joint, 0.0, stiffness, |_| damping, motion))
 }
 
 /// The damping ratio that is tried first.
@@ -79,7 +79,7 @@ impl EffectKind for JointElasticity {
                     Term::about(&ELASTIC, joint).sized(sizes),
                     Term::on(&ACCELERATION, joint),
                 ];
-                forms.push(Form::on(Turn::Behind, joint, terms));
+                forms.push(Form::on(Turn::Compliance, joint, terms));
             }
         }
         forms

@@ -48,7 +48,7 @@ impl EffectKind for RotorInertia {
         fitted.value(0) > 0.0
     }
 
-    // Behind a spring or a gap, the column of the rotor is not the only one.
+    // LinkSide a spring or a gap, the column of the rotor is not the only one.
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let at = estimate.at(&ACCELERATION)?;
         let inertia = estimate.coefficient("inertia", Some(at), 1.0);

@@ -33,7 +33,7 @@ static SPEC: Spec = Spec {
     ],
     main: &["amplitude"],
     excludes: &["spring", "own_position"],
-    is_behind_the_drive: true,
+    is_beyond_the_drive: true,
     against: Against::Position,
     experiment: Some(Experiment {
         rank: 1,

@@ -29,7 +29,7 @@ static SPEC: Spec = Spec {
     may_set_in: true,
     plain: Some("torque_offset"),
     excludes: &["own_position", "torque_offset", "friction_asymmetry"],
-    is_behind_the_drive: true,
+    is_beyond_the_drive: true,
     against: Against::Position,
     detectability: Detectability::LINEAR,
     not_testable_turn: 11,

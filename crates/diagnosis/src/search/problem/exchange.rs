@@ -2,13 +2,13 @@
 
 use rayon::prelude::*;
 
-use super::{Chosen, Growth, Problem};
+use super::{Growth, Problem, Selection};
 use crate::thresholds::SWAP_GAIN;
 
 impl Problem<'_> {
     /// `chosen` with one hypothesis that acts on the whole arm, and without the members that it then explains. Several
     /// hypotheses on several joints may imitate it, none of which can be exchanged alone.
-    fn arm_wide(&self, chosen: &Chosen, allowed: &[usize]) -> Vec<Chosen> {
+    fn arm_wide(&self, chosen: &Selection, allowed: &[usize]) -> Vec<Selection> {
         let is_free = |c: &usize| {
             let candidate = &self.candidates[*c];
             candidate.joint.is_none()
@@ -31,7 +31,7 @@ impl Problem<'_> {
     /// `chosen` with one or two other wrong masses in place of its own. Masses are coupled along the arm, so that two wrong
     /// masses may resemble a third one, and one may resemble two others. No exchange of one mass for one other leads to the
     /// true masses then.
-    fn other_masses(&self, chosen: &Chosen, allowed: &[usize]) -> Vec<Chosen> {
+    fn other_masses(&self, chosen: &Selection, allowed: &[usize]) -> Vec<Selection> {
         let is_mass = |c: &usize| self.candidates[*c].hypothesis.is_wrong_mass();
         let rest: Vec<usize> = chosen.set.iter().copied().filter(|c| !is_mass(c)).collect();
         if rest.len() == chosen.set.len() {
@@ -53,9 +53,9 @@ impl Problem<'_> {
     }
 
     /// Replaces single members by better ones, until none is better.
-    pub fn swap(&self, mut chosen: Chosen, allowed: &[usize], rounds: usize) -> Chosen {
+    pub fn swap(&self, mut chosen: Selection, allowed: &[usize], rounds: usize) -> Selection {
         for _ in 0..rounds {
-            let trials: Vec<Chosen> = (0..chosen.set.len())
+            let trials: Vec<Selection> = (0..chosen.set.len())
                 .into_par_iter()
                 .filter_map(|k| {
                     let removed = chosen.set[k];

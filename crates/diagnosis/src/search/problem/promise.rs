@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::{Chosen, Problem};
+use super::{Problem, Selection};
 use crate::regression::fit::Reduced;
 
 impl Problem<'_> {
     /// The first-order gain of each of the candidates `free` in addition to `chosen` (nats, minus the costs), with its index.
-    pub fn promises(&self, chosen: &Chosen, free: &[usize]) -> Vec<(f64, usize)> {
+    pub fn promises(&self, chosen: &Selection, free: &[usize]) -> Vec<(f64, usize)> {
         let mut columns: Vec<usize> = free.iter().flat_map(|&c| self.new_columns(chosen, c)).collect();
         columns.sort_unstable();
         columns.dedup();
@@ -18,7 +18,7 @@ impl Problem<'_> {
     }
 
     /// The columns of `candidate` that `chosen` does not have.
-    fn new_columns(&self, chosen: &Chosen, candidate: usize) -> Vec<usize> {
+    fn new_columns(&self, chosen: &Selection, candidate: usize) -> Vec<usize> {
         let have = &chosen.fit.columns;
         let columns = self.candidates[candidate].columns.iter().copied();
         columns.filter(|c| have.binary_search(c).is_err()).collect()
@@ -26,7 +26,7 @@ impl Problem<'_> {
 
     /// The first-order gain of `candidate` in addition to `chosen` (nats, minus the costs). Its columns are among those that are
     /// `reduced`.
-    fn promise(&self, chosen: &Chosen, candidate: usize, reduced: &Reduced) -> f64 {
+    fn promise(&self, chosen: &Selection, candidate: usize, reduced: &Reduced) -> f64 {
         let new = self.new_columns(chosen, candidate);
         if new.is_empty() {
             return f64::NEG_INFINITY;

@@ -17,7 +17,7 @@ impl Study {
     }
 
     /// Evaluates everything with the rows near reversals, for the final fit; returns the new indices of the candidates `kept`.
-    pub fn settle(&mut self, fit: &Fit, kept: &[usize]) -> Vec<usize> {
+    pub fn linearise_for_final_fit(&mut self, fit: &Fit, kept: &[usize]) -> Vec<usize> {
         self.moving = Moving::ThroughReversals;
         self.about(fit, kept, true).unwrap_or_default()
     }

@@ -1,7 +1,7 @@
 //! The study's decisions, as rows of the record.
 
 use super::Study;
-use crate::search::problem::Chosen;
+use crate::search::problem::Selection;
 use crate::trace::Action;
 
 impl Study {
@@ -12,7 +12,7 @@ impl Study {
     }
 
     /// Records the decisions that lead from `before` to `after` by `rule`.
-    pub fn note(&self, rule: &'static str, before: &Chosen, after: &Chosen) {
+    pub fn note(&self, rule: &'static str, before: &Selection, after: &Selection) {
         let nats = before.score - after.score;
         let row = |action: Action| {
             move |&candidate: &usize| {
@@ -32,7 +32,7 @@ impl Study {
     }
 
     /// Records candidates that were fitted in addition to `chosen` and not taken, each with the score that it would have given.
-    pub fn note_tried(&self, chosen: &Chosen, tried: &[(usize, f64, &'static str)]) {
+    pub fn note_tried(&self, chosen: &Selection, tried: &[(usize, f64, &'static str)]) {
         let rows = tried.iter().map(|&(candidate, score, rule)| {
             let (effect, joint) = self.described(candidate);
             (Action::Tried, effect, joint, rule, chosen.score - score)
@@ -43,7 +43,7 @@ impl Study {
     }
 
     /// Records a change of the background's strengths since `before`.
-    pub fn note_strengths(&self, rule: &'static str, before: &Chosen, after: &Chosen) {
+    pub fn note_strengths(&self, rule: &'static str, before: &Selection, after: &Selection) {
         let strengths = self.strengths.to_string();
         let nats = before.score - after.score;
         self.trace.step([(Action::Background, strengths, None, rule, nats)]);

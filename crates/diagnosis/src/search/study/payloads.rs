@@ -4,7 +4,7 @@ use effects::arm::Payload;
 
 use super::Study;
 use crate::data::statistics;
-use crate::search::problem::Chosen;
+use crate::search::problem::Selection;
 use crate::thresholds::FELT;
 
 /// The number of last joints on which the torque of a payload must show. There are two, because the axis of one may go
@@ -14,7 +14,7 @@ const LAST_JOINTS: usize = 2;
 impl Study {
     /// `chosen` with a payload in the place of another body of the last link, if that is better. A search that takes the link
     /// first does not find the payload, because both explain the same torque.
-    pub fn with_payload_for_last_link(&mut self, chosen: Chosen) -> Chosen {
+    pub fn with_payload_for_last_link(&mut self, chosen: Selection) -> Selection {
         let common = self.strengths.common();
         let is_payload = |&c: &usize| self.candidates[c].hypothesis.is(&Payload);
         let Some(last) = self.arm.dof().checked_sub(1) else {
@@ -47,7 +47,7 @@ impl Study {
     /// `chosen` without a payload that has hardly any torque on the last joints, if the URDF's links are wrong as well. The
     /// centre of mass of such a payload lies where these axes meet, and a heavier link before them explains the same
     /// torque. A payload with an onset is kept, because a link cannot have one.
-    pub fn without_payload_of_a_link(&mut self, chosen: Chosen) -> Chosen {
+    pub fn without_payload_of_a_link(&mut self, chosen: Selection) -> Selection {
         let is_unfelt = |&c: &usize| {
             let sets_in = || self.terms(c).iter().any(|term| term.onset().is_some());
             self.candidates[c].hypothesis.is(&Payload) && !sets_in() && !self.is_felt_at_the_end(&chosen, c)
@@ -72,7 +72,7 @@ impl Study {
 
     /// Whether the share of `candidate` in the torque of one of the last joints is comparable to its largest share in any
     /// joint.
-    fn is_felt_at_the_end(&self, chosen: &Chosen, candidate: usize) -> bool {
+    fn is_felt_at_the_end(&self, chosen: &Selection, candidate: usize) -> bool {
         let columns = &self.candidates[candidate].columns;
         let values = chosen.fit.values(columns);
         let share = |joint: usize| {

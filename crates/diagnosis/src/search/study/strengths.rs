@@ -8,7 +8,7 @@ use crate::data::motion::{Chunk, Motions};
 use crate::regression::background::Strengths;
 use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::{Fit, Products};
-use crate::search::problem::{Chosen, Growth, MOST};
+use crate::search::problem::{Growth, MOST, Selection};
 use crate::thresholds::{MOVED, OWN_STRENGTHS, PER_IMITATION};
 
 /// The largest number of effects that may together replace a part of the background.
@@ -54,7 +54,7 @@ impl Study {
         &self,
         products: &Products,
         held: Option<&Products>,
-        chosen: &Chosen,
+        chosen: &Selection,
     ) -> (f64, Option<f64>) {
         let links = vec![0.0; self.arm.dof()];
         let (products, without) = self.with_links(products, chosen, links);
@@ -67,7 +67,7 @@ impl Study {
     }
 
     /// The loss of score and likelihood of `chosen` (nats) if `link` differs from the URDF no more than most links.
-    pub fn evidence_of_link(&self, products: &Products, chosen: &Chosen, link: usize) -> [f64; 2] {
+    pub fn evidence_of_link(&self, products: &Products, chosen: &Selection, link: usize) -> [f64; 2] {
         let mut links = self.strengths.links.clone();
         links[link] = self.strengths.common();
         let (_, without) = self.with_links(products, chosen, links);
@@ -76,7 +76,7 @@ impl Study {
 
     /// The links that may differ from the URDF in the place of `link`, each with the loss of score and likelihood of `chosen`
     /// (nats).
-    pub fn in_other_links(&self, products: &Products, chosen: &Chosen, link: usize) -> Vec<(usize, [f64; 2])> {
+    pub fn in_other_links(&self, products: &Products, chosen: &Selection, link: usize) -> Vec<(usize, [f64; 2])> {
         let common = self.strengths.common();
         let as_most = |&other: &usize| self.strengths.links[other] == common;
         let others: Vec<usize> = (0..self.arm.dof()).filter(as_most).collect();
@@ -95,7 +95,7 @@ impl Study {
     }
 
     /// The products and the fit of `chosen` with other strengths of the links' inertial parameters.
-    fn with_links(&self, products: &Products, chosen: &Chosen, links: Vec<f64>) -> (Products, Chosen) {
+    fn with_links(&self, products: &Products, chosen: &Selection, links: Vec<f64>) -> (Products, Selection) {
         let strengths = Strengths {
             links,
             ..self.strengths.clone()
@@ -107,7 +107,12 @@ impl Study {
 
     /// The best strengths of a background without the other members of `set`, among those that are stronger somewhere than the
     /// present ones: alternatives of an effect that may be a part of the background. Each has its link and its fit.
-    pub fn in_the_background(&self, products: &Products, set: &[usize], near: &Chosen) -> Vec<(Option<usize>, Chosen)> {
+    pub fn in_the_background(
+        &self,
+        products: &Products,
+        set: &[usize],
+        near: &Selection,
+    ) -> Vec<(Option<usize>, Selection)> {
         let common = self.strengths.common();
         let stronger = |strengths: &Strengths| {
             let pairs = strengths.links.iter().zip(&self.strengths.links);
@@ -141,7 +146,7 @@ impl Study {
 
     /// `chosen` with more of the candidates `allowed`, and with the strengths of the background that the evidence prefers.
     /// Each step takes the candidate or the change of strengths that gains more. Members that no longer pay are removed.
-    pub fn grown(&mut self, mut chosen: Chosen, allowed: &[usize]) -> Chosen {
+    pub fn grown(&mut self, mut chosen: Selection, allowed: &[usize]) -> Selection {
         let bare = self.bare_products(|r| self.fitted[r]);
         let mut products = bare.with_background(self.background());
         let mut growth = Growth::default();
@@ -194,7 +199,7 @@ impl Study {
     }
 
     /// `chosen` with a smaller background and a few more of the candidates `allowed`, if that is better.
-    fn exchanged(&self, bare: &Products, chosen: &Chosen, allowed: &[usize]) -> Option<(Strengths, Chosen)> {
+    fn exchanged(&self, bare: &Products, chosen: &Selection, allowed: &[usize]) -> Option<(Strengths, Selection)> {
         let weaker = self.strengths.weaker().into_iter();
         let trials = weaker
             .filter(|strengths| self.stated.allows(strengths))
@@ -215,7 +220,7 @@ impl Study {
     }
 
     /// `chosen` with the strengths of the background that the evidence prefers.
-    pub fn with_best_strengths(&mut self, mut chosen: Chosen) -> Chosen {
+    pub fn with_best_strengths(&mut self, mut chosen: Selection) -> Selection {
         let bare = self.bare_products(|r| self.fitted[r]);
         for _ in 0..MOST_MOVES {
             let kinds = [
@@ -242,13 +247,13 @@ impl Study {
     /// The evidence for `member` of `chosen` (nats): the difference of the scores without and with it, each with its own
     /// best background. An effect that resembles wrong inertials allows a smaller background, which must not count as
     /// evidence for the effect.
-    pub fn evidence_beside_best_background(&mut self, chosen: &Chosen, member: usize) -> f64 {
+    pub fn evidence_beside_best_background(&mut self, chosen: &Selection, member: usize) -> f64 {
         let bare = self.bare_products(|r| self.fitted[r]);
         let kept = self.strengths.clone();
         let products = bare.with_background(self.background());
         let without = self.problem(&products).without(chosen, member);
         // The present background may be smaller than the evidence prefers, because of the held-out recordings.
-        let mut best = |mut fit: Chosen| {
+        let mut best = |mut fit: Selection| {
             for _ in 0..MOST_MOVES {
                 let mut neighbours = self.strengths.neighbours();
                 // The strength of friction that differs between recordings is kept: it has no relation to the effect.
@@ -267,7 +272,7 @@ impl Study {
 
     /// `chosen` with another body of a link in the place of the effects on its joint that may together imitate it: a scale
     /// of the link and a spring on a lever resemble a shifted centre of mass. Effects that are clearly better are kept.
-    pub fn without_imitations(&mut self, mut chosen: Chosen) -> Chosen {
+    pub fn without_imitations(&mut self, mut chosen: Selection) -> Selection {
         let bare = self.bare_products(|r| self.fitted[r]);
         for link in 0..self.arm.dof() {
             let imitates = |&c: &usize| {
@@ -303,8 +308,13 @@ impl Study {
     }
 
     /// The best of the strengths `others`, with `chosen` fitted again, if they are better.
-    fn strengthened(&self, bare: &Products, chosen: &Chosen, others: Vec<Strengths>) -> Option<(Strengths, Chosen)> {
-        let trials: Vec<(Strengths, Chosen)> = others
+    fn strengthened(
+        &self,
+        bare: &Products,
+        chosen: &Selection,
+        others: Vec<Strengths>,
+    ) -> Option<(Strengths, Selection)> {
+        let trials: Vec<(Strengths, Selection)> = others
             .into_par_iter()
             .filter(|strengths| self.stated.allows(strengths))
             .map(|strengths| {

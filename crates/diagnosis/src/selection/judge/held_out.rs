@@ -4,14 +4,14 @@ use rayon::prelude::*;
 
 use super::{HARMS, harms, is_idle};
 use crate::regression::fit::Products;
-use crate::search::problem::{Chosen, Problem};
+use crate::search::problem::{Problem, Selection};
 use crate::search::study::Study;
 
 /// `chosen` without the unmodelled forms that do not predict recordings they were not fitted to. They may have replaced simple
 /// effects, which are then searched again.
-pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen: Chosen) -> Chosen {
+pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen: Selection) -> Selection {
     let hypothesis = |c: usize| study.candidates[c].hypothesis;
-    let loss = |chosen: &Chosen| held.loss(&held.rss(&study.table, &chosen.fit.columns, &chosen.fit.coefficients));
+    let loss = |chosen: &Selection| held.loss(&held.rss(&study.table, &chosen.fit.columns, &chosen.fit.coefficients));
     let simple: Vec<usize> = (0..study.candidates.len())
         .filter(|&c| hypothesis(c).is_simple())
         .collect();
@@ -41,9 +41,9 @@ pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut cho
 
 /// Removes effects that do not predict recordings they were not fitted to, and effects that make a joint's prediction worse
 /// than the nominal model's.
-pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen: Chosen) -> Chosen {
+pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen: Selection) -> Selection {
     let table = &study.table;
-    let rss = |chosen: &Chosen| held.rss(table, &chosen.fit.columns, &chosen.fit.coefficients);
+    let rss = |chosen: &Selection| held.rss(table, &chosen.fit.columns, &chosen.fit.coefficients);
     loop {
         let with = rss(&chosen);
         // The increase of the held-out loss without each.

@@ -53,7 +53,7 @@ pub fn blocks(tried: &Tried) -> Vec<Block> {
         ];
         list.push(table(&head, 4, score.besides.iter().map(besides).collect()));
     }
-    list.push(text(unseen(tried)));
+    list.push(text(not_found(tried)));
     list.push(errors(tried));
     for note in &robot.notes {
         list.push(text(format!("**Our note.** {note}")));
@@ -172,7 +172,7 @@ fn in_short(sentence: &str) -> &str {
     sentence.split_once(": ").map_or(sentence, |(_, rest)| rest)
 }
 
-fn unseen(tried: &Tried) -> String {
+fn not_found(tried: &Tried) -> String {
     let score = &tried.score;
     let unexplained = match score.unexplained.as_slice() {
         [] => "No joint has an unexplained residual.".to_owned(),

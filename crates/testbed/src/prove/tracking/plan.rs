@@ -84,9 +84,9 @@ impl Plan {
         course: &Course,
         (j, stiffness): (usize, f64),
     ) -> anyhow::Result<()> {
-        let is_behind = |effect: &&Effect| effect.spec().is_behind_the_drive;
-        let behind: Vec<Effect> = effects.iter().filter(is_behind).cloned().collect();
-        let links = Corrected::new(&arm.clone().with_rotor_inertias(&vec![0.0; arm.dof()]), &behind)?;
+        let is_beyond = |effect: &&Effect| effect.spec().is_beyond_the_drive;
+        let beyond: Vec<Effect> = effects.iter().filter(is_beyond).cloned().collect();
+        let links = Corrected::new(&arm.clone().with_rotor_inertias(&vec![0.0; arm.dof()]), &beyond)?;
         let mut ahead = Vec::with_capacity(course.middle.q.len() / course.dof);
         along(course, |_, workspace, [q, qd, qdd], prediction| {
             links.predict(workspace, q, qd, qdd, prediction);
