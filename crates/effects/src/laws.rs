@@ -10,6 +10,12 @@ pub fn sine_and_cosine(law: &'static Law, joint: usize, size: f64) -> Vec<Term> 
     vec![wave(0), wave(1)]
 }
 
+/// Whether two such columns have nearly the same size: they differ by less than `share` of the smaller one.
+pub fn is_same_wave(a: &Term, b: &Term, share: f64) -> bool {
+    let (a, b) = (a.sizes[0], b.sizes[0]);
+    (a - b).abs() < share * a.min(b)
+}
+
 /// q̇.
 pub static VELOCITY: Law = Law {
     name: "velocity",

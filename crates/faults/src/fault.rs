@@ -49,7 +49,7 @@ mod transmission_coupling;
 pub(crate) mod viscous_friction;
 
 /// All faults. Draws depend on their order: first the baseline effects, then the catalogue's, then those outside it.
-pub(crate) static FAULTS: [Fault; 32] = [
+pub(crate) static FAULTS: &[Fault] = &[
     viscous_friction::FAULT,
     coulomb_friction::FAULT,
     friction_asymmetry::FAULT,

@@ -21,15 +21,18 @@ const SCENARIOS: [(&str, &str); 5] = [
     ("beyond", include_str!("../../../scenarios/beyond.toml")),
 ];
 
-/// Motor inertias (kg m²) and gear ratios of the PUMA 560 (Corke and Armstrong-Hélouvry 1994), which its URDF omits.
-const PUMA_DRIVES: [(f64, f64); 6] = [
-    (200e-6, 62.6111),
-    (200e-6, 107.815),
-    (200e-6, 53.7063),
-    (33e-6, 76.0364),
-    (33e-6, 71.923),
-    (33e-6, 76.686),
-];
+/// Motor inertias (kg m²) and gear ratios of robots whose URDFs omit them. PUMA 560: Corke and Armstrong-Hélouvry 1994.
+const DRIVES: &[(&str, &[(f64, f64)])] = &[(
+    "puma560",
+    &[
+        (200e-6, 62.6111),
+        (200e-6, 107.815),
+        (200e-6, 53.7063),
+        (33e-6, 76.0364),
+        (33e-6, 71.923),
+        (33e-6, 76.686),
+    ],
+)];
 
 /// Finds the scenario `name`: a file if the name ends in `.toml` or contains a folder; otherwise `scenarios/<name>.toml`
 /// below the current folder; otherwise a scenario that comes with testbed.
@@ -104,6 +107,6 @@ fn local_scenarios() -> Vec<String> {
 /// The reflected inertias of a robot's drives at its joints (kg m²), which its URDF does not contain; `None` if they are
 /// unknown.
 pub fn rotor_inertias(robot: &str) -> Option<Vec<f64>> {
-    let inertia = |(motor, gear): (f64, f64)| motor * gear * gear;
-    (robot == "puma560").then(|| PUMA_DRIVES.map(inertia).to_vec())
+    let (_, drives) = DRIVES.iter().find(|(name, _)| *name == robot)?;
+    Some(drives.iter().map(|(motor, gear)| motor * gear * gear).collect())
 }

@@ -1,6 +1,6 @@
 //! A torque that repeats with the joint's angle.
 
-use crate::laws::{sine_and_cosine, wave};
+use crate::laws::{is_same_wave, sine_and_cosine, wave};
 use crate::{
     Against, Effect, EffectKind, Estimate, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Size, Spec, State,
     Systematic, Term,
@@ -62,8 +62,7 @@ impl EffectKind for TorqueRipple {
 
     /// Two ripples of nearly the same period are not distinguished.
     fn is_same(&self, a: &Term, b: &Term) -> bool {
-        let (a, b) = (a.sizes[0], b.sizes[0]);
-        (a - b).abs() < SAME_PERIODS * a.min(b)
+        is_same_wave(a, b, SAME_PERIODS)
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {

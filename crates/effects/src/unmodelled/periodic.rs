@@ -1,6 +1,6 @@
 //! A sinusoid in time.
 
-use crate::laws::{sine_and_cosine, wave};
+use crate::laws::{is_same_wave, sine_and_cosine, wave};
 use crate::{EffectKind, Form, Grounds, Law, Spec, Term};
 
 /// A sinusoid in time.
@@ -43,7 +43,6 @@ impl EffectKind for Periodic {
 
     /// Two sinusoids of nearly the same frequency are not distinguished.
     fn is_same(&self, a: &Term, b: &Term) -> bool {
-        let (a, b) = (a.sizes[0], b.sizes[0]);
-        (a - b).abs() < SAME_FREQUENCY * a.min(b)
+        is_same_wave(a, b, SAME_FREQUENCY)
     }
 }

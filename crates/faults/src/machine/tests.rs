@@ -50,7 +50,7 @@ fn every_effect_in_every_form_changes_the_torque() {
     let n = robot.arm().dof();
     let reference = reference(&robot).first_seconds(4.0);
     let below = |run: &Run| vec![low_passed(&run.tau, n, TICK, LEAD_TICKS).0];
-    for fault in &FAULTS {
+    for fault in FAULTS {
         let name = fault.name;
         let effect = detectable(name);
         let without = Machine::new(&robot, &[&effect], Some(0)).expect("it fits");
