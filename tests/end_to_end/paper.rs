@@ -1,6 +1,6 @@
 //! The paper's tables and its tracking figure, through the built program.
 //!
-//! Law: what the README and docs/paper.md claim comes out of `testbed tables`, and the order of the models is the paper's.
+//! Law: what docs/track.md and docs/paper.md claim comes out of `testbed tables`, and the order of the models is the paper's.
 
 use std::sync::OnceLock;
 

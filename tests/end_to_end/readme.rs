@@ -132,9 +132,9 @@ fn joints(text: &str) -> Vec<Vec<&str>> {
 }
 
 #[test]
-fn the_readme_shows_task_d() {
-    let main_job = |line: &String| line == "cargo run --release -p testbed -- --scenario taskD";
-    let all = examples("README.md");
+fn the_documentation_shows_task_d() {
+    let main_job = |line: &String| line == "testbed --scenario taskD";
+    let all = examples("docs/track.md");
     let example = all.iter().find(|example| example.commands.iter().any(main_job));
     let shown = example
         .and_then(|example| example.answer.as_ref())
