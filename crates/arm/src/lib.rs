@@ -43,7 +43,7 @@ mod workspace;
 pub use chain::{ChainOptions, FixedBecause, FixedJoint};
 pub use error::ArmError;
 pub use inverse_dynamics::{FEATURES, NewtonEulerFeatures};
-pub use model::{Arm, Frame, Inertia, Joint, JointKind, Limits, STANDARD_GRAVITY};
+pub use model::{Arm, FixedBody, Frame, Inertia, Joint, JointKind, Limits, STANDARD_GRAVITY};
 pub use nalgebra::{DMatrix, Matrix3, Matrix6xX, Vector3};
 pub use pose::Pose;
 pub use regressor::PARAMETERS_PER_LINK;

@@ -217,6 +217,15 @@ pub struct Frame {
     pub link_from_frame: Pose,
 }
 
+/// A body that the URDF fixes to the last moving link, such as a tool: a link beyond a fixed joint with all that it carries.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FixedBody {
+    /// The URDF name of the link.
+    pub name: String,
+    /// Its inertia in the frame of the last moving link, of which [`Joint::inertia`] is the sum.
+    pub inertia: Inertia,
+}
+
 /// A serial arm of revolute and prismatic joints on a fixed base.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
@@ -226,6 +235,7 @@ pub struct Arm {
     pub(crate) frames: Vec<Frame>,
     /// The index of the tool's frame; `None` is the last link itself.
     pub(crate) tool: Option<usize>,
+    pub(crate) fixed_bodies: Vec<FixedBody>,
     pub(crate) fixed_joints: Vec<FixedJoint>,
     pub(crate) visuals: Vec<Visual>,
     pub(crate) gravity: Vector3<f64>,
@@ -274,6 +284,11 @@ impl Arm {
                 link: Some(last),
                 link_from_frame: Pose::identity(),
             })
+    }
+
+    /// The bodies that the URDF fixes to the last moving link and that could be taken off, so that some mass is left.
+    pub fn fixed_bodies(&self) -> &[FixedBody] {
+        &self.fixed_bodies
     }
 
     /// The visual shapes of the URDF.

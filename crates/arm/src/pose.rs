@@ -49,6 +49,15 @@ impl Pose {
         }
     }
 
+    /// `b_from_a`.
+    pub fn inverse(&self) -> Pose {
+        let rotation = self.rotation.transpose();
+        Pose {
+            rotation,
+            translation: -(rotation * self.translation),
+        }
+    }
+
     /// The coordinates in a of a point that is given in b.
     pub fn transform_point(&self, point: &Vector3<f64>) -> Vector3<f64> {
         self.rotation * point + self.translation

@@ -11,7 +11,7 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use self::choose::Chain;
 use crate::chain::{self, ChainOptions};
 use crate::error::ArmError;
-use crate::model::{Arm, Frame, Inertia, Joint, JointKind, Limits, Moments, STANDARD_GRAVITY};
+use crate::model::{Arm, FixedBody, Frame, Inertia, Joint, JointKind, Limits, Moments, STANDARD_GRAVITY};
 use crate::pose::{Pose, cross_matrix};
 use crate::visual::{Geometry, Visual};
 
@@ -62,6 +62,40 @@ impl Arm {
     }
 }
 
+/// The bodies that could be taken off a link: each of its fixed links with all that it carries, where a mass is left and where
+/// no link beyond it is the same body.
+fn removable(body: &Body<'_>) -> Vec<FixedBody> {
+    let mut list: Vec<FixedBody> = body
+        .attached
+        .iter()
+        .map(|link| FixedBody {
+            name: link.name.clone(),
+            inertia: link.inertia,
+        })
+        .collect();
+    for (place, link) in body.attached.iter().enumerate().rev() {
+        if let Some(carrier) = link.carried_by {
+            list[carrier].inertia = list[carrier].inertia.merged(&list[place].inertia);
+        }
+    }
+    let is_alone = |place: usize| {
+        let mut beyond = body
+            .attached
+            .iter()
+            .zip(&list)
+            .filter(|(link, _)| link.carried_by == Some(place));
+        beyond.all(|(_, other)| other.inertia.mass < list[place].inertia.mass)
+    };
+    let is_removable = |place: &usize| {
+        let mass = list[*place].inertia.mass;
+        mass > 0.0 && mass < body.inertia.mass && is_alone(*place)
+    };
+    (0..list.len())
+        .filter(is_removable)
+        .map(|place| list[place].clone())
+        .collect()
+}
+
 struct Reader<'a> {
     path: &'a Path,
     text: &'a str,
@@ -76,9 +110,20 @@ struct WeldedFrame {
     is_rigid: bool,
 }
 
+/// A link beyond a fixed joint.
+struct Attached {
+    name: String,
+    /// Its place in the list of the link that carries it; `None` is the first link.
+    carried_by: Option<usize>,
+    /// Its own body, in the frame of the first link.
+    inertia: Inertia,
+}
+
 /// Links that are fixed to each other, as one body in the frame of the first one.
 struct Body<'a> {
     inertia: Inertia,
+    /// Each link but the first one, after the link that carries it.
+    attached: Vec<Attached>,
     frames: Vec<WeldedFrame>,
     visuals: Vec<(Pose, &'a urdf_rs::Visual)>,
     /// The moving joints that begin at these links, with the pose of their parent link.
@@ -95,6 +140,7 @@ impl<'a> Reader<'a> {
             joints: Vec::new(),
             frames: Vec::new(),
             tool: None,
+            fixed_bodies: Vec::new(),
             fixed_joints: Vec::new(),
             visuals: Vec::new(),
             gravity: self.gravity(root, &chain)?,
@@ -119,6 +165,7 @@ impl<'a> Reader<'a> {
                 arm.visuals.push(visual_of(link, &pose, visual));
             }
             let Some((link_from_parent, urdf_joint)) = body.moving.pop() else {
+                arm.fixed_bodies = removable(&body);
                 break;
             };
             body = self.weld(&urdf_joint.child.link, &chain)?;
@@ -152,22 +199,30 @@ impl<'a> Reader<'a> {
     fn weld(&self, first: &'a str, chain: &Chain<'_>) -> Result<Body<'a>, ArmError> {
         let mut body = Body {
             inertia: Inertia::zero(),
+            attached: Vec::new(),
             frames: Vec::new(),
             visuals: Vec::new(),
             moving: Vec::new(),
         };
-        let mut waiting = vec![(Pose::identity(), first, true)];
-        while let Some((body_from_link, name, is_rigid)) = waiting.pop() {
+        let mut waiting = vec![(Pose::identity(), first, true, None)];
+        while let Some((body_from_link, name, is_rigid, carried_by)) = waiting.pop() {
             let link = self.robot.links.iter().find(|link| link.name == name);
             let Some(link) = link else { continue };
-            body.inertia = body.inertia.merged(&self.inertia(link)?.transformed(&body_from_link));
+            let inertia = self.inertia(link)?.transformed(&body_from_link);
+            body.inertia = body.inertia.merged(&inertia);
             if name != first {
+                body.attached.push(Attached {
+                    name: name.to_owned(),
+                    carried_by,
+                    inertia,
+                });
                 body.frames.push(WeldedFrame {
                     name: name.to_owned(),
                     pose: body_from_link,
                     is_rigid,
                 });
             }
+            let place = body.attached.len().checked_sub(1);
             body.visuals
                 .extend(link.visual.iter().map(|visual| (body_from_link, visual)));
             for joint in self.robot.joints.iter().filter(|joint| joint.parent.link == name) {
@@ -176,7 +231,7 @@ impl<'a> Reader<'a> {
                     Some(position) => {
                         let origin = self.fixed_pose(joint, position)?;
                         let is_rigid = is_rigid && joint.joint_type == urdf_rs::JointType::Fixed;
-                        waiting.push((body_from_link.compose(&origin), &joint.child.link, is_rigid));
+                        waiting.push((body_from_link.compose(&origin), &joint.child.link, is_rigid, place));
                     }
                 }
             }

@@ -1,10 +1,14 @@
 //! The forms that are tried of an effect.
 
+use arm::Arm;
+
 use crate::signals::Scales;
 use crate::term::Term;
 
 /// What is known of the recordings before any fit; forms are made from it.
 pub struct Grounds<'a> {
+    /// The arm.
+    pub arm: &'a Arm,
     /// Typical and largest values of each joint.
     pub scales: &'a Scales,
     /// The time from the first recording to the last (s), if they share one clock.

@@ -40,6 +40,8 @@ pub struct Rigid<'a> {
     pub links: &'a [Vec<Vec<f64>>],
     /// The ten columns of the torque regressor of a body on the tool, in the tool's frame: `[joint][parameter]`.
     pub payload: &'a [Vec<Vec<f64>>],
+    /// The torque of each body that the URDF fixes to the last link ([`::arm::Arm::fixed_bodies`]): `[joint][body]`.
+    pub fixed_bodies: &'a [Vec<Vec<f64>>],
     /// ∂τ/∂q: `[joint of τ][joint of q]`.
     pub by_position: &'a [Vec<Vec<f64>>],
     /// ∂τ/∂q̇: `[joint of τ][joint of q̇]`.

@@ -171,6 +171,7 @@ fn along<T>(visit: impl FnOnce(&Signals<'_>) -> T) -> T {
             rotors: &[],
             links: &links,
             payload: &payload,
+            fixed_bodies: &[],
             by_position: &by_position,
             by_velocity: &by_velocity,
             mass: &mass,

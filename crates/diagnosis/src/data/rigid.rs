@@ -18,6 +18,8 @@ pub struct Rigid {
     pub links: Vec<Vec<Vec<f64>>>,
     /// The last link's ten columns of the torque regressor, in the tool's frame: `[joint][parameter]`.
     pub payload: Vec<Vec<Vec<f64>>>,
+    /// The torque of each body that the URDF fixes to the last link: `[joint][body]`.
+    pub fixed_bodies: Vec<Vec<Vec<f64>>>,
     /// ∂τ/∂q: `[joint of τ][joint of q]`.
     pub by_position: Vec<Vec<Vec<f64>>>,
     /// ∂τ/∂q̇: `[joint of τ][joint of q̇]`.
@@ -74,11 +76,17 @@ impl Rigid {
         let ticks = chunk.ticks();
         let zeros = || vec![0.0; ticks];
         let square = || (0..n).map(|_| (0..n).map(|_| zeros()).collect()).collect();
+        let bodies: Vec<[f64; 10]> = arm
+            .fixed_bodies()
+            .iter()
+            .map(|body| body.inertia.parameters())
+            .collect();
         let mut rigid = Self {
             tau: (0..n).map(|_| zeros()).collect(),
             rotors: arm.joints().iter().map(|joint| joint.rotor_inertia).collect(),
             links: square(),
             payload: (0..n).map(|_| (0..10).map(|_| zeros()).collect()).collect(),
+            fixed_bodies: (0..n).map(|_| bodies.iter().map(|_| zeros()).collect()).collect(),
             by_position: square(),
             by_velocity: square(),
             mass: square(),
@@ -117,6 +125,11 @@ impl Rigid {
                     }
                 }
                 let last = (n - 1) * PARAMETERS_PER_LINK;
+                for (body, parameters) in bodies.iter().enumerate() {
+                    for (k, tick) in span.clone().enumerate() {
+                        rigid.fixed_bodies[joint][body][tick] = (0..10).map(|l| at(last + l, k) * parameters[l]).sum();
+                    }
+                }
                 for parameter in 0..10 {
                     for (k, tick) in span.clone().enumerate() {
                         rigid.payload[joint][parameter][tick] =

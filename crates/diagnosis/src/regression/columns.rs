@@ -20,6 +20,7 @@ fn along<'a>(chunk: &'a Chunk, rigid: &'a Rigid, scales: &'a Scales) -> Signals<
             rotors: &rigid.rotors,
             links: &rigid.links,
             payload: &rigid.payload,
+            fixed_bodies: &rigid.fixed_bodies,
             by_position: &rigid.by_position,
             by_velocity: &rigid.by_velocity,
             mass: &rigid.mass,

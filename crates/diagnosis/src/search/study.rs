@@ -113,6 +113,7 @@ impl Study {
         let mut candidates = Vec::new();
         let mass = |joint: usize| mean(rigid.iter().flat_map(|r| r.link_mass(joint)));
         let mut list = catalogue(&Grounds {
+            arm: &arm,
             scales: &scales,
             span: motions.one_clock.then_some(span),
             times: &times,

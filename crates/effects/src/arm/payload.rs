@@ -55,6 +55,27 @@ pub static PARAMETER: Law = Law {
     ..Law::PLAIN
 };
 
+/// A body that the URDF fixes to the last link and that is not mounted.
+pub static NOT_MOUNTED: Law = Law {
+    name: "body that is not mounted",
+    column: |term, joint, motion| {
+        let torque = &motion.rigid.fixed_bodies[joint][term.of[0]];
+        Some(torque.iter().map(|value| -value).collect())
+    },
+    needs_model: true,
+    carry: Some(|term, value, carried| {
+        let drawn = at_tool(&carried.arm, term.of[0]).parameters();
+        for (sum, drawn) in carried.payload.iter_mut().zip(drawn) {
+            *sum -= value * drawn;
+        }
+    }),
+    ..Law::PLAIN
+};
+
+/// The coefficient of a body that is not mounted. It is one if the body is as the URDF says, and URDFs are wrong.
+const NOT_MOUNTED_RANGE: std::ops::RangeInclusive<f64> = 0.6..=1.6;
+/// A body of less than this part of the last link's mass with all that is fixed to it is a part of that link: a cover, a camera.
+const LEAST_OF_LAST_LINK: f64 = 0.1;
 /// The largest mass of a payload as a multiple of the mass of the moving links.
 const MOST_PAYLOAD: f64 = 1.5;
 /// The largest distance of a payload's centre of mass from the tool (m), as a share of the arm's reach.
@@ -80,6 +101,21 @@ fn tensor([xx, xy, yy, xz, yz, zz]: [f64; 6]) -> Matrix3<f64> {
 }
 
 impl Payload {
+    /// The payload that the absence of the `k`-th fixed body is: negative, with the URDF's centre of mass.
+    fn read_not_mounted(estimate: &mut dyn Estimate, k: usize) -> Option<Effect> {
+        let drawn = at_tool(estimate.arm(), k);
+        let place = estimate.place(0)?;
+        let mass = estimate.note("mass", |draw| -draw[place] * drawn.mass);
+        for (axis, key) in ["com_x", "com_y", "com_z"].into_iter().enumerate() {
+            estimate.note(key, |_| drawn.com[axis]);
+        }
+        let tensor = drawn.tensor * (mass / drawn.mass);
+        let inertia = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)].map(|at| tensor[at]);
+        let com: [f64; 3] = drawn.com.into();
+        let effect = Effect::of(&Self).with("mass", mass).with("com", com);
+        Some(effect.with("inertia", inertia).since(estimate.onset()))
+    }
+
     /// The body of a payload.
     pub fn inertia(effect: &Effect) -> Inertia {
         Inertia {
@@ -88,6 +124,12 @@ impl Payload {
             tensor: tensor(effect.list("inertia")),
         }
     }
+}
+
+/// The `k`-th body that the URDF fixes to the last link, in the tool's frame.
+fn at_tool(arm: &Arm, k: usize) -> Inertia {
+    let tool_from_link = arm.tool_frame().link_from_frame.inverse();
+    arm.fixed_bodies()[k].inertia.transformed(&tool_from_link)
 }
 
 fn columns(count: usize) -> Vec<Term> {
@@ -99,9 +141,16 @@ impl EffectKind for Payload {
         &SPEC
     }
 
-    /// A form with moments of inertia, and one without them for recordings that do not show them.
-    fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
-        [10, 4].map(|count| Form::of_arm(columns(count))).to_vec()
+    /// A form with moments of inertia, one without them for recordings that do not show them, and one for each body that the
+    /// URDF fixes to the last link and that may not be mounted: its inertia is known, so that it has one coefficient instead of ten.
+    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
+        let last = grounds.arm.joints().last().map_or(0.0, |joint| joint.inertia.mass);
+        let bodies = grounds.arm.fixed_bodies().iter().enumerate();
+        let drawn = bodies
+            .filter(|(_, body)| body.inertia.mass >= LEAST_OF_LAST_LINK * last)
+            .map(|(k, _)| Form::of_arm(vec![Term::about(&NOT_MOUNTED, k)]));
+        let free = [10, 4].map(|count| Form::of_arm(columns(count)));
+        free.into_iter().chain(drawn).collect()
     }
 
     fn sets_in(&self) -> Option<SetsIn> {
@@ -114,6 +163,9 @@ impl EffectKind for Payload {
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        if std::ptr::eq(fitted.term(0).law, &NOT_MOUNTED) {
+            return NOT_MOUNTED_RANGE.contains(&fitted.value(0));
+        }
         let mass = fitted.value(0);
         let reach = PAYLOAD_REACH * reach(fitted.arm());
         let first: f64 = (1..4).map(|k| fitted.value(k).powi(2)).sum::<f64>().sqrt();
@@ -126,6 +178,9 @@ impl EffectKind for Payload {
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let terms = estimate.terms();
+        if let Some(term) = terms.first().filter(|term| std::ptr::eq(term.law, &NOT_MOUNTED)) {
+            return Self::read_not_mounted(estimate, term.of[0]);
+        }
         let places: [Option<usize>; 10] = std::array::from_fn(|parameter| {
             let of = |term: &Term| term.always() == Term::about(&PARAMETER, parameter);
             estimate.place(terms.iter().position(of)?)
