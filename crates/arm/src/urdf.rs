@@ -2,6 +2,7 @@
 
 mod checks;
 mod choose;
+mod fixed;
 mod syntax;
 
 use std::path::Path;
@@ -9,9 +10,10 @@ use std::path::Path;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
 use self::choose::Chain;
+use self::fixed::{Attached, removable};
 use crate::chain::{self, ChainOptions};
 use crate::error::ArmError;
-use crate::model::{Arm, FixedBody, Frame, Inertia, Joint, JointKind, Limits, Moments, STANDARD_GRAVITY};
+use crate::model::{Arm, Frame, Inertia, Joint, JointKind, Limits, Moments, STANDARD_GRAVITY};
 use crate::pose::{Pose, cross_matrix};
 use crate::visual::{Geometry, Visual};
 
@@ -62,40 +64,6 @@ impl Arm {
     }
 }
 
-/// The bodies that could be taken off a link: each of its fixed links with all that it carries, where a mass is left and where
-/// no link beyond it is the same body.
-fn removable(body: &Body<'_>) -> Vec<FixedBody> {
-    let mut list: Vec<FixedBody> = body
-        .attached
-        .iter()
-        .map(|link| FixedBody {
-            name: link.name.clone(),
-            inertia: link.inertia,
-        })
-        .collect();
-    for (place, link) in body.attached.iter().enumerate().rev() {
-        if let Some(carrier) = link.carried_by {
-            list[carrier].inertia = list[carrier].inertia.merged(&list[place].inertia);
-        }
-    }
-    let is_alone = |place: usize| {
-        let mut beyond = body
-            .attached
-            .iter()
-            .zip(&list)
-            .filter(|(link, _)| link.carried_by == Some(place));
-        beyond.all(|(_, other)| other.inertia.mass < list[place].inertia.mass)
-    };
-    let is_removable = |place: &usize| {
-        let mass = list[*place].inertia.mass;
-        mass > 0.0 && mass < body.inertia.mass && is_alone(*place)
-    };
-    (0..list.len())
-        .filter(is_removable)
-        .map(|place| list[place].clone())
-        .collect()
-}
-
 struct Reader<'a> {
     path: &'a Path,
     text: &'a str,
@@ -108,15 +76,6 @@ struct WeldedFrame {
     pose: Pose,
     /// Whether all joints up to it are fixed in the URDF itself.
     is_rigid: bool,
-}
-
-/// A link beyond a fixed joint.
-struct Attached {
-    name: String,
-    /// Its place in the list of the link that carries it; `None` is the first link.
-    carried_by: Option<usize>,
-    /// Its own body, in the frame of the first link.
-    inertia: Inertia,
 }
 
 /// Links that are fixed to each other, as one body in the frame of the first one.
@@ -165,7 +124,7 @@ impl<'a> Reader<'a> {
                 arm.visuals.push(visual_of(link, &pose, visual));
             }
             let Some((link_from_parent, urdf_joint)) = body.moving.pop() else {
-                arm.fixed_bodies = removable(&body);
+                arm.fixed_bodies = removable(&body.attached, body.inertia.mass);
                 break;
             };
             body = self.weld(&urdf_joint.child.link, &chain)?;
