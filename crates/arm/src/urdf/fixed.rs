@@ -12,8 +12,11 @@ pub(super) struct Attached {
     pub inertia: Inertia,
 }
 
-/// The bodies that could be taken off a link: each of its fixed links with all that it carries, where some of the `total` mass (kg) is left and where
-/// no link beyond it is the same body.
+/// The least part of a link's mass that is left when a body is taken off: less is rounding.
+const LEAST_LEFT: f64 = 1e-9;
+
+/// The bodies that could be taken off a link of mass `total` (kg): each of its fixed links with all that it carries, where some
+/// mass is left and where no link beyond it is the same body.
 pub(super) fn removable(attached: &[Attached], total: f64) -> Vec<FixedBody> {
     let mut list: Vec<FixedBody> = attached
         .iter()
@@ -36,7 +39,7 @@ pub(super) fn removable(attached: &[Attached], total: f64) -> Vec<FixedBody> {
     };
     let is_removable = |place: &usize| {
         let mass = list[*place].inertia.mass;
-        mass > 0.0 && mass < total && is_alone(*place)
+        mass > 0.0 && mass < (1.0 - LEAST_LEFT) * total && is_alone(*place)
     };
     (0..list.len())
         .filter(is_removable)
