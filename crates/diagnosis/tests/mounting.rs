@@ -1,10 +1,10 @@
-//! A base on a slope, on a wall or on the ceiling, and channels without torque.
+//! A base on a slope, on a wall or on the ceiling, a tool that is not mounted, and channels without torque.
 
 mod support;
 
-use arm::Vector3;
+use arm::{Arm, Vector3};
 use diagnosis::{Diagnosis, Options, diagnose};
-use support::{Motion, baseline_friction, diagnosed, inputs, named, recorded, regular, sentences, trio};
+use support::{Motion, TRIO, baseline_friction, diagnosed, inputs, named, recorded, regular, sentences, trio};
 
 /// The diagnosis of the trio's arm on a base turned by an angle (°) about an axis.
 fn mounted(degrees: f64) -> Diagnosis {
@@ -58,6 +58,39 @@ fn a_known_wall_is_not_found_again() {
         .filter_map(|fit| fit.held_out_nrmse_nominal)
         .fold(0.0, f64::max);
     assert!(worst < 0.02, "{worst}");
+}
+
+/// The centre of mass is the URDF's: what was fitted is the absence of the body that the URDF draws.
+#[test]
+fn a_tool_that_is_drawn_and_not_mounted_is_named_beside_a_wrong_link() {
+    let tool = r#"<joint name="flange" type="fixed"><origin xyz="0.3 0 0.05" rpy="0 0.5 0"/><parent link="fore"/><child link="tool"/></joint>
+<link name="tool"><inertial><origin xyz="0.02 0.01 0.06"/><mass value="0.9"/>
+<inertia ixx="0.002" ixy="0" ixz="0" iyy="0.002" iyz="0" izz="0.001"/></inertial></link></robot>"#;
+    let drawn = Arm::from_urdf_text(&TRIO.replace("</robot>", tool), "trio.urdf").expect("it is an arm");
+    let robot = trio().with_scaled_link(1, 0.9);
+    let diagnosis = diagnosed(
+        &drawn,
+        &robot,
+        &|motion, tau| baseline_friction(motion, tau),
+        Vec::new(),
+    );
+    let payload = diagnosis
+        .report
+        .findings
+        .iter()
+        .find(|finding| finding.effect == "payload");
+    let parameters = &payload
+        .unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)))
+        .parameters;
+    let [low, high] = parameters["mass"].ci95;
+    assert!(low < -0.9 && -0.9 < high && high - low < 0.3, "{low} to {high}");
+    for (key, drawn) in [("com_x", 0.02), ("com_y", 0.01), ("com_z", 0.06)] {
+        assert!(
+            (parameters[key].value - drawn).abs() < 1e-9,
+            "{key}: {}",
+            parameters[key].value
+        );
+    }
 }
 
 /// A channel that shows zero most of the time, or another quantity, does not affect the other joints.
