@@ -2,7 +2,9 @@
 
 mod support;
 
-use support::{ELBOW, Motion, baseline_friction, diagnosed, sentences, trio};
+use diagnosis::{Diagnosis, Input, Options, diagnose};
+use recording::RegularRecording;
+use support::{ELBOW, Motion, baseline_friction, diagnosed, recorded, regular, sentences, start, trio};
 
 /// Friction that only reaches its level at some speed is not larger at standstill.
 #[test]
@@ -29,7 +31,7 @@ fn friction_that_grows_gradually_is_not_stribeck_friction() {
 fn more_friction_in_the_held_out_recording_is_not_a_burst() {
     let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
-        if motion.clock >= support::start(2) {
+        if motion.clock >= start(2) {
             for (tau, &speed) in tau.iter_mut().zip(&motion.qd) {
                 *tau += 0.1 * (0.6 * speed.signum() + 0.4 * speed * speed.abs());
             }
@@ -72,4 +74,66 @@ fn two_dry_frictions_on_a_joint_add_up() {
     // The rows near reversals are above the noise. Twice the Coulomb level would leave a third of the torque.
     let left = &again.report.unexplained;
     assert!(left.iter().all(|left| left.share < 0.03), "{left:?}");
+}
+
+/// The diagnosis of four recordings, of which the first `before` are from before the second half, in which the elbow's friction
+/// falls from 2 N m at breakaway to its level of 0.6 N m. The last is held out.
+fn with_new_stribeck_friction(before: usize) -> Diagnosis {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        baseline_friction(motion, tau);
+        if motion.clock >= start(2) {
+            let speed = motion.qd[ELBOW];
+            tau[ELBOW] += 1.4 * (-(speed / 0.12).powi(2)).exp() * speed.signum();
+        }
+    };
+    let recordings: Vec<RegularRecording> = (2 - before..5)
+        .map(|variant| regular(&recorded(&trio(), variant, 16.0, &injected)))
+        .collect();
+    let input = |(number, recording)| Input {
+        name: ["a", "b", "c", "d", "e"][number],
+        recording,
+        held_out: number == recordings.len() - 1,
+        before: number < before,
+    };
+    let inputs: Vec<Input<'_>> = recordings.iter().enumerate().map(input).collect();
+    diagnose(&trio(), &inputs, &Options::default(), &|_| {}).expect("it can be diagnosed")
+}
+
+/// Its parameters are those of the whole friction, as without recordings from before, which do not widen the intervals.
+#[test]
+fn recordings_from_before_do_not_worsen_the_size_of_new_stribeck_friction() {
+    let widths = [0, 2].map(|before| {
+        let diagnosis = with_new_stribeck_friction(before);
+        let said = sentences(&diagnosis);
+        let mut findings = diagnosis.report.findings.iter();
+        let found = findings.find(|finding| finding.effect == "stribeck_friction");
+        let found = found.unwrap_or_else(|| panic!("{before}: {said:?}"));
+        assert_eq!(found.since_before, before > 0, "{said:?}");
+        let widths = [("coulomb", 0.6), ("breakaway", 2.0), ("velocity", 0.12)].map(|(key, truth)| {
+            let parameter = found.parameters[key];
+            let [low, high] = parameter.ci95;
+            assert!(
+                low <= truth && truth <= high,
+                "{before}, {key}: {low} … {high}, {truth} is true"
+            );
+            assert!(
+                (parameter.value / truth - 1.0).abs() < 0.1,
+                "{before}, {key}: {parameter:?}"
+            );
+            high - low
+        });
+        let elbow = |finding: &&diagnosis::Finding| finding.joint.as_deref() == Some("elbow");
+        let names: Vec<&str> = diagnosis
+            .report
+            .findings
+            .iter()
+            .filter(elbow)
+            .map(|finding| finding.effect)
+            .collect();
+        assert!(!names.contains(&"coulomb_friction"), "its level is stated: {said:?}");
+        widths
+    });
+    for (alone, with_before) in widths[0].iter().zip(widths[1]) {
+        assert!(with_before < 1.5 * alone, "{widths:?}");
+    }
 }

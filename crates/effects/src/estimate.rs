@@ -2,6 +2,7 @@
 
 use arm::{Arm, Joint};
 
+use crate::laws::SIGN;
 use crate::term::{Law, Size, Term};
 
 /// The systematic error of a parameter, which resampling of the recordings does not show and which widens its interval.
@@ -33,8 +34,8 @@ pub trait Estimate {
     /// The index in a draw of the coefficient of the candidate's k-th column.
     fn place(&self, k: usize) -> Option<usize>;
 
-    /// The index in a draw of the coefficient of a law's column, without onset, on the candidate's joint. The column may
-    /// belong to another effect. `None` if the fit has no such column.
+    /// The index in a draw of the coefficient of a law's first column, with or without an onset, on the candidate's joint. The
+    /// column may belong to another effect. `None` if the fit has no such column.
     fn on_joint(&self, law: &'static Law) -> Option<usize>;
 
     /// The index in a draw of the relative correction of a size.
@@ -72,11 +73,11 @@ impl dyn Estimate + '_ {
     ///
     /// Dry frictions that act together on a joint share the column of its Coulomb level, and their torques add up.
     /// Therefore only one of them states the level. The first of these that is present does: warming friction (which is
-    /// relative to the level), asymmetric, load-dependent, Stribeck friction. A friction that sets in later has a column of
-    /// its own.
+    /// relative to the level), asymmetric, load-dependent, Stribeck friction. Coulomb friction that sets in later has a column
+    /// of its own.
     pub fn level_beside(&self, laws: &[&'static Law]) -> f64 {
         let is_there = |law: &&'static Law| self.on_joint(law).is_some();
-        let is_stated = self.terms().iter().all(|term| term.onset().is_none()) && laws.iter().any(is_there);
+        let is_stated = self.terms().iter().any(|term| term.is(&SIGN)) && laws.iter().any(is_there);
         if is_stated { 0.0 } else { 1.0 }
     }
 

@@ -231,9 +231,6 @@ impl Term {
     /// This term with one size multiplied by `factor`.
     pub fn varied(&self, size: Size, factor: f64) -> Self {
         let mut term = *self;
-        if self.from.is_some() {
-            return term;
-        }
         if let Some(varied) = self.law.varied {
             return varied(self, size, factor);
         }

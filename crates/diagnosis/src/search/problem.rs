@@ -317,11 +317,12 @@ impl Problem<'_> {
         let bare = self.choose(set.clone(), &chosen.fit.weights);
         let candidate = &self.candidates[member];
         let onset = |c: &Candidate| self.onset(c);
+        let is_contained = |plain: &Candidate| plain.columns.iter().all(|column| candidate.columns.contains(column));
         let is_plain = |&c: &usize| {
             let plain = &self.candidates[c];
             Some(plain.hypothesis) == candidate.hypothesis.plain()
                 && plain.joint == candidate.joint
-                && onset(plain).is_some() == onset(candidate).is_some()
+                && (is_contained(plain) || onset(plain).is_some() == onset(candidate).is_some())
         };
         // Among candidates with an onset, only those with nearly the same onset.
         let apart = |&c: &usize| match (onset(&self.candidates[c]), onset(candidate)) {
@@ -329,7 +330,10 @@ impl Problem<'_> {
             _ => 0.0,
         };
         let plain = (0..self.candidates.len()).filter(is_plain);
-        let Some(plain) = plain.min_by(|a, b| apart(a).total_cmp(&apart(b))) else {
+        let Some(plain) = plain.min_by(|a, b| {
+            let is_other = |c: &usize| !is_contained(&self.candidates[*c]);
+            is_other(a).cmp(&is_other(b)).then(apart(a).total_cmp(&apart(b)))
+        }) else {
             return bare;
         };
         if set.contains(&plain) {

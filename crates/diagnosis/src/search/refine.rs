@@ -40,14 +40,19 @@ fn resized(terms: &[Term], factor: f64) -> Vec<Term> {
 /// The rounds in which other forms are tried.
 const FORMS: usize = 2;
 
+/// The onset of a term within the recordings (s); `None` if it always acts, or since the recordings from before a change.
+fn found_onset(term: &Term, changed_at: Option<f64>) -> Option<f64> {
+    term.onset().filter(|&onset| Some(onset) != changed_at)
+}
+
 /// The other form of terms, at the sizes at which it is most similar.
-fn forms(terms: &[Term]) -> Vec<Vec<Term>> {
+fn forms(terms: &[Term], changed_at: Option<f64>) -> Vec<Vec<Term>> {
     let mut list = Vec::new();
     for factor in [0.7, 1.0, 1.4] {
         let mut other = terms.to_vec();
         let mut changed = false;
         for term in &mut other {
-            if let (Some(other_form), None) = (term.law.other_form, term.onset()) {
+            if let (Some(other_form), None) = (term.law.other_form, found_onset(term, changed_at)) {
                 let (form, is_other) = other_form(term, factor);
                 *term = form;
                 changed |= is_other;
@@ -75,8 +80,9 @@ fn softened(terms: &[Term], mass: f64) -> Vec<Vec<Term>> {
         .collect()
 }
 
-/// Variants of a candidate's terms in a round of refinement; `mass` is the inertia of its link (kg m² or kg).
-fn variants(terms: &[Term], round: usize, mass: f64) -> Vec<Vec<Term>> {
+/// Variants of a candidate's terms in a round of refinement; `mass` is the inertia of its link (kg m² or kg), `changed_at` the
+/// time of a change between the recordings (s).
+fn variants(terms: &[Term], round: usize, mass: f64, changed_at: Option<f64>) -> Vec<Vec<Term>> {
     let mut list: Vec<Vec<Term>> = ROUNDS[round].iter().map(|&factor| resized(terms, factor)).collect();
     list.retain(|terms| !terms.is_empty());
     // The stiffness and the damping of a spring are coupled, as are a gap and its compliant ends: all combinations of sizes
@@ -93,12 +99,16 @@ fn variants(terms: &[Term], round: usize, mass: f64) -> Vec<Vec<Term>> {
     }
     let sized: Vec<Vec<Term>> = list.iter().cloned().chain([terms.to_vec()]).collect();
     list.extend(sized.iter().flat_map(|terms| softened(terms, mass)));
-    list.extend(if round < FORMS { forms(terms) } else { Vec::new() });
+    list.extend(if round < FORMS {
+        forms(terms, changed_at)
+    } else {
+        Vec::new()
+    });
     // A finer step of a ripple's period, relative to one period over the range.
     let nudges = [-1.0, -0.4, 0.4, 1.0].map(|step| step * 0.25_f64.powi(round as i32));
     for kind in 0..NUDGES {
         for step in nudges {
-            let nudged = terms.iter().map(|term| nudged(term, kind, step));
+            let nudged = terms.iter().map(|term| nudged(term, kind, step, changed_at));
             let new: Vec<Option<Term>> = nudged.collect();
             if new.iter().any(Option::is_some) {
                 let both = new.into_iter().zip(terms);
@@ -116,7 +126,11 @@ fn variants(terms: &[Term], round: usize, mass: f64) -> Vec<Vec<Term>> {
 fn first_sizes(study: &Study, member: usize) -> Vec<Vec<Term>> {
     let this = &study.candidates[member];
     let own = study.terms(member);
-    if sizes(&own).is_empty() || own.iter().any(|term| term.onset().is_some()) {
+    if sizes(&own).is_empty()
+        || own
+            .iter()
+            .any(|term| found_onset(term, study.motions.changed_at).is_some())
+    {
         return Vec::new();
     }
     let is_like = |c: &usize| {
@@ -124,16 +138,16 @@ fn first_sizes(study: &Study, member: usize) -> Vec<Vec<Term>> {
         *c != member && !other.is_trial && other.hypothesis == this.hypothesis && other.joint == this.joint
     };
     let terms = (0..study.candidates.len()).filter(is_like).map(|c| study.terms(c));
-    let is_allowed = |terms: &Vec<Term>| terms.iter().all(|term| term.onset().is_none());
-    terms.filter(is_allowed).collect()
+    let onset = |terms: &[Term]| terms.iter().find_map(Term::onset);
+    terms.filter(|terms| onset(terms) == onset(&own)).collect()
 }
 
 /// The largest number of kinds of finer steps of a law.
 const NUDGES: usize = 3;
 
 /// A term after a finer step of the `kind`; `None` if there is no such step.
-fn nudged(term: &Term, kind: usize, step: f64) -> Option<Term> {
-    match term.onset() {
+fn nudged(term: &Term, kind: usize, step: f64, changed_at: Option<f64>) -> Option<Term> {
+    match found_onset(term, changed_at) {
         Some(from) => (kind == 0).then(|| term.since(from + ONSET_STEP * step)),
         None => term.law.nudges.get(kind).map(|nudge| nudge(term, step)),
     }
@@ -165,7 +179,7 @@ pub fn resize(study: &mut Study, mut chosen: Selection, again: bool) -> Selectio
             let mass = candidate.joint.map_or(0.0, |joint| {
                 mean(study.rigid.iter().flat_map(|rigid| rigid.link_mass(joint)))
             });
-            let mut list = variants(&terms, round, mass);
+            let mut list = variants(&terms, round, mass, study.motions.changed_at);
             if round == 0 {
                 list.extend(first_sizes(study, member));
             }

@@ -2,6 +2,7 @@
 
 use arm::Arm;
 use effects::arm::contact_columns;
+use effects::laws::SIGN;
 use effects::{Effect, Grounds, Scales, Term};
 
 use crate::data::Data;
@@ -74,6 +75,15 @@ pub struct Study {
     refused: Vec<(Hypothesis, Option<usize>)>,
 }
 
+/// `terms` of a hypothesis that begins at `at` (s). The Coulomb level that a friction generalises was there before, and is not
+/// counted a second time.
+fn begun(hypothesis: Hypothesis, terms: &[Term], at: f64) -> Vec<Term> {
+    let generalises_friction = hypothesis.plain().is_some_and(Hypothesis::is_friction);
+    let was_there = |term: &Term| generalises_friction && term.is(&SIGN);
+    let begun = |term: &Term| if was_there(term) { *term } else { term.since(at) };
+    terms.iter().map(begun).collect()
+}
+
 impl Study {
     /// The candidates that `options` allow, with their columns along `data`.
     pub fn new(data: Data, options: &Options) -> Self {
@@ -133,9 +143,7 @@ impl Study {
             let new: Vec<_> = list
                 .iter()
                 .filter(|(hypothesis, ..)| hypothesis.name().is_some() && !hypothesis.is_unit())
-                .map(|(hypothesis, joint, terms)| {
-                    (*hypothesis, *joint, terms.iter().map(|term| term.since(at)).collect())
-                })
+                .map(|(hypothesis, joint, terms)| (*hypothesis, *joint, begun(*hypothesis, terms, at)))
                 .collect();
             list.extend(new);
         }

@@ -71,7 +71,7 @@ impl Estimate for Reader<'_> {
 
     fn on_joint(&self, law: &'static Law) -> Option<usize> {
         let terms = &self.study.table.terms;
-        let is_it = |&column: &usize| terms[column].is(law) && terms[column].joint == Some(self.joint());
+        let is_it = |&column: &usize| terms[column].always().is(law) && terms[column].joint == Some(self.joint());
         self.resampled.columns.iter().position(is_it)
     }
 

@@ -63,7 +63,7 @@ fn fading(qd: f64, velocity: f64, exponent: f64) -> f64 {
 
 /// The velocity of the first Stribeck column in a list (rad/s or m/s).
 pub fn velocity(terms: &[Term]) -> Option<f64> {
-    let term = terms.iter().find(|term| term.is(&FADING))?;
+    let term = terms.iter().find(|term| term.always().is(&FADING))?;
     Some(term.sizes[0])
 }
 

@@ -1,5 +1,7 @@
 //! Candidates that exclude each other.
 
+use effects::Term;
+
 use super::Problem;
 use crate::search::candidate::Candidate;
 
@@ -27,6 +29,7 @@ impl Problem<'_> {
 
     /// The onset of a candidate (s); `None` if it always acts.
     pub fn onset(&self, candidate: &Candidate) -> Option<f64> {
-        self.table.terms[candidate.columns[0]].onset()
+        let mut terms = candidate.columns.iter().map(|&column| &self.table.terms[column]);
+        terms.find_map(Term::onset)
     }
 }

@@ -5,7 +5,7 @@ use effects::arm::Payload;
 use super::Study;
 use crate::data::statistics;
 use crate::search::problem::Selection;
-use crate::thresholds::FELT;
+use crate::thresholds::{FELT, PER_LINK_APART};
 
 /// The number of last joints on which the torque of a payload must show. There are two, because the axis of one may go
 /// through its centre of mass.
@@ -46,7 +46,7 @@ impl Study {
 
     /// `chosen` without a payload that has hardly any torque on the last joints, if the URDF's links are wrong as well. The
     /// centre of mass of such a payload lies where these axes meet, and a heavier link before them explains the same
-    /// torque. A payload with an onset is kept, because a link cannot have one.
+    /// torque. It is kept if the links explain clearly less, and if it has an onset, because a link cannot have one.
     pub fn without_payload_of_a_link(&mut self, chosen: Selection) -> Selection {
         let is_unfelt = |&c: &usize| {
             let sets_in = || self.terms(c).iter().any(|term| term.onset().is_some());
@@ -56,6 +56,7 @@ impl Study {
         let (Some(&payload), true) = (unfelt.first(), self.strengths.common() > 0.0) else {
             return chosen;
         };
+        let before = (self.strengths.clone(), self.refused.clone());
         self.refuse(payload);
         let rest = chosen.set.iter().copied().filter(|c| !unfelt.contains(c)).collect();
         let products = self.training_products();
@@ -67,7 +68,13 @@ impl Study {
         );
         let next = self.with_best_strengths(next);
         let allowed = self.allowed();
-        self.grown(next, &allowed)
+        let next = self.grown(next, &allowed);
+        if next.score < chosen.score + PER_LINK_APART {
+            return next;
+        }
+        (self.strengths, self.refused) = before;
+        self.note("no link explains as much as the payload", &next, &chosen);
+        chosen
     }
 
     /// Whether the share of `candidate` in the torque of one of the last joints is comparable to its largest share in any

@@ -1,5 +1,7 @@
 //! The onset of an effect, and its interval.
 
+use effects::Term;
+
 use super::Reader;
 use crate::report::Parameter;
 use crate::thresholds::{ONSET_INTERVAL, PUSH_START};
@@ -7,7 +9,7 @@ use crate::thresholds::{ONSET_INTERVAL, PUSH_START};
 impl Reader<'_> {
     /// Records and returns the onset of the candidate; `None` if it always acts.
     pub(super) fn note_onset(&mut self) -> Option<f64> {
-        let onset = self.study.terms(self.candidate).first()?.onset()?;
+        let onset = self.study.terms(self.candidate).iter().find_map(Term::onset)?;
         let (value, ci95) = self.likeliest_onset(onset);
         let parameter = Parameter { value, ci95, unit: "s" };
         self.parameters.insert("onset", parameter);
