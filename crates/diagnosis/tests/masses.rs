@@ -214,3 +214,32 @@ fn pauses_of_recordings_from_before_are_before_the_change() {
     let mass = new_payload([1.0; 3], 100.0);
     assert!((mass.value / 1.2 - 1.0).abs() < 0.02, "{mass:?}");
 }
+
+/// The last joints of a spherical wrist hardly feel a payload near its centre. It is named nevertheless, beside links that are
+/// all wrong, because no link explains its torque.
+#[test]
+fn a_payload_near_the_centre_of_a_wrist_is_kept() {
+    const PUMA: &str = include_str!("../../../assets/puma560.urdf");
+    let believed = Arm::from_urdf_text(PUMA, "puma560.urdf").expect("it is an arm");
+    let wrong = [1.06, 0.94, 1.08, 0.92, 1.1, 0.96];
+    let wrong = wrong.into_iter().enumerate();
+    let links = wrong.fold(believed.clone(), |arm, (link, factor)| {
+        arm.with_scaled_link(link, factor)
+    });
+    let robot = links.with_payload(&arm::Inertia {
+        mass: 1.5,
+        com: arm::Vector3::new(0.0, 0.01, -0.02),
+        tensor: arm::Matrix3::identity() * 2e-3,
+    });
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        for (tau, qd) in tau.iter_mut().zip(&motion.qd) {
+            *tau += 4.0 * qd.signum();
+        }
+    };
+    let diagnosis = diagnosed(&believed, &robot, &injected, Vec::new());
+    let mut findings = diagnosis.report.findings.iter();
+    let payload = findings.find(|finding| finding.effect == "payload");
+    let payload = payload.unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)));
+    let [low, high] = payload.parameters["mass"].ci95;
+    assert!(low <= 1.5 && 1.5 <= high && high - low < 0.5, "{low} to {high}");
+}
