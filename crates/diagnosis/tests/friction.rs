@@ -137,3 +137,20 @@ fn recordings_from_before_do_not_worsen_the_size_of_new_stribeck_friction() {
         assert!(with_before < 1.5 * alone, "{widths:?}");
     }
 }
+
+/// Friction that is larger only on the rows next to reversals, which are not fitted, is not named: its size at breakaway would be
+/// an extrapolation.
+#[test]
+fn friction_that_no_fitted_row_shows_is_not_named() {
+    for velocity in [0.01, 0.02] {
+        let injected = |motion: &mut Motion, tau: &mut [f64]| {
+            baseline_friction(motion, tau);
+            let speed = motion.qd[ELBOW];
+            tau[ELBOW] += 3.0 * (-(speed / velocity).abs()).exp() * speed.signum();
+        };
+        let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
+        let is_stribeck = |finding: &diagnosis::Finding| finding.effect == "stribeck_friction";
+        let mut findings = diagnosis.report.findings.iter();
+        assert!(!findings.any(is_stribeck), "{velocity}: {:?}", sentences(&diagnosis));
+    }
+}

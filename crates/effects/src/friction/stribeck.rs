@@ -78,6 +78,11 @@ const LEAST_COULOMB: f64 = 0.1;
 /// Stribeck friction loses 0.01 at most, friction that reaches its level gradually 1.5 and more.
 const MOST_TAKEN_BACK: f64 = 0.5;
 
+/// The part of the additional breakaway friction that some row in motion must show; the rest is extrapolated. Simulated cases: true
+/// Stribeck friction shows 0.68 and more. False one shows 0.5 and less: it lies among the rows near reversals on which the filter
+/// blurs the change of the sign.
+const LEAST_SHOWN: f64 = 0.6;
+
 impl EffectKind for StribeckFriction {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -150,15 +155,17 @@ fn falls(fitted: &dyn Fitted) -> bool {
     taken_back < MOST_TAKEN_BACK * fitted.value(1)
 }
 
-/// Whether the additional friction has fallen below half on most of the moving rows, so that it is a friction at low speed.
+/// Whether moving rows show most of the additional friction, and on most of them it has fallen below half, so that it is a
+/// friction at low speed.
 fn fades(fitted: &dyn Fitted) -> bool {
     let Some(x) = fitted.column(1) else { return false };
-    let (mut moving, mut slow) = (0, 0);
+    let (mut moving, mut slow, mut most) = (0, 0, 0.0_f64);
     for (x, _) in x.iter().zip(fitted.moving()).filter(|(_, moving)| **moving) {
         moving += 1;
         slow += usize::from(x.abs() > 0.5);
+        most = most.max(x.abs());
     }
-    2 * slow < moving
+    2 * slow < moving && most > LEAST_SHOWN
 }
 
 #[cfg(test)]
