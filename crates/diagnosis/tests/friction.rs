@@ -76,15 +76,14 @@ fn two_dry_frictions_on_a_joint_add_up() {
     assert!(left.iter().all(|left| left.share < 0.03), "{left:?}");
 }
 
-/// The diagnosis of four recordings, of which the first `before` are from before the second half, in which the elbow's friction
-/// falls from 2 N m at breakaway to its level of 0.6 N m. The last is held out.
-fn with_new_stribeck_friction(before: usize) -> Diagnosis {
+/// The diagnosis of three recordings in which the elbow's friction falls from 2 N m at breakaway to its level of 0.6 N m, the
+/// last held out, with a number of recordings from `before`, in which it falls from 0.6 N m plus `old` (N m).
+fn with_new_stribeck_friction(before: usize, old: f64) -> Diagnosis {
     let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
-        if motion.clock >= start(2) {
-            let speed = motion.qd[ELBOW];
-            tau[ELBOW] += 1.4 * (-(speed / 0.12).powi(2)).exp() * speed.signum();
-        }
+        let speed = motion.qd[ELBOW];
+        let additional = if motion.clock >= start(2) { 1.4 } else { old };
+        tau[ELBOW] += additional * (-(speed / 0.12).powi(2)).exp() * speed.signum();
     };
     let recordings: Vec<RegularRecording> = (2 - before..5)
         .map(|variant| regular(&recorded(&trio(), variant, 16.0, &injected)))
@@ -103,12 +102,14 @@ fn with_new_stribeck_friction(before: usize) -> Diagnosis {
 #[test]
 fn recordings_from_before_do_not_worsen_the_size_of_new_stribeck_friction() {
     let widths = [0, 2].map(|before| {
-        let diagnosis = with_new_stribeck_friction(before);
+        let diagnosis = with_new_stribeck_friction(before, 0.0);
         let said = sentences(&diagnosis);
         let mut findings = diagnosis.report.findings.iter();
         let found = findings.find(|finding| finding.effect == "stribeck_friction");
         let found = found.unwrap_or_else(|| panic!("{before}: {said:?}"));
         assert_eq!(found.since_before, before > 0, "{said:?}");
+        let has_changed = found.sentence.contains("of another form in the recordings from before");
+        assert_eq!(has_changed, before > 0, "{said:?}");
         let widths = [("coulomb", 0.6), ("breakaway", 2.0), ("velocity", 0.12)].map(|(key, truth)| {
             let parameter = found.parameters[key];
             let [low, high] = parameter.ci95;
@@ -135,6 +136,32 @@ fn recordings_from_before_do_not_worsen_the_size_of_new_stribeck_friction() {
     });
     for (alone, with_before) in widths[0].iter().zip(widths[1]) {
         assert!(with_before < 1.5 * alone, "{widths:?}");
+    }
+}
+
+/// Stribeck friction that has grown is that from before and what is new: their torques add up to the present one.
+#[test]
+fn stribeck_friction_that_has_grown_is_not_counted_twice() {
+    let diagnosis = with_new_stribeck_friction(2, 0.7);
+    let level = |key: &str| -> f64 {
+        let effects = diagnosis
+            .effects
+            .iter()
+            .filter(|effect| effect.joint() == Some("elbow"));
+        let of = |effect: &effects::Effect| match effect.name() {
+            "stribeck_friction" => effect.number(key),
+            "coulomb_friction" => effect.number("level"),
+            _ => 0.0,
+        };
+        effects.map(of).sum()
+    };
+    for (key, truth) in [("coulomb", 0.6), ("breakaway", 2.0)] {
+        let found = level(key);
+        assert!(
+            (found / truth - 1.0).abs() < 0.1,
+            "{key}: {found}, {:?}",
+            sentences(&diagnosis)
+        );
     }
 }
 

@@ -38,6 +38,9 @@ pub trait Estimate {
     /// column may belong to another effect. `None` if the fit has no such column.
     fn on_joint(&self, law: &'static Law) -> Option<usize>;
 
+    /// Whether an effect on the candidate's joint has a column of a law without an onset.
+    fn is_always_on_joint(&self, law: &'static Law) -> bool;
+
     /// The index in a draw of the relative correction of a size.
     fn size_place(&self, size: Size) -> Option<usize>;
 
@@ -74,11 +77,15 @@ impl dyn Estimate + '_ {
     /// Dry frictions that act together on a joint share the column of its Coulomb level, and their torques add up.
     /// Therefore only one of them states the level. The first of these that is present does: warming friction (which is
     /// relative to the level), asymmetric, load-dependent, Stribeck friction. Coulomb friction that sets in later has a column
-    /// of its own.
+    /// of its own. A friction that was there before its change states the level, and not once more since.
     pub fn level_beside(&self, laws: &[&'static Law]) -> f64 {
-        let is_there = |law: &&'static Law| self.on_joint(law).is_some();
-        let is_stated = self.terms().iter().any(|term| term.is(&SIGN)) && laws.iter().any(is_there);
-        if is_stated { 0.0 } else { 1.0 }
+        let terms = self.terms();
+        let was_there = terms
+            .iter()
+            .any(|term| term.onset().is_some() && self.is_always_on_joint(term.law));
+        let is_stated = was_there || laws.iter().any(|law| self.on_joint(law).is_some());
+        let shares_level = terms.iter().any(|term| term.is(&SIGN));
+        if shares_level && is_stated { 0.0 } else { 1.0 }
     }
 
     /// The index in a draw of the coefficient of the first column of a law, with or without an onset.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use effects::Effect;
 use effects::arm::InertialParameters;
 
 use crate::report::{Finding, JointFit};
@@ -45,10 +46,24 @@ pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> S
         text.push_str(", of a size that these recordings do not determine");
     }
     match finding.parameters.get("onset") {
+        _ if finding.since_before && had_other_form(&finding.as_effect) => {
+            format!("{text}, of another form in the recordings from before")
+        }
         _ if finding.since_before => format!("{text}, absent in the recordings from before"),
         Some(onset) => format!("{text} from {} on", quantity(onset.value, onset.unit)),
         None => text,
     }
+}
+
+/// Whether an effect states a level of dry friction that was there before it changed.
+fn had_other_form(effect: &Effect) -> bool {
+    let generalises = effect.spec().plain.is_some();
+    generalises
+        && effect
+            .kind()
+            .get()
+            .dry_friction(effect)
+            .is_some_and(|level| level > 0.0)
 }
 
 /// A ratio of standard deviations in words; a ratio above one is not given as a percentage.

@@ -75,6 +75,12 @@ impl Estimate for Reader<'_> {
         self.resampled.columns.iter().position(is_it)
     }
 
+    fn is_always_on_joint(&self, law: &'static Law) -> bool {
+        let terms = &self.study.table.terms;
+        let is_it = |&column: &usize| terms[column].is(law) && terms[column].joint == Some(self.joint());
+        self.resampled.columns.iter().any(is_it)
+    }
+
     fn size_place(&self, size: Size) -> Option<usize> {
         self.resampled.size(self.candidate, size)
     }
