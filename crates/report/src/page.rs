@@ -85,6 +85,7 @@ impl<'a> Page<'a> {
         let body = html! {
             header {
                 p.eyebrow { "testbed diagnosis · " (name(&self.report.robot)) " · " (self.recordings_in_short()) }
+                @if let Some(changed) = &self.report.changed { p.lead { (words::changed(changed)) } }
                 h1 { (words::verdict(self.report)) }
                 (self.lead())
             }

@@ -76,6 +76,23 @@ fn the_first_sentence_agrees_with_its_numbers() {
     assert!(text.ends_with(&format!("remains 0.25 {torque}.")), "{text}");
 }
 
+/// With recordings from before, the page begins with what changed.
+#[test]
+fn what_changed_comes_first() {
+    let (mut report, traces, arm) = made_up::diagnosis(2, Plot::Rich);
+    let mut first = |changed: Option<Vec<String>>| {
+        report.changed = changed;
+        let text = report::page(&report, &traces, &arm);
+        let (before, _) = text.split_once("<h1>").expect("the page has a headline");
+        before.to_owned()
+    };
+    let new = "joint <a>: a spring, absent in the recordings from before".to_owned();
+    let said = "Since the recordings from before, this changed: joint &lt;a&gt;: a spring, absent in the recordings from before.";
+    assert!(first(Some(vec![new])).contains(said));
+    assert!(first(Some(Vec::new())).contains("Since the recordings from before, no change was found."));
+    assert!(!first(None).contains("Since the recordings"));
+}
+
 #[test]
 fn the_contents_lead_to_every_section() {
     let text = page(7, Plot::Rich);
