@@ -243,3 +243,39 @@ fn a_payload_near_the_centre_of_a_wrist_is_kept() {
     let [low, high] = payload.parameters["mass"].ci95;
     assert!(low <= 1.5 && 1.5 <= high && high - low < 0.5, "{low} to {high}");
 }
+
+/// One link is wrong by much and the others by a few per cent, so that the evidence prefers a background of one link alone. The small
+/// errors are then a part of the payload's mass, and its interval must hold the truth nevertheless.
+#[test]
+fn the_mass_of_a_payload_beside_one_very_wrong_link_allows_for_errors_of_the_others() {
+    const PUMA: &str = include_str!("../../../assets/puma560.urdf");
+    let believed = Arm::from_urdf_text(PUMA, "puma560.urdf").expect("it is an arm");
+    let wrong = [1.0, 1.0, 1.04, 1.04, 1.04, 1.04];
+    let wrong = wrong.into_iter().enumerate();
+    let links = wrong.fold(believed.clone(), |arm, (link, factor)| {
+        arm.with_scaled_link(link, factor)
+    });
+    let mut upper_arm = links.joints()[1].inertia;
+    upper_arm.com += arm::Vector3::new(0.05, 0.04, 0.0);
+    let robot = links.with_link_inertia(1, upper_arm).with_payload(&arm::Inertia {
+        mass: 1.5,
+        com: arm::Vector3::new(0.0, 0.05, 0.1),
+        tensor: arm::Matrix3::identity() * 2e-3,
+    });
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        for (tau, qd) in tau.iter_mut().zip(&motion.qd) {
+            *tau += 4.0 * qd.signum();
+        }
+    };
+    let diagnosis = diagnosed(&believed, &robot, &injected, Vec::new());
+    let mut findings = diagnosis.report.findings.iter();
+    let payload = findings.find(|finding| finding.effect == "payload");
+    let payload = payload.unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)));
+    let parameter = &payload.parameters["mass"];
+    let [low, high] = parameter.ci95;
+    assert!(
+        low <= 1.5 && 1.5 <= high && high - low < 1.0,
+        "{parameter:?} {:?}",
+        sentences(&diagnosis)
+    );
+}

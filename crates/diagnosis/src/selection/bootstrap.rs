@@ -10,7 +10,7 @@ use crate::data::statistics::NORMAL_95;
 use crate::search::problem::Selection;
 use crate::search::refine::{sizes, varied};
 use crate::search::study::Study;
-use crate::thresholds::{BLOCK, INFLATION, INFLATION_IN_DRIVES, UNEVEN};
+use crate::thresholds::{BLOCK, INFLATION, INFLATION_IN_DRIVES, NEARLY_AS_LIKELY, UNEVEN};
 
 /// The number of resamplings.
 const DRAWS: usize = 120;
@@ -34,12 +34,22 @@ pub struct Resampled {
     pub sizes: Vec<(usize, Size)>,
     /// The factor on the standard deviation of the draws.
     inflation: f64,
+    /// The estimate and the draws, in the same order, for another background that explains nearly as much.
+    other: Option<Box<Self>>,
 }
 
 impl Resampled {
     /// The estimate and the 95 % interval of a function of the parameters. `systematic` is the part of the value by which
-    /// resampling underestimates the error.
+    /// resampling underestimates the error. The interval also holds that of the other background.
     pub fn interval_within(&self, systematic: f64, f: impl Fn(&[f64]) -> f64) -> (f64, [f64; 2]) {
+        let (value, [low, high]) = self.own_interval(systematic, &f);
+        let other = self.other.as_ref().map(|other| other.own_interval(systematic, &f).1);
+        let [other_low, other_high] = other.unwrap_or([low, high]);
+        (value, [low.min(other_low), high.max(other_high)])
+    }
+
+    /// The estimate and the interval for this background alone.
+    fn own_interval(&self, systematic: f64, f: &impl Fn(&[f64]) -> f64) -> (f64, [f64; 2]) {
         let value = f(&self.estimate);
         let mut draws: Vec<f64> = self
             .draws
@@ -64,8 +74,22 @@ impl Resampled {
         Self {
             draws: self.even.clone(),
             inflation: INFLATION,
+            other: None,
             ..self.clone()
         }
+    }
+
+    /// These resamplings in the order of the columns of `first`, which are all among their own.
+    fn in_order_of(mut self, first: &Self) -> Option<Self> {
+        let places: Option<Vec<usize>> = first.columns.iter().map(|&column| self.column(column)).collect();
+        let mut places = places?;
+        places.extend(self.columns.len()..self.columns.len() + self.sizes.len());
+        let lists = self.draws.iter_mut().chain(&mut self.even);
+        for values in lists.chain([&mut self.estimate]) {
+            *values = places.iter().map(|&place| values[place]).collect();
+        }
+        self.columns.clone_from(&first.columns);
+        Some(self)
     }
 
     /// The index of a column's coefficient in a draw.
@@ -80,8 +104,21 @@ impl Resampled {
     }
 }
 
-/// Resamples the fit of `chosen`.
+/// Resamples the fit of `chosen`. If only some links differ from the URDF, a background in which all links do may explain nearly as
+/// much, with other sizes of the effects. The intervals then hold those of both backgrounds.
 pub fn resample(study: &mut Study, chosen: &Selection) -> Resampled {
+    let mut resampled = resample_beside_background(study, chosen);
+    if let Some((strengths, next)) = study.with_all_links(chosen, NEARLY_AS_LIKELY) {
+        let own = std::mem::replace(&mut study.strengths, strengths);
+        let other = resample_beside_background(study, &next);
+        study.strengths = own;
+        resampled.other = other.in_order_of(&resampled).map(Box::new);
+    }
+    resampled
+}
+
+/// Resamples the fit of `chosen` beside the present background.
+fn resample_beside_background(study: &mut Study, chosen: &Selection) -> Resampled {
     let mut all: Vec<(usize, Size)> = Vec::new();
     let mut missing: Vec<Term> = Vec::new();
     for &member in &chosen.set {
@@ -130,6 +167,7 @@ pub fn resample(study: &mut Study, chosen: &Selection) -> Resampled {
         estimate,
         draws,
         even,
+        other: None,
         sizes: all,
         inflation: if study.strengths.is_of_joints() {
             INFLATION_IN_DRIVES

@@ -9,7 +9,7 @@ use crate::regression::background::Strengths;
 use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::{Fit, Products};
 use crate::search::problem::{Growth, MOST, Selection};
-use crate::thresholds::{MOVED, OWN_STRENGTHS, PER_IMITATION};
+use crate::thresholds::{LINK_STRENGTHS, MOVED, OWN_STRENGTHS, PER_IMITATION};
 
 /// The largest number of effects that may together replace a part of the background.
 const IN_PLACE: usize = 3;
@@ -136,6 +136,31 @@ impl Study {
                 (link, self.problem(&products).choose(set.to_vec(), &near.fit.weights))
             })
             .collect()
+    }
+
+    /// The strongest background in which all links differ from the URDF and whose score is less than `margin` above that of
+    /// `chosen` (nats), and `chosen` fitted again beside it. `None` if there is none, if none or all of the links differ already,
+    /// or if the user states the strengths.
+    pub fn with_all_links(&self, chosen: &Selection, margin: f64) -> Option<(Strengths, Selection)> {
+        let links = &self.strengths.links;
+        if self.strengths.common() > 0.0 || links.iter().all(|&rho| rho == 0.0) {
+            return None;
+        }
+        let bare = self.bare_products(|r| self.fitted[r]);
+        let at_least = |least: f64| {
+            let strengths = Strengths {
+                links: links.iter().map(|&rho| rho.max(least)).collect(),
+                ..self.strengths.clone()
+            };
+            let products = bare.with_background(self.prior.at(&strengths));
+            let next = self.problem(&products).choose(chosen.set.clone(), &chosen.fit.weights);
+            (strengths, next)
+        };
+        let strongest_first = LINK_STRENGTHS.into_iter().rev().filter(|&rho| rho > 0.0);
+        strongest_first
+            .map(at_least)
+            .filter(|(strengths, _)| self.stated.allows(strengths))
+            .find(|(_, next)| next.score < chosen.score + margin)
     }
 
     /// Inner products over the training recordings, with a background of other strengths.
