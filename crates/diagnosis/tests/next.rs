@@ -175,6 +175,26 @@ fn the_proposal_does_not_depend_on_the_threads() {
     assert_eq!(of(1), of(3));
 }
 
+/// A torque offset that is too small to be named as friction that depends on the direction may be such friction.
+#[test]
+fn an_offset_beside_larger_friction_has_advice() {
+    let offset = |motion: &mut Motion, tau: &mut [f64]| {
+        support::baseline_friction(motion, tau);
+        tau[ELBOW] += 3.0 * motion.qd[ELBOW].signum() + 0.3;
+    };
+    let (diagnosis, next) = proposed(&offset);
+    assert!(
+        is_confused(&diagnosis, "torque_offset", "friction_asymmetry"),
+        "{:?}",
+        support::sentences(&diagnosis)
+    );
+    let mut pairs = next.not_separated.iter();
+    let pair = pairs.find(|pair| pair.rival.effect == "friction_asymmetry");
+    let pair = pair.expect("it is said");
+    assert_eq!(pair.kind, Obstacle::SameTorque);
+    assert!(pair.instead.contains("brake"), "{}", pair.instead);
+}
+
 /// An onset of direction-dependent friction equals an onset of an offset in every motion, so that no motion is promised to
 /// distinguish them.
 #[test]

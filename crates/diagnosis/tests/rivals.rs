@@ -171,14 +171,21 @@ fn a_torque_limit_that_is_hardly_reached() {
 }
 
 /// A constant torque is named as friction that depends on the direction only if it is large in comparison with the
-/// friction.
+/// friction. No motion distinguishes the two, so that the other one is its alternative.
 #[test]
 fn a_small_torque_offset_is_not_asymmetric_friction() {
     let injected = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         tau[TURN] += 3.0 * motion.qd[TURN].signum() + 0.3;
     };
-    check(&injected, &[("torque_offset", "turn")]);
+    let diagnosis = check(&injected, &[("torque_offset", "turn")]);
+    let mut findings = diagnosis.report.findings.iter();
+    let offset = findings.find(|finding| finding.effect == "torque_offset");
+    let rivals = offset.map(|offset| &offset.confusable_with).expect("it is named");
+    assert!(
+        rivals.iter().any(|rival| rival.effect == "friction_asymmetry"),
+        "{rivals:?}"
+    );
 }
 
 /// A torque scale acts at all sizes of the torque, and a limit does not.

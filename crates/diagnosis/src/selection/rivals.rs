@@ -71,20 +71,19 @@ pub fn beside(study: &Study, chosen: &Selection, member: usize) -> Vec<usize> {
     set
 }
 
-/// The equivalent name of `member`, if there is one: a constant torque from an onset on, beside larger dry friction, equals
-/// friction that depends on the direction from then on. No motion distinguishes the two. `set` is the set [`beside`] the
-/// finding.
-pub fn alias(study: &Study, chosen: &Selection, member: usize, set: &[usize]) -> Option<(Hypothesis, Option<usize>)> {
+/// The equivalent name of `member`, if there is one: a constant torque beside larger dry friction equals friction that depends on
+/// the direction. No motion distinguishes the two. `set` is the set [`beside`] the finding.
+pub fn alias(study: &Study, chosen: &Selection, member: usize, set: &[usize]) -> Option<Named> {
     let finding = &study.candidates[member];
     let constant = *finding.columns.first()?;
-    let sets_in = finding.hypothesis.is(&TorqueOffset) && study.table.terms[constant].onset().is_some();
     let is_larger_friction = |&c: &usize| {
         let other = &study.candidates[c];
         other.hypothesis.is(&CoulombFriction)
             && other.joint == finding.joint
             && chosen.fit.coefficient(other.columns[0]) > chosen.fit.coefficient(constant).abs()
     };
-    (sets_in && set.iter().any(is_larger_friction)).then_some((Hypothesis::of(&FrictionAsymmetry), finding.joint))
+    let has_alias = finding.hypothesis.is(&TorqueOffset) && set.iter().any(is_larger_friction);
+    has_alias.then_some((Hypothesis::of(&FrictionAsymmetry), finding.joint))
 }
 
 /// Tries every other hypothesis in the place of `member`.
@@ -155,9 +154,13 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
         }
     }
     let explained = without.fit.loss - chosen.fit.loss;
-    let identical = alias(study, chosen, member, &set).map(|(hypothesis, joint)| (0.0, 0.0, hypothesis, joint));
+    let alias = alias(study, chosen, member, &set);
     let allowance = allowance(explained);
-    results.extend(identical);
+    // If the torque is constant from the beginning, its size relative to the friction decides between the names. What has changed
+    // while the friction was the same may be either.
+    let sets_in = || study.terms(member).iter().any(|term| term.onset().is_some());
+    let equally_likely = alias.filter(|_| sets_in());
+    results.extend(equally_likely.map(|(hypothesis, joint)| (0.0, 0.0, hypothesis, joint)));
     if finding.hypothesis.spec().may_be_inertial {
         let hypothesis = Hypothesis::of(&InertialParameters);
         let trials = study.in_the_background(problem.products, &set, chosen);
@@ -173,7 +176,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
         results.extend(best);
     }
     results.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)).then(a.3.cmp(&b.3)));
-    let rivals: Vec<Named> = results
+    let mut rivals: Vec<Named> = results
         .iter()
         .filter(|(loss, ..)| *loss <= allowance)
         .map(|&(_, _, hypothesis, joint)| (hypothesis, joint))
@@ -197,6 +200,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
         .map(|result| result.1)
         .chain(pairs.iter().map(|pair| pair.1));
     let margin = scores.fold(explained, f64::min);
+    rivals.extend(alias.filter(|alias| !rivals.contains(alias)));
     Standing {
         rivals,
         pairs: pairs.into_iter().map(|pair| pair.2).collect(),
