@@ -41,7 +41,7 @@ impl FinalFit {
     /// # Errors
     /// [`DiagnosisError::Wanted`], if a requested effect cannot be fitted.
     pub fn new(study: &mut Study, options: &Options, progress: &dyn Fn(Step<'_>)) -> Result<Self, DiagnosisError> {
-        let (judged, resampled) = match &options.only {
+        let (judged, mut resampled) = match &options.only {
             Some(wanted) => {
                 progress(Step::new(0.3, "fitting the requested effects"));
                 let mut judged = hypothesis::fit(study, wanted)?;
@@ -50,6 +50,7 @@ impl FinalFit {
             }
             None => selected(study, progress),
         };
+        resampled.allow_for_all_links(study, &judged.named);
         let joints = (0..study.arm.dof()).into_par_iter();
         let residual = joints
             .map(|joint| predict::augmented(study, &judged.named, joint))

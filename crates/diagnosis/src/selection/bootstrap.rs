@@ -79,6 +79,18 @@ impl Resampled {
         }
     }
 
+    /// If only some links differ from the URDF, a background in which all links do may explain nearly as much as that of `chosen`,
+    /// with other sizes of the effects. The intervals then hold those of both backgrounds.
+    pub fn allow_for_all_links(&mut self, study: &mut Study, chosen: &Selection) {
+        let Some((strengths, next)) = study.with_all_links(chosen, NEARLY_AS_LIKELY) else {
+            return;
+        };
+        let own = std::mem::replace(&mut study.strengths, strengths);
+        let other = resample(study, &next);
+        study.strengths = own;
+        self.other = other.in_order_of(self).map(Box::new);
+    }
+
     /// These resamplings in the order of the columns of `first`, which are all among their own.
     fn in_order_of(mut self, first: &Self) -> Option<Self> {
         let places: Option<Vec<usize>> = first.columns.iter().map(|&column| self.column(column)).collect();
@@ -104,21 +116,8 @@ impl Resampled {
     }
 }
 
-/// Resamples the fit of `chosen`. If only some links differ from the URDF, a background in which all links do may explain nearly as
-/// much, with other sizes of the effects. The intervals then hold those of both backgrounds.
+/// Resamples the fit of `chosen`.
 pub fn resample(study: &mut Study, chosen: &Selection) -> Resampled {
-    let mut resampled = resample_beside_background(study, chosen);
-    if let Some((strengths, next)) = study.with_all_links(chosen, NEARLY_AS_LIKELY) {
-        let own = std::mem::replace(&mut study.strengths, strengths);
-        let other = resample_beside_background(study, &next);
-        study.strengths = own;
-        resampled.other = other.in_order_of(&resampled).map(Box::new);
-    }
-    resampled
-}
-
-/// Resamples the fit of `chosen` beside the present background.
-fn resample_beside_background(study: &mut Study, chosen: &Selection) -> Resampled {
     let mut all: Vec<(usize, Size)> = Vec::new();
     let mut missing: Vec<Term> = Vec::new();
     for &member in &chosen.set {

@@ -143,23 +143,22 @@ impl Study {
     /// or if the user states the strengths.
     pub fn with_all_links(&self, chosen: &Selection, margin: f64) -> Option<(Strengths, Selection)> {
         let links = &self.strengths.links;
-        if self.strengths.common() > 0.0 || links.iter().all(|&rho| rho == 0.0) {
+        if self.strengths.common() > 0.0 || links.iter().all(|&rho| rho == 0.0) || self.stated.links.is_some() {
             return None;
         }
         let bare = self.bare_products(|r| self.fitted[r]);
         let at_least = |least: f64| {
+            let links: Vec<f64> = links.iter().map(|&rho| rho.max(least)).collect();
+            let (_, next) = self.with_links(&bare, chosen, links.clone());
             let strengths = Strengths {
-                links: links.iter().map(|&rho| rho.max(least)).collect(),
+                links,
                 ..self.strengths.clone()
             };
-            let products = bare.with_background(self.prior.at(&strengths));
-            let next = self.problem(&products).choose(chosen.set.clone(), &chosen.fit.weights);
             (strengths, next)
         };
         let strongest_first = LINK_STRENGTHS.into_iter().rev().filter(|&rho| rho > 0.0);
         strongest_first
             .map(at_least)
-            .filter(|(strengths, _)| self.stated.allows(strengths))
             .find(|(_, next)| next.score < chosen.score + margin)
     }
 
