@@ -17,6 +17,15 @@ pub fn spec(name: &str) -> Option<&'static Spec> {
     Kind::named(name).map(Kind::spec)
 }
 
+/// The experiment that distinguishes two effects of the catalogue, if there is one for this pair.
+pub fn experiment_against(one: &str, other: &str) -> Option<&'static str> {
+    let of = |this: &str, other: &str| {
+        let all = spec(this)?.experiments_against;
+        all.iter().find(|(name, _)| *name == other).map(|(_, text)| *text)
+    };
+    of(one, other).or_else(|| of(other, one))
+}
+
 /// A kind of effect, named or unmodelled; kinds are ordered as in the catalogue.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {

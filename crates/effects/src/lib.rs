@@ -40,7 +40,7 @@ pub use estimate::{Estimate, Systematic};
 pub use fitted::{Fitted, UNIT};
 pub use form::{Form, Grounds, SetsIn, Times, Turn};
 pub use kind::{EffectKind, check};
-pub use kinds::{Kind, NAMES, spec};
+pub use kinds::{Kind, NAMES, experiment_against, spec};
 pub use machine::{Circumstance, Contact, Dry, Machine, Place, Scaled, Smooth, Sprung, State, sign};
 pub use quantity::Quantity;
 pub use signals::{Rigid, Scales, Signals};

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use arm::JointKind;
-use diagnosis::{Finding, JointFit, NotObservable, Parameter, Report, Verdict};
+use diagnosis::{Confusable, Finding, JointFit, NotObservable, Parameter, Report, Verdict};
 
 use crate::numbers;
 use crate::statistics::rms;
@@ -19,7 +19,7 @@ pub struct Wording {
     /// Its meaning, for readers who do not know it.
     pub meaning: &'static str,
     /// Which experiment distinguishes it from similar effects.
-    pub told_by: &'static str,
+    told_by: &'static str,
     /// The parameters that measure its size, the best first.
     main: &'static [&'static str],
 }
@@ -84,6 +84,21 @@ pub fn wording(effect: &'static str) -> Wording {
             main: &[],
         },
     }
+}
+
+/// The experiments that distinguish a finding from its alternatives: that for the pair, where there is one, and else that for the
+/// effect.
+pub fn experiments(finding: &Finding) -> String {
+    let for_effect = wording(finding.effect).told_by;
+    let for_pair = |other: &Confusable| effects::experiment_against(finding.effect, other.effect).unwrap_or(for_effect);
+    let of_pairs = (!finding.confusable_with_pairs.is_empty()).then_some(for_effect);
+    let mut list: Vec<&str> = Vec::new();
+    for text in finding.confusable_with.iter().map(for_pair).chain(of_pairs) {
+        if !text.is_empty() && !list.contains(&text) {
+            list.push(text);
+        }
+    }
+    list.join("; ")
 }
 
 /// The parameter that measures the size of a finding, with its name.

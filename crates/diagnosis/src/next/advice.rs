@@ -1,7 +1,4 @@
 //! The experiment to make where no motion distinguishes two effects.
-
-use effects::Spec;
-
 use crate::report::{Confusable, NotSeparated, Obstacle};
 
 /// Evidence below this (nats), or below this part of the needed evidence, counts as none: the two effects have the same torque.
@@ -63,19 +60,14 @@ pub fn not_separated(
 
 /// The experiment that distinguishes two effects that no motion distinguishes.
 fn instead(finding: &str, rival: &str) -> &'static str {
-    let specs = [finding, rival].map(effects::spec);
-    let against = |spec: Option<&'static Spec>, other: &str| {
-        let all = spec?.experiments_against;
-        all.iter().find(|(name, _)| *name == other).map(|(_, text)| *text)
-    };
-    let of_two = against(specs[0], rival).or_else(|| against(specs[1], finding));
     let of_one = || {
+        let specs = [finding, rival].map(effects::spec);
         let experiments = specs.iter().flatten().filter_map(|spec| spec.experiment);
         experiments
             .max_by_key(|experiment| experiment.rank)
             .map(|experiment| experiment.text)
     };
-    of_two.or_else(of_one).unwrap_or(
+    effects::experiment_against(finding, rival).or_else(of_one).unwrap_or(
         "add a sensor (a torque sensor or an encoder on the link side of the gear), or attach a known load to the tool",
     )
 }

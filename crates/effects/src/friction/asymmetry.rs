@@ -18,7 +18,7 @@ static SPEC: Spec = Spec {
     name: "friction_asymmetry",
     title: "asymmetric friction",
     meaning: "Coulomb friction that differs between the two directions of motion",
-    told_by: "the torque read with the brake closed and no current: an offset persists, asymmetric friction does not",
+    told_by: BRAKE,
     formula: "F₊ forwards, −F₋ backwards",
     sentence: "Coulomb friction that depends on the direction, {positive} forwards and {negative} backwards",
     parameters: &[

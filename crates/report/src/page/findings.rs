@@ -233,13 +233,14 @@ impl Page<'_> {
     fn background(&self, finding: &Finding) -> Markup {
         let wording = words::wording(finding.effect);
         let other = terminal::alternatives(finding);
+        let experiments = words::experiments(finding);
         html! {
             dl {
                 @if !wording.meaning.is_empty() { dt { "What it is" } dd { (words::capital(wording.meaning)) "." } }
                 @if !other.is_empty() {
                     dt { "It could also be" }
                     dd { (words::capital(&other)) ". These recordings do not distinguish them reliably. "
-                        @if !wording.told_by.is_empty() { "Experiment that distinguishes them: " (wording.told_by) "." } }
+                        @if !experiments.is_empty() { "Experiment that distinguishes them: " (experiments) "." } }
                 }
                 @if finding.place.state.is_some() || !finding.place.time.is_empty() {
                     dt { "Where" }

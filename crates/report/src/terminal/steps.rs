@@ -66,9 +66,9 @@ fn ambiguous(report: &Report) -> Vec<String> {
             words::effect(finding),
             alternatives(finding)
         );
-        match words::wording(finding.effect).told_by {
+        match words::experiments(finding).as_str() {
             "" => what,
-            told_by => format!("{what}; experiment that distinguishes them: {told_by}"),
+            experiments => format!("{what}; experiment that distinguishes them: {experiments}"),
         }
     });
     said.collect()

@@ -53,6 +53,35 @@ fn the_short_text_is_one_screen_with_at_most_three_next_steps() {
     assert!(steps(&text) == 4 && text.contains("more with --verbose"), "{text}");
 }
 
+/// Each alternative has the experiment for the pair, where there is one, and else that for the finding's effect.
+#[test]
+fn alternatives_have_their_own_experiments() {
+    let (mut report, ..) = made_up::diagnosis(6, Plot::Rich);
+    let mut findings = report.findings.iter_mut();
+    let finding = findings.find(|finding| !finding.confusable_with.is_empty());
+    let finding = finding.expect("a finding has an alternative");
+    finding.effect = "torque_offset";
+    let mut experiments = |rivals: &[&'static str]| {
+        let rival = |&effect: &&'static str| diagnosis::Confusable { effect, joint: None };
+        finding.confusable_with = rivals.iter().map(rival).collect();
+        report::words::experiments(finding)
+    };
+    let brake = "read the torque with the brake closed and no current: a torque offset persists, friction does not";
+    assert_eq!(experiments(&["friction_asymmetry"]), brake);
+    assert_eq!(
+        experiments(&["payload", "gravity_misalignment"]),
+        "static poses in several postures"
+    );
+    let both = format!("{brake}; static poses in several postures");
+    assert_eq!(experiments(&["friction_asymmetry", "payload"]), both);
+    report.unexplained.clear();
+    report.next_experiment = None;
+    let text = terminal::diagnosis(&report);
+    let text: Vec<&str> = text.split_whitespace().collect();
+    let text = text.join(" ");
+    assert!(text.contains(&both), "{text}");
+}
+
 #[test]
 fn words_in_the_table_are_not_broken() {
     let (mut report, ..) = made_up::diagnosis(6, Plot::Rich);
