@@ -94,9 +94,16 @@ impl Strengths {
                 list.push(next);
             }
         };
+        let common = self.common();
         for rho in LINK_STRENGTHS {
             add(Self {
                 links: vec![rho; self.links.len()],
+                ..self.clone()
+            });
+            // Links that differ more than most still do.
+            let of_link = |&own: &f64| if own == common { rho } else { own.max(rho) };
+            add(Self {
+                links: self.links.iter().map(of_link).collect(),
                 ..self.clone()
             });
         }
@@ -357,5 +364,22 @@ impl Prior {
             log_det,
             cost: strengths.cost(),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_common_strength_may_change_while_one_link_stays_apart() {
+        let strengths = Strengths {
+            links: vec![0.0, 1.0, 0.0],
+            ..Strengths::none(3)
+        };
+        let neighbours = strengths.neighbours();
+        let has = |links: [f64; 3]| neighbours.iter().any(|next| next.links == links);
+        assert!(has([0.1, 1.0, 0.1]) && has([0.1; 3]));
+        assert!(!has([0.0, 0.1, 0.0]), "this changes one link, not the common strength");
     }
 }
