@@ -6,14 +6,14 @@
 
 use std::fmt;
 
-use nalgebra::{Cholesky, DMatrix};
+use nalgebra::{Cholesky, DMatrix, DVector};
 
 use effects::Term;
 use effects::arm::INERTIAL_PARAMETER;
 use effects::background::{FRICTION_CURVE, GAIN as GAIN_LAW, OWN_FRICTION};
 
 use crate::options::Options;
-use crate::regression::bodies::{PER_LINK, precision};
+use crate::regression::bodies::{PER_LINK, Quadratic, prior_about};
 use crate::thresholds::{
     FINER_STRENGTH, FRICTION_PRIOR, FRICTION_STRENGTHS, GAIN_PRIOR, GAIN_STRENGTHS, LINK_STRENGTHS, OWN_STRENGTHS,
     PER_BACKGROUND_PART, PER_LINK_APART, USUAL_STRENGTH,
@@ -251,8 +251,10 @@ impl Stated {
 pub struct Prior {
     /// The meaning of each column.
     terms: Vec<Term>,
-    /// H of each link.
-    links: Vec<DMatrix<f64>>,
+    /// The inertial parameters of the URDF's links, ten per link.
+    nominal: Vec<f64>,
+    /// The prior of each link's inertial parameters, about the bodies of the last fit.
+    links: Vec<Quadratic>,
     /// The standard deviation of each column's coefficient that is not an inertial parameter, at strength one.
     deviations: Vec<f64>,
 }
@@ -262,8 +264,12 @@ pub struct Prior {
 pub struct Background {
     /// Columns of the table, in ascending order.
     pub columns: Vec<usize>,
-    /// K, the precision of their coefficients about zero.
+    /// K, the precision of their coefficients about `centre`.
     pub precision: DMatrix<f64>,
+    /// m, the coefficients about which the prior is centred.
+    pub centre: DVector<f64>,
+    /// K m.
+    pub pull: DVector<f64>,
     /// ln det K.
     pub log_det: f64,
     /// The evidence that its strengths must bring (nats).
@@ -275,9 +281,12 @@ impl Prior {
     /// deviations `torque` (N m or N), their speeds are up to `speed` (rad/s or m/s); `moved` are the training recordings that
     /// move each joint.
     pub fn new(parameters: &[f64], torque: &[f64], speed: &[f64], moved: &[Vec<usize>]) -> Self {
-        let mut prior = Self::default();
-        for (link, values) in parameters.chunks_exact(PER_LINK).enumerate() {
-            prior.links.push(precision(values));
+        let mut prior = Self {
+            nominal: parameters.to_vec(),
+            ..Self::default()
+        };
+        prior.set_bodies(&vec![0.0; parameters.len()]);
+        for link in 0..prior.links.len() {
             for parameter in 0..PER_LINK {
                 prior.push(Term::about(&INERTIAL_PARAMETER, link).of(parameter), 0.0);
             }
@@ -303,6 +312,12 @@ impl Prior {
         prior
     }
 
+    /// Makes the prior quadratic about the bodies of a fit, which change the inertial parameters by `changes` (ten per link).
+    pub fn set_bodies(&mut self, changes: &[f64]) {
+        let links = self.nominal.chunks_exact(PER_LINK).zip(changes.chunks_exact(PER_LINK));
+        self.links = links.map(|(nominal, change)| prior_about(nominal, change)).collect();
+    }
+
     fn push(&mut self, term: Term, deviation: f64) {
         self.terms.push(term);
         self.deviations.push(deviation);
@@ -321,7 +336,7 @@ impl Prior {
 
     /// The variances of a link's ten inertial parameters at strength `rho`.
     pub fn variances(&self, link: usize, rho: f64) -> [f64; PER_LINK] {
-        let inverse = self.links[link].clone().try_inverse();
+        let inverse = self.links[link].precision.clone().try_inverse();
         std::array::from_fn(|k| inverse.as_ref().map_or(0.0, |inverse| rho * rho * inverse[(k, k)]))
     }
 
@@ -348,7 +363,7 @@ impl Prior {
             let (one, other) = (self.terms[a], self.terms[b]);
             let are_inertial = one.is(&INERTIAL_PARAMETER) && other.is(&INERTIAL_PARAMETER);
             if are_inertial && one.of[0] == other.of[0] {
-                self.links[one.of[0]][(one.of[1], other.of[1])] / strengths.links[one.of[0]].powi(2)
+                self.links[one.of[0]].precision[(one.of[1], other.of[1])] / strengths.links[one.of[0]].powi(2)
             } else if a == b {
                 (strength(a) * self.deviations[a]).powi(-2)
             } else {
@@ -356,10 +371,17 @@ impl Prior {
             }
         };
         let precision = DMatrix::from_fn(columns.len(), columns.len(), |i, k| entry(&columns[i], &columns[k]));
+        let centre = |&column: &usize| match self.terms[column] {
+            term if term.is(&INERTIAL_PARAMETER) => self.links[term.of[0]].centre[term.of[1]],
+            _ => 0.0,
+        };
+        let centre = DVector::from_iterator(columns.len(), columns.iter().map(centre));
         let factor = Cholesky::new(precision.clone())?;
         let log_det = 2.0 * factor.l_dirty().diagonal().iter().map(|d| d.ln()).sum::<f64>();
         Some(Background {
             columns,
+            pull: &precision * &centre,
+            centre,
             precision,
             log_det,
             cost: strengths.cost(),

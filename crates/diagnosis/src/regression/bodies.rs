@@ -1,6 +1,6 @@
 //! Bodies by their ten inertial parameters: pseudo-inertias, the metric between them, and physical consistency.
 
-use nalgebra::{Cholesky, DMatrix, Matrix3, Matrix4, SymmetricEigen};
+use nalgebra::{Cholesky, DMatrix, DVector, Matrix3, Matrix4, SymmetricEigen};
 
 use crate::thresholds::{LEAST_BODY_LEFT, LEAST_BODY_MASS, LEAST_BODY_RADIUS};
 
@@ -71,17 +71,54 @@ pub fn physical(nominal: &[f64], change: &[f64]) -> [f64; PER_LINK] {
     parameters_of(&(lower * eigen.recompose() * lower.transpose()))
 }
 
-/// H of a link (10 × 10) at its inertial `parameters`.
-pub fn precision(parameters: &[f64]) -> DMatrix<f64> {
-    let inverse = floored(parameters).try_inverse().unwrap_or_else(Matrix4::identity);
+/// The prior of a link's inertial parameters about a body near which it is quadratic: ½ (δ − m)ᵀ H (δ − m) / ρ².
+///
+/// The prior is ½ tr(S²) / ρ² with P = L exp(S) Lᵀ, where P₀ = L Lᵀ is the URDF's pseudo-inertia: the square of the distance
+/// between the two bodies in the affine-invariant metric of pseudo-inertias (Lee, Wensing and Park, IEEE T-RO 36(2), 2020). No body
+/// without mass or without size is within reach, and twice the mass is as far as half of it.
+#[derive(Clone, Debug)]
+pub struct Quadratic {
+    /// H (10 × 10).
+    pub precision: DMatrix<f64>,
+    /// m, the change of the ten inertial parameters about which the prior is centred.
+    pub centre: DVector<f64>,
+}
+
+/// The prior of a link that the URDF gives as `nominal`, about the body `nominal` + `change` (ten inertial parameters each).
+pub fn prior_about(nominal: &[f64], change: &[f64]) -> Quadratic {
+    let floor = floored(nominal);
+    let lower = Cholesky::new(floor).map_or_else(Matrix4::identity, |factor| factor.l());
+    let inverse = lower.try_inverse().unwrap_or_else(Matrix4::identity);
+    let mut eigen = SymmetricEigen::new(inverse * (floor + pseudo_inertia(change)) * inverse.transpose());
+    eigen.eigenvalues.apply(|value| *value = value.max(LEAST_BODY_LEFT));
+    let (values, logs) = (eigen.eigenvalues, eigen.eigenvalues.map(f64::ln));
+    // The derivative of the logarithm along a change of P (Daleckii and Krein), in the basis of the eigenvectors.
+    let slope = |i: usize, k: usize| {
+        let (step, mean) = (values[i] - values[k], 0.5 * (values[i] + values[k]));
+        if step.abs() < 1e-6 * mean {
+            1.0 / mean
+        } else {
+            (logs[i] - logs[k]) / step
+        }
+    };
+    let basis = eigen.eigenvectors.transpose() * inverse;
     let directions: Vec<Matrix4<f64>> = (0..PER_LINK)
-        .map(|k| {
+        .map(|parameter| {
             let mut unit = [0.0; PER_LINK];
-            unit[k] = 1.0;
-            inverse * pseudo_inertia(&unit)
+            unit[parameter] = 1.0;
+            let along = basis * pseudo_inertia(&unit) * basis.transpose();
+            Matrix4::from_fn(|i, k| along[(i, k)] * slope(i, k))
         })
         .collect();
-    DMatrix::from_fn(PER_LINK, PER_LINK, |a, b| (directions[a] * directions[b]).trace())
+    let precision = DMatrix::from_fn(PER_LINK, PER_LINK, |a, b| (directions[a] * directions[b]).trace());
+    let gradient = DVector::from_fn(PER_LINK, |a, _| (0..4).map(|i| logs[i] * directions[a][(i, i)]).sum());
+    let body = lower * eigen.recompose() * lower.transpose();
+    let about = DVector::from_column_slice(&parameters_of(&(body - floor)));
+    let step = Cholesky::new(precision.clone()).map_or_else(|| DVector::zeros(PER_LINK), |factor| factor.solve(&gradient));
+    Quadratic {
+        precision,
+        centre: about - step,
+    }
 }
 
 /// The pseudo-inertia of a body, enlarged where it is too small to be inverted.
@@ -128,7 +165,7 @@ mod tests {
                 tensor[(1, 2)],
                 tensor[(2, 2)],
             ];
-            let metric = precision(&parameters);
+            let metric = prior_about(&parameters, &[0.0; PER_LINK]).precision;
             let step = nalgebra::DVector::from_iterator(PER_LINK, parameters.iter().map(|p| 0.1 * p));
             let length = (step.transpose() * &metric * &step)[(0, 0)].sqrt();
             assert!((length - 0.2).abs() < 1e-9, "{length}");

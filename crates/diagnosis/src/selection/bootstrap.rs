@@ -139,7 +139,7 @@ pub fn resample(study: &mut Study, chosen: &Selection) -> Resampled {
     let prior = PriorDraws::new(study, p);
     let total = systems
         .iter()
-        .fold((prior.precision.clone(), DVector::zeros(p)), |(a, b), (c, d)| {
+        .fold((prior.precision.clone(), prior.pull.clone()), |(a, b), (c, d)| {
             (a + c, b + d)
         });
     let estimate = in_true_torque(solve(&total.0, &total.1), &scaled);
@@ -148,7 +148,7 @@ pub fn resample(study: &mut Study, chosen: &Selection) -> Resampled {
         .map(|draw| {
             // Each draw has its own generator, so that the result does not depend on threads (splitmix64).
             let mut state = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(draw as u64 + 1);
-            let (mut a, mut b) = (prior.precision.clone(), DVector::zeros(p));
+            let (mut a, mut b) = (prior.precision.clone(), prior.pull.clone());
             for (matrix, right) in &systems {
                 // Exponential weights.
                 let weight = -uniform(&mut state).ln();
@@ -218,22 +218,33 @@ fn uniform(state: &mut u64) -> f64 {
     (((z ^ (z >> 31)) >> 11) + 1) as f64 / (1_u64 << 53) as f64
 }
 
-/// The background's prior in the normal equations. In each draw, its mean is drawn about zero, as the data are resampled, so
+/// The background's prior in the normal equations. In each draw, its mean is drawn about its centre, as the data are resampled, so
 /// that the draws include the prior's uncertainty. The mean is drawn with [`UNEVEN`] times the prior's standard deviation.
 struct PriorDraws {
     /// K, with the background's columns first, and zeros for the other columns.
     precision: DMatrix<f64>,
-    /// Its Cholesky factor.
+    /// K m, with m the prior's centre, and zeros for the other columns.
+    pull: DVector<f64>,
+    /// The Cholesky factor of K.
     lower: DMatrix<f64>,
 }
 
 impl PriorDraws {
     fn new(study: &Study, p: usize) -> Self {
-        let own = study.background().map_or_else(|| DMatrix::zeros(0, 0), |b| b.precision);
+        let background = study.background();
+        let mut pull = DVector::zeros(p);
+        if let Some(background) = &background {
+            pull.rows_mut(0, background.pull.len()).copy_from(&background.pull);
+        }
+        let own = background.map_or_else(|| DMatrix::zeros(0, 0), |b| b.precision);
         let mut precision = DMatrix::zeros(p, p);
         precision.view_mut((0, 0), own.shape()).copy_from(&own);
         let lower = own.clone().cholesky().map_or(own, nalgebra::Cholesky::unpack);
-        Self { precision, lower }
+        Self {
+            precision,
+            pull,
+            lower,
+        }
     }
 
     /// K ξ for the right-hand side of `p` columns, ξ ~ N(0, K⁻¹).

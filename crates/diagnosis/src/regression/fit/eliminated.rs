@@ -1,7 +1,7 @@
 //! The background eliminated from the normal equations at fixed weights, so that only the selected columns remain.
 //!
 //! With A = BᵀWB + K = LLᵀ for the background's columns B, their precision K and W the weights of the evidence, a product of two
-//! columns becomes xᵀWx' − (L⁻¹BᵀWx)ᵀ(L⁻¹BᵀWx'), and the background costs ½ (ln det A − ln det K) + ½ δᵀKδ.
+//! columns becomes xᵀWx' − (L⁻¹BᵀWx)ᵀ(L⁻¹BᵀWx'), and the background costs ½ (ln det A − ln det K) + ½ (δ − m)ᵀK(δ − m) with m the prior's centre.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock, PoisonError};
@@ -28,7 +28,7 @@ pub struct Eliminated {
     scaled: Vec<f64>,
     /// The rows of L.
     lower: Vec<Vec<f64>>,
-    /// L⁻¹ BᵀW y.
+    /// L⁻¹ (BᵀW y + K m).
     with_y: Vec<f64>,
     /// L⁻¹ BᵀW x of each requested column of the table.
     with_columns: Vec<OnceLock<Vec<f64>>>,
@@ -40,11 +40,12 @@ pub struct Eliminated {
 }
 
 impl Background {
-    /// Twice the cost of coefficients (nats): δᵀKδ.
+    /// Twice the cost of coefficients (nats): (δ − m)ᵀ K (δ − m).
     pub fn energy(&self, coefficients: &[f64]) -> f64 {
         let p = coefficients.len();
-        let row = |i: usize| (0..p).map(|k| self.precision[(i, k)] * coefficients[k]).sum::<f64>();
-        (0..p).map(|i| coefficients[i] * row(i)).sum()
+        let from_centre = |i: usize| coefficients[i] - self.centre[i];
+        let row = |i: usize| (0..p).map(|k| self.precision[(i, k)] * from_centre(k)).sum::<f64>();
+        (0..p).map(|i| from_centre(i) * row(i)).sum()
     }
 }
 
@@ -74,10 +75,8 @@ impl Eliminated {
             with_others: (0..table.terms.len()).map(|_| OnceLock::new()).collect(),
             occam: 0.5 * (log_det - background.log_det),
         };
-        let right = columns
-            .iter()
-            .map(|&column| products.product(table, &eliminated.scaled, column, None))
-            .collect();
+        let with_y = |(&column, pull): (&usize, &f64)| products.product(table, &eliminated.scaled, column, None) + pull;
+        let right = columns.iter().zip(&background.pull).map(with_y).collect();
         eliminated.with_y = eliminated.forward(right);
         eliminated
     }

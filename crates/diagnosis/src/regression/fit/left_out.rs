@@ -16,12 +16,18 @@ pub struct LeftOut<'a> {
     /// The groups, and inner products over each of them.
     groups: Vec<Vec<&'a Stretch>>,
     folds: Vec<DMatrix<f64>>,
-    /// The precision of the background's columns.
-    prior: DMatrix<f64>,
+    /// The prior of the background's columns.
+    prior: Prior,
     /// The fit of all groups, then of all but one.
     fits: Vec<Normal>,
     /// The residual sums of squares where it was fitted, and on the groups left out.
     rss: [f64; 2],
+}
+
+/// The prior of the background's columns, which are the first ones: their precision K and K m, with m its centre.
+struct Prior {
+    precision: DMatrix<f64>,
+    pull: DVector<f64>,
 }
 
 impl Products {
@@ -46,7 +52,7 @@ impl Products {
         if base.groups.len() > 1 {
             base.folds = base.groups.iter().map(|group| gram(group, &base.places)).collect();
             let fit = |gram: &DMatrix<f64>| Normal::new(gram, base.places.len(), &base.prior);
-            (base.fits, base.rss) = fitted(&base.folds, |gram, _| fit(gram));
+            (base.fits, base.rss) = fitted(&base.folds, &base.prior, |gram, _| fit(gram));
         }
         base
     }
@@ -62,7 +68,9 @@ impl Products {
         let with = [&base.places[..], &new].concat();
         let folds = base.groups.iter().zip(&base.folds);
         let folds: Vec<DMatrix<f64>> = folds.map(|(group, known)| extended(group, known, &with)).collect();
-        let (_, rss) = fitted(&folds, |gram, k| base.fits[k].with(gram, with.len(), &base.prior));
+        let (_, rss) = fitted(&folds, &base.prior, |gram, k| {
+            base.fits[k].with(gram, with.len(), &base.prior)
+        });
         let gain = |k: usize| self.joint_loss(base.joint, base.rss[k]) - self.joint_loss(base.joint, rss[k]);
         (gain(0), gain(1))
     }
@@ -104,7 +112,7 @@ impl Products {
                         }
                     }
                 }
-                let solved = Normal::new(&gram, p, &prior).solution(&gram);
+                let solved = Normal::new(&gram, p, &prior).solution(&gram, &prior);
                 for ((mine, folds), rss) in joints.iter().zip(&mut rss) {
                     if let Some(gram) = folds.get(fold) {
                         let own = DVector::from_iterator(
@@ -120,16 +128,24 @@ impl Products {
         outside(columns.len()) - outside(all.len())
     }
 
-    /// The precision of the background's columns that `acts` selects, where sums of squares are weighted by `scale`.
-    fn prior(&self, acts: impl Fn(usize) -> bool, scale: f64) -> DMatrix<f64> {
+    /// The prior of the background's columns that `acts` selects, where sums of squares are weighted by `scale`.
+    fn prior(&self, acts: impl Fn(usize) -> bool, scale: f64) -> Prior {
         let Some(background) = &self.background else {
-            return DMatrix::zeros(0, 0);
+            return Prior {
+                precision: DMatrix::zeros(0, 0),
+                pull: DVector::zeros(0),
+            };
         };
         let mine: Vec<usize> = (0..background.columns.len())
             .filter(|&k| acts(background.columns[k]))
             .collect();
         let entry = |i: usize, k: usize| background.precision[(mine[i], mine[k])] / scale;
-        DMatrix::from_fn(mine.len(), mine.len(), entry)
+        let precision = DMatrix::from_fn(mine.len(), mine.len(), entry);
+        let centre = DVector::from_fn(mine.len(), |i, _| background.centre[mine[i]]);
+        Prior {
+            pull: &precision * centre,
+            precision,
+        }
     }
 
     /// Groups of the recordings of a joint, or its stretches if there is only one. With `common`, the groups are the same on all
@@ -189,15 +205,19 @@ fn extended(group: &[&Stretch], known: &DMatrix<f64>, places: &[usize]) -> DMatr
 
 /// The fits of all groups and of all but one in turn, by `fit` of their inner products, and the residual sums of squares
 /// where they were fitted and on the groups left out.
-fn fitted(folds: &[DMatrix<f64>], fit: impl Fn(&DMatrix<f64>, usize) -> Normal) -> (Vec<Normal>, [f64; 2]) {
+fn fitted(
+    folds: &[DMatrix<f64>],
+    prior: &Prior,
+    fit: impl Fn(&DMatrix<f64>, usize) -> Normal,
+) -> (Vec<Normal>, [f64; 2]) {
     let all = folds.iter().skip(1).fold(folds[0].clone(), |sum, fold| sum + fold);
     let mut fits = vec![fit(&all, 0)];
-    let inside = residual_square(&all, &fits[0].solution(&all));
+    let inside = residual_square(&all, &fits[0].solution(&all, prior));
     let mut outside = Vec::with_capacity(folds.len());
     for (k, fold) in folds.iter().enumerate() {
         let rest = &all - fold;
         let fit = fit(&rest, k + 1);
-        outside.push(residual_square(fold, &fit.solution(&rest)));
+        outside.push(residual_square(fold, &fit.solution(&rest, prior)));
         fits.push(fit);
     }
     (fits, [inside, outside.into_iter().sum()])
@@ -210,10 +230,14 @@ struct Normal {
     factor: DMatrix<f64>,
 }
 
-/// An inner product, with `prior`, the precision of the first columns.
-fn entry(gram: &DMatrix<f64>, prior: &DMatrix<f64>, i: usize, k: usize) -> f64 {
-    let known = prior.nrows();
-    let own = if i < known && k < known { prior[(i, k)] } else { 0.0 };
+/// An inner product, with the precision of `prior`.
+fn entry(gram: &DMatrix<f64>, prior: &Prior, i: usize, k: usize) -> f64 {
+    let known = prior.precision.nrows();
+    let own = if i < known && k < known {
+        prior.precision[(i, k)]
+    } else {
+        0.0
+    };
     gram[(i, k)] + own
 }
 
@@ -223,7 +247,7 @@ fn scale(entry: f64) -> f64 {
 
 impl Normal {
     /// The fit of the first `p` columns.
-    fn new(gram: &DMatrix<f64>, p: usize, prior: &DMatrix<f64>) -> Self {
+    fn new(gram: &DMatrix<f64>, p: usize, prior: &Prior) -> Self {
         let scale: Vec<f64> = (0..p).map(|i| scale(entry(gram, prior, i, i))).collect();
         let matrix = DMatrix::from_fn(p, p, |i, k| entry(gram, prior, i, k) / (scale[i] * scale[k]));
         Self {
@@ -234,7 +258,7 @@ impl Normal {
 
     /// The fit of the first `p` columns, of which this fit has the first ones: its factor is extended by rows. The result
     /// has the bits of [`Self::new`].
-    fn with(&self, gram: &DMatrix<f64>, p: usize, prior: &DMatrix<f64>) -> Self {
+    fn with(&self, gram: &DMatrix<f64>, p: usize, prior: &Prior) -> Self {
         let known = self.scale.len();
         let new = p - known;
         let mut scale = self.scale.clone();
@@ -264,9 +288,10 @@ impl Normal {
     }
 
     /// The coefficients, for the right side in the last column of `gram`.
-    fn solution(&self, gram: &DMatrix<f64>) -> DVector<f64> {
+    fn solution(&self, gram: &DMatrix<f64>, prior: &Prior) -> DVector<f64> {
         let (p, last) = (self.scale.len(), gram.nrows() - 1);
-        let right = DVector::from_fn(p, |i, _| gram[(i, last)] / self.scale[i]);
+        let pull = |i: usize| prior.pull.get(i).copied().unwrap_or(0.0);
+        let right = DVector::from_fn(p, |i, _| (gram[(i, last)] + pull(i)) / self.scale[i]);
         let [_, scaled] = solved(&self.factor, &right);
         DVector::from_fn(p, |i, _| scaled[i] / self.scale[i])
     }

@@ -41,13 +41,7 @@ impl About {
     }
 
     fn with(study: &Study, fit: &Fit, (found, carried): (Carried, Vec<(Term, f64)>)) -> Self {
-        let mut inertial = vec![0.0; bodies::PER_LINK * study.arm.dof()];
-        for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
-            let term = study.table.terms[column];
-            if term.is(&INERTIAL_PARAMETER) {
-                inertial[term.of[0] * bodies::PER_LINK + term.of[1]] = value;
-            }
-        }
+        let inertial = inertial_changes(study, fit);
         let Carried {
             mut arm,
             offset,
@@ -87,6 +81,18 @@ impl About {
             carried,
         }
     }
+}
+
+/// The changes of the links' inertial parameters in the background of `fit`, ten per link.
+pub fn inertial_changes(study: &Study, fit: &Fit) -> Vec<f64> {
+    let mut changes = vec![0.0; bodies::PER_LINK * study.arm.dof()];
+    for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
+        let term = study.table.terms[column];
+        if term.is(&INERTIAL_PARAMETER) {
+            changes[term.of[0] * bodies::PER_LINK + term.of[1]] = value;
+        }
+    }
+    changes
 }
 
 /// Adds the effects of `fit` to the arm, with those that are there since the recordings from before if `since_before`; returns the

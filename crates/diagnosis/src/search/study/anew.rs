@@ -3,6 +3,7 @@
 use effects::Term;
 use rayon::prelude::*;
 
+use super::about::inertial_changes;
 use super::{About, Study};
 use crate::data::rigid::Rigid;
 use crate::regression::fit::Fit;
@@ -22,7 +23,14 @@ impl Study {
         self.about(fit, kept, true).unwrap_or_default()
     }
 
+    /// Makes the prior of the links' inertial parameters quadratic about the bodies of `fit`.
+    pub fn set_bodies(&mut self, fit: &Fit) {
+        let changes = inertial_changes(self, fit);
+        self.prior.set_bodies(&changes);
+    }
+
     fn about(&mut self, fit: &Fit, kept: &[usize], anyway: bool) -> Option<Vec<usize>> {
+        self.set_bodies(fit);
         let about = About::new(self, fit);
         let since_before = About::since_before(self, fit);
         // The effects that always act are among those that act since the recordings from before.
