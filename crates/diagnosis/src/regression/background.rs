@@ -30,6 +30,9 @@ pub struct Strengths {
     pub gain: f64,
     /// The joints whose torque constant is a named effect, so that it is not in the background.
     pub named_constants: Vec<usize>,
+    /// The joints whose torque constant would be wrong by more than any is, so that it is not in the background either: an effect
+    /// must explain that.
+    pub impossible_constants: Vec<usize>,
 }
 
 impl fmt::Display for Strengths {
@@ -53,6 +56,7 @@ impl Strengths {
             friction: 0.0,
             gain: 0.0,
             named_constants: Vec::new(),
+            impossible_constants: Vec::new(),
         }
     }
 
@@ -230,6 +234,7 @@ impl Stated {
             friction: 0.0,
             gain: self.gain.map_or(0.0, |gain| gain / GAIN_PRIOR),
             named_constants: Vec::new(),
+            impossible_constants: Vec::new(),
         }
     }
 
@@ -348,10 +353,14 @@ impl Prior {
         let strength = |column: usize| match self.terms[column] {
             term if term.is(&INERTIAL_PARAMETER) => strengths.links[term.of[0]],
             term if term.is(&GAIN_LAW) => {
-                let is_named = term
-                    .joint
-                    .is_some_and(|joint| strengths.named_constants.contains(&joint));
-                if is_named { 0.0 } else { strengths.gain }
+                let is_left_out = |joint: usize| {
+                    strengths.named_constants.contains(&joint) || strengths.impossible_constants.contains(&joint)
+                };
+                if term.joint.is_some_and(is_left_out) {
+                    0.0
+                } else {
+                    strengths.gain
+                }
             }
             _ => strengths.friction,
         };

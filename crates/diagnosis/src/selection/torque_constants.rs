@@ -68,6 +68,9 @@ fn farthest(study: &Study, judged: &Judged, tried: &[usize]) -> Option<(usize, u
     let least = TOLERANCE * accuracy(study, &judged.named.set);
     let allowed = study.allowed();
     let deviation = |joint: usize| {
+        if study.strengths.impossible_constants.contains(&joint) {
+            return Some(f64::INFINITY);
+        }
         let column = study.torque_constant(joint)?;
         Some(judged.named.fit.coefficient(column).abs()).filter(|deviation| *deviation >= least)
     };

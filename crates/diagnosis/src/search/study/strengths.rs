@@ -9,7 +9,7 @@ use crate::regression::background::Strengths;
 use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::{Fit, Products};
 use crate::search::problem::{Growth, MOST, Selection};
-use crate::thresholds::{LINK_STRENGTHS, MOVED, OWN_STRENGTHS, PER_IMITATION};
+use crate::thresholds::{LINK_STRENGTHS, MOST_CONSTANT, MOST_DEVIATIONS, MOVED, OWN_STRENGTHS, PER_IMITATION};
 
 /// The largest number of effects that may together replace a part of the background.
 const IN_PLACE: usize = 3;
@@ -358,8 +358,33 @@ impl Study {
         if next.score >= chosen.score - 1e-6 {
             return None;
         }
-        let products = bare.with_background(self.prior.at(&strengths));
-        let next = self.problem(&products).reweighted(next);
-        Some((strengths, next))
+        let (strengths, next) = self.with_possible_constants(bare, strengths, next);
+        (next.score < chosen.score - 1e-6).then_some((strengths, next))
+    }
+
+    /// The fit of `chosen` beside a background of these strengths, from which those torque constants are left out, the farthest one
+    /// first, that would be wrong by more than any is.
+    fn with_possible_constants(
+        &self,
+        bare: &Products,
+        mut strengths: Strengths,
+        mut chosen: Selection,
+    ) -> (Strengths, Selection) {
+        let most = MOST_CONSTANT.max(MOST_DEVIATIONS * self.stated.torque_accuracy());
+        loop {
+            let products = bare.with_background(self.prior.at(&strengths));
+            chosen = self.problem(&products).reweighted(chosen);
+            let deviation = |joint: usize| {
+                let column = self.torque_constant(joint)?;
+                Some((chosen.fit.coefficient(column).abs(), joint)).filter(|(deviation, _)| *deviation > most)
+            };
+            let farthest = (0..self.motions.dof).filter_map(deviation).max_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((_, joint)) = farthest else {
+                return (strengths, chosen);
+            };
+            strengths.impossible_constants.push(joint);
+            let products = bare.with_background(self.prior.at(&strengths));
+            chosen = self.problem(&products).choose(chosen.set.clone(), &chosen.fit.weights);
+        }
     }
 }
