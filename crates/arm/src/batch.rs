@@ -10,7 +10,7 @@ use crate::inverse_dynamics::FEATURES;
 use crate::model::Arm;
 use crate::real::{Lanes, Real};
 use crate::regressor::PARAMETERS_PER_LINK;
-use crate::workspace::Scratch;
+use crate::scratch::Scratch;
 
 impl Arm {
     /// [`Arm::inverse_dynamics`] for many states; all slices are stored joint after joint.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::model::JointKind;
+use crate::joint::JointKind;
 use crate::pose::Pose;
 
 /// How an arm is chosen among the joints of a robot. By default it is the robot's only chain of moving joints;

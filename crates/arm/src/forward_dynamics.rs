@@ -1,52 +1,14 @@
 //! Forward dynamics by the articulated-body algorithm.
 
-use crate::model::{Arm, JointKind};
-use crate::place::Place;
+use crate::joint::JointKind;
+use crate::model::Arm;
 use crate::real::Real;
+use crate::scratch::{Place, Scratch};
 use crate::small::{
     Mat3, Vec3, cross, cross_columns, cross_matrix, less_outer, mul, product, product_tr, rotate_symmetric, symmetric,
     tr_mul,
 };
-use crate::workspace::{Scratch, Workspace};
-
-/// The articulated-body inertia and bias of a link and all that it carries, in the link's frame.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Articulated<T> {
-    /// The articulated-body inertia in blocks, [n; f] = [I H; Hᵀ M] [ω̇; v̇].
-    rotational: Mat3<T>,
-    coupling: Mat3<T>,
-    translational: Mat3<T>,
-    /// The bias wrench p^A (N m, N).
-    moment: Vec3<T>,
-    force: Vec3<T>,
-    /// U = I^A S, D = Sᵀ U, u = τ − Sᵀ p^A and the velocity product c, in Featherstone's notation.
-    u_moment: Vec3<T>,
-    u_force: Vec3<T>,
-    d: T,
-    u: T,
-    c_angular: Vec3<T>,
-    c_linear: Vec3<T>,
-}
-
-impl<T: Real> Articulated<T> {
-    /// A body without mass at rest.
-    pub fn zeros(context: T::Context) -> Self {
-        let (vector, matrix) = (Vec3::zeros(context), Mat3::zeros(context));
-        Self {
-            rotational: matrix,
-            coupling: matrix,
-            translational: matrix,
-            moment: vector,
-            force: vector,
-            u_moment: vector,
-            u_force: vector,
-            d: vector.x,
-            u: vector.x,
-            c_angular: vector,
-            c_linear: vector,
-        }
-    }
-}
+use crate::workspace::Workspace;
 
 impl Arm {
     /// The accelerations `qdd` (rad/s² or m/s²) under the torques `tau` at `q`, `qd`: q̈ = M⁻¹ (τ − C q̇ − g).

@@ -1,9 +1,11 @@
 //! Recursive Newton-Euler inverse dynamics, and the Newton-Euler features of Independent Joint Learning.
 
-use crate::model::{Arm, JointKind};
+use crate::joint::JointKind;
+use crate::model::Arm;
 use crate::real::Real;
+use crate::scratch::{LinkMotion, Scratch};
 use crate::small::{Mat3, Vec3, acceleration_tensor, cross, field_moment, mul, tr_mul};
-use crate::workspace::{Scratch, Workspace};
+use crate::workspace::Workspace;
 
 /// The number of Newton-Euler features of a joint: the paper's twelve, and the joint's own torque.
 pub const FEATURES: usize = 13;
@@ -14,36 +16,6 @@ pub const FEATURES: usize = 13;
 /// The first twelve are the inputs of equation 19 and Table I of the paper, all thirteen are the inputs of its
 /// algorithms 1 to 3.
 pub type NewtonEulerFeatures = [f64; FEATURES];
-
-/// A link's motion and the wrench on it, in its own frame.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LinkMotion<T> {
-    /// ω, ω̇ (rad/s, rad/s²).
-    pub angular_velocity: Vec3<T>,
-    pub angular_acceleration: Vec3<T>,
-    /// \[ω̇\]× + \[ω\]×²: times the position r of a point, this is its acceleration relative to the origin (1/s²).
-    pub field: Mat3<T>,
-    /// v̇ of the frame's origin minus gravity (m/s²).
-    pub linear_acceleration: Vec3<T>,
-    /// f, τ that the parent exerts on the link, about the frame's origin (N, N m).
-    pub force: Vec3<T>,
-    pub moment: Vec3<T>,
-}
-
-impl<T: Real> LinkMotion<T> {
-    /// At rest and without load.
-    pub fn zeros(context: T::Context) -> Self {
-        let zero = Vec3::zeros(context);
-        Self {
-            angular_velocity: zero,
-            angular_acceleration: zero,
-            field: Mat3::zeros(context),
-            linear_acceleration: zero,
-            force: zero,
-            moment: zero,
-        }
-    }
-}
 
 impl Arm {
     /// The joint torques (N m or N) that produce `qdd` at `q`, `qd`: τ = M(q) q̈ + C(q, q̇) q̇ + g(q).

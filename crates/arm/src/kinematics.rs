@@ -2,7 +2,8 @@
 
 use nalgebra::Matrix6xX;
 
-use crate::model::{Arm, Frame, JointKind};
+use crate::joint::JointKind;
+use crate::model::{Arm, Frame};
 use crate::pose::Pose;
 use crate::workspace::Workspace;
 

@@ -2,10 +2,12 @@
 
 use nalgebra::DMatrix;
 
-use crate::model::{Arm, JointKind};
+use crate::joint::JointKind;
+use crate::model::Arm;
 use crate::real::Real;
+use crate::scratch::Scratch;
 use crate::small::{Mat3, Vec3, cross, mul, rotate_symmetric, symmetric};
-use crate::workspace::{Scratch, Workspace};
+use crate::workspace::Workspace;
 
 impl Arm {
     /// The mass matrix M(q), dof × dof, symmetric positive definite (kg m², kg m, kg), with the rotor inertias on its

@@ -2,11 +2,12 @@
 
 use nalgebra::DMatrix;
 
-use crate::inverse_dynamics::LinkMotion;
-use crate::model::{Arm, JointKind};
+use crate::joint::JointKind;
+use crate::model::Arm;
 use crate::real::Real;
+use crate::scratch::{LinkMotion, Scratch};
 use crate::small::{Vec3, cross, tr_mul};
-use crate::workspace::{Scratch, Workspace};
+use crate::workspace::Workspace;
 
 /// The inertial parameters m, m c (3), Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the link frame's origin.
 pub const PARAMETERS_PER_LINK: usize = 10;

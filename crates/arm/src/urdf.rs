@@ -13,7 +13,9 @@ use self::choose::Chain;
 use self::fixed::{Attached, removable};
 use crate::chain::{self, ChainOptions};
 use crate::error::ArmError;
-use crate::model::{Arm, Frame, Inertia, Joint, JointKind, Limits, Moments, STANDARD_GRAVITY};
+use crate::inertia::{Inertia, Moments};
+use crate::joint::{Joint, JointKind, Limits};
+use crate::model::{Arm, Frame, STANDARD_GRAVITY};
 use crate::pose::{Pose, cross_matrix};
 use crate::visual::{Geometry, Visual};
 

@@ -2,7 +2,8 @@
 
 use nalgebra::{Rotation3, Unit, Vector3};
 
-use crate::model::{Arm, Inertia};
+use crate::inertia::Inertia;
+use crate::model::Arm;
 
 impl Arm {
     /// This arm with another gravity (m/s², base frame).

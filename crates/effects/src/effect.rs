@@ -1,11 +1,9 @@
 //! An effect with its parameter values: data, as in files.
 
-mod files;
+use std::fmt;
 
 use nalgebra::Vector3;
 
-use crate::kind::EffectKind;
-use crate::kinds::Kind;
 use crate::spec::{Parameter, Shape, Spec};
 
 /// The value of a parameter.
@@ -48,13 +46,13 @@ impl Value {
     }
 }
 
-/// One effect with its parameters in SI units at the joint; a joint is named as in the URDF.
+/// One effect with its parameters in SI units at the joint; a joint is named as in the URDF. [`Effect::of`] makes it of a kind.
 ///
 /// For a prismatic joint read N for N m and m for rad. The torque of an effect is what it adds to the measured torque
 /// beyond the torque of the rigid model.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone)]
 pub struct Effect {
-    kind: Kind,
+    spec: &'static Spec,
     joint: Option<String>,
     other: Option<String>,
     /// One value for each of the spec's parameters.
@@ -63,14 +61,8 @@ pub struct Effect {
 }
 
 impl Effect {
-    /// An effect of a kind, without a joint. A parameter that has no default and is not set is NaN, which
-    /// [`check`](crate::check) refuses.
-    pub fn of(kind: &'static dyn EffectKind) -> Self {
-        Self::of_kind(Kind::of(kind))
-    }
-
-    /// An effect of the kind `kind`, as [`Self::of`] gives it.
-    pub fn of_kind(kind: Kind) -> Self {
+    /// An effect with this spec, without a joint. A parameter that has no default and is not set is NaN.
+    pub(crate) fn with_spec(spec: &'static Spec) -> Self {
         let blank = |parameter: &Parameter| {
             let number = parameter.default.unwrap_or(f64::NAN);
             match parameter.shape {
@@ -80,10 +72,10 @@ impl Effect {
             }
         };
         Self {
-            kind,
+            spec,
             joint: None,
             other: None,
-            values: kind.spec().parameters.iter().map(blank).collect(),
+            values: spec.parameters.iter().map(blank).collect(),
             onset: None,
         }
     }
@@ -119,27 +111,17 @@ impl Effect {
     }
 
     fn place(&self, key: &str) -> Option<usize> {
-        self.spec().parameters.iter().position(|parameter| parameter.key == key)
-    }
-
-    /// Its kind.
-    pub fn kind(&self) -> Kind {
-        self.kind
-    }
-
-    /// Whether it is of this kind.
-    pub fn is(&self, kind: &'static dyn EffectKind) -> bool {
-        self.kind.is(kind)
+        self.spec.parameters.iter().position(|parameter| parameter.key == key)
     }
 
     /// What is known of its kind.
     pub fn spec(&self) -> &'static Spec {
-        self.kind.spec()
+        self.spec
     }
 
     /// The catalogue's name of the effect.
     pub fn name(&self) -> &'static str {
-        self.spec().name
+        self.spec.name
     }
 
     /// The joint it is on; `None` for the whole arm.
@@ -159,7 +141,7 @@ impl Effect {
 
     /// Its parameters with their values.
     pub fn values(&self) -> impl Iterator<Item = (&'static Parameter, &Value)> {
-        self.spec().parameters.iter().zip(&self.values)
+        self.spec.parameters.iter().zip(&self.values)
     }
 
     /// The number that is its parameter `key`; NaN if it has no such number.
@@ -189,5 +171,22 @@ impl Effect {
             Some(Value::Points(points)) => points,
             _ => &[],
         }
+    }
+}
+
+impl PartialEq for Effect {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.spec, other.spec)
+            && (&self.joint, &self.other, self.onset) == (&other.joint, &other.other, other.onset)
+            && self.values == other.values
+    }
+}
+
+impl fmt::Debug for Effect {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut shown = formatter.debug_struct("Effect");
+        shown.field("name", &self.name()).field("joint", &self.joint);
+        shown.field("other", &self.other).field("values", &self.values);
+        shown.field("onset", &self.onset).finish()
     }
 }

@@ -2,6 +2,7 @@
 
 use arm::Arm;
 
+use crate::laws::{TENT, Times};
 use crate::signals::Scales;
 use crate::term::Term;
 
@@ -49,22 +50,11 @@ impl Grounds<'_> {
         let lowest = self.scales.middle[of] - 0.5 * self.scales.range[of];
         (0..count)
             .map(|k| {
-                let tent = Term::on(&crate::laws::TENT, joint).of(of).form(times as usize);
+                let tent = Term::on(&TENT, joint).of(of).form(times as usize);
                 tent.sized([lowest + width * k as f64, width])
             })
             .collect()
     }
-}
-
-/// The factor of a function of position, from the joint that it acts on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Times {
-    /// One.
-    One,
-    /// q̇.
-    Velocity,
-    /// |q̇|.
-    Speed,
 }
 
 /// The order in which forms are tried and summed. Of forms that promise equal gains, the earlier one is tried. First come the

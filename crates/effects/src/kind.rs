@@ -5,7 +5,6 @@ use std::fmt::Debug;
 use ::arm::JointKind;
 
 use crate::effect::Effect;
-use crate::error::EffectError;
 use crate::estimate::Estimate;
 use crate::fitted::Fitted;
 use crate::form::{Form, Grounds, SetsIn};
@@ -88,33 +87,15 @@ pub trait EffectKind: Debug + Sync {
     }
 }
 
-/// Refuses parameters that are physically impossible.
-///
-/// # Errors
-/// [`EffectError::Parameter`], naming effect, joint and value.
-pub fn check(effect: &Effect) -> Result<(), EffectError> {
-    let refuse = |parameter, value, requirement| {
-        Err(EffectError::Parameter {
-            effect: effect.name(),
-            joint: effect.joint().unwrap_or("the whole arm").to_owned(),
-            parameter,
-            value,
-            requirement,
-        })
-    };
-    if let Some(onset) = effect.onset()
-        && !onset.is_finite()
-    {
-        return refuse("onset", onset, "finite");
+impl Effect {
+    /// An effect of a kind, without a joint. A parameter that has no default and is not set is NaN, which
+    /// [`check`](crate::check) refuses.
+    pub fn of(kind: &'static dyn EffectKind) -> Self {
+        Self::with_spec(kind.spec())
     }
-    for (parameter, value) in effect.values() {
-        let numbers = value.numbers();
-        if let Some(value) = numbers.into_iter().find(|&value| !parameter.range.contains(value)) {
-            return refuse(parameter.key, value, parameter.range.requirement());
-        }
-    }
-    match effect.kind().get().refuse(effect) {
-        Some((parameter, value, requirement)) => refuse(parameter, value, requirement),
-        None => Ok(()),
+
+    /// Whether it is of this kind.
+    pub fn is(&self, kind: &'static dyn EffectKind) -> bool {
+        std::ptr::eq(self.spec(), kind.spec())
     }
 }

@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 use std::hash::{Hash, Hasher};
 use std::sync::LazyLock;
 
+use crate::effect::Effect;
 use crate::kind::EffectKind;
 use crate::spec::Spec;
 use crate::{CATALOGUE, UNMODELLED};
@@ -34,11 +35,18 @@ pub struct Kind {
 }
 
 impl Kind {
-    /// An implementation as a kind. One that is in no list comes after all others.
+    /// An implementation as a kind.
+    ///
+    /// # Panics
+    /// If neither [`CATALOGUE`] nor [`UNMODELLED`] contains it.
     pub fn of(kind: &'static dyn EffectKind) -> Self {
-        let same = |other: &Self| std::ptr::eq(other.spec(), kind.spec());
-        let index = Self::all().position(|other| same(&other)).unwrap_or(usize::MAX);
-        Self { index, kind }
+        Self::with_spec(kind.spec())
+    }
+
+    fn with_spec(spec: &'static Spec) -> Self {
+        let mut all = Self::all();
+        let kind = all.find(|kind| std::ptr::eq(kind.spec(), spec));
+        kind.expect("every kind is in CATALOGUE or in UNMODELLED")
     }
 
     fn at(index: usize) -> Self {
@@ -76,6 +84,13 @@ impl Kind {
     /// Whether it is this kind.
     pub fn is(self, kind: &'static dyn EffectKind) -> bool {
         std::ptr::eq(self.spec(), kind.spec())
+    }
+}
+
+impl Effect {
+    /// Its kind.
+    pub fn kind(&self) -> Kind {
+        Kind::with_spec(self.spec())
     }
 }
 

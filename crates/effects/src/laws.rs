@@ -1,6 +1,5 @@
 //! Laws that several effects share: the motion itself, its sign, constants and curves over a position.
 
-use crate::form::Times;
 use crate::signals::Signals;
 use crate::term::{Cone, Law, Term};
 
@@ -28,6 +27,14 @@ pub static SIGN: Law = Law {
     name: "sign",
     column: |_, joint, motion| motion.map(|k| motion.sign(joint, k)),
     cone: Cone::Level(|_, _, _| 1.0),
+    ..Law::PLAIN
+};
+
+/// |sgn q̇|: one in motion, zero at a reversal.
+pub static ABS_SIGN: Law = Law {
+    name: "abs_sign",
+    column: |_, joint, motion| motion.map(|k| motion.sign(joint, k).abs()),
+    cone: Cone::Middle,
     ..Law::PLAIN
 };
 
@@ -66,6 +73,17 @@ pub static POSITION: Law = Law {
 /// The power of a [`POSITION`].
 pub fn power(term: &Term) -> i32 {
     term.form as i32
+}
+
+/// The factor of a function of position, from the joint that it acts on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Times {
+    /// One.
+    One,
+    /// q̇.
+    Velocity,
+    /// |q̇|.
+    Speed,
 }
 
 /// A tent function of the position of joint `of[1]`. Sizes are its centre and half its width (rad or m); the form is its factor

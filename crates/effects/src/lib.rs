@@ -15,11 +15,13 @@
 //! assert_eq!(effects::spec("coulomb_friction").map(|spec| spec.title), Some("Coulomb friction"));
 //! ```
 
+mod apply;
 pub mod background;
 mod compliance;
 mod effect;
 mod error;
 mod estimate;
+mod files;
 mod fitted;
 mod form;
 mod kind;
@@ -33,14 +35,16 @@ mod term;
 #[cfg(test)]
 mod test_support;
 
+pub use apply::check;
 pub use compliance::LinkSide;
 pub use effect::{Effect, Value};
 pub use error::EffectError;
 pub use estimate::{Estimate, Systematic};
 pub use fitted::{Fitted, UNIT};
-pub use form::{Form, Grounds, SetsIn, Times, Turn};
-pub use kind::{EffectKind, check};
+pub use form::{Form, Grounds, SetsIn, Turn};
+pub use kind::EffectKind;
 pub use kinds::{Kind, NAMES, experiment_against, spec};
+pub use laws::Times;
 pub use machine::{Circumstance, Contact, Dry, Machine, Place, Scaled, Smooth, Sprung, State, sign};
 pub use quantity::Quantity;
 pub use signals::{Rigid, Scales, Signals};

@@ -6,11 +6,6 @@ use std::sync::Arc;
 use arm::{Arm, Inertia};
 use nalgebra::Vector3;
 
-use crate::effect::Effect;
-use crate::error::EffectError;
-use crate::kind::check;
-use crate::spec::Scope;
-
 /// The sign of a velocity: −1, 0 at rest, or 1.
 pub fn sign(velocity: f64) -> f64 {
     if velocity == 0.0 { 0.0 } else { velocity.signum() }
@@ -197,13 +192,10 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// `arm` with `effects`.
-    ///
-    /// # Errors
-    /// [`EffectError`], naming effect, joint and value.
-    pub fn new(arm: &Arm, effects: &[Effect]) -> Result<Self, EffectError> {
+    /// `arm` with its rotors and without effects.
+    pub(crate) fn without_effects(arm: &Arm) -> Self {
         let dof = arm.dof();
-        let mut machine = Self {
+        Self {
             arm: arm.clone(),
             rotors: arm.joints().iter().map(|joint| joint.rotor_inertia).collect(),
             payloads: Vec::new(),
@@ -216,24 +208,7 @@ impl Machine {
             delays: vec![0.0; dof],
             springs: vec![None; dof],
             gaps: vec![0.0; dof],
-        };
-        for effect in effects {
-            check(effect)?;
-            let kind = effect.kind().get();
-            let place = Place {
-                joint: match effect.spec().scope {
-                    Scope::Joint => joint_of(arm, effect, effect.joint())?,
-                    Scope::Arm => 0,
-                },
-                other: if kind.has_other() {
-                    joint_of(arm, effect, effect.other())?
-                } else {
-                    0
-                },
-            };
-            kind.apply(effect, place, &mut machine);
         }
-        Ok(machine)
     }
 
     /// Adds a torque on a joint that is smooth in the joint's velocity: a function of the joint's index and the motion (N m or
@@ -266,14 +241,4 @@ impl Machine {
     pub fn change_arm(&mut self, change: impl FnOnce(Arm) -> Arm) {
         self.arm = change(self.arm.clone());
     }
-}
-
-/// The index of the joint `name`. Without a name, the error contains an empty one.
-fn joint_of(arm: &Arm, effect: &Effect, name: Option<&str>) -> Result<usize, EffectError> {
-    let found = arm.joints().iter().position(|joint| Some(joint.name.as_str()) == name);
-    found.ok_or_else(|| EffectError::UnknownJoint {
-        effect: effect.name(),
-        joint: name.unwrap_or_default().to_owned(),
-        known: arm.joints().iter().map(|joint| joint.name.clone()).collect(),
-    })
 }

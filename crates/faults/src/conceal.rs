@@ -10,9 +10,12 @@ use crate::truth::{Injected, Truth};
 mod real_life;
 mod search;
 mod stage;
+mod streams;
 
-use stage::{Kind, Stage, Stream, random};
-pub(crate) use stage::{RECORD_AGAIN, TRAINING};
+pub(crate) use stage::TRAINING;
+use stage::{Kind, Stage};
+pub(crate) use streams::RECORD_AGAIN;
+use streams::{Stream, random};
 
 /// Recordings of a machine with injected faults, and the ground truth.
 #[derive(Clone, Debug, PartialEq)]

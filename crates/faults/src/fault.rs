@@ -6,12 +6,13 @@
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 
-use crate::draw::Site;
 use crate::error::FaultError;
 use crate::part::Piece;
 use crate::robot::Robot;
+use crate::site::Site;
 use crate::truth::Injected;
 
+mod injected;
 mod reader;
 pub(crate) use reader::{Reader, parts};
 
@@ -21,7 +22,7 @@ pub(crate) mod coulomb_friction;
 mod cross_coupling_unknown;
 mod dead_band_unknown;
 mod encoder_offset;
-pub(crate) mod external_contact;
+mod external_contact;
 mod friction_asymmetry;
 mod gravity_compensator;
 mod gravity_misalignment;
@@ -252,7 +253,7 @@ fn names(counts: impl Fn(&Fault) -> bool) -> Vec<&'static str> {
 
 /// The names that the file of a fault needs.
 mod prelude {
-    pub(super) use std::f64::consts::{PI, TAU};
+    pub(super) use std::f64::consts::TAU;
 
     pub(super) use arm::{Inertia, Matrix3, Vector3};
     pub(super) use rand::seq::IndexedRandom;
@@ -262,9 +263,11 @@ mod prelude {
     pub(super) use serde_json::{Value, json};
 
     pub(super) use super::{Fault, Leaves, Place, Reader, SimilarFaults, Size};
-    pub(super) use crate::draw::{log_uniform, perhaps_in_form, sign};
     pub(super) use crate::error::FaultError;
-    pub(super) use crate::part::{At, Body, Connection, DriveLaw, DryAt, DryLaw, DrySum, LinkLaw, Piece, Property};
+    pub(super) use crate::part::{
+        At, Body, Connection, Contact, DriveLaw, DryAt, DryLaw, DrySum, LinkLaw, Piece, Property, TimeCourse,
+    };
     pub(super) use crate::pseudo_inertia::moved;
     pub(super) use crate::robot::has_another_joint;
+    pub(super) use crate::site::{log_uniform, perhaps_in_form, sign};
 }

@@ -32,6 +32,7 @@ mod record_again;
 mod robot;
 mod seal;
 mod sensor;
+mod site;
 #[cfg(test)]
 mod test_robots;
 mod truth;

@@ -4,7 +4,7 @@ use arm::{Arm, Matrix6xX, Workspace};
 use plant::{Plant, PlantOptions};
 
 use crate::error::FaultError;
-use crate::motion::Reference;
+use crate::motion::{Reference, TICK};
 use crate::part::{At, DryAt, resistance};
 use crate::robot::Robot;
 use crate::truth::Injected;
@@ -18,15 +18,12 @@ mod parts;
 pub(crate) use control_law::Begin;
 pub use control_law::Measured;
 use control_law::{ControlLaw, PositionLoop};
-pub(crate) use drive::LONGEST_DELAY;
 pub use drive::VelocityFilter;
 use drive::{Drive, Rotor};
 use friction::Friction;
 pub use inverse::{Inverse, LinkMotion};
 use parts::Parts;
 
-/// The period of the position loop, and the step of the plant (s).
-pub(crate) const TICK: f64 = 1e-3;
 /// The plain step of rapier. The simulation in the diagnosis uses another order, so that the two are independent.
 const ORDER: usize = 1;
 /// The largest allowed distance of a joint from its reference (rad or m).

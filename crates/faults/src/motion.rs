@@ -6,9 +6,10 @@ use arm::{Arm, JointKind, Workspace};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::machine::TICK;
 use crate::robot::Robot;
 
+/// The period of the position loop, and the step of the plant (s).
+pub(crate) const TICK: f64 = 1e-3;
 /// The duration of a recording, and the pause between two recordings (s).
 pub const DURATION: f64 = 25.0;
 /// See [`DURATION`].

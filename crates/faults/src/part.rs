@@ -4,9 +4,17 @@
 //!
 //! The laws are independent of those of the diagnosis: a diagnosis must find the effect, not its own formula.
 
-use arm::{Arm, Inertia};
+use std::f64::consts::PI;
 
-use crate::fault::external_contact::Contact;
+use arm::{Arm, Inertia, Vector3};
+
+use crate::motion::TICK;
+
+/// The number of commands that a drive stores, which bounds its delay (ticks).
+pub(crate) const STORED_COMMANDS: usize = 128;
+
+/// The longest delay (s) that a drive can have.
+pub(crate) const LONGEST_DELAY: f64 = (STORED_COMMANDS - 2) as f64 * TICK;
 
 /// One property of the machine, which is present from `onset` on.
 pub(crate) struct Part {
@@ -124,6 +132,39 @@ impl Body {
             }
             Self::Changed(change) => change(arm),
             Self::Payload(payload) => arm.with_payload(payload),
+        }
+    }
+}
+
+/// A force on the tool (N, in the base's frame).
+pub(crate) struct Contact {
+    /// s, on the recordings' clock.
+    pub start: f64,
+    /// s.
+    pub duration: f64,
+    pub force: Vector3<f64>,
+    pub course: TimeCourse,
+}
+
+/// The time course of a force.
+#[derive(Clone, Copy)]
+pub(crate) enum TimeCourse {
+    Step,
+    HalfSine,
+    Decaying,
+}
+
+impl Contact {
+    /// The share of the force at `time` (s, on the recordings' clock).
+    pub(crate) fn at(&self, time: f64) -> f64 {
+        let x = (time - self.start) / self.duration;
+        if !(0.0..1.0).contains(&x) {
+            return 0.0;
+        }
+        match self.course {
+            TimeCourse::Step => 1.0,
+            TimeCourse::HalfSine => (PI * x).sin(),
+            TimeCourse::Decaying => (-3.0 * x).exp() * (20.0 * x).min(1.0),
         }
     }
 }

@@ -4,8 +4,8 @@ use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use recording::Recording;
 
-use crate::machine::{Run, TICK};
-use crate::motion::{LEAD_TICKS, Reference};
+use crate::machine::Run;
+use crate::motion::{LEAD_TICKS, Reference, TICK};
 use crate::robot::Robot;
 
 /// The largest deviation of a stamp, in standard deviations.

@@ -2,12 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use arm::Arm;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-
-use crate::error::FaultError;
-use crate::fault::{Fault, Leaves, parts};
 
 /// The ground truth of one case, a JSON file outside the recordings' folder.
 ///
@@ -115,19 +111,6 @@ impl Injected {
         self.parameters.get(name).and_then(Value::as_f64)
     }
 
-    /// Refuses an effect that cannot be injected into `arm`.
-    ///
-    /// # Errors
-    /// [`FaultError::Effect`], with the effect, what is wrong and the remedy.
-    pub fn check(&self, arm: &Arm) -> Result<(), FaultError> {
-        parts(self, arm, true).map(|_| ())
-    }
-
-    /// The definition of its kind, if there is such a fault.
-    pub(crate) fn fault(&self) -> Option<&'static Fault> {
-        Fault::named(&self.effect)
-    }
-
     /// Marks it as one of the small effects that every real joint has.
     pub(crate) fn minor(mut self) -> Self {
         self.minor = true;
@@ -137,22 +120,6 @@ impl Injected {
     /// Whether it is a tool that is drawn in the URDF and not mounted.
     pub fn is_not_mounted(&self) -> bool {
         self.effect == "payload" && self.number("mass").is_some_and(|mass| mass < 0.0)
-    }
-
-    /// The part that remains when it is removed.
-    pub(crate) fn leaves(&self) -> Leaves {
-        if self.is_not_mounted() {
-            return Leaves::Tool;
-        }
-        self.fault().map_or(Leaves::Nothing, |fault| fault.leaves)
-    }
-
-    /// Whether `other` is the same effect on the same joint (with the same other joint), and both begin at an onset or
-    /// neither does.
-    pub(crate) fn is_same_effect(&self, other: &Self) -> bool {
-        let with = |injected: &Self| injected.parameters.get("other").cloned();
-        let is_same = self.effect == other.effect && self.joint == other.joint && with(self) == with(other);
-        is_same && self.onset.is_some() == other.onset.is_some() && self.fault().is_some_and(|fault| !fault.may_repeat)
     }
 
     /// Whether it is outside the catalogue.

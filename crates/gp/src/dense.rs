@@ -7,8 +7,8 @@ use crate::algebra::{
     cholesky, dot, inverse_of_lower, log_determinant, solve_lower, solve_lower_transposed, sum_of_squares,
     triangular_matmul,
 };
+use crate::evaluation::Evaluation;
 use crate::kernel::{Points, kernel_column, weighted_squares};
-use crate::likelihood::Evaluation;
 
 /// C = K / amplitude² + ρ I, by its Cholesky factor, solved for the targets y.
 pub(crate) struct Dense {

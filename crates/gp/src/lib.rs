@@ -32,6 +32,7 @@ mod conditioning;
 mod data;
 mod dense;
 mod error;
+mod evaluation;
 mod file;
 mod kernel;
 mod lagrangian;
@@ -39,7 +40,7 @@ mod likelihood;
 mod line;
 mod low_rank;
 mod model;
-mod noise_free;
+mod options;
 mod pivoted;
 mod posterior;
 mod range;
@@ -54,6 +55,7 @@ pub use lagrangian::{
     JointType, LagrangianConditioning, LagrangianGp, LagrangianOptions, LagrangianPrior, LagrangianRange,
     LagrangianWorkspace, TorqueSamples,
 };
-pub use model::{FitOptions, Gp, LengthScales, Workspace};
+pub use model::{Gp, Workspace};
+pub use options::{FitOptions, LengthScales};
 pub use range::Range;
 pub use wide::{Wide, on_widest, release_vectors};

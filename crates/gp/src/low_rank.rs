@@ -7,8 +7,8 @@ use crate::algebra::{
     add_product, cholesky, dot, inverse_of_lower, log_determinant, matmul, qr_factor, solve_lower,
     solve_lower_transposed, sum_of_squares, triangular_matmul,
 };
+use crate::evaluation::Evaluation;
 use crate::kernel::{Points, kernel_sum, weighted_squares};
-use crate::likelihood::Evaluation;
 use crate::pivoted::PivotedCholesky;
 
 /// C = F Fᵀ + ρ I, solved for the targets y.

@@ -1,58 +1,20 @@
 //! A fitted Gaussian process: fitting, and prediction.
 
+mod file;
+
 use serde::{Deserialize, Serialize};
 
 use crate::conditioning::{Conditioning, floor};
 use crate::data::{Hyperparameters, Lengths, TrainingSet};
 use crate::error::GpError;
-use crate::file::Saved;
 use crate::kernel::Points;
 use crate::likelihood::{Factored, Precision};
+use crate::options::{FitOptions, LengthScales};
 use crate::posterior::Posterior;
 use crate::range::Range;
 use crate::search::search;
 use crate::starts::shapes;
-
-/// The number of length scales that a fit chooses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LengthScales {
-    /// One length for all inputs.
-    #[default]
-    Isotropic,
-    /// One length per input.
-    PerInput,
-}
-
-/// Options of a fit.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FitOptions {
-    /// Whether all inputs share one length scale, or each input has its own.
-    pub lengths: LengthScales,
-    /// The least noise variance as a share of amplitude². It is never below n ε for n samples, which is the least with the default
-    /// of 0.
-    pub min_relative_noise: f64,
-    /// The number of starts of the search, at least 1: the best distinct points of a fixed grid.
-    pub starts: usize,
-    /// The largest number of L-BFGS iterations from each start. It is not used for one length scale without noise.
-    pub max_iterations: u64,
-    /// The largest number of inducing points, or `None` for an exact posterior. More samples than this are approximated by inducing
-    /// points, which are selected one after the other where the remaining variance is largest (variational free energy, Titsias
-    /// 2009; selection by Burt, Rasmussen and van der Wilk 2020). The cost is n m² in place of n³. [`Gp::conditioning`] returns
-    /// the variance that the points leave out.
-    pub inducing: Option<usize>,
-}
-
-impl Default for FitOptions {
-    fn default() -> Self {
-        Self {
-            lengths: LengthScales::Isotropic,
-            min_relative_noise: 0.0,
-            starts: 4,
-            max_iterations: 100,
-            inducing: None,
-        }
-    }
-}
+use file::Saved;
 
 /// Scratch for [`Gp::mean_and_variance`]; it grows on first use, and nothing is allocated afterwards.
 #[derive(Clone, Debug, Default)]
@@ -66,11 +28,11 @@ pub struct Workspace {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(try_from = "Saved", into = "Saved")]
 pub struct Gp {
-    pub(crate) hyperparameters: Hyperparameters,
-    pub(crate) log_marginal_likelihood: f64,
-    pub(crate) conditioning: Conditioning,
+    hyperparameters: Hyperparameters,
+    log_marginal_likelihood: f64,
+    conditioning: Conditioning,
     /// Variance at unit amplitude; empty of points if every target is zero.
-    pub(crate) posterior: Posterior,
+    posterior: Posterior,
 }
 
 impl Gp {
@@ -289,7 +251,7 @@ impl Gp {
 
     /// The range of the regression, for calls that cannot afford [`Gp::mean_and_variance`].
     pub fn range(&self) -> Range {
-        Range::of(self)
+        Range::of(&self.posterior, self.conditioning.relative_noise)
     }
 }
 

@@ -3,8 +3,8 @@
 
 use crate::algebra::{inverse_of_lower, qr_factor};
 use crate::kernel::{LANES, Points, kernel_column, multiply_add};
-use crate::model::Gp;
 use crate::pivoted::{PivotedCholesky, Stopping};
+use crate::posterior::Posterior;
 use crate::wide::{Wide, on_widest};
 
 /// The largest number of points of a [`Range`].
@@ -92,9 +92,8 @@ impl Wide for Product<'_> {
 }
 
 impl Range {
-    /// The range of `gp`.
-    pub(crate) fn of(gp: &Gp) -> Self {
-        let posterior = &gp.posterior;
+    /// The range of the regression with this posterior, with the noise `rho` relative to the amplitude.
+    pub(crate) fn of(posterior: &Posterior, rho: f64) -> Self {
         let stopping = Stopping {
             trace: 0.0,
             pivot: LARGEST_SHARE,
@@ -103,7 +102,6 @@ impl Range {
             keeps_kernel: false,
         };
         let pivoted = PivotedCholesky::new(&posterior.points, stopping).expect("a truncated factor is a factor");
-        let rho = gp.conditioning.relative_noise;
         let inverse = inverse_of_lower(pivoted.triangle().as_ref());
         let outer = (rho > NOISY).then(|| {
             let outer = inverse_of_lower(qr_factor(pivoted.factor(), rho).as_ref());
@@ -152,7 +150,7 @@ impl Range {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Hyperparameters, Lengths, TrainingSet, Workspace};
+    use crate::{Gp, Hyperparameters, Lengths, TrainingSet, Workspace};
 
     /// Samples of a smooth path in three inputs, with a target.
     fn gp(length: f64, noise: f64) -> Gp {

@@ -1,14 +1,15 @@
 //! Maximum marginal likelihood: a grid of starts on few samples, then L-BFGS, then L-BFGS on all samples; one length scale without
 //! noise has a search of its own.
 
+mod noise_free;
+
 use crate::climb::{self, climb};
 use crate::data::TrainingSet;
 use crate::error::GpError;
 use crate::kernel::Points;
 use crate::likelihood::{Factored, Precision};
-use crate::noise_free;
+use crate::options::{FitOptions, LengthScales};
 use crate::starts::{Bounds, LENGTH_FACTORS, RELATIVE_NOISES, shapes};
-use crate::{FitOptions, LengthScales};
 
 /// Samples the starts are tried on.
 const FEW: usize = 256;

@@ -1,7 +1,7 @@
 //! The starts of the likelihood search, and its bounds.
 
-use crate::LengthScales;
 use crate::data::TrainingSet;
+use crate::options::LengthScales;
 
 /// Length scales of the starts, as multiples of the scales of the data.
 pub(crate) const LENGTH_FACTORS: [f64; 7] = [0.025, 0.1, 0.4, 1.5, 6.0, 24.0, 96.0];

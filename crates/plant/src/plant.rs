@@ -1,5 +1,7 @@
 //! The plant: an arm that moves under torques.
 
+mod events;
+
 use arm::Arm;
 
 use crate::engine::Engine;
@@ -16,17 +18,17 @@ const FASTEST: f64 = 1e6;
 /// Joint vectors have one entry per joint, base to tip: rad, rad/s, rad/s² and N m, or m, m/s, m/s² and N for a
 /// prismatic joint. Positions are not wrapped, and limits are not enforced.
 pub struct Plant {
-    pub(crate) engine: Engine,
-    pub(crate) friction: DryFriction,
+    engine: Engine,
+    friction: DryFriction,
     weights: Vec<f64>,
     names: Vec<String>,
     step: f64,
     steps: u64,
-    pub(crate) q: Vec<f64>,
-    pub(crate) qd: Vec<f64>,
+    q: Vec<f64>,
+    qd: Vec<f64>,
     /// The result of a trial interval.
-    pub(crate) trial_q: Vec<f64>,
-    pub(crate) trial_qd: Vec<f64>,
+    trial_q: Vec<f64>,
+    trial_qd: Vec<f64>,
 }
 
 impl Plant {
@@ -159,7 +161,7 @@ impl Plant {
 
     /// Tries an interval of `time` seconds from the present state under the present torques, by extrapolated rapier
     /// steps. There is no event of dry friction within it.
-    pub(crate) fn advance(&mut self, time: f64) {
+    fn advance(&mut self, time: f64) {
         self.trial_q.copy_from_slice(&self.q);
         self.trial_qd.copy_from_slice(&self.qd);
         for (n, weight) in self.weights.iter().enumerate() {
@@ -175,7 +177,7 @@ impl Plant {
     }
 
     /// Makes the end of the trial the present state.
-    pub(crate) fn accept(&mut self) -> Result<(), PlantError> {
+    fn accept(&mut self) -> Result<(), PlantError> {
         self.check_bounds(&self.trial_q, &self.trial_qd)?;
         self.q.copy_from_slice(&self.trial_q);
         self.qd.copy_from_slice(&self.trial_qd);

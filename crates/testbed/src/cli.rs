@@ -10,15 +10,16 @@ mod diagnose;
 mod excite;
 mod numbers;
 mod rerun;
+mod shard;
 
 use crate::models::ModelKind;
-use crate::prove::Shard;
 pub use chain::ChainArgs;
 pub use diagnose::DiagnoseArgs;
 pub use excite::{ExciteArgs, Limit};
 use numbers::parse_urdf_error;
 pub use rerun::Rerun;
 use rerun::parse_rerun;
+pub use shard::Shard;
 
 /// Tracking testbed and model diagnosis for robot arms
 #[derive(Debug, Parser)]

@@ -6,31 +6,6 @@ use std::path::Path;
 use anyhow::bail;
 use serde::Serialize;
 
-use crate::models::ModelKind;
-use crate::simulation::Outcome;
-
-/// The tracking error of one model, as it is written to JSON.
-#[derive(Serialize)]
-pub struct Tracking {
-    /// The model.
-    pub model: ModelKind,
-    /// Root mean square, one per joint (rad, or m).
-    pub rms_error_rad: Vec<f64>,
-    /// Largest, one per joint (rad, or m).
-    pub max_error_rad: Vec<f64>,
-}
-
-impl Tracking {
-    /// The tracking error of a run under `model`.
-    pub fn new(model: ModelKind, outcome: &Outcome) -> Self {
-        Self {
-            model,
-            rms_error_rad: outcome.rms_error.clone(),
-            max_error_rad: outcome.max_error.clone(),
-        }
-    }
-}
-
 /// Prints `text` on standard output. A reader that stops (`| head`) is no error.
 ///
 /// # Errors

@@ -5,13 +5,15 @@ mod child;
 mod command;
 mod disturbance;
 mod experiments;
+mod place;
+mod proof;
 mod published;
 mod report;
 mod rows;
 mod shards;
 mod tracking;
+mod tracking_step;
 mod vault;
 mod work;
 
 pub use command::run;
-pub use shards::Shard;

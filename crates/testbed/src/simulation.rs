@@ -51,6 +51,28 @@ pub struct Outcome {
     pub control_step_p99: f64,
 }
 
+/// The tracking error of one model, as it is written to JSON.
+#[derive(serde::Serialize)]
+pub struct Tracking {
+    /// The model.
+    pub model: ModelKind,
+    /// Root mean square, one per joint (rad, or m).
+    pub rms_error_rad: Vec<f64>,
+    /// Largest, one per joint (rad, or m).
+    pub max_error_rad: Vec<f64>,
+}
+
+impl Tracking {
+    /// The tracking error of a run under `model`.
+    pub fn new(model: ModelKind, outcome: &Outcome) -> Self {
+        Self {
+            model,
+            rms_error_rad: outcome.rms_error.clone(),
+            max_error_rad: outcome.max_error.clone(),
+        }
+    }
+}
+
 /// The weight of the learned torque of a joint over a run: 1 for all of it, 0 for the rigid body alone.
 #[derive(Clone, Copy, Debug, serde::Serialize)]
 pub struct Weight {

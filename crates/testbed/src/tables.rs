@@ -11,10 +11,11 @@ use torque::{Samples, TorqueModel, TrainingOptions};
 
 use crate::cli::ChainArgs;
 use crate::models::ModelKind;
-use crate::output::{self, OutputFile, Tracking};
+use crate::output::{self, OutputFile};
 use crate::progress::{Pieces, Progress};
 use crate::scenario::Scenario;
-use crate::{paper, simulation, training};
+use crate::simulation::{self, Tracking};
+use crate::{paper, training};
 
 /// The training tasks of tables I and II.
 const TRAINING: [&[&str]; 2] = [&["taskA"], &["taskA", "taskB", "taskC"]];

@@ -4,7 +4,8 @@ use std::collections::HashSet;
 
 use super::Reader;
 use crate::error::ArmError;
-use crate::model::{Arm, Inertia};
+use crate::inertia::Inertia;
+use crate::model::Arm;
 
 impl<'a> Reader<'a> {
     /// Checks that the links form one tree, and returns its root.

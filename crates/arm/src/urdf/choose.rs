@@ -7,7 +7,7 @@ use urdf_rs::JointType;
 use super::Reader;
 use crate::chain::{ChainOptions, FixedBecause, FixedJoint};
 use crate::error::ArmError;
-use crate::model::JointKind;
+use crate::joint::JointKind;
 use crate::pose::Pose;
 
 /// Words in the names of grippers' joints.

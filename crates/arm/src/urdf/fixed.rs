@@ -1,6 +1,7 @@
 //! The bodies that a URDF fixes to a link.
 
-use crate::model::{FixedBody, Inertia};
+use crate::inertia::Inertia;
+use crate::model::FixedBody;
 
 /// A link beyond a fixed joint.
 pub(super) struct Attached {

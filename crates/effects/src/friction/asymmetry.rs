@@ -1,10 +1,10 @@
 //! Dry friction that differs between the two directions.
 
 use super::thermal::WARMING;
-use crate::laws::SIGN;
+use crate::laws::{ABS_SIGN, SIGN};
 use crate::{
-    Against, Cone, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
-    Spec, Term, Turn,
+    Against, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity, Spec, Term,
+    Turn,
 };
 
 /// τ = positive while q̇ > 0, −negative while q̇ < 0.
@@ -36,14 +36,6 @@ static SPEC: Spec = Spec {
     against: Against::Speed,
     experiments_against: &[("torque_offset", BRAKE), ("spring", BRAKE)],
     ..Spec::EMPTY
-};
-
-/// |sgn q̇|: one in motion, zero at a reversal.
-pub static ABS_SIGN: Law = Law {
-    name: "abs_sign",
-    column: |_, joint, motion| motion.map(|k| motion.sign(joint, k).abs()),
-    cone: Cone::Middle,
-    ..Law::PLAIN
 };
 
 /// The least asymmetry, half the difference between the directions over their mean, that is named: a smaller one is named as a

@@ -1,8 +1,7 @@
 //! Gear friction that grows with the load.
 
-use super::asymmetry::ABS_SIGN;
 use super::thermal::WARMING;
-use crate::laws::SIGN;
+use crate::laws::{ABS_SIGN, SIGN};
 use crate::{
     Against, Cone, Detectability, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter,
     Place, Quantity, Range, Spec, Systematic, Term, Turn,

@@ -2,11 +2,10 @@
 
 use ::arm::JointKind;
 
-use super::asymmetry::ABS_SIGN;
 use super::load_dependent::LOAD_SIGN;
 use super::thermal::WARMING;
 use crate::background::FRICTION_CURVE;
-use crate::laws::SIGN;
+use crate::laws::{ABS_SIGN, SIGN};
 use crate::{
     Against, Cone, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
     Range, Size, Spec, Systematic, Term, Turn,

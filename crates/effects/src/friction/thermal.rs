@@ -1,7 +1,6 @@
 //! Dry friction that falls as the drive warms up.
 
-use super::asymmetry::ABS_SIGN;
-use crate::laws::SIGN;
+use crate::laws::{ABS_SIGN, SIGN};
 use crate::{
     Against, Circumstance, Cone, Detectability, Dry, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds,
     Law, Machine, Parameter, Place, Quantity, Range, Size, Spec, Systematic, Term, Turn,

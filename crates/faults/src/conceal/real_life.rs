@@ -8,10 +8,10 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::stage::{Stream, random};
-use crate::draw::{log_uniform, sign};
+use super::streams::{Stream, random};
 use crate::motion::Reference;
 use crate::robot::Robot;
+use crate::site::{log_uniform, sign};
 use crate::truth::{Injected, Lifelike};
 
 /// The largest deviation of a recording's friction from the mean, relative.

@@ -5,12 +5,12 @@ use rand_chacha::ChaCha8Rng;
 
 use super::Stage;
 use crate::campaign::CasePlan;
-use crate::draw::{Scales, log_uniform};
 use crate::error::FaultError;
 use crate::expressed_share::{Torques, share};
 use crate::fault::{Fault, Leaves, Size, families, outside};
 use crate::machine::Run;
 use crate::motion::{DURATION, LEAD_TICKS, Reference, start};
+use crate::site::{Scales, log_uniform};
 use crate::truth::Injected;
 
 /// The largest number of attempts for a case, and for one effect.

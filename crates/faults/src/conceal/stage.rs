@@ -1,21 +1,22 @@
 //! A case in preparation: motions, baseline friction and sensors, which are drawn before the effects.
 
 use arm::{Inertia, Matrix3, Vector3};
+use rand::Rng;
 use rand::seq::IndexedRandom;
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use recording::Recording;
 
 use super::Concealment;
 use super::real_life::RealLife;
-use crate::draw::{baseline_friction, log_uniform};
+use super::streams::{Stream, random};
+use crate::draw::baseline_friction;
 use crate::error::FaultError;
 use crate::expressed_share::{Torques, deviation, low_passed, share};
 use crate::fault::Leaves;
-use crate::machine::{Machine, Run, TICK};
-use crate::motion::{DURATION, LEAD_TICKS, PAUSE, Reference, excitation, pick_and_place, start};
+use crate::machine::{Machine, Run};
+use crate::motion::{DURATION, LEAD_TICKS, PAUSE, Reference, TICK, excitation, pick_and_place, start};
 use crate::robot::Robot;
 use crate::sensor::Sensors;
+use crate::site::log_uniform;
 use crate::truth::{Injected, Truth};
 use crate::urdf_error::{with_inertial_errors, with_tool};
 
@@ -63,27 +64,6 @@ pub(crate) struct Kind {
     pub lifelike: bool,
     /// The relative error of the URDF.
     pub urdf_error: f64,
-}
-
-/// Random streams, one per purpose, so that changes in one do not affect the others.
-#[derive(Clone, Copy)]
-pub(super) enum Stream {
-    Motion,
-    Friction,
-    Sensors,
-    Noise,
-    Effects,
-    RealLife,
-    Urdf,
-}
-
-/// The random stream of the noise in recordings that are made later.
-pub(crate) const RECORD_AGAIN: u64 = 8;
-
-pub(super) fn random(seed: u64, stream: Stream) -> ChaCha8Rng {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    random.set_stream(stream as u64);
-    random
 }
 
 impl<'a> Stage<'a> {

@@ -1,7 +1,7 @@
 //! A drive that acts late.
 
 use super::prelude::*;
-use crate::machine::LONGEST_DELAY;
+use crate::part::LONGEST_DELAY;
 
 pub(super) const FAULT: Fault = Fault {
     name: "actuation_delay",

@@ -34,7 +34,7 @@ pub(super) const FAULT: Fault = Fault {
             start: reader.number("start")?,
             duration: reader.number_above("duration", 0.0)?,
             force: Vector3::from(reader.numbers("force")?),
-            shape: [Shape::Step, Shape::HalfSine, Shape::Decaying][reader.form()?],
+            course: [TimeCourse::Step, TimeCourse::HalfSine, TimeCourse::Decaying][reader.form()?],
         };
         Ok(vec![Property::Contact(contact).into()])
     },
@@ -46,34 +46,3 @@ pub(super) const FAULT: Fault = Fault {
     },
     ..Fault::ON_THE_ARM
 };
-
-/// A force on the tool (N, in the base's frame).
-pub(crate) struct Contact {
-    start: f64,
-    duration: f64,
-    pub force: Vector3<f64>,
-    shape: Shape,
-}
-
-/// The time course of a force.
-#[derive(Clone, Copy)]
-enum Shape {
-    Step,
-    HalfSine,
-    Decaying,
-}
-
-impl Contact {
-    /// The share of the force at `time` (s, on the recordings' clock).
-    pub(crate) fn at(&self, time: f64) -> f64 {
-        let x = (time - self.start) / self.duration;
-        if !(0.0..1.0).contains(&x) {
-            return 0.0;
-        }
-        match self.shape {
-            Shape::Step => 1.0,
-            Shape::HalfSine => (PI * x).sin(),
-            Shape::Decaying => (-3.0 * x).exp() * (20.0 * x).min(1.0),
-        }
-    }
-}

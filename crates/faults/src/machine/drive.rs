@@ -1,21 +1,16 @@
 //! A joint's drive: its encoder, its torque, and a rotor that is integrated separately.
 
-use super::TICK;
 use super::parts::DriveNow;
-use crate::part::Connection;
+use crate::motion::TICK;
+use crate::part::{Connection, STORED_COMMANDS};
 
 /// The drives' velocity filter (Hz).
 const VELOCITY_FILTER: f64 = 40.0;
-/// The number of commands that a drive stores, which bounds its delay (ticks).
-const MEMORY: usize = 128;
 /// The number of integration steps of a rotor per tick.
 const ROTOR_STEPS: usize = 10;
 /// The natural frequency of the lighter side against the ends of a gap (rad/s): high, but resolved by the plant's
 /// step.
 const GAP_FREQUENCY: f64 = 160.0;
-
-/// The longest delay (s) that a drive can have.
-pub(crate) const LONGEST_DELAY: f64 = (MEMORY - 2) as f64 * TICK;
 
 /// The velocity that a drive computes from its encoder: differences over each tick, through a first-order low-pass
 /// filter at 40 Hz.
@@ -48,7 +43,7 @@ impl VelocityFilter {
 pub(super) struct Drive {
     /// The encoder's position and its filtered velocity.
     pub(super) sensed: VelocityFilter,
-    commands: [f64; MEMORY],
+    commands: [f64; STORED_COMMANDS],
     /// The index of the next command.
     next: usize,
     lagging: f64,
@@ -59,7 +54,7 @@ impl Drive {
     pub(super) fn new(position: f64, holding: f64) -> Self {
         Self {
             sensed: VelocityFilter::new(position),
-            commands: [holding; MEMORY],
+            commands: [holding; STORED_COMMANDS],
             next: 0,
             lagging: holding,
         }
@@ -77,12 +72,14 @@ impl Drive {
     /// Stores the command of this tick (N m or N).
     pub(super) fn take(&mut self, command: f64) {
         self.commands[self.next] = command;
-        self.next = (self.next + 1) % MEMORY;
+        self.next = (self.next + 1) % STORED_COMMANDS;
     }
 
     /// The true mean torque that the drive applies over the coming tick (N m or N), with its delay, limit and factor.
     pub(super) fn applied(&mut self, now: &DriveNow) -> f64 {
-        let ago = |ticks: usize| self.commands[(self.next + MEMORY - 1 - ticks.min(MEMORY - 1)) % MEMORY];
+        let ago = |ticks: usize| {
+            self.commands[(self.next + STORED_COMMANDS - 1 - ticks.min(STORED_COMMANDS - 1)) % STORED_COMMANDS]
+        };
         let command = if now.delay == 0.0 {
             self.lagging = ago(0);
             self.lagging

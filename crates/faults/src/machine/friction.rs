@@ -3,7 +3,8 @@
 
 use arm::{Arm, DMatrix, Workspace};
 
-use super::{Machine, TICK};
+use super::Machine;
+use crate::motion::TICK;
 
 /// The number of ticks between evaluations of the mass matrix.
 const REFRESH: usize = 4;

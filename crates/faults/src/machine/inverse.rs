@@ -3,7 +3,8 @@
 
 use arm::{Arm, Workspace};
 
-use super::{LOAD_FILTER, Machine, TICK};
+use super::{LOAD_FILTER, Machine};
+use crate::motion::TICK;
 use crate::part::{At, Connection, DryAt, resistance};
 
 /// A motion of the links at ticks of 1 ms; `[tick × dof + joint]`.

@@ -2,8 +2,7 @@
 
 use arm::Arm;
 
-use crate::fault::external_contact::Contact;
-use crate::part::{Body, Connection, DriveLaw, DryLaw, LinkLaw, Part, Property};
+use crate::part::{Body, Connection, Contact, DriveLaw, DryLaw, LinkLaw, Part, Property};
 
 /// The parts on each joint's drive, and the parts on the whole machine.
 pub(super) struct Parts {

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use anyhow::{Context, bail};
 
-use super::cases::Files;
+use super::place::Files;
 use crate::interrupt;
 
 /// The file name of the recording of a proposed motion.
@@ -39,6 +39,15 @@ pub struct Task<'a> {
     pub next: bool,
     /// An additional training recording.
     pub more: Option<&'a Path>,
+}
+
+/// Effects in the format of `--only`.
+pub fn list(terms: &[scoring::Name]) -> String {
+    let words = terms.iter().map(|(effect, joint)| match joint {
+        Some(joint) => format!("{effect}:{joint}"),
+        None => effect.clone(),
+    });
+    words.collect::<Vec<_>>().join(",")
 }
 
 /// Diagnoses the files of `folder`: `program diagnose --robot … --train … --held-out … --json out.json --jobs 1`, with

@@ -9,41 +9,21 @@ use ::report::score::{figure, wanted};
 use ::report::terminal::table;
 use anyhow::{Context, ensure};
 use arm::Arm;
-use faults::{Program, Seal, SealedCase, sha256};
-use scoring::{Score, Truth, true_terms, wrong_term};
+use faults::{Seal, SealedCase};
+use scoring::{Truth, true_terms, wrong_term};
 use serde::Serialize;
 
-use super::cases::{Cases, Files, Place};
-use super::child::Task;
-use super::disturbance::{self, Disturbance};
+use super::cases::Cases;
+use super::child::{Task, list};
+use super::place::{Files, Place};
+use super::proof::Proof;
 use super::rows::{self, Row};
 use super::shards::{self, Label};
-use super::tracking::{self, CaseTracking};
 use super::vault::{Vault, make_folder};
-use super::{experiments, published, report, work};
+use super::{disturbance, experiments, published, report, tracking_step, work};
 use crate::cli::ProveArgs;
 use crate::interrupt;
 use crate::output::{self, OutputFile};
-
-/// The content of `score.json`.
-#[derive(Serialize)]
-pub struct Proof {
-    /// `testbed.proof/1`.
-    pub schema: &'static str,
-    /// The command that repeats the proof.
-    pub command: String,
-    /// The seal, made before the first diagnosis.
-    pub seal: Seal,
-    /// The SHA-256 of each diagnosis by case, fixed before the ground truths were opened.
-    pub answers: BTreeMap<String, Option<String>>,
-    /// The score.
-    pub score: Score,
-    /// The outcome of the paper's own disturbance, which is not in the score; campaigns of random cases have it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub paper: Option<Disturbance>,
-    /// The outcome of tracking task D on the machines of a dozen cases.
-    pub tracking: Vec<CaseTracking>,
-}
 
 /// Runs the protocol of `args`; finished steps are not repeated.
 ///
@@ -125,7 +105,7 @@ fn protocol(
             vault.diagnose(place, sealed, &format!("diagnoses/{}", place.name), task)
         })
     })?;
-    output::write_json(&vault.out.join("answers.json"), &answers(vault, places)?)?;
+    output::write_json(&vault.out.join("answers.json"), &vault.answers(places)?)?;
     // From here on, the ground truths are read.
     let truths: Mutex<BTreeMap<String, String>> = Mutex::default();
     times.of("controls", || {
@@ -170,7 +150,7 @@ fn protocol(
         .collect();
     times.of("track", || {
         work::all("tracking task D", &tracked, jobs, |(place, sealed)| {
-            tracking::step::track(source, vault, place, sealed, &truths[&place.name])
+            tracking_step::track(source, vault, place, sealed, &truths[&place.name])
         })
     })?;
     let rows: anyhow::Result<Vec<Row>> = pairs
@@ -178,7 +158,7 @@ fn protocol(
         .map(|(place, sealed)| {
             let truth = truths.remove(&place.name).unwrap_or_default();
             let is_tracked = to_track.contains(&place.number);
-            let tracking = is_tracked.then(|| tracking::step::text(vault, place)).transpose()?;
+            let tracking = is_tracked.then(|| tracking_step::text(vault, place)).transpose()?;
             Ok(Row {
                 tracking,
                 ..row(vault, place, sealed, truth)?
@@ -186,47 +166,6 @@ fn protocol(
         })
         .collect();
     Ok((seal, rows?))
-}
-
-/// Effects in the format of `--only`.
-pub fn list(terms: &[scoring::Name]) -> String {
-    let words = terms.iter().map(|(effect, joint)| match joint {
-        Some(joint) => format!("{effect}:{joint}"),
-        None => effect.clone(),
-    });
-    words.collect::<Vec<_>>().join(",")
-}
-
-impl Proof {
-    /// Scores `rows`, which are in the order of their names.
-    fn new(program: Program, source: String, command: String, rows: &[Row]) -> anyhow::Result<Self> {
-        let is_paper = |row: &&Row| row.case == disturbance::CASE;
-        let answer = |row: &Row| row.diagnosis.as_ref().map(|text| sha256(text.as_bytes()));
-        Ok(Self {
-            schema: "testbed.proof/1",
-            command,
-            seal: Seal::new(program, source, rows.iter().map(Row::sealed).collect()),
-            answers: rows.iter().map(|row| (row.case.clone(), answer(row))).collect(),
-            score: rows::score(rows.iter().filter(|row| !is_paper(row)))?,
-            paper: rows.iter().find(is_paper).map(disturbance::assess).transpose()?,
-            tracking: rows
-                .iter()
-                .filter_map(|row| row.tracked().transpose())
-                .collect::<anyhow::Result<_>>()?,
-        })
-    }
-}
-
-/// The SHA-256 of all diagnoses, by case; `None` without a diagnosis.
-///
-/// # Errors
-/// If one is not what its record says.
-pub fn answers(vault: &Vault, places: &[Place]) -> anyhow::Result<BTreeMap<String, Option<String>>> {
-    let answer = |place: &Place| {
-        let (_, text) = vault.answer(&format!("diagnoses/{}", place.name))?;
-        Ok((place.name.clone(), text.map(|text| sha256(text.as_bytes()))))
-    };
-    places.iter().map(answer).collect()
 }
 
 fn row(vault: &Vault, place: &Place, sealed: &SealedCase, truth: String) -> anyhow::Result<Row> {

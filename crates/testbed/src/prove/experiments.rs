@@ -7,8 +7,9 @@ use faults::{FaultError, SealedCase, record_again, sha256_of};
 use scoring::Answer;
 use serde::{Deserialize, Serialize};
 
-use super::cases::{Cases, Place};
+use super::cases::Cases;
 use super::child::{MORE, NEXT, Task};
+use super::place::Place;
 use super::rows;
 use super::vault::{Vault, made_of};
 use crate::output;

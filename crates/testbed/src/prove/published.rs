@@ -18,9 +18,8 @@ use faults::Seal;
 use scoring::{Answer, Published, PublishedFate, RobotScore};
 use serde::Serialize;
 
-use super::cases::Place;
-use super::child::Task;
-use super::command::{answers, list};
+use super::child::{Task, list};
+use super::place::Place;
 use super::vault::Vault;
 use super::work;
 use crate::cli::ProveArgs;
@@ -91,7 +90,7 @@ pub fn run(args: &ProveArgs, path: &Path, recordings: &Path) -> anyhow::Result<(
     work::all("diagnosing", &pairs, jobs, |(place, sealed)| {
         vault.diagnose(place, sealed, &format!("diagnoses/{}", place.name), Task::default())
     })?;
-    let answers = answers(&vault, &places)?;
+    let answers = vault.answers(&places)?;
     output::write_json(&vault.out.join("answers.json"), &answers)?;
     // The published values are opened only after all diagnoses are written.
     let truths: Mutex<BTreeMap<String, Published>> = Mutex::default();

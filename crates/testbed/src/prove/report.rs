@@ -4,7 +4,7 @@ use report::block::{Block, table, text};
 use report::numbers::percent_to_a_tenth as percent;
 use report::score;
 
-use super::command::Proof;
+use super::proof::Proof;
 use super::{disturbance, experiments, tracking};
 
 /// The self-contained HTML page.

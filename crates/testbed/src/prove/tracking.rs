@@ -7,7 +7,6 @@ mod course;
 mod plan;
 #[cfg(feature = "viewer")]
 mod show;
-pub mod step;
 mod trained;
 pub mod words;
 
@@ -22,7 +21,7 @@ use serde::{Deserialize, Serialize};
 use self::closed_loop::Rate;
 use self::course::Course;
 use self::plan::Plan;
-use super::cases::Files;
+use super::place::Files;
 use crate::scenario::Scenario;
 use study::effect_file::EffectFile;
 

@@ -1,13 +1,15 @@
 //! The files of a proof on disk: the seal, the diagnoses under it, and records of finished steps.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
 use faults::{Program, Seal, SealedCase, sha256, sha256_of};
 use serde::{Deserialize, Serialize};
 
-use super::cases::{Cases, Files, Place};
+use super::cases::Cases;
 use super::child::{self, Ended, Task};
+use super::place::{Files, Place};
 use crate::alone::Alone;
 use crate::output;
 
@@ -241,6 +243,18 @@ impl Vault {
         };
         let text = unchanged(&answer, hash)?;
         Ok((Some(record), Some(text)))
+    }
+
+    /// The SHA-256 of all diagnoses, by case; `None` without a diagnosis.
+    ///
+    /// # Errors
+    /// If one is not what its record says.
+    pub fn answers(&self, places: &[Place]) -> anyhow::Result<BTreeMap<String, Option<String>>> {
+        let answer = |place: &Place| {
+            let (_, text) = self.answer(&format!("diagnoses/{}", place.name))?;
+            Ok((place.name.clone(), text.map(|text| sha256(text.as_bytes()))))
+        };
+        places.iter().map(answer).collect()
     }
 
     /// The effects that a diagnosis named, as TOML; `None` if it gave no answer.

@@ -6,6 +6,16 @@ use report::numbers::nrmse;
 use report::statistics::rms;
 use scoring::{HeldOutErrors, RobotScore};
 
+/// The columns of errors, of a robot or of a joint.
+pub const ERRORS: [&str; 6] = [
+    "held-out error, URDF",
+    "diagnosed",
+    "published effects, fitted",
+    "learned",
+    "simulated position error (mrad or mm), URDF",
+    "diagnosed",
+];
+
 /// The root mean square over the joints that have the figure; `None` if none has.
 pub fn over_joints<T>(joints: &BTreeMap<String, T>, figure: impl Fn(&T) -> Option<f64>) -> Option<f64> {
     rms(joints.values().filter_map(figure))

@@ -4,7 +4,7 @@ use report::block::{Block, table, text};
 use report::numbers::{percent_to_a_tenth as percent, rounded};
 use scoring::{Compared, Evidence, PublishedFate, quantile};
 
-use super::fold::{error, over_joints};
+use super::fold::{ERRORS, error, over_joints};
 use super::robots::names;
 use super::{Real, Tried, figure, misses, robot_page};
 
@@ -207,16 +207,6 @@ fn by_evidence(real: &Real) -> Block {
     ];
     table(&head, 1, rows.collect())
 }
-
-/// The columns of errors, of a robot or of a joint.
-pub const ERRORS: [&str; 6] = [
-    "held-out error, URDF",
-    "diagnosed",
-    "published effects, fitted",
-    "learned",
-    "simulated position error (mrad or mm), URDF",
-    "diagnosed",
-];
 
 /// The errors on the held-out recordings.
 fn errors(real: &Real) -> Vec<Block> {

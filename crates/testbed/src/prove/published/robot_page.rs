@@ -10,8 +10,7 @@ use report::score::name;
 use scoring::{Besides, Compared, Evidence, PublishedFate, PublishedOutcome};
 
 use super::Tried;
-use super::fold::error;
-use super::page::ERRORS;
+use super::fold::{ERRORS, error};
 use super::quantities::difference;
 
 /// The robot's section.

@@ -8,7 +8,7 @@ use faults::sha256_of;
 
 use super::file::{File, Robot};
 use crate::output;
-use crate::prove::cases::Place;
+use crate::prove::place::Place;
 
 /// The robots whose folders are in `recordings`, with their published values in SI units, and the names of the others.
 ///

@@ -6,7 +6,7 @@ use serde::de::{Error, MapAccess, SeqAccess, Unexpected, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::{Effect, Value};
+use crate::effect::{Effect, Value};
 use crate::kinds::{Kind, NAMES};
 use crate::spec::{Scope, Shape, Spec};
 
@@ -24,16 +24,16 @@ impl Serialize for Effect {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("effect", self.name())?;
-        if let Some(joint) = &self.joint {
+        if let Some(joint) = self.joint() {
             map.serialize_entry("joint", joint)?;
         }
-        if let Some(other) = &self.other {
+        if let Some(other) = self.other() {
             map.serialize_entry("other", other)?;
         }
         for (parameter, value) in self.values() {
             map.serialize_entry(parameter.key, value)?;
         }
-        if let Some(onset) = self.onset {
+        if let Some(onset) = self.onset() {
             map.serialize_entry("onset", &onset)?;
         }
         map.end()
@@ -177,7 +177,7 @@ fn from_entries<E: Error>(mut entries: Vec<(String, Raw)>) -> Result<Effect, E> 
     let kind = Kind::named(&name).ok_or_else(|| E::unknown_variant(&name, &NAMES))?;
     let spec = kind.spec();
     let known = keys(spec, kind.get().has_other());
-    let mut effect = Effect::of_kind(kind);
+    let mut effect = Effect::of(kind.get());
     let mut given: Vec<String> = Vec::new();
     for (key, raw) in entries {
         if given.contains(&key) {
@@ -192,16 +192,15 @@ fn from_entries<E: Error>(mut entries: Vec<(String, Raw)>) -> Result<Effect, E> 
             };
             return Err(E::custom(format_args!("unknown field `{key}`, expected {expected}")));
         }
-        match key.as_str() {
-            "joint" => effect.joint = Some(raw.text()?),
-            "other" => effect.other = Some(raw.text()?),
-            "onset" => effect.onset = Some(raw.number()?),
-            _ => {
-                if let Some(at) = effect.place(&key) {
-                    effect.values[at] = raw.value(spec.parameters[at].shape)?;
-                }
-            }
-        }
+        effect = match key.as_str() {
+            "joint" => effect.on(raw.text()?),
+            "other" => effect.with_other(raw.text()?),
+            "onset" => effect.since(Some(raw.number()?)),
+            _ => match spec.parameters.iter().find(|parameter| parameter.key == key) {
+                Some(parameter) => effect.with(&key, raw.value(parameter.shape)?),
+                None => effect,
+            },
+        };
         given.push(key);
     }
     let is_needed = |key: &&&str| {

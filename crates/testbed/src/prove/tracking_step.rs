@@ -6,11 +6,12 @@ use anyhow::Context;
 use faults::{SealedCase, sha256, sha256_of};
 use serde::{Deserialize, Serialize};
 
-use super::Case;
+use super::cases::Cases;
+use super::place::Place;
+use super::rows;
+use super::tracking::Case;
+use super::vault::{Vault, made_of};
 use crate::output;
-use crate::prove::cases::{Cases, Place};
-use crate::prove::rows;
-use crate::prove::vault::{Vault, made_of};
 
 /// Tracks the task on the machine of a case whose truth is `truth`, into `tracking/CASE.json` (and `CASE.rrd`, with the viewer), unless
 /// that is done.

@@ -2,10 +2,10 @@
 
 use std::cell::RefCell;
 
+use super::Found;
 use crate::data::TrainingSet;
 use crate::likelihood::{Factored, Precision};
 use crate::line::{Goal, Line, Maximum};
-use crate::search::Found;
 use crate::starts::LENGTH_FACTORS;
 
 /// Samples on which noise is looked for, and on which length scales are tried first.

@@ -1,9 +1,10 @@
 //! The pose of each link in its parent, for the recursions.
 
-use crate::model::{Arm, Joint, JointKind};
+use super::Scratch;
+use crate::joint::{Joint, JointKind};
+use crate::model::Arm;
 use crate::real::Real;
 use crate::small::{Mat3, Vec3};
-use crate::workspace::Scratch;
 
 /// A pose `parent_from_link`.
 #[derive(Clone, Copy, Debug)]
