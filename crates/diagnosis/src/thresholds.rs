@@ -71,7 +71,7 @@ decisive! {
     /// larger one's form.
     beside_a_larger: 0.1,
     /// The part of a larger effect of certain form on the same joint that an effect must exceed.
-    beside_a_certain: 0.05,
+    beside_a_certain: 0.02,
     /// The least share of an unmodelled form in a joint's torque.
     least_unmodelled_share: 0.012,
     /// The evidence that an unmodelled form must bring (nats).

@@ -10,12 +10,14 @@ use crate::data::measure;
 use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
 use crate::data::statistics::mean;
-use crate::thresholds::{CHANNEL_MOVES, FAR_TOO_SMALL, IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED};
+use crate::thresholds::{CHANNEL_MOVES, EXPLAINS_THE_LIMITED, FAR_TOO_SMALL, IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED};
 
 /// The number of samples on either side over which positions are compared.
 const STEP: usize = 5;
 /// The number of stretches of the cross-validation.
 const FOLDS: usize = 5;
+/// The quantiles of the magnitudes of a torque channel that are tried as the drive's limit.
+const LIMITS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 /// The ridge of the regression, relative to columns of unit power, against collinear columns.
 const RIDGE: f64 = 1e-4;
 
@@ -127,7 +129,20 @@ fn of_another_kind(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: u
     let all: Vec<&Vec<f64>> = rows.plain.iter().chain(&rows.more).collect();
     let plain: Vec<&Vec<f64>> = rows.plain.iter().collect();
     let error = cross_validated(&plain, &rows.torque).min(cross_validated(&all, &rows.torque));
-    (error > UNRELATED).then(|| Why::Unrelated((1.0 - error * error).max(0.0)))
+    let is_limited = || {
+        // A drive that reports the torque that is commanded reaches its limit: only the part below the limit moves the joint.
+        let limits = LIMITS.map(|share| quantile(&rows.torque, share));
+        let clipped = |limit: f64| rows.torque.iter().map(|tau| tau.clamp(-limit, limit)).collect::<Vec<f64>>();
+        limits.into_iter().any(|limit| cross_validated(&all, &clipped(limit)) < EXPLAINS_THE_LIMITED)
+    };
+    (error > UNRELATED && !is_limited()).then(|| Why::Unrelated((1.0 - error * error).max(0.0)))
+}
+
+/// The quantile of the magnitudes of a signal.
+fn quantile(signal: &[f64], share: f64) -> f64 {
+    let mut sizes: Vec<f64> = signal.iter().map(|value| value.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    sizes[(share * (sizes.len() - 1) as f64).round() as usize]
 }
 
 fn rows(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Rows {

@@ -33,6 +33,8 @@ pub const LEAST_CHANNEL_ROWS: usize = 200;
 pub const FAR_TOO_SMALL: f64 = 0.05;
 /// A channel holds another signal if all models have at least this error (NRMSE) on stretches that they were not fitted to.
 pub const UNRELATED: f64 = 0.97;
+/// A channel whose values are clipped at some limit is a torque if the models have at most this error there (NRMSE).
+pub const EXPLAINS_THE_LIMITED: f64 = 0.6;
 /// A dead channel varies by less than this part of the variation of the model's torque, and by no more than [`NOISE_ALONE`]
 /// allows.
 pub const DEAD: f64 = 0.05;
