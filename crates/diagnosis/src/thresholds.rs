@@ -64,7 +64,7 @@ decisive! {
     /// The least share of a named effect in a joint's torque.
     least_share: 0.012,
     /// The evidence that a named effect must bring (nats).
-    least_evidence: 25.0,
+    least_evidence: 20.0,
     /// The evidence that a named effect must bring beyond the simpler effect that it generalises (nats).
     least_beyond: 15.0,
     /// The part of a larger effect on the same joint that an effect must exceed: a smaller effect may be an error of the

@@ -23,6 +23,7 @@ use crate::report::{
 use crate::search::study::Study;
 use crate::selection::FinalFit;
 use crate::selection::predict::{errors, exported};
+use crate::selection::torque_constants;
 
 /// The conclusions from the final fit.
 pub struct Conclusion {
@@ -39,6 +40,8 @@ pub struct Conclusion {
     pub not_observable: Vec<NotObservable>,
     changed: Option<Vec<String>>,
     traces: Traces,
+    /// A note on torques that only the background explains.
+    unnamed: Option<String>,
 }
 
 impl Conclusion {
@@ -101,6 +104,7 @@ impl Conclusion {
         }
         Self {
             located,
+            unnamed: torque_constants::note_on_unnamed(study, &judged.named),
             traces: traces(study, judged, &findings, [residual, &by_exported]),
             not_observable: not_named(not_testable(study, products, &judged.named), &findings),
             findings,
@@ -127,6 +131,7 @@ impl Conclusion {
             chosen.map(|source| source.name.clone()).collect()
         };
         let effects = self.effects().collect();
+        study.motions.remarks.extend(self.unnamed);
         let findings: Vec<Finding> = self.findings.into_iter().map(|(finding, _)| finding).collect();
         let report = Report {
             schema: SCHEMA,

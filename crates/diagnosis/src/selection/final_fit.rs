@@ -226,7 +226,7 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str)
         }
         // A payload or a factor on the inertial parameters improves the fit whenever the inertial parameters are wrong in any way.
         let is_small = !hypothesis.is_friction() && member.share() < LEAST_UNDECIDED;
-        let margin = || standing(study, &study.problem(&products), &judged.named, member.candidate).margin;
+        let margin = || standing(study, &study.problem(&products), &judged.named, member.candidate).margin_over_single;
         if (is_small || hypothesis.is_wrong_mass() || hypothesis.is(&TorqueScale)) && margin() < UNDECIDED_NATS {
             return Some("another effect explains nearly as much in its place");
         }

@@ -29,6 +29,8 @@ pub struct Standing {
     pub pairs: Vec<[Named; 2]>,
     /// The evidence for the finding against its best alternative (nats).
     pub margin: f64,
+    /// The same without the alternative of one effect on each joint, which is less likely than a common cause.
+    pub margin_over_single: f64,
 }
 
 impl Standing {
@@ -143,6 +145,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
         )
     };
     let mut results: Vec<_> = alone.iter().map(|(c, next)| result(*c, next)).collect();
+    let mut on_all_joints = f64::INFINITY;
     if let Some(same) = finding.hypothesis.spec().same_on_all_joints {
         // Without a known load, a common factor of all masses and one of all torques cannot be distinguished.
         let factors: Vec<usize> = (0..study.candidates.len())
@@ -150,6 +153,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
             .collect();
         let next = problem.choose([&set[..], &factors].concat(), &chosen.fit.weights);
         if factors.iter().all(|&c| problem.is_possible(c, &next.fit)) {
+            on_all_joints = next.score - chosen.score;
             results.extend(factors.iter().map(|&c| result(c, &next)));
         }
     }
@@ -199,12 +203,16 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
         .iter()
         .map(|result| result.1)
         .chain(pairs.iter().map(|pair| pair.1));
-    let margin = scores.fold(explained, f64::min);
+    let scores: Vec<f64> = scores.collect();
+    let margin = scores.iter().copied().fold(explained, f64::min);
+    let singles = scores.iter().copied().filter(|&score| score != on_all_joints);
+    let margin_over_single = singles.fold(explained, f64::min);
     rivals.extend(alias.filter(|alias| !rivals.contains(alias)));
     Standing {
         rivals,
         pairs: pairs.into_iter().map(|pair| pair.2).collect(),
         margin,
+        margin_over_single,
     }
 }
 

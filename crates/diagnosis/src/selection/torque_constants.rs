@@ -6,7 +6,7 @@ use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::selection::bootstrap::resample;
 use crate::selection::judge::{self, Judged};
-use crate::thresholds::{LEAST_TORQUE_ACCURACY, SYSTEMATIC, TOLERANCE};
+use crate::thresholds::{LEAST_TORQUE_ACCURACY, MOST_USUAL, SYSTEMATIC, TOLERANCE};
 
 /// The relative standard deviation of the torque constants: the stated one, or the one that the recordings require beside the effects of
 /// `set`.
@@ -57,6 +57,25 @@ pub fn name_those_beyond_tolerance(study: &mut Study, judged: &mut Judged, tried
             keep_named_ones(study, &judged.named.set);
         }
     }
+}
+
+/// A note on the torque constants that the background corrects by more than such constants usually deviate and that no finding names,
+/// because other effects explain the same. Without it, the model would seem to explain these torques as it is.
+pub fn note_on_unnamed(study: &Study, chosen: &Selection) -> Option<String> {
+    let least = MOST_USUAL * study.stated.torque_accuracy();
+    let factor = |joint: usize| {
+        let deviation = chosen.fit.coefficient(study.torque_constant(joint)?);
+        let name = &study.arm.joints()[joint].name;
+        (deviation.abs() > least).then(|| format!("{name} × {:.2}", 1.0 + deviation))
+    };
+    let factors: Vec<String> = (0..study.motions.dof).filter_map(factor).collect();
+    (!factors.is_empty()).then(|| {
+        format!(
+            "the errors contain corrections of the torques that no finding names: {}. Wrong torque constants, or wrong masses, \
+             would explain them; these recordings do not tell which. A recording with a known load on the tool would",
+            factors.join(", ")
+        )
+    })
 }
 
 /// The joint whose torque constant deviates most beyond tolerance, with the candidate that names it.

@@ -26,6 +26,8 @@ pub const TOLERANCE: f64 = 2.5;
 pub const MOST_CONSTANT: f64 = 0.2;
 /// The same in standard deviations of the torque constants, where the user states a larger one.
 pub const MOST_DEVIATIONS: f64 = 4.0;
+/// The deviation of a torque constant in the background, in standard deviations, beyond which a note tells of it.
+pub const MOST_USUAL: f64 = 2.0;
 /// The evidence that a part of the background must bring (nats).
 pub const PER_BACKGROUND_PART: f64 = 4.0;
 /// The evidence that a separate strength of one link must bring (nats).
