@@ -5,6 +5,31 @@ mod support;
 use diagnosis::Verdict;
 use support::{ELBOW, Motion, SHOULDER, TURN, diagnosed, trio};
 
+/// Torque constants that are wrong on all joints, each by another part, are told although no finding names them.
+#[test]
+fn torques_that_only_the_background_explains_are_told() {
+    let factors = [1.16, 1.2, 1.13];
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        support::baseline_friction(motion, tau);
+        tau.iter_mut().zip(factors).for_each(|(tau, factor)| *tau *= factor);
+    };
+    let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
+    let is_named = |joint: &str| {
+        let findings = &diagnosis.report.findings;
+        findings
+            .iter()
+            .any(|finding| finding.effect == "torque_scale" && finding.joint.as_deref() == Some(joint))
+            || findings.iter().any(|finding| finding.joint.is_none())
+    };
+    let remarks = diagnosis.remarks.join("\n");
+    for joint in ["turn", "shoulder", "elbow"] {
+        assert!(
+            is_named(joint) || remarks.contains(&format!("{joint} ×")),
+            "{joint}: {remarks}"
+        );
+    }
+}
+
 /// A small torque in a part of the elbow's range depends on three joints at once, and no regressor predicts it. The list of
 /// unexplained residuals is not empty if the verdict is unexplained.
 #[test]

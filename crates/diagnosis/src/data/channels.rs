@@ -10,7 +10,9 @@ use crate::data::measure;
 use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
 use crate::data::statistics::mean;
-use crate::thresholds::{CHANNEL_MOVES, EXPLAINS_THE_LIMITED, FAR_TOO_SMALL, IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED};
+use crate::thresholds::{
+    CHANNEL_MOVES, EXPLAINS_THE_LIMITED, FAR_TOO_SMALL, IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED,
+};
 
 /// The number of samples on either side over which positions are compared.
 const STEP: usize = 5;
@@ -132,8 +134,15 @@ fn of_another_kind(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: u
     let is_limited = || {
         // A drive that reports the torque that is commanded reaches its limit: only the part below the limit moves the joint.
         let limits = LIMITS.map(|share| quantile(&rows.torque, share));
-        let clipped = |limit: f64| rows.torque.iter().map(|tau| tau.clamp(-limit, limit)).collect::<Vec<f64>>();
-        limits.into_iter().any(|limit| cross_validated(&all, &clipped(limit)) < EXPLAINS_THE_LIMITED)
+        let clipped = |limit: f64| {
+            rows.torque
+                .iter()
+                .map(|tau| tau.clamp(-limit, limit))
+                .collect::<Vec<f64>>()
+        };
+        limits
+            .into_iter()
+            .any(|limit| cross_validated(&all, &clipped(limit)) < EXPLAINS_THE_LIMITED)
     };
     (error > UNRELATED && !is_limited()).then(|| Why::Unrelated((1.0 - error * error).max(0.0)))
 }

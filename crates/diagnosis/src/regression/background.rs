@@ -1,8 +1,8 @@
 //! The background of every fit: corrections of the URDF, of friction curves and of torque constants, under a prior.
 //!
-//! Inertial parameters: δπ_k ~ N(0, ρ² H_k⁻¹) about the URDF's values, H_k\[a, b\] = tr(P_k⁻¹ B_a P_k⁻¹ B_b) with P_k the link's
-//! pseudo-inertia and B_a = ∂P/∂π_a. It is the second-order form of the entropic divergence of Lee, Wensing and Park (2020):
-//! free of coordinates and units, so that ρ = 0.1 reads "ten per cent of each link's own mass, size and shape".
+//! Inertial parameters: p(δπ_k) ∝ exp(−½ tr(S_k²) / ρ²), S_k the logarithm of the link's pseudo-inertia relative to the URDF's: the
+//! affine-invariant metric of Lee, Wensing and Park (2020), free of coordinates and units, so that ρ = 0.1 reads "ten per cent of
+//! each link's own mass, size and shape". It is expanded about the bodies of the last fit ([`Quadratic`]).
 
 use std::fmt;
 

@@ -114,7 +114,8 @@ pub fn prior_about(nominal: &[f64], change: &[f64]) -> Quadratic {
     let gradient = DVector::from_fn(PER_LINK, |a, _| (0..4).map(|i| logs[i] * directions[a][(i, i)]).sum());
     let body = lower * eigen.recompose() * lower.transpose();
     let about = DVector::from_column_slice(&parameters_of(&(body - floor)));
-    let step = Cholesky::new(precision.clone()).map_or_else(|| DVector::zeros(PER_LINK), |factor| factor.solve(&gradient));
+    let step =
+        Cholesky::new(precision.clone()).map_or_else(|| DVector::zeros(PER_LINK), |factor| factor.solve(&gradient));
     Quadratic {
         precision,
         centre: about - step,
@@ -166,10 +167,41 @@ mod tests {
                 tensor[(2, 2)],
             ];
             let metric = prior_about(&parameters, &[0.0; PER_LINK]).precision;
-            let step = nalgebra::DVector::from_iterator(PER_LINK, parameters.iter().map(|p| 0.1 * p));
+            let step = DVector::from_iterator(PER_LINK, parameters.iter().map(|p| 0.1 * p));
             let length = (step.transpose() * &metric * &step)[(0, 0)].sqrt();
             assert!((length - 0.2).abs() < 1e-9, "{length}");
             assert!(Cholesky::new(metric).is_some());
+        }
+    }
+
+    /// ½ tr(S²) of a body, by another formula: the eigenvalues of P₀⁻¹ P are those of exp(S).
+    fn half_square(nominal: &[f64], change: &[f64]) -> f64 {
+        let product =
+            floored(nominal).try_inverse().expect("it is positive") * (floored(nominal) + pseudo_inertia(change));
+        let logs = product.complex_eigenvalues().map(|value| value.re.ln());
+        0.5 * logs.norm_squared()
+    }
+
+    /// The quadratic has the slope of the prior at the body about which it is expanded, which may be far from the URDF's.
+    #[test]
+    fn the_quadratic_has_the_slope_of_the_prior() {
+        let nominal = [2.0, 0.2, 0.0, 0.4, 0.3, 0.01, 0.4, 0.02, 0.0, 0.2];
+        for change in [[0.0; PER_LINK], [1.5, -0.1, 0.1, 0.3, 0.2, 0.05, 0.3, -0.04, 0.02, 0.1]] {
+            let Quadratic { precision, centre } = prior_about(&nominal, &change);
+            let slope = precision * (DVector::from_column_slice(&change) - centre);
+            for k in 0..PER_LINK {
+                let at = |step: f64| {
+                    let mut moved = change;
+                    moved[k] += step;
+                    half_square(&nominal, &moved)
+                };
+                let expected = (at(1e-6) - at(-1e-6)) / 2e-6;
+                assert!(
+                    (slope[k] - expected).abs() < 1e-5 * expected.abs().max(1.0),
+                    "{k}: {} {expected}",
+                    slope[k]
+                );
+            }
         }
     }
 }

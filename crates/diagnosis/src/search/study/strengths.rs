@@ -358,8 +358,10 @@ impl Study {
         if next.score >= chosen.score - 1e-6 {
             return None;
         }
+        let before = strengths.impossible_constants.len();
         let (strengths, next) = self.with_possible_constants(bare, strengths, next);
-        (next.score < chosen.score - 1e-6).then_some((strengths, next))
+        let pays = strengths.impossible_constants.len() == before || next.score < chosen.score - 1e-6;
+        pays.then_some((strengths, next))
     }
 
     /// The fit of `chosen` beside a background of these strengths, from which those torque constants are left out, the farthest one
@@ -378,7 +380,9 @@ impl Study {
                 let column = self.torque_constant(joint)?;
                 Some((chosen.fit.coefficient(column).abs(), joint)).filter(|(deviation, _)| *deviation > most)
             };
-            let farthest = (0..self.motions.dof).filter_map(deviation).max_by(|a, b| a.0.total_cmp(&b.0));
+            let farthest = (0..self.motions.dof)
+                .filter_map(deviation)
+                .max_by(|a, b| a.0.total_cmp(&b.0));
             let Some((_, joint)) = farthest else {
                 return (strengths, chosen);
             };
