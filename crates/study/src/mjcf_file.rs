@@ -3,7 +3,7 @@
 #[cfg(test)]
 mod tests;
 
-use arm::{Arm, Frame, Inertia, Joint, JointKind, Matrix3, Pose};
+use arm::{Arm, Frame, Inertia, Joint, JointKind, Pose};
 use effects::Effect;
 use effects::arm::{GravityMisalignment, Payload};
 use effects::drive::TorqueSaturation;
@@ -14,12 +14,7 @@ use quick_xml::events::{BytesEnd, BytesStart, BytesText, Event};
 use torque::Corrected;
 
 use crate::held::{self, Export, Held};
-
-/// The mass and moment of inertia of links that the URDF leaves massless (kg, kg m²); MuJoCo requires more than 1e-15.
-const LEAST_MASS: f64 = 1e-12;
-const LEAST_MOMENT: f64 = 1e-13;
-/// The share of a body's largest second moment of mass by which its smallest may be negative, for rounding.
-const ROUNDING: f64 = 1e-9;
+use crate::nearest_body::{LEAST_MASS, nearest_body};
 
 /// `arm` with `effects` as MJCF: bodies, joints with damping, frictionloss, armature, linear springs and encoder offsets
 /// (`ref`), the payload as a body of its own, and a motor on each joint. The frames of welded links are sites; shapes are
@@ -215,27 +210,6 @@ impl Model<'_> {
         }
         Ok(())
     }
-}
-
-/// The body with a mass and a tensor that MuJoCo accepts, and whether the tensor was physically impossible.
-fn nearest_body(body: &Inertia) -> (Inertia, bool) {
-    // The second moments of mass, ½ tr(I) 1 − I, of a body are not negative.
-    let second = Matrix3::identity() * (0.5 * body.tensor.trace()) - body.tensor;
-    let mut parts = second.symmetric_eigen();
-    let largest = parts.eigenvalues.amax();
-    let is_wrong = parts.eigenvalues.min() < -1e-6 * largest;
-    let least = (ROUNDING * largest).max(LEAST_MOMENT);
-    if parts.eigenvalues.min() >= least && body.mass >= LEAST_MASS {
-        return (*body, false);
-    }
-    parts.eigenvalues.iter_mut().for_each(|value| *value = value.max(least));
-    let second = parts.recompose();
-    let possible = Inertia {
-        mass: body.mass.max(LEAST_MASS),
-        com: body.com,
-        tensor: Matrix3::identity() * second.trace() - second,
-    };
-    (possible, is_wrong)
 }
 
 fn inertial(xml: &mut Xml, body: &Inertia) -> anyhow::Result<()> {

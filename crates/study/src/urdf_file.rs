@@ -15,6 +15,7 @@ use torque::Corrected;
 
 use self::scan::{JointPlaces, LinkPlaces, Place, Places};
 use crate::held::{self, Export, Held};
+use crate::nearest_body::nearest_body;
 
 /// The attribute of a `<dynamics>` element whose friction a diagnosis found; other programs ignore it.
 const SOURCE: (&str, &str) = ("source", "testbed");
@@ -34,7 +35,7 @@ pub fn corrected_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Resu
         let drive = effect.joint().and_then(|joint| places.drives.get(joint));
         drive.is_some_and(|drive| drive.rotor.is_none())
     };
-    let omitted = held::left_out(effects, |effect| match held::in_common(effect) {
+    let mut omitted = held::left_out(effects, |effect| match held::in_common(effect) {
         Held::Whole if effect.is(&RotorInertia) && is_described(effect) => {
             Held::Without("the file has a transmission of this joint, which stays as it was")
         }
@@ -44,6 +45,17 @@ pub fn corrected_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Resu
         .iter()
         .filter(|effect| held::in_common(effect) == Held::Whole)
         .count();
+    for changed in changed_links(arm, effects, &places)? {
+        if changed
+            .body
+            .is_some_and(|body| changed.is_estimated && nearest_body(&body).1)
+        {
+            omitted.push(format!(
+                "the inertia tensor of link \"{}\": no body has it, because the recordings do not determine it; the nearest possible one is in it",
+                changed.link
+            ));
+        }
+    }
     let mut lines = vec![format!(
         "Corrected by testbed diagnose: {whole} of {} effects are in it.",
         effects.len()
@@ -93,12 +105,21 @@ pub fn stated_drive_inertias(urdf: &str) -> anyhow::Result<Vec<(String, f64)>> {
 fn edited(urdf: &str, places: &Places, arm: &Arm, effects: &[Effect], remark: String) -> anyhow::Result<String> {
     Corrected::new(arm, effects)?;
     let mut edits: Vec<(Range<usize>, String)> = Vec::new();
-    for (link, body) in changed_links(arm, effects, places)? {
+    for Changed {
+        link,
+        body,
+        is_estimated,
+    } in changed_links(arm, effects, places)?
+    {
         let found = places
             .links
             .get(&link)
             .with_context(|| format!("the URDF has no link \"{link}\""))?;
-        edits.extend(found.edit(body));
+        let possible = |body: Inertia| match nearest_body(&body) {
+            (nearest, true) if is_estimated => nearest,
+            _ => body,
+        };
+        edits.extend(found.edit(body.map(possible)));
     }
     for joint in arm.joints() {
         let Some((damping, friction)) = held::friction(joint, effects) else {
@@ -142,8 +163,18 @@ fn edited(urdf: &str, places: &Places, arm: &Arm, effects: &[Effect], remark: St
     Ok(text)
 }
 
-/// The URDF links whose inertials change, each with its new body in its own frame; `None` for no body.
-fn changed_links(arm: &Arm, effects: &[Effect], places: &Places) -> anyhow::Result<Vec<(String, Option<Inertia>)>> {
+/// A URDF link whose inertials change.
+struct Changed {
+    link: String,
+    /// Its new body in its own frame; `None` for no body.
+    body: Option<Inertia>,
+    /// Whether the body is an estimate, which may be impossible where the recordings do not determine it, and not the URDF's times a
+    /// factor, which stays as it is.
+    is_estimated: bool,
+}
+
+/// The URDF links whose inertials change.
+fn changed_links(arm: &Arm, effects: &[Effect], places: &Places) -> anyhow::Result<Vec<Changed>> {
     let always: Vec<Effect> = effects
         .iter()
         .filter(|effect| effect.onset().is_none())
@@ -165,8 +196,16 @@ fn changed_links(arm: &Arm, effects: &[Effect], places: &Places) -> anyhow::Resu
             .any(|effect| effect.is(&InertialParameters))
         {
             // The recordings only determine the body of all welded links together, which is written to the first.
-            changed.push((joint.link_name.clone(), Some(corrected.arm().joints()[j].inertia)));
-            changed.extend(welded.map(|link| (link.clone(), None)));
+            changed.push(Changed {
+                link: joint.link_name.clone(),
+                body: Some(corrected.arm().joints()[j].inertia),
+                is_estimated: true,
+            });
+            changed.extend(welded.map(|link| Changed {
+                link: link.clone(),
+                body: None,
+                is_estimated: true,
+            }));
             continue;
         }
         let factor: f64 = always
@@ -192,10 +231,11 @@ fn changed_links(arm: &Arm, effects: &[Effect], places: &Places) -> anyhow::Resu
             let mut body = found.inertia;
             body.mass *= factor;
             body.tensor *= factor;
-            changed.push((
-                link.clone(),
-                Some(payloads.iter().fold(body, |body, payload| body.merged(payload))),
-            ));
+            changed.push(Changed {
+                link: link.clone(),
+                body: Some(payloads.iter().fold(body, |body, payload| body.merged(payload))),
+                is_estimated: !payloads.is_empty(),
+            });
         }
     }
     Ok(changed)

@@ -9,6 +9,8 @@ use effects::friction::{CoulombFriction, FrictionAsymmetry, ViscousFriction};
 use effects::sensor::TorqueOffset;
 use torque::{Prediction, TorqueModel, Workspace};
 
+use arm::Matrix3;
+
 use super::*;
 
 const PUMA: &str = include_str!("../../../../assets/puma560.urdf");

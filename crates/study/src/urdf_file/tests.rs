@@ -35,7 +35,7 @@ fn effects() -> Vec<Effect> {
         Effect::of(&Payload)
             .with("mass", 1.5)
             .with("com", [0.1, 0.02, 0.3])
-            .with("inertia", [0.03, 0.001, 0.02, 0.0, 0.002, 0.01]),
+            .with("inertia", [0.03, 0.001, 0.025, 0.0, 0.002, 0.02]),
         Effect::of(&LinkInertialError).on("b").with("relative", 0.2),
         Effect::of(&InertialScale).with("factor", 1.1),
         Effect::of(&TorqueOffset).on("b").with("offset", 0.3),
@@ -196,4 +196,30 @@ fn drive_inertias_are_written_for_drake() {
     let Export { text, omitted } = corrected_urdf(TWO, &arm, &[drive("a")]).expect("it is written");
     assert!(omitted[0].contains("transmission of this joint"), "{omitted:?}");
     assert!(!text.contains("drake:"), "{text}");
+}
+
+/// A payload whose moments the recordings do not determine may leave a tool that no body has. What is written can be read again.
+#[test]
+fn a_payload_that_leaves_no_body_is_written_as_the_nearest_one() {
+    let payload = Effect::of(&Payload)
+        .with("mass", -0.2)
+        .with("com", [0.15, 0.0, 0.0])
+        .with("inertia", [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let urdf = TWO.replace(
+        "<link name=\"tool\" />",
+        "<link name=\"tool\"><inertial><mass value=\"0.5\"/><inertia ixx=\"0.001\" ixy=\"0\" ixz=\"0\" iyy=\"0.001\" iyz=\"0\" izz=\"0.001\"/></inertial></link>",
+    );
+    let corrected = corrected_urdf(&urdf, &read(&urdf), &[payload]).expect("it can be written");
+    assert!(
+        corrected
+            .omitted
+            .iter()
+            .any(|line| line.contains("the inertia tensor of link \"tool\"")),
+        "{:?}",
+        corrected.omitted
+    );
+    let again = Places::of(&corrected.text).expect("it is XML");
+    let tool = &again.links["tool"].inertia;
+    assert!((tool.mass - 0.3).abs() < 1e-12, "{tool:?}");
+    assert!(!nearest_body(tool).1, "{tool:?}");
 }
