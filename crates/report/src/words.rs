@@ -204,19 +204,15 @@ pub fn verdict(report: &Report) -> String {
     };
     let is_validated = !report.recordings.held_out.is_empty();
     match report.verdict {
-        Verdict::NoMismatch if report.findings.is_empty() => {
-            "The model explains the recordings: no unmodelled effect is detectable in them.".into()
-        }
+        Verdict::NoMismatch if report.findings.is_empty() => format!(
+            "The model explains the recordings{}: no unmodelled effect is detectable in them.",
+            up_to(report)
+        ),
         Verdict::NoMismatch => format!("The model explains the recordings, apart from {effects} on {on}."),
-        Verdict::Explained if is_validated => {
-            let up_to = largest_error(report).map_or_else(String::new, |(joint, error)| {
-                format!(
-                    " to within {} times the torque's standard deviation ({joint})",
-                    numbers::nrmse(error)
-                )
-            });
-            format!("The model omits {effects} on {on}. With these effects, the model explains the recordings{up_to}.")
-        }
+        Verdict::Explained if is_validated => format!(
+            "The model omits {effects} on {on}. With these effects, the model explains the recordings{}.",
+            up_to(report)
+        ),
         Verdict::Explained => format!(
             "The model omits {effects} on {on}. With these effects, the model fits the training recordings; the fit is \
              not validated, because no recording is held out."
@@ -256,6 +252,16 @@ pub fn verdict(report: &Report) -> String {
                 .into()
         }
     }
+}
+
+/// The largest error on the held-out recordings with the effects found, as a phrase with its joint; empty for a small one.
+fn up_to(report: &Report) -> String {
+    largest_error(report).map_or_else(String::new, |(joint, error)| {
+        format!(
+            " to within {} times the torque's standard deviation ({joint})",
+            numbers::nrmse(error)
+        )
+    })
 }
 
 /// The joint with the largest error on the held-out recordings with the effects found, if the error is large enough to be

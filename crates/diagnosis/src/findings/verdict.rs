@@ -87,32 +87,29 @@ pub fn poorly_predicted(study: &Study, fit: &BTreeMap<String, JointFit>, unexpla
     }
 }
 
-/// The joints on which the nominal residual exceeds the errors of noise and filtering, for recordings without findings
-/// whose residual no regressor predicts. The mismatch is reported on these joints, with the state in which it is largest.
-pub fn only_located(located: &[Located], fit: &BTreeMap<String, JointFit>) -> Vec<Unexplained> {
-    let one = |located: &Located| {
-        let error = |fit: &JointFit| fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented);
-        let mut depends_on: Vec<String> = Vec::new();
-        for region in &located.regions {
+/// Adds the place where the nominal residual is largest to the entries without one, for recordings without findings: their
+/// residual is the nominal one.
+pub fn with_places(located: &[Located], unexplained: &mut [Unexplained]) {
+    for open in unexplained.iter_mut().filter(|open| open.depends_on.is_empty()) {
+        let Some(place) = located.iter().find(|located| located.joint == open.joint) else {
+            continue;
+        };
+        for region in &place.regions {
             let on = match region.axis {
                 "near_reversal" | "speed" => "own_speed",
                 "angle" => "own_position",
                 "elapsed_time" => "time",
                 axis => axis,
             };
-            if !depends_on.iter().any(|known| known == on) {
-                depends_on.push(on.to_owned());
+            if !open.depends_on.iter().any(|known| known == on) {
+                open.depends_on.push(on.to_owned());
             }
         }
-        Unexplained {
-            next: sentences::next_experiment(&located.joint, depends_on.first().map_or("", String::as_str)),
-            joint: located.joint.clone(),
-            share: fit.get(&located.joint).map_or(0.0, error),
-            depends_on,
-            time: located.time.clone(),
+        if let Some(first) = open.depends_on.first() {
+            open.next = sentences::next_experiment(&open.joint, first);
         }
-    };
-    located.iter().map(one).collect()
+        open.time.clone_from(&place.time);
+    }
 }
 
 /// The reasons why the recordings are not sufficient for a diagnosis; empty if they are.

@@ -114,7 +114,8 @@ pub fn prior_about(nominal: &[f64], change: &[f64]) -> Quadratic {
     let gradient = DVector::from_fn(PER_LINK, |a, _| (0..4).map(|i| logs[i] * directions[a][(i, i)]).sum());
     let body = lower * eigen.recompose() * lower.transpose();
     let about = DVector::from_column_slice(&parameters_of(&(body - floor)));
-    let step = Cholesky::new(precision.clone()).map_or_else(|| DVector::zeros(PER_LINK), |factor| factor.solve(&gradient));
+    let step =
+        Cholesky::new(precision.clone()).map_or_else(|| DVector::zeros(PER_LINK), |factor| factor.solve(&gradient));
     Quadratic {
         precision,
         centre: about - step,

@@ -240,11 +240,7 @@ impl PriorDraws {
         let mut precision = DMatrix::zeros(p, p);
         precision.view_mut((0, 0), own.shape()).copy_from(&own);
         let lower = own.clone().cholesky().map_or(own, nalgebra::Cholesky::unpack);
-        Self {
-            precision,
-            pull,
-            lower,
-        }
+        Self { precision, pull, lower }
     }
 
     /// K ξ for the right-hand side of `p` columns, ξ ~ N(0, K⁻¹).

@@ -378,7 +378,9 @@ impl Study {
                 let column = self.torque_constant(joint)?;
                 Some((chosen.fit.coefficient(column).abs(), joint)).filter(|(deviation, _)| *deviation > most)
             };
-            let farthest = (0..self.motions.dof).filter_map(deviation).max_by(|a, b| a.0.total_cmp(&b.0));
+            let farthest = (0..self.motions.dof)
+                .filter_map(deviation)
+                .max_by(|a, b| a.0.total_cmp(&b.0));
             let Some((_, joint)) = farthest else {
                 return (strengths, chosen);
             };
