@@ -10,7 +10,7 @@ use crate::report::{Finding, JointFit, Located, TimeWindow, Unexplained, Verdict
 use crate::search::study::Study;
 use crate::selection::judge::Judged;
 use crate::selection::predict::structured;
-use crate::thresholds::{LEAST_MOTION, POOR, POOR_ABOVE_NOISE};
+use crate::thresholds::{LEAST_MOTION, POOR, POOR_ABOVE_NOISE, STRUCTURED};
 
 /// The structured residuals on each joint that no effect in the catalogue explains.
 pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, residual: &[Vec<f64>]) -> Vec<Unexplained> {
@@ -66,7 +66,7 @@ pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, resi
 pub fn poorly_predicted(study: &Study, fit: &BTreeMap<String, JointFit>, unexplained: &mut Vec<Unexplained>) {
     for (joint, name) in study.arm.joints().iter().map(|joint| &joint.name).enumerate() {
         let Some(this) = fit.get(name) else { continue };
-        let error = this.held_out_nrmse_augmented.unwrap_or(this.train_nrmse_augmented);
+        let error = error(this);
         let is_known = unexplained.iter().any(|residual| residual.joint == *name);
         let is_poor = error >= POOR && error * this.torque_std >= POOR_ABOVE_NOISE * this.noise;
         if is_known || !(is_poor || structured(this).is_some()) {
@@ -85,6 +85,30 @@ pub fn poorly_predicted(study: &Study, fit: &BTreeMap<String, JointFit>, unexpla
             time: Vec::new(),
         });
     }
+}
+
+/// Keeps the residuals on joints whose error a diagnosis with findings would not call explained, and transients, for recordings
+/// without findings.
+pub fn beyond_limits(
+    study: &Study,
+    fit: &BTreeMap<String, JointFit>,
+    transients: &Transients,
+    unexplained: &mut Vec<Unexplained>,
+) {
+    let joints = study.arm.joints();
+    unexplained.retain(|open| {
+        let is_small = fit.get(&open.joint).is_some_and(|fit| error(fit) < STRUCTURED);
+        !is_small
+            || transients
+                .unexplained
+                .keys()
+                .any(|&joint| joints[joint].name == open.joint)
+    });
+}
+
+/// A joint's error with the findings: the held-out one if there is one.
+fn error(fit: &JointFit) -> f64 {
+    fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented)
 }
 
 /// Adds the place where the nominal residual is largest to the entries without one, for recordings without findings: their
