@@ -1,5 +1,6 @@
 //! Texts for the names of the catalogue.
 
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use arm::JointKind;
@@ -226,9 +227,10 @@ pub fn verdict(report: &Report) -> String {
             match remaining(report) {
                 Some(errors) => {
                     let [before, after] = errors.map(numbers::nrmse);
-                    let change = match before == after {
-                        true => format!("remains {after}"),
-                        false => format!("only falls from {before} to {after}"),
+                    let change = match errors[0].total_cmp(&errors[1]) {
+                        _ if before == after => format!("remains {after}"),
+                        Ordering::Less => format!("rises from {before} to {after}"),
+                        _ => format!("only falls from {before} to {after}"),
                     };
                     format!(
                         "Most of the mismatch is unexplained: with {effects} on {on}, the RMS torque error over the joints \
