@@ -194,8 +194,8 @@ pub struct ProveArgs {
     pub robot: Vec<String>,
 
     /// The number of cases to draw
-    #[arg(long, value_name = "N", default_value_t = 200)]
-    pub cases: usize,
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub cases: u32,
 
     /// The seed from which the cases are drawn
     #[arg(long, value_name = "N", default_value_t = 0)]
