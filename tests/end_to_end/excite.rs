@@ -122,7 +122,11 @@ fn the_motion_determines_more_than_a_naive_one_and_is_the_same_every_time() {
         }
     });
     let again = run(&sandbox, &files);
-    assert!(again.contains("written: m.toml"), "{again}");
+    assert!(
+        again.contains("written: m.toml (in place of an earlier one)"),
+        "{again}"
+    );
+    assert!(!again.contains("Warning"), "{again}");
     assert!(
         files.map(|name| if name.starts_with('-') {
             String::new()
@@ -190,4 +194,18 @@ fn what_is_missing_is_refused_with_the_flag_that_mends_it() {
     );
     let printed = run(&sandbox(&endless), &[]);
     assert!(printed.contains("proposed"), "{printed}");
+}
+
+#[test]
+fn a_motion_that_hardly_moves_is_warned_of() {
+    let sandbox = sandbox(URDF);
+    let printed = run(&sandbox, &["--acceleration-limit", "1e-4"]);
+    let words = printed.split_whitespace().collect::<Vec<_>>().join(" ");
+    says(
+        &words,
+        &[
+            "Warning: within these limits, turn, shoulder and elbow move by less than 0.05 rad",
+            "No file was asked for",
+        ],
+    );
 }

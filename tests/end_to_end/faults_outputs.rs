@@ -103,6 +103,18 @@ fn a_reader_that_leaves_costs_no_file() {
 }
 
 #[test]
+fn the_summary_of_a_run_is_printed_alone() {
+    let sandbox = Sandbox::new();
+    sandbox.write("s.toml", SCENARIO);
+    let arguments = run_of("s.toml", "run");
+    let mut list: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    list.extend(["--json", "-"]);
+    let printed: serde_json::Value = serde_json::from_str(&sandbox.succeed(&list)).expect("it is JSON");
+    assert_eq!(printed, sandbox.json("run/summary.json"));
+    assert!(!sandbox.path("-").exists());
+}
+
+#[test]
 fn what_is_replaced_is_told() {
     let sandbox = Sandbox::new();
     let arguments = diagnose("");

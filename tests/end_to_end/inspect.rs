@@ -55,6 +55,12 @@ fn a_good_recording_has_nothing_to_remark() {
     let again = sandbox.succeed(&["inspect", "good.csv", "--json", "out2.json"]);
     assert_eq!(again.replace("out2", "out"), text);
     assert_eq!(sandbox.json("out2.json"), json);
+    let over = sandbox.succeed(&["inspect", "good.csv", "--json", "out2.json"]);
+    says(&over, &["written: out2.json (in place of an earlier one)"]);
+    let printed = sandbox.succeed(&["inspect", "good.csv", "--json", "-"]);
+    let printed: serde_json::Value = serde_json::from_str(&printed).expect("standard output is JSON");
+    assert_eq!(printed, json);
+    assert!(!sandbox.path("-").exists());
 }
 
 #[test]

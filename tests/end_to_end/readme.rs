@@ -181,6 +181,25 @@ fn the_concealed_example_can_be_made_again() {
     assert!(size <= 2_000_000, "{size} bytes");
 }
 
+/// What a diagnosis calls explained, the diagnosis with its own model, or with the corrected URDF, calls no mismatch.
+#[test]
+fn a_robot_is_explained_by_its_own_corrected_model() {
+    let sandbox = clone();
+    let line = |robot: &str, further: &str| {
+        format!(
+            "testbed diagnose --robot {robot} --train examples/concealed/train_*.csv.gz --held-out \
+             examples/concealed/held_out.csv.gz --torques-only {further}"
+        )
+    };
+    let robot = "examples/concealed/robot.urdf";
+    let outputs = "--json first.json --model model.toml --urdf corrected.urdf";
+    run(&sandbox, &line(robot, outputs));
+    assert_eq!(sandbox.json("first.json")["verdict"], "explained");
+    // These fail if the verdict is another than no_mismatch.
+    run(&sandbox, &line(robot, "--known model.toml --fail-on-mismatch"));
+    run(&sandbox, &line("corrected.urdf", "--fail-on-mismatch"));
+}
+
 /// Law: a stretch of time ends with its recording at the latest, and a detectable size is one that a robot can have.
 #[test]
 fn what_a_diagnosis_says_can_be() {

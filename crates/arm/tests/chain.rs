@@ -196,6 +196,11 @@ fn locks_say_where_joints_are_fixed() {
         .x;
     // Of four bodies of 2 kg, one moves by 0.03 m and another, which mimics it, by half of that.
     assert!((open - closed - (0.03 + 0.015) / 4.0).abs() < 1e-12, "{open}, {closed}");
+    let message = load(&with(&[("lift", 0.5), ("lift", 0.6)])).expect_err("it is refused");
+    assert!(
+        message.contains("has one joint \"lift\", which is locked at 0.5 and at 0.6; give one --lock for each joint"),
+        "{message}"
+    );
     for (locks, reason) in [
         (
             [("finger_1", 3.0)],

@@ -5,4 +5,5 @@ pub mod bodies;
 pub mod columns;
 pub mod fit;
 pub mod small;
+pub mod stated;
 pub mod table;

@@ -56,7 +56,7 @@ pub enum FaultError {
     #[error(transparent)]
     Write(#[from] recording::RecordingError),
     /// A folder cannot be made or moved.
-    #[error("{path}: {reason}")]
+    #[error("{path}: cannot be written: {reason}; {}", recording::write_remedy(reason))]
     Folder {
         /// The folder.
         path: PathBuf,

@@ -38,8 +38,26 @@ pub fn write_whole(
     };
     attempt().map_err(|reason| RecordingError::Write {
         path: path.to_owned(),
-        reason,
+        reason: of_system(reason),
     })
+}
+
+/// The system's error, from which the remedy is known, without those of libraries around it (of a CSV, of a temporary file).
+fn of_system(error: std::io::Error) -> std::io::Error {
+    let mut next: Option<&(dyn std::error::Error + 'static)> = error.get_ref().map(|inner| inner as _);
+    while let Some(inner) = next {
+        // A CSV's error does not give its source.
+        let of_csv = inner.downcast_ref().map(csv::Error::kind);
+        let own = match of_csv {
+            Some(csv::ErrorKind::Io(own)) => Some(own),
+            _ => inner.downcast_ref(),
+        };
+        if let Some(code) = own.and_then(std::io::Error::raw_os_error) {
+            return std::io::Error::from_raw_os_error(code);
+        }
+        next = own.map_or_else(|| inner.source(), std::error::Error::source);
+    }
+    error
 }
 
 #[cfg(unix)]
@@ -71,6 +89,20 @@ mod tests {
         std::os::unix::fs::symlink("/dev/null", &device).expect("it links");
         write_whole(&device, |w| w.write_all(b"new")).expect("the write succeeds");
         assert!(!Path::new("/dev/null").is_file());
+    }
+
+    /// Every write to this device fails because it is full.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_is_said_of_a_csv_too() {
+        let recording = crate::Recording {
+            time: vec![0.0; 10_000],
+            ..Default::default()
+        };
+        let error = recording.write_csv(Path::new("/dev/full")).expect_err("it is full");
+        let said = "/dev/full: cannot be written: No space left on device (os error 28); the disk is full: free some space, \
+                    or choose another disk";
+        assert_eq!(error.to_string(), said);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Texts for the names of the catalogue.
 
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use arm::JointKind;
@@ -204,19 +205,15 @@ pub fn verdict(report: &Report) -> String {
     };
     let is_validated = !report.recordings.held_out.is_empty();
     match report.verdict {
-        Verdict::NoMismatch if report.findings.is_empty() => {
-            "The model explains the recordings: no unmodelled effect is detectable in them.".into()
-        }
+        Verdict::NoMismatch if report.findings.is_empty() => format!(
+            "The model explains the recordings{}: no unmodelled effect is detectable in them.",
+            up_to(report)
+        ),
         Verdict::NoMismatch => format!("The model explains the recordings, apart from {effects} on {on}."),
-        Verdict::Explained if is_validated => {
-            let up_to = largest_error(report).map_or_else(String::new, |(joint, error)| {
-                format!(
-                    " to within {} times the torque's standard deviation ({joint})",
-                    numbers::nrmse(error)
-                )
-            });
-            format!("The model omits {effects} on {on}. With these effects, the model explains the recordings{up_to}.")
-        }
+        Verdict::Explained if is_validated => format!(
+            "The model omits {effects} on {on}. With these effects, the model explains the recordings{}.",
+            up_to(report)
+        ),
         Verdict::Explained => format!(
             "The model omits {effects} on {on}. With these effects, the model fits the training recordings; the fit is \
              not validated, because no recording is held out."
@@ -230,9 +227,10 @@ pub fn verdict(report: &Report) -> String {
             match remaining(report) {
                 Some(errors) => {
                     let [before, after] = errors.map(numbers::nrmse);
-                    let change = match before == after {
-                        true => format!("remains {after}"),
-                        false => format!("only falls from {before} to {after}"),
+                    let change = match errors[0].total_cmp(&errors[1]) {
+                        _ if before == after => format!("remains {after}"),
+                        Ordering::Less => format!("rises from {before} to {after}"),
+                        _ => format!("only falls from {before} to {after}"),
                     };
                     format!(
                         "Most of the mismatch is unexplained: with {effects} on {on}, the RMS torque error over the joints \
@@ -256,6 +254,16 @@ pub fn verdict(report: &Report) -> String {
                 .into()
         }
     }
+}
+
+/// The largest error on the held-out recordings with the effects found, as a phrase with its joint; empty for a small one.
+fn up_to(report: &Report) -> String {
+    largest_error(report).map_or_else(String::new, |(joint, error)| {
+        format!(
+            " to within {} times the torque's standard deviation ({joint})",
+            numbers::nrmse(error)
+        )
+    })
 }
 
 /// The joint with the largest error on the held-out recordings with the effects found, if the error is large enough to be

@@ -109,7 +109,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 
-    /// Also write the summary of the run to this file
+    /// Also write the summary of the run to this file; - prints it on standard output, and nothing else there
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
 
@@ -128,7 +128,7 @@ pub struct TablesArgs {
     #[arg(long)]
     pub today: bool,
 
-    /// Also write the tables to this file
+    /// Also write the tables to this file as JSON; - prints it on standard output, and nothing else there
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
 }
@@ -156,7 +156,7 @@ pub struct TransferArgs {
     #[arg(long, value_enum, default_value = "one")]
     pub length_scales: LengthScalesArg,
 
-    /// Also write the result to this file
+    /// Also write the result to this file as JSON; - prints it on standard output, and nothing else there
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
 
@@ -179,7 +179,7 @@ pub struct InspectArgs {
     #[arg(long, value_name = "MAP")]
     pub map: Option<PathBuf>,
 
-    /// Write the complete result to this file as JSON
+    /// Write the complete result to this file as JSON; - prints it on standard output, and nothing else there
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
 
@@ -194,8 +194,8 @@ pub struct ProveArgs {
     pub robot: Vec<String>,
 
     /// The number of cases to draw
-    #[arg(long, value_name = "N", default_value_t = 200)]
-    pub cases: usize,
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub cases: u32,
 
     /// The seed from which the cases are drawn
     #[arg(long, value_name = "N", default_value_t = 0)]

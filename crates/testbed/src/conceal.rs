@@ -117,13 +117,16 @@ fn drawn(args: &ConcealArgs, robots: &[Robot], truths: &Path) -> anyhow::Result<
         .collect();
     progress.finish();
     let mut failed = Vec::new();
+    let some_made = made.iter().any(Result::is_ok);
     for made in made {
         match made {
             Ok(line) => output::print(&line)?,
             Err(error) => failed.push(error),
         }
     }
-    output::print(&format!("ground truth: {}\n", truths.display()))?;
+    if some_made {
+        output::print(&format!("ground truth: {}\n", truths.display()))?;
+    }
     let count = failed.len();
     match failed.into_iter().next() {
         None => Ok(()),

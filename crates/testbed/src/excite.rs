@@ -18,12 +18,19 @@ use torque::Motion;
 use crate::cli::ExciteArgs;
 use crate::output::{self, OutputFile};
 use crate::scenario::written;
+use crate::written::Written;
 use study::robot::{RobotFile, named_robot};
+
+/// A revolute joint that moves by less hardly moves (rad).
+const LEAST_RANGE: f64 = 0.05;
+/// A motion with a larger condition number of the base regressor determines its parameters badly.
+const WORST_CONDITION: f64 = 1e4;
 
 /// Proposes a motion for the robot that `args` name.
 ///
 /// # Errors
-/// If an input cannot be used, a limit is missing, or an output cannot be written; nothing is written then.
+/// If an input cannot be used or a limit is missing; nothing is written then. If an output cannot be written; the others are
+/// written then.
 pub fn run(args: &ExciteArgs) -> anyhow::Result<()> {
     let outputs = args.outputs();
     for output in &outputs {
@@ -49,18 +56,25 @@ pub fn run(args: &ExciteArgs) -> anyhow::Result<()> {
     progress.finish();
     let found = found.map_err(|error| explained(error, &robot, &arm))?;
     let compared = compare::qualities(&recordings, &arm, &limits, &found)?;
+    let mut files = Written::default();
     if let Some(path) = &args.scenario {
         let robot = written::robot_from(path, &args.robot, &robot.path)?;
-        output::write_text(path, &scenario(&robot, &arm, &found))?;
+        files.add(path, || output::write_text(path, &scenario(&robot, &arm, &found)));
     }
     if let Some(path) = &args.csv {
-        references(&arm, &found, args.rate).write_csv(path)?;
+        files.add(path, || Ok(references(&arm, &found, args.rate).write_csv(path)?));
     }
     output::print(&text(&arm, &found, &compared))?;
-    for output in outputs {
-        output::print(&format!("written: {}\n", output.path.display()))?;
+    for doubt in doubts(&arm, &found) {
+        output::print(&wrapped(&doubt, ""))?;
     }
-    Ok(())
+    for output in &outputs {
+        output::print(&files.line(output.path).unwrap_or_default())?;
+    }
+    if outputs.is_empty() {
+        output::print("No file was asked for: --csv writes the references, --scenario the motion.\n")?;
+    }
+    files.finish()
 }
 
 /// An error with the flag that corrects it.
@@ -199,6 +213,34 @@ fn text(arm: &Arm, found: &Excitation, compared: &[(String, Quality)]) -> String
         "",
     );
     text
+}
+
+/// What makes the motion useless for an identification, in sentences.
+fn doubts(arm: &Arm, found: &Excitation) -> Vec<String> {
+    let mut list = Vec::new();
+    let hardly = |(joint, needed): &(&arm::Joint, &JointUse)| {
+        joint.kind == JointKind::Revolute && needed.position[1] - needed.position[0] < LEAST_RANGE
+    };
+    let joints = arm.joints().iter().zip(&found.needed).filter(hardly);
+    let names: Vec<String> = joints.map(|(joint, _)| joint.name.clone()).collect();
+    if !names.is_empty() {
+        list.push(format!(
+            "Warning: within these limits, {} less than {} rad. No parameters can be estimated from such a motion; check the \
+             limits.",
+            match names.len() {
+                1 => format!("{} moves by", names[0]),
+                _ => format!("{} move by", words::list(&names)),
+            },
+            numbers::trimmed(LEAST_RANGE)
+        ));
+    }
+    if found.quality.condition > WORST_CONDITION {
+        list.push(format!(
+            "Warning: with a condition number above {WORST_CONDITION}, small errors of the measurement become large errors of \
+             the parameters; check the limits, or give a longer --duration."
+        ));
+    }
+    list
 }
 
 fn joint_row(kind: JointKind, needed: &JointUse, start: f64) -> Vec<String> {

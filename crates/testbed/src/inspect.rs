@@ -13,6 +13,7 @@ use study::{check, named};
 
 use crate::cli::InspectArgs;
 use crate::output::{self, OutputFile};
+use crate::written::Written;
 
 /// What `--json` holds.
 #[derive(Serialize)]
@@ -67,7 +68,7 @@ pub fn run(args: &InspectArgs) -> anyhow::Result<()> {
                 continue;
             }
         };
-        output::print(&shown(&report))?;
+        output::print_beside(args.json.as_deref(), &shown(&report))?;
         files.push(report);
     }
     if files.len() < args.files.len() {
@@ -80,8 +81,10 @@ pub fn run(args: &InspectArgs) -> anyhow::Result<()> {
             robot: arm.as_ref().map(Arm::name),
             files,
         };
-        output::write_json(path, &report)?;
-        output::print(&format!("written: {}\n", path.display()))?;
+        let mut written = Written::default();
+        written.add(path, || output::write_json(path, &report));
+        output::print_beside(Some(path), &written.lines())?;
+        written.finish()?;
     }
     Ok(())
 }

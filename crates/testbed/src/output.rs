@@ -20,14 +20,34 @@ pub fn print(text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// Writes `value` as JSON to `path`, completely or not at all.
+/// Writes `value` as JSON to `path`, completely or not at all, or prints it if `path` is `-`.
 ///
 /// # Errors
 /// If the file cannot be written.
 pub fn write_json(path: &Path, value: &impl Serialize) -> anyhow::Result<()> {
     let text = serde_json::to_string_pretty(value)?;
+    if is_stdout(Some(path)) {
+        return print(&(text + "\n"));
+    }
     recording::write_whole(path, |file| writeln!(file, "{text}"))?;
     Ok(())
+}
+
+/// Whether `json` is standard output (`-`), on which nothing else is printed then.
+pub fn is_stdout(json: Option<&Path>) -> bool {
+    json == Some(Path::new("-"))
+}
+
+/// Prints `text`: on standard error if the JSON is printed on standard output.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn print_beside(json: Option<&Path>, text: &str) -> anyhow::Result<()> {
+    if is_stdout(json) {
+        eprint!("{text}");
+        return Ok(());
+    }
+    print(text)
 }
 
 /// Writes `text` to `path`, completely or not at all.
@@ -102,6 +122,9 @@ impl<'a> OutputFile<'a> {
 /// # Errors
 /// If its folder does not exist or cannot be written to, or the path is a folder.
 pub fn check_writable(path: &Path) -> anyhow::Result<()> {
+    if is_stdout(Some(path)) {
+        return Ok(());
+    }
     if path.is_dir() {
         bail!("{}: is a folder; give the name of a file", path.display());
     }

@@ -159,7 +159,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     if rerun_file.is_some_and(|file| written.has(&file)) {
         text += "The .rrd file opens with `rerun FILE` (pip install rerun-sdk==0.36.3).\n";
     }
-    output::print(&text)?;
+    output::print_beside(args.json.as_deref(), &text)?;
     written.finish()
 }
 

@@ -165,7 +165,7 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions, today: bool) -> anyho
     if let Some(path) = json {
         output::write_json(path, &report)?;
     }
-    output::print(&text(&report))?;
+    output::print_beside(json, &text(&report))?;
     eprintln!("done in {:.1} s", started.elapsed().as_secs_f64());
     Ok(())
 }

@@ -111,7 +111,7 @@ pub fn run(args: &TransferArgs) -> anyhow::Result<()> {
     if let Some(path) = &args.json {
         output::write_json(path, &report)?;
     }
-    output::print(&words::text(&report))
+    output::print_beside(args.json.as_deref(), &words::text(&report))
 }
 
 fn compare(args: &TransferArgs, progress: &Progress) -> anyhow::Result<Report> {

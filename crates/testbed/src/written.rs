@@ -16,6 +16,7 @@ impl Written {
     pub fn add(&mut self, path: &Path, write: impl FnOnce() -> anyhow::Result<()>) {
         let replaces = path.is_file();
         match write() {
+            Ok(()) if crate::output::is_stdout(Some(path)) => {}
             Ok(()) => self.note(path, replaces),
             Err(error) => self.failures.push(error),
         }

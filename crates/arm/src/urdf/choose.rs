@@ -197,7 +197,14 @@ impl<'a> Reader<'a> {
     }
 
     fn check_locks(&self, options: &ChainOptions) -> Result<(), ArmError> {
-        for (name, value) in &options.locks {
+        for (place, (name, value)) in options.locks.iter().enumerate() {
+            let before = options.locks[..place].iter().find(|(other, _)| other == name);
+            if let Some((_, other)) = before.filter(|(_, other)| other != value) {
+                return Err(self.robot_error(
+                    format!("has one joint \"{name}\", which is locked at {other} and at {value}"),
+                    "give one --lock for each joint",
+                ));
+            }
             let movable = self.robot.joints.iter().filter(|joint| is_movable(joint));
             let Some(joint) = movable.clone().find(|joint| joint.name == *name) else {
                 let known: Vec<&str> = movable.map(|joint| joint.name.as_str()).collect();

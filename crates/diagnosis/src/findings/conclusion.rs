@@ -11,7 +11,7 @@ use super::inertials::{Inertials, inertials};
 use super::locate::locate;
 use super::observability::not_testable;
 use super::traces::traces;
-use super::verdict::{not_enough, only_located, poorly_predicted, unexplained, verdict};
+use super::verdict::{beyond_limits, not_enough, poorly_predicted, unexplained, verdict, with_places};
 use super::{dual_sensor, sentences, transients};
 use crate::data::input::Input;
 use crate::data::motion::SourceRecording;
@@ -86,8 +86,9 @@ impl Conclusion {
         let mut unexplained = unexplained(study, judged, &transients, residual);
         poorly_predicted(study, &fit, &mut unexplained);
         let located = locate(study, residual);
-        if findings.is_empty() && unexplained.is_empty() && not_enough_data.is_empty() {
-            unexplained = only_located(&located, &fit);
+        if findings.is_empty() {
+            beyond_limits(study, &fit, &transients, &mut unexplained);
+            with_places(&located, &mut unexplained);
         }
         findings.sort_by(|(a, _), (b, _)| {
             b.share

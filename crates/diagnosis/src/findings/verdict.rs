@@ -10,7 +10,7 @@ use crate::report::{Finding, JointFit, Located, TimeWindow, Unexplained, Verdict
 use crate::search::study::Study;
 use crate::selection::judge::Judged;
 use crate::selection::predict::structured;
-use crate::thresholds::{LEAST_MOTION, POOR, POOR_ABOVE_NOISE};
+use crate::thresholds::{LEAST_MOTION, POOR, POOR_ABOVE_NOISE, STRUCTURED};
 
 /// The structured residuals on each joint that no effect in the catalogue explains.
 pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, residual: &[Vec<f64>]) -> Vec<Unexplained> {
@@ -66,7 +66,7 @@ pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, resi
 pub fn poorly_predicted(study: &Study, fit: &BTreeMap<String, JointFit>, unexplained: &mut Vec<Unexplained>) {
     for (joint, name) in study.arm.joints().iter().map(|joint| &joint.name).enumerate() {
         let Some(this) = fit.get(name) else { continue };
-        let error = this.held_out_nrmse_augmented.unwrap_or(this.train_nrmse_augmented);
+        let error = error(this);
         let is_known = unexplained.iter().any(|residual| residual.joint == *name);
         let is_poor = error >= POOR && error * this.torque_std >= POOR_ABOVE_NOISE * this.noise;
         if is_known || !(is_poor || structured(this).is_some()) {
@@ -87,32 +87,53 @@ pub fn poorly_predicted(study: &Study, fit: &BTreeMap<String, JointFit>, unexpla
     }
 }
 
-/// The joints on which the nominal residual exceeds the errors of noise and filtering, for recordings without findings
-/// whose residual no regressor predicts. The mismatch is reported on these joints, with the state in which it is largest.
-pub fn only_located(located: &[Located], fit: &BTreeMap<String, JointFit>) -> Vec<Unexplained> {
-    let one = |located: &Located| {
-        let error = |fit: &JointFit| fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented);
-        let mut depends_on: Vec<String> = Vec::new();
-        for region in &located.regions {
+/// Keeps the residuals on joints whose error a diagnosis with findings would not call explained, and transients, for recordings
+/// without findings.
+pub fn beyond_limits(
+    study: &Study,
+    fit: &BTreeMap<String, JointFit>,
+    transients: &Transients,
+    unexplained: &mut Vec<Unexplained>,
+) {
+    let joints = study.arm.joints();
+    unexplained.retain(|open| {
+        let is_small = fit.get(&open.joint).is_some_and(|fit| error(fit) < STRUCTURED);
+        !is_small
+            || transients
+                .unexplained
+                .keys()
+                .any(|&joint| joints[joint].name == open.joint)
+    });
+}
+
+/// A joint's error with the findings: the held-out one if there is one.
+fn error(fit: &JointFit) -> f64 {
+    fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented)
+}
+
+/// Adds the place where the nominal residual is largest to the entries without one, for recordings without findings: their
+/// residual is the nominal one.
+pub fn with_places(located: &[Located], unexplained: &mut [Unexplained]) {
+    for open in unexplained.iter_mut().filter(|open| open.depends_on.is_empty()) {
+        let Some(place) = located.iter().find(|located| located.joint == open.joint) else {
+            continue;
+        };
+        for region in &place.regions {
             let on = match region.axis {
                 "near_reversal" | "speed" => "own_speed",
                 "angle" => "own_position",
                 "elapsed_time" => "time",
                 axis => axis,
             };
-            if !depends_on.iter().any(|known| known == on) {
-                depends_on.push(on.to_owned());
+            if !open.depends_on.iter().any(|known| known == on) {
+                open.depends_on.push(on.to_owned());
             }
         }
-        Unexplained {
-            next: sentences::next_experiment(&located.joint, depends_on.first().map_or("", String::as_str)),
-            joint: located.joint.clone(),
-            share: fit.get(&located.joint).map_or(0.0, error),
-            depends_on,
-            time: located.time.clone(),
+        if let Some(first) = open.depends_on.first() {
+            open.next = sentences::next_experiment(&open.joint, first);
         }
-    };
-    located.iter().map(one).collect()
+        open.time.clone_from(&place.time);
+    }
 }
 
 /// The reasons why the recordings are not sufficient for a diagnosis; empty if they are.

@@ -12,7 +12,6 @@ use effects::Term;
 use effects::arm::INERTIAL_PARAMETER;
 use effects::background::{FRICTION_CURVE, GAIN as GAIN_LAW, OWN_FRICTION};
 
-use crate::options::Options;
 use crate::regression::bodies::{PER_LINK, Quadratic, prior_about};
 use crate::thresholds::{
     FINER_STRENGTH, FRICTION_PRIOR, FRICTION_STRENGTHS, GAIN_PRIOR, GAIN_STRENGTHS, LINK_STRENGTHS, OWN_STRENGTHS,
@@ -206,48 +205,6 @@ impl Strengths {
     /// Whether there is no background.
     pub fn is_none(&self) -> bool {
         !self.is_of_joints() && self.links.iter().all(|&rho| rho == 0.0)
-    }
-}
-
-/// Strengths that the user states, so that they are not selected by evidence.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Stated {
-    /// ρ of all links.
-    pub links: Option<f64>,
-    /// The standard deviation of the torque constants.
-    pub gain: Option<f64>,
-}
-
-impl Stated {
-    /// The strengths as far as the user states them.
-    pub fn of(options: &Options) -> Self {
-        Self {
-            links: options.urdf_accuracy,
-            gain: options.torque_accuracy,
-        }
-    }
-
-    /// The strengths at the beginning of the search.
-    pub fn first(self, links: usize) -> Strengths {
-        Strengths {
-            links: vec![self.links.unwrap_or(0.0); links],
-            friction: 0.0,
-            gain: self.gain.map_or(0.0, |gain| gain / GAIN_PRIOR),
-            named_constants: Vec::new(),
-            impossible_constants: Vec::new(),
-        }
-    }
-
-    /// The relative standard deviation of the torque constants.
-    pub fn torque_accuracy(self) -> f64 {
-        self.gain.unwrap_or(GAIN_PRIOR)
-    }
-
-    /// Whether strengths agree with those stated.
-    pub fn allows(self, strengths: &Strengths) -> bool {
-        let first = self.first(strengths.links.len());
-        (self.links.is_none() || strengths.links == first.links)
-            && (self.gain.is_none() || strengths.gain == first.gain)
     }
 }
 

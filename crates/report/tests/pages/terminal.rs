@@ -111,6 +111,23 @@ fn an_empty_diagnosis_has_no_table() {
     assert!(terminal::diagnosis(&report).contains("not enough data: 1.9 s in motion"));
 }
 
+/// The effects of a hypothesis may make the error larger.
+#[test]
+fn an_error_that_grows_does_not_fall() {
+    let (mut report, ..) = made_up::diagnosis(6, Plot::Rich);
+    report.verdict = diagnosis::Verdict::PartlyExplained;
+    let said = |report: &mut diagnosis::Report, nominal: f64, augmented: f64| {
+        for fit in report.fit.values_mut() {
+            fit.held_out_nrmse_nominal = Some(nominal);
+            fit.held_out_nrmse_augmented = Some(augmented);
+        }
+        report::words::verdict(report)
+    };
+    assert!(said(&mut report, 0.48, 0.59).contains("rises from 0.48 to 0.59 times"));
+    assert!(said(&mut report, 0.59, 0.48).contains("only falls from 0.59 to 0.48 times"));
+    assert!(said(&mut report, 0.48, 0.48).contains("remains 0.48 times"));
+}
+
 /// Without findings, the text says in which state and when the residual is largest.
 #[test]
 fn an_unexplained_mismatch_has_its_place_and_next_experiment() {

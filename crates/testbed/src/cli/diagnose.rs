@@ -9,7 +9,7 @@ use study::{Known, Request};
 use super::chain::ChainArgs;
 use super::numbers::{parse_accuracy, parse_frequency};
 use super::rerun::{Rerun, parse_rerun};
-use crate::output::OutputFile;
+use crate::output::{self, OutputFile};
 
 /// The catalogue's effects, one per line.
 fn effects_help() -> String {
@@ -187,7 +187,7 @@ impl DiagnoseArgs {
 
     /// Whether the diagnosis is printed as JSON.
     pub fn prints_json(&self) -> bool {
-        self.json.as_deref() == Some(Path::new("-"))
+        output::is_stdout(self.json.as_deref())
     }
 
     /// The file that the diagnosis is written to as JSON.

@@ -102,13 +102,7 @@ fn tell(args: &DiagnoseArgs, arm: &Arm, diagnosis: &Diagnosis, written: &Files<'
     } else if !args.quiet {
         output::print(&report::terminal::diagnosis(report))?;
     }
-    let say = |text: String| {
-        if args.prints_json() {
-            eprint!("{text}");
-            return Ok(());
-        }
-        output::print(&text)
-    };
+    let say = |text: String| output::print_beside(args.json.as_deref(), &text);
     for output in args.outputs() {
         written.files.line(output.path).map_or(Ok(()), say)?;
     }

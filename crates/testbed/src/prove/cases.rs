@@ -72,7 +72,7 @@ impl Cases {
                 chain: args.chain.clone(),
                 plans: Campaign {
                     seed: args.seed,
-                    cases: args.cases,
+                    cases: args.cases as usize,
                     lifelike: args.lifelike,
                     urdf_error: args.urdf_error,
                 }

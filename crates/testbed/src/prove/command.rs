@@ -24,6 +24,7 @@ use super::{disturbance, experiments, published, report, tracking_step, work};
 use crate::cli::ProveArgs;
 use crate::interrupt;
 use crate::output::{self, OutputFile};
+use crate::written::Written;
 
 /// Runs the protocol of `args`; finished steps are not repeated.
 ///
@@ -69,8 +70,11 @@ pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
     if let Some(shard) = args.shard {
         let path = args.out.join(format!("{}.parquet", shard.name()));
         let words = [source.describe(), source.command()];
-        shards::write(&path, &Label::new(shard, seal.program, words, seal.whole), &rows)?;
-        return output::print(&format!("written: {}\n", path.display()));
+        let label = Label::new(shard, seal.program, words, seal.whole);
+        let mut written = Written::default();
+        written.add(&path, || shards::write(&path, &label, &rows));
+        output::print(&written.lines())?;
+        return written.finish();
     }
     let proof = Proof::new(seal.program, source.describe(), source.command(), &rows)?;
     write(args, &out, &proof)
@@ -192,16 +196,15 @@ fn row(vault: &Vault, place: &Place, sealed: &SealedCase, truth: String) -> anyh
 
 fn write(args: &ProveArgs, out: &Path, proof: &Proof) -> anyhow::Result<()> {
     let (page, score) = (out.join("report.html"), out.join("score.json"));
-    output::write_json(&score, proof)?;
-    output::write_text(&page, &report::page(proof))?;
+    let mut written = Written::default();
+    written.add(&page, || output::write_text(&page, &report::page(proof)));
+    written.add(&score, || output::write_json(&score, proof));
     if let Some(path) = &args.markdown {
-        output::write_text(path, &report::markdown(proof))?;
+        written.add(path, || output::write_text(path, &report::markdown(proof)));
     }
     output::print(&summary(proof))?;
-    for path in [&page, &score].into_iter().chain(&args.markdown) {
-        output::print(&format!("written: {}\n", path.display()))?;
-    }
-    Ok(())
+    output::print(&written.lines())?;
+    written.finish()
 }
 
 /// The targets as a table.

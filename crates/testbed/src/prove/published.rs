@@ -10,7 +10,7 @@ mod robot_page;
 mod robots;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Mutex;
 
 use anyhow::{Context, ensure};
@@ -23,6 +23,7 @@ use super::place::Place;
 use super::vault::Vault;
 use super::work;
 use crate::cli::ProveArgs;
+use crate::written::Written;
 use crate::{interrupt, output};
 use file::{File, Robot};
 
@@ -151,21 +152,19 @@ fn parsed(text: Option<String>) -> anyhow::Result<Option<Answer>> {
 
 fn write(args: &ProveArgs, out: &Path, real: &Real) -> anyhow::Result<()> {
     let (html, score) = (out.join("report.html"), out.join("score.json"));
-    output::write_json(&score, real)?;
+    let mut written = Written::default();
     let made = "Made by `testbed prove --published`; the same recordings, file and program give the same bytes.";
     let blocks = page::blocks(real);
     let eyebrow = format!("testbed proof · {} · sealed as `{}`", names(real), real.seal.whole);
     let text = report::block_page("Real robots: a blind proof", &eyebrow, &blocks, made);
-    output::write_text(&html, &text)?;
+    written.add(&html, || output::write_text(&html, &text));
+    written.add(&score, || output::write_json(&score, real));
     if let Some(path) = &args.markdown {
-        output::write_text(path, &report::markdown(&blocks, made))?;
+        written.add(path, || output::write_text(path, &report::markdown(&blocks, made)));
     }
     output::print(&summary(real))?;
-    let paths: Vec<&PathBuf> = [&html, &score].into_iter().chain(&args.markdown).collect();
-    for path in paths {
-        output::print(&format!("written: {}\n", path.display()))?;
-    }
-    Ok(())
+    output::print(&written.lines())?;
+    written.finish()
 }
 
 fn names(real: &Real) -> String {
