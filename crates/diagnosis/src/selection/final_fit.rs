@@ -20,9 +20,6 @@ use crate::thresholds::{
     CLEAR_THOUGH_UNDETERMINED, HOPELESS, LEAST_FINAL_SHARE, LEAST_UNDECIDED, PARTLY, UNDECIDED_NATS,
 };
 
-/// The number of times that the prior of the links is made quadratic about the fitted bodies.
-const MOST_BODIES: usize = 2;
-
 /// Fits the named effects about the arm that contains them, including the rows near reversals. Removes effects that increase the
 /// held-out error of a joint, effects that do not reduce it, and effects with little evidence whose size may be zero.
 pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
@@ -92,21 +89,16 @@ fn relinearise(study: &mut Study, judged: &mut Judged, as_given: bool) {
     let kept = study.linearise_for_final_fit(&judged.named.fit, &judged.candidates());
     let named = judged.named.set.len();
     torque_constants::keep_named_ones(study, &kept[..named]);
-    let fitted = |study: &mut Study, near: &Selection, set: Vec<usize>| {
-        let products = study.training_products();
-        let refitted = study.problem(&products).choose(set, &near.fit.weights);
-        if as_given {
-            refitted
-        } else {
-            study.with_best_strengths(refitted)
-        }
+    let products = study.training_products();
+    let refitted = study
+        .problem(&products)
+        .choose(kept[..named].to_vec(), &judged.named.fit.weights);
+    judged.named = if as_given {
+        refitted
+    } else {
+        let best = study.with_best_strengths(refitted);
+        study.about_own_bodies(best)
     };
-    judged.named = fitted(study, &judged.named, kept[..named].to_vec());
-    // The prior of the bodies is quadratic about those of the last fit only.
-    for _ in 0..MOST_BODIES {
-        study.set_bodies(&judged.named.fit);
-        judged.named = fitted(study, &judged.named, judged.named.set.clone());
-    }
     let products = study.training_products();
     judged.members = judge::describe(study, &study.problem(&products), &judged.named);
     for (member, &number) in judged.unmodelled.iter_mut().zip(&kept[named..]) {

@@ -8,6 +8,10 @@ use super::{About, Study};
 use crate::data::rigid::Rigid;
 use crate::regression::fit::Fit;
 use crate::regression::table::Moving;
+use crate::search::problem::Selection;
+
+/// The number of times that the prior of the links is expanded about the fitted bodies.
+const MOST_BODIES: usize = 2;
 
 impl Study {
     /// Evaluates everything about the arm of `fit`, so that the remaining tilts, encoder offsets and payloads are small.
@@ -27,6 +31,17 @@ impl Study {
     pub fn set_bodies(&mut self, fit: &Fit) {
         let changes = inertial_changes(self, fit);
         self.prior.set_bodies(&changes);
+    }
+
+    /// `chosen` with the prior about its own bodies, and with the strengths of the background that the evidence then prefers.
+    pub fn about_own_bodies(&mut self, mut chosen: Selection) -> Selection {
+        for _ in 0..MOST_BODIES {
+            self.set_bodies(&chosen.fit);
+            let products = self.training_products();
+            let next = self.problem(&products).choose(chosen.set, &chosen.fit.weights);
+            chosen = self.with_best_strengths(next);
+        }
+        chosen
     }
 
     fn about(&mut self, fit: &Fit, kept: &[usize], anyway: bool) -> Option<Vec<usize>> {

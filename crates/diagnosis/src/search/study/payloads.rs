@@ -56,7 +56,10 @@ impl Study {
         let (Some(&payload), true) = (unfelt.first(), self.strengths.common() > 0.0) else {
             return chosen;
         };
-        let before = (self.strengths.clone(), self.refused.clone());
+        let before = (self.strengths.clone(), self.prior.clone(), self.refused.clone());
+        // Each of the two is compared with the prior about its own bodies.
+        let with_payload = self.about_own_bodies(chosen.clone());
+        (self.strengths, self.prior) = (before.0.clone(), before.1.clone());
         self.refuse(payload);
         let rest = chosen.set.iter().copied().filter(|c| !unfelt.contains(c)).collect();
         let products = self.training_products();
@@ -69,10 +72,11 @@ impl Study {
         let next = self.with_best_strengths(next);
         let allowed = self.allowed();
         let next = self.grown(next, &allowed);
-        if next.score < chosen.score + PER_LINK_APART {
+        let next = self.about_own_bodies(next);
+        if next.score < with_payload.score + PER_LINK_APART {
             return next;
         }
-        (self.strengths, self.refused) = before;
+        (self.strengths, self.prior, self.refused) = before;
         self.note("no link explains as much as the payload", &next, &chosen);
         chosen
     }
