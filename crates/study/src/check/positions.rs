@@ -221,7 +221,7 @@ fn explained_in_turns(arm: &Arm, moving: &[&Pair<'_>], smooth: &Smooth) -> Optio
     let [now, turned] = [Supposition::AsItIs, Supposition::Unit(TAU)].map(|supposition| fit(arm, smooth, supposition));
     let has_size = |&joint: &usize| (0.3..3.0).contains(&turned.factor[joint]);
     let judged: Vec<usize> = (0..arm.dof()).filter(|&joint| turned.needs_model(joint)).collect();
-    let is_right = 2 * judged.len() >= moving.len() && judged.iter().all(|joint| has_size(joint));
+    let is_right = 2 * judged.len() >= moving.len() && judged.iter().all(has_size);
     if !is_right || now.score() - turned.score() < LEAD * moving.len() as f64 {
         return None;
     }
