@@ -68,6 +68,8 @@ def low_pass(signal, rate, cutoff=10.0):
 
 
 def main():
+    if len(sys.argv) < 3 or sys.argv[1] in ("-h", "--help"):
+        sys.exit(__doc__)
     urdf, path, *recordings = sys.argv[1:]
     model = pin.buildModelFromUrdf(urdf)
     data = model.createData()

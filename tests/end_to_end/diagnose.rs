@@ -230,5 +230,7 @@ fn a_few_seconds_are_not_enough() {
     let arguments = words("diagnose --robot robot.urdf --train short.csv --json d.json");
     let printed = case.sandbox.succeed(&arguments);
     assert!(printed.contains("not enough data: "), "{printed}");
-    assert_eq!(case.sandbox.json("d.json")["verdict"], "not_enough_data");
+    let found = case.sandbox.json("d.json");
+    assert_eq!(found["verdict"], "not_enough_data");
+    assert_eq!(found["unexplained"], serde_json::json!([]));
 }

@@ -20,7 +20,7 @@ const ALONE: [&str; 7] = [
 ];
 
 /// What a diagnosis with `text` as `a.csv` says: no effect, and units first, in every form.
-fn doubted(case: &Case, text: &str) -> String {
+pub fn doubted(case: &Case, text: &str) -> String {
     case.sandbox.write("a.csv", text);
     let said = case
         .sandbox
@@ -44,7 +44,7 @@ fn doubted(case: &Case, text: &str) -> String {
     words(&said)
 }
 
-/// What a diagnosis with `text` as `a.csv` says, where the others are as they should be.
+/// The same with the other files as they should be.
 fn doubted_with(text: &str) -> String {
     doubted(&case(), text)
 }
@@ -173,7 +173,7 @@ fn a_map_that_lacks_a_joint_is_named() {
 }
 
 /// `a.csv` with numbers changed; time, three positions, three torques.
-fn with_numbers(change: impl Fn(&mut [f64])) -> String {
+pub fn with_numbers(change: impl Fn(&mut [f64])) -> String {
     changed(|cells| {
         let mut numbers: Vec<f64> = cells.iter().map(|cell| cell.parse().expect("a number")).collect();
         change(&mut numbers);
@@ -239,6 +239,7 @@ fn zeros_signs_and_order_are_told_with_the_map_that_mends_them() {
 fn where_all_joints_are_wrong_nothing_is_searched_and_the_map_mends_it() {
     let degrees = with_numbers(|row| row[1..4].iter_mut().for_each(|q| *q = q.to_degrees()));
     let milliradians = with_numbers(|row| row[1..4].iter_mut().for_each(|q| *q *= 1e3));
+    let turns = with_numbers(|row| row[1..4].iter_mut().for_each(|q| *q /= 2.0 * PI));
     let currents = with_numbers(|row| {
         for (tau, constant) in row[4..].iter_mut().zip([12.0, 15.0, 9.0]) {
             *tau /= constant;
@@ -249,6 +250,7 @@ fn where_all_joints_are_wrong_nothing_is_searched_and_the_map_mends_it() {
     for (text, parts) in [
         (degrees, ["the positions are in degrees", "q_unit = \"deg\""]),
         (milliradians, ["the positions are in milliradians", "q_unit = \"mrad\""]),
+        (turns, ["the positions are in turns", "q_unit = \"turn\""]),
         (currents, ["motor currents", "tau_scale = "]),
         (milliseconds, ["its rows are", "unit = \"ms\""]),
         (
@@ -258,10 +260,10 @@ fn where_all_joints_are_wrong_nothing_is_searched_and_the_map_mends_it() {
     ] {
         let case = case();
         says(&doubted(&case, &text), &parts);
-        // Followed literally: saved as it is, and given to the same command. The other recordings are as they should be, so
-        // that the one is diagnosed alone.
+        // Followed literally, on this recording alone, because the others are as they should be.
         let map = case.sandbox.json("o.json")["doubts"][0]["column_map"].clone();
-        case.sandbox.write("map.toml", map.as_str().expect("a map"));
+        case.sandbox
+            .write("map.toml", map.as_str().unwrap_or_else(|| panic!("no map: {parts:?}")));
         let mut command = vec!["diagnose", "--json", "mended.json"];
         command.extend(ALONE);
         let said = case.sandbox.succeed(&command);
@@ -274,7 +276,6 @@ fn where_all_joints_are_wrong_nothing_is_searched_and_the_map_mends_it() {
             "{parts:?}: {said}"
         );
     }
-    // Nothing that a map could mend.
     let counts = with_numbers(|row| row[1..4].iter_mut().for_each(|q| *q *= 5e4));
     says(&doubted_with(&counts), &["in no unit of angle", "q_scale", "gear"]);
     let other = with_numbers(|row| {

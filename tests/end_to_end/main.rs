@@ -6,6 +6,7 @@ mod diagnose_blind;
 mod diagnose_cases;
 mod diagnose_invariances;
 mod diagnose_made;
+mod diagnose_maps;
 mod diagnose_mistakes;
 mod diagnose_next;
 mod diagnose_refusals;

@@ -224,13 +224,24 @@ fn links_that_are_not_there_are_refused_by_name() {
         message.contains("has no link \"nowhere\" for --tip; its links are root, "),
         "{message}"
     );
+    let message = load(&tip("left_elbow")).expect_err("it is a joint");
+    assert!(
+        message.contains("but a joint of this name; the link that it moves is left_lower"),
+        "{message}"
+    );
+    let opposite = ChainOptions {
+        base: Some("left_lower".into()),
+        ..tip("root")
+    };
+    let message = load(&opposite).expect_err("they are the other way round");
+    assert!(message.contains("exchange --base and --tip"), "{message}");
     let options = ChainOptions {
         base: Some("right_upper".into()),
         ..tip("left_lower")
     };
     let message = load(&options).expect_err("it is on the other arm");
     assert!(
-        message.contains("link \"left_lower\": does not hang on link \"right_upper\""),
+        message.contains("link \"left_lower\": is not below link \"right_upper\""),
         "{message}"
     );
 }

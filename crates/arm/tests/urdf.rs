@@ -109,6 +109,7 @@ fn what_is_no_serial_arm_is_refused_by_name() {
 
     assert!(refusal(&two("fixed")).contains("no joint moves"));
     assert!(refusal("not xml at all").contains("not a URDF"));
+    assert!(refusal("<robot name=\"r\">\n  <link name=\"a\"/>\n").contains(":2: the file ends before </robot>"));
     assert!(refusal("<robot name=\"r\"></robot>").contains("no links"));
     let message = refusal(&robot(&["<xacro:include filename=\"a\"/>\n".into()]));
     assert!(message.contains("robot.urdf:2: is xacro"), "{message}");

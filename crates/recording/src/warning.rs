@@ -245,7 +245,7 @@ impl fmt::Display for Warning {
                 write!(f, "{what} has stamps of its own and was joined by time: ")?;
                 write!(
                     f,
-                    "{interpolated} rows interpolated, {left_out} left out where there is none"
+                    "{interpolated} rows interpolated, {left_out} left out before its first stamp, after its last, or in its gaps"
                 )
             }
             Self::OutOfOrder {

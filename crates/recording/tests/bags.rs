@@ -302,7 +302,7 @@ fn a_file_without_joint_states_is_no_error_in_a_bag() {
     bag::write_database(&folder.path().join("b.db3"), &[]);
     let error = Recording::read(folder.path()).expect_err("it is refused").to_string();
     assert!(
-        error.contains("there are no messages: was anything recorded?"),
+        error.contains("there are no whole messages: was anything recorded, or was the file cut"),
         "{error}"
     );
     let messages: Vec<Message> = (0..60 * RATE).map(|at| state(time(at), time(at))).collect();

@@ -1,5 +1,6 @@
 //! Checks of a recording against the robot's URDF: names, limits, signs, order, motor side.
 
+mod applied;
 mod column_map;
 mod positions;
 mod smooth;
@@ -17,13 +18,21 @@ use self::column_map::Change;
 use self::positions::Pair;
 use self::smooth::Smooth;
 use self::supposed::supposed;
-use self::supposition::{Supposition, fit};
+use self::supposition::{Fit, Supposition, fit};
 use self::torque_unit::MOTOR_SIDE;
 
 /// A torque that exceeds the model's by more than this factor is in another unit.
 const OTHER_UNIT: f64 = 100.0;
 /// The largest speed of a robot, as a multiple of the URDF's limit; many URDFs have limits of the normal operation.
 const BEYOND: f64 = 5.0;
+
+/// The least number of instants from which the model's torques are judged.
+const LEAST_INSTANTS: usize = 100;
+/// A column map may not increase the sum of the joints' log residuals by more than this. Factors of torques do not change it.
+const WORSE: f64 = 0.5;
+
+/// The ratios of a torque to the model's that a wrong URDF may have.
+const OF_SIZE: std::ops::Range<f64> = 0.1..10.0;
 
 /// A contradiction between recording and URDF.
 #[derive(Debug, Serialize)]
@@ -51,13 +60,45 @@ impl Misfit {
     }
 }
 
-/// The column map (TOML) that corrects `misfits` of `recording`; `None` if none of them can be corrected by a map.
-pub fn column_map(misfits: &[Misfit], recording: &Recording) -> Option<String> {
+/// The column map (TOML) that corrects `misfits` of `recording`; `None` if none of them can be corrected by a map, or if with the
+/// map the recording still contradicts the URDF of `arm`, is explained less, or is too short to judge it.
+pub fn column_map(arm: &Arm, misfits: &[Misfit], recording: &Recording) -> Option<String> {
     let changes: Vec<Change> = misfits
         .iter()
         .flat_map(|misfit| misfit.changes.iter().cloned())
         .collect();
-    column_map::text(recording, &changes)
+    let text = column_map::text(recording, &changes)?;
+    let new = applied::applied(recording, &changes);
+    let (new_regular, _) = new.regular().ok()?;
+    let remaining = check(arm, &new_regular, &Quality::of(&new, &new_regular));
+    if remaining.iter().any(|misfit| misfit.prevents_diagnosis) {
+        return None;
+    }
+    let has_time = changes.iter().any(Change::is_of_time);
+    let Some(after) = as_it_is(arm, &new_regular) else {
+        // Of a recording that seems to be hours long, short windows were read, which are too short in the right unit.
+        return (has_time && recording.left_out > 0.0).then_some(text);
+    };
+    let (old_regular, _) = recording.regular().ok()?;
+    let before = as_it_is(arm, &old_regular).map_or(f64::INFINITY, |before| before.score());
+    // With a wrong unit of time, the inertial torques have another size.
+    let is_scaled = |joint: usize| after.needs_model(joint) && !OF_SIZE.contains(&after.factor[joint]);
+    let has_wrong_time = has_time && (0..arm.dof()).any(is_scaled);
+    (!has_wrong_time && after.score() <= before + WORSE).then_some(text)
+}
+
+/// The fit of the recording as it is; `None` if it cannot be computed.
+fn as_it_is(arm: &Arm, regular: &RegularRecording) -> Option<Fit> {
+    let smooth = Smooth::of(regular, &order(arm, regular)?);
+    (smooth.len() > LEAST_INSTANTS).then(|| fit(arm, &smooth, Supposition::AsItIs))
+}
+
+/// The place of each of the arm's joints in the recording, if all are there.
+fn order(arm: &Arm, regular: &RegularRecording) -> Option<Vec<usize>> {
+    arm.joints()
+        .iter()
+        .map(|joint| regular.joints.iter().position(|name| *name == joint.name))
+        .collect()
 }
 
 /// The contradictions between `regular` and `arm`.
@@ -68,13 +109,9 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
         misfits.push(misfit);
         return misfits;
     }
-    let order: Option<Vec<usize>> = arm
-        .joints()
-        .iter()
-        .map(|joint| regular.joints.iter().position(|name| *name == joint.name))
-        .collect();
+    let order = order(arm, regular);
     let smooth = order.as_ref().map(|order| Smooth::of(regular, order));
-    let smooth = smooth.as_ref().filter(|smooth| smooth.len() > 100);
+    let smooth = smooth.as_ref().filter(|smooth| smooth.len() > LEAST_INSTANTS);
     let find = |name: &String| quality.joints.iter().find(|quality| quality.joint == *name);
     let joints = arm.joints().iter();
     let pairs: Vec<Pair<'_>> = joints.filter_map(|joint| Some((joint, find(&joint.name)?))).collect();
@@ -83,7 +120,10 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
         misfits.extend(unit);
         return misfits;
     }
-    misfits.extend(positions::of_speeds(&pairs));
+    let too_fast = positions::of_speeds(&pairs);
+    // With a wrong unit of time, the model's torques are meaningless.
+    let has_other_time = too_fast.is_some();
+    misfits.extend(too_fast);
     let mut in_degrees = 0;
     for (joint, measured) in &pairs {
         let limits = joint.limits;
@@ -132,7 +172,7 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
                 FindingKind::TimeUnit | FindingKind::Degrees | FindingKind::VelocityUnit | FindingKind::VelocitySwapped
             )
         });
-        if !doubted && in_degrees == 0 {
+        if !doubted && in_degrees == 0 && !has_other_time {
             misfits.extend(torques(arm, smooth, &moves));
         }
     }

@@ -127,6 +127,9 @@ fn fail(source: &Source, span: Range<usize>, reason: &str) -> anyhow::Error {
 /// # Errors
 /// With file, line, reason and remedy.
 pub fn tables(source: &Source, arm: &Arm) -> anyhow::Result<(Option<String>, Vec<Spanned<toml::Table>>)> {
+    if source.text.trim_start().starts_with('{') {
+        return Err(fail(source, 0..0, "is JSON; give the .toml file that --model wrote"));
+    }
     let raw: RawFile = toml::from_str(&source.text)
         .map_err(|error| fail(source, error.span().unwrap_or(0..0), &reason(error.message(), arm)))?;
     let schema = raw.schema.get_ref();

@@ -246,7 +246,7 @@ fn prepare(
     let (regular, warnings) = recording.regular().with_context(|| name.clone())?;
     let quality = Quality::of(&recording, &regular);
     let misfits = check::check(arm, &regular, &quality);
-    let column_map = check::column_map(&misfits, &recording);
+    let column_map = check::column_map(arm, &misfits, &recording);
     let (told, gaps) = shortened(recording.warnings.iter().chain(&warnings), |warning| warning);
     for warning in told {
         notes.add("note", &name, warning.to_string());

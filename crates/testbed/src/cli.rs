@@ -193,7 +193,7 @@ pub struct ProveArgs {
     #[arg(long, num_args = 1.., value_name = "NAME|URDF")]
     pub robot: Vec<String>,
 
-    /// The number of cases to draw; 0 draws none, so that only the paper's own disturbance is diagnosed
+    /// The number of cases to draw; 0 for the paper's disturbance alone
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(..=100_000))]
     pub cases: u32,
 

@@ -110,7 +110,7 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
     let (regular, found) = recording.regular().with_context(|| file.display().to_string())?;
     let quality = Quality::of(&recording, &regular);
     let against_robot = arm.map_or(Vec::new(), |arm| check::check(arm, &regular, &quality));
-    let column_map = check::column_map(&against_robot, &recording);
+    let column_map = arm.and_then(|arm| check::column_map(arm, &against_robot, &recording));
     let warnings = recording.warnings.iter().cloned().chain(found);
     Ok(FileReport {
         file,

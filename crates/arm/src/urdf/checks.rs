@@ -35,7 +35,7 @@ impl<'a> Reader<'a> {
                 return Err(self.joint_error(
                     joint,
                     format!(
-                        "closes a loop: link \"{}\" already hangs on another joint",
+                        "closes a loop: link \"{}\" is the child of another joint already",
                         joint.child.link
                     ),
                     "testbed models serial arms: cut the loop",
@@ -52,14 +52,17 @@ impl<'a> Reader<'a> {
             .filter(|link| !children.contains(link.name.as_str()));
         let Some(root) = roots.next() else {
             return Err(self.robot_error(
-                "has no base: every link hangs on a joint, so the joints form a loop".into(),
+                "has no base: every link is the child of a joint, so the joints form a loop".into(),
                 "cut the loop",
             ));
         };
         if let Some(other) = roots.next() {
             return Err(self.link_error(
                 &other.name,
-                format!("hangs on no joint, as link \"{}\" does", root.name),
+                format!(
+                    "is the child of no joint, and so is link \"{}\": a robot has one root",
+                    root.name
+                ),
                 "join the two parts, or remove one",
             ));
         }

@@ -116,10 +116,15 @@ impl<'a> Reader<'a> {
         let (moving, grippers) = match tip {
             Some(tip) => {
                 let path = self.path(tip, base).ok_or_else(|| {
+                    let is_opposite = self.path(base, tip).is_some();
                     self.link_error(
                         tip,
-                        format!("does not hang on link \"{base}\", the base"),
-                        "give a --base on its way from the root, or another --tip",
+                        format!("is not below link \"{base}\", the base, in the tree of links"),
+                        if is_opposite {
+                            "exchange --base and --tip"
+                        } else {
+                            "give a --base on its way from the root, or another --tip"
+                        },
                     )
                 })?;
                 (path.into_iter().filter(|joint| can_move(joint)).collect(), Vec::new())
@@ -188,6 +193,13 @@ impl<'a> Reader<'a> {
     fn link(&self, name: &str, flag: &str) -> Result<&'a str, ArmError> {
         let found = self.robot.links.iter().find(|link| link.name == name);
         found.map(|link| link.name.as_str()).ok_or_else(|| {
+            let joint = self.robot.joints.iter().find(|joint| joint.name == name);
+            if let Some(joint) = joint {
+                return self.robot_error(
+                    format!("has no link \"{name}\" for {flag}, but a joint of this name"),
+                    &format!("the link that it moves is {}", joint.child.link),
+                );
+            }
             let links: Vec<&str> = self.robot.links.iter().map(|link| link.name.as_str()).collect();
             self.robot_error(
                 format!("has no link \"{name}\" for {flag}"),

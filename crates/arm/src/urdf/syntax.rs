@@ -124,6 +124,11 @@ impl Text {
                 return syntax_error(path, Some(line), reason);
             }
         }
+        if !text.contains("</robot>") {
+            let last = line_at(text, text.trim_end().len());
+            let reason = "the file ends before </robot>: it was cut; write or copy it again".into();
+            return syntax_error(path, Some(last), reason);
+        }
         syntax_error(
             path,
             None,

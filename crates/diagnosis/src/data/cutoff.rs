@@ -41,7 +41,8 @@ pub fn filtered(inputs: &[Input<'_>], cutoff: Option<f64>, arm: &Arm) -> Motions
         let before = motions.cutoff;
         motions = at(quiet.max(least));
         motions.remarks.push(format!(
-            "filtered at {:.1} Hz: at {before:.0} Hz, the noise of the positions alone would be {share:.2} times the torque of {}",
+            "filtered at {:.1} Hz and not at {before:.1} Hz, where the noise of the positions alone would be {share:.2} times the \
+             torque of {}",
             motions.cutoff,
             arm.joints()[joint].name
         ));

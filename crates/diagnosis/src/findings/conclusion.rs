@@ -85,6 +85,10 @@ impl Conclusion {
         let fit = fit(study, [residual, &by_exported], identified);
         let mut unexplained = unexplained(study, judged, &transients, residual);
         poorly_predicted(study, &fit, &mut unexplained);
+        if !not_enough_data.is_empty() {
+            // More data are the only next step.
+            unexplained.clear();
+        }
         let located = locate(study, residual);
         if findings.is_empty() {
             beyond_limits(study, &fit, &transients, &mut unexplained);

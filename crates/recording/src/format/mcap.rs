@@ -131,7 +131,10 @@ pub fn no_states(mut topics: Vec<String>, options: &Options<'_>) -> String {
         format!(" in {}", options.topics.join(", "))
     };
     if topics.is_empty() {
-        return format!("there are no messages{of}: was anything recorded?");
+        return format!(
+            "there are no whole messages{of}: was anything recorded, or was the file cut within its first chunk? A recorder \
+             that is killed may leave such a file; record in smaller chunks"
+        );
     }
     format!(
         "there are no messages sensor_msgs/msg/JointState in CDR, as ROS 2 writes them{of}; its topics are {}{more}; record the \

@@ -2,7 +2,7 @@
 
 use std::panic::AssertUnwindSafe;
 
-use parquet::basic::{ConvertedType, LogicalType, TimeUnit};
+use parquet::basic::{Compression, ConvertedType, LogicalType, TimeUnit};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
@@ -72,6 +72,18 @@ fn columns(file: std::fs::File) -> Result<Vec<(String, Column)>, String> {
         .all(|column| is_within(column, size))
     {
         return Err("its footer is damaged; write or copy it again".to_owned());
+    }
+    let mut columns = reader
+        .metadata()
+        .row_groups()
+        .iter()
+        .flat_map(RowGroupMetaData::columns);
+    if columns.any(|column| matches!(column.compression(), Compression::BROTLI(_) | Compression::LZO)) {
+        return Err(
+            "its compression (Brotli or LZO) is not read; write it with another, for example \
+             to_parquet(\"run.parquet\", compression=\"zstd\")"
+                .to_owned(),
+        );
     }
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let mut leaves: Vec<Option<Leaf>> = schema.columns().iter().map(|column| leaf(column)).collect();

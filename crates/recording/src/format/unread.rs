@@ -28,6 +28,8 @@ const KNOWN: &[(&[u8], &str, &str)] = &[
         "Feather (Arrow)",
         "it is not read; save the table as Parquet: pandas.read_feather(\"run.feather\").to_parquet(\"run.parquet\")",
     ),
+    (b"\xfd7zXZ\0", "xz", "it is not read; expand it: xz -d FILE"),
+    (b"BZh", "bzip2", "it is not read; expand it: bzip2 -d FILE"),
     (
         b"\x93NUMPY",
         ".npy",
@@ -67,5 +69,18 @@ impl Format for Unread {
     fn read(&self, input: Input, _: &Options<'_>) -> Result<Table, RecordingError> {
         let (name, remedy) = known(&input.head).unwrap_or(("a format", "it is not read"));
         Err(input.error(name, remedy))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn compressed_files_are_called_by_their_format() {
+        let name = |head: &[u8]| known(head).map(|(name, _)| name);
+        assert_eq!(name(b"\xfd7zXZ\0\x00\x04"), Some("xz"));
+        assert_eq!(name(b"BZh91AY&SY"), Some("bzip2"));
+        assert_eq!(name(b"t,q_a,tau_a"), None);
     }
 }

@@ -280,8 +280,16 @@ fn odds(finding: &Finding) -> Vec<String> {
     };
     let gain = finding
         .held_out_gain
-        .map(|gain| format!("reduces the {improved} by {}", numbers::percent(gain)));
+        .map(|gain| format!("reduces the {improved} by {}", reduction(gain)));
     [probability, share, gain].into_iter().flatten().collect()
+}
+
+/// A reduction in per cent, which is never all of it.
+fn reduction(gain: f64) -> String {
+    if gain > 0.99 {
+        return "more than 99 %".to_owned();
+    }
+    numbers::percent(gain)
 }
 
 fn parameters(finding: &Finding) -> Markup {

@@ -31,6 +31,21 @@ impl Change {
         self.joint.as_deref() == Some(joint)
     }
 
+    /// Whether it is a change of the time.
+    pub fn is_of_time(&self) -> bool {
+        self.joint.is_none()
+    }
+
+    /// The key.
+    pub fn key(&self) -> &'static str {
+        self.key
+    }
+
+    /// The value.
+    pub fn value(&self) -> &Value {
+        &self.value
+    }
+
     /// `key = value` in the table of `joint`.
     pub fn new(joint: &str, key: &'static str, value: Value) -> Self {
         Self {

@@ -4,17 +4,20 @@ use std::f64::consts::{PI, TAU};
 
 use arm::{Arm, Joint, JointKind};
 use recording::{FindingKind, JointQuality, Quality};
-use report::numbers::rounded;
+use report::numbers::{percent, rounded};
 
 use super::column_map::{Change, Value};
 use super::smooth::Smooth;
 use super::supposition::{Supposition, fit};
+use super::torque_unit::MOTOR_SIDE;
 use super::{BEYOND, Misfit};
 
 /// The largest time between rows of a recording that shows a drive's motion (s).
 const SLOWEST_PERIOD: f64 = 0.1;
 /// Degrees and milliradians: the unit of positions, the unit of velocities, its size in rad.
 const UNITS: [(&str, &str, f64); 2] = [("deg", "deg/s", PI / 180.0), ("mrad", "mrad/s", 1e-3)];
+/// Turns of a joint, which make positions too small.
+const TURN: (&str, &str, f64) = ("turn", "turn/s", TAU);
 /// A unit must be better than the other by at least this reduction of the mean log residual.
 const LEAD: f64 = 0.5;
 
@@ -60,8 +63,14 @@ pub fn of_time(arm: &Arm, quality: &Quality) -> Option<Misfit> {
         });
     };
     let text = format!(
-        "its rows are {period:.3} s apart; are its stamps in {unit}? Give the unit in a column map (--map: unit = \"{unit}\" \
-         under [time]), or record at 100 Hz or more"
+        "its rows are {period:.3} s apart; are its stamps in {unit}{}? Give the unit in a column map (--map: unit = \"{unit}\" \
+         under [time]), or record at 100 Hz or more",
+        // A counter of rows and whole milliseconds at 1 kHz look the same.
+        if (period - 1.0).abs() < 1e-9 {
+            ", or are they the numbers of the rows (divide them by the rate)"
+        } else {
+            ""
+        }
     );
     Some(Misfit {
         prevents_diagnosis: true,
@@ -84,7 +93,17 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
                 .iter()
                 .all(|pair| ratio(pair).is_some_and(|ratio| (ratio.abs() / factor - 1.0).abs() < 0.04))
     };
-    let by_velocity = UNITS.into_iter().find(|(_, _, factor)| slow(*factor));
+    let by_velocity = UNITS.into_iter().chain([TURN]).find(|(_, _, factor)| slow(*factor));
+    // Positions in turns are inside all limits. Their slopes, or the model's torques, show the unit.
+    let in_turns = smooth.filter(|_| by_velocity.is_none() && evident.is_empty());
+    if let Some(share) = in_turns.and_then(|smooth| explained_in_turns(arm, &moving, smooth)) {
+        return vec![of_unit(
+            pairs,
+            &moving,
+            TURN,
+            &format!("with this unit, the model and friction {share}"),
+        )];
+    }
     if by_velocity.is_none() && 2 * evident.len() < moving.len().max(1) {
         return Vec::new();
     }
@@ -114,10 +133,19 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
         rounded(measured.q_range.0, 4),
         rounded(measured.q_range.1, 4)
     );
-    let Some((unit, of_velocity, factor)) = by_velocity.or(possible.first().copied()) else {
+    // Positions of the motors with the torques of the joints, or of the motors: in degrees, the torques would be far too small.
+    let is_geared = |unit: &(&str, &str, f64)| {
+        let fitted = smooth.map(|smooth| fit(arm, smooth, Supposition::Unit(unit.2)));
+        by_velocity.is_none() && fitted.is_some_and(|fit| fit.size.iter().all(|size| *size < MOTOR_SIDE))
+    };
+    let found = by_velocity
+        .or(possible.first().copied())
+        .filter(|unit| !is_geared(unit));
+    let Some((unit, of_velocity, factor)) = found else {
         let text = format!(
-            "the positions are in no unit of angle: {range}, and the URDF's limits are {:.3} … {:.3} rad. Counts of an encoder, \
-             or the motors' side of the gears? Give each joint's q_scale (rad of one count) or gear in a column map (--map)",
+            "the positions are in no unit of angle that agrees with the torques: {range}, and the URDF's limits are {:.3} … {:.3} \
+             rad. Counts of an encoder, or the motors' side of the gears? Give each joint's q_scale (rad of one count) or gear in \
+             a column map (--map)",
             joint.limits.lower, joint.limits.upper
         );
         return vec![Misfit {
@@ -125,7 +153,7 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
             ..Misfit::new(None, text, Vec::new())
         }];
     };
-    let name = if unit == "deg" { "degrees" } else { "milliradians" };
+    let name = name_of(unit);
     let why = if by_velocity.is_some() {
         format!(
             "their slopes are {} times the recorded velocities",
@@ -137,6 +165,26 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
             joint.limits.lower, joint.limits.upper
         )
     };
+    vec![of_unit(pairs, &moving, (unit, of_velocity, factor), &why)]
+}
+
+/// The unit of the positions in words.
+fn name_of(unit: &str) -> &'static str {
+    match unit {
+        "deg" => "degrees",
+        "turn" => "turns",
+        _ => "milliradians",
+    }
+}
+
+/// The contradiction that all positions are in a unit, because of `why`.
+fn of_unit(
+    pairs: &[Pair<'_>],
+    moving: &[&Pair<'_>],
+    (unit, of_velocity, factor): (&'static str, &'static str, f64),
+    why: &str,
+) -> Misfit {
+    let name = name_of(unit);
     let text = format!("the positions are in {name}: {why}; say so in a column map (--map): q_unit = \"{unit}\"");
     // A wrong unit of one position makes all torques of the model wrong, so that all joints are corrected together.
     let mut changes = Vec::new();
@@ -153,10 +201,39 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
             changes.push(Change::new(&joint.name, "qd_unit", Value::Unit(of_velocity, factor)));
         }
     }
-    vec![Misfit {
+    Misfit {
         prevents_diagnosis: true,
         ..Misfit::new(None, text, changes)
-    }]
+    }
+}
+
+/// What the model explains with positions in turns, if that is nearly all of most joints' torques and far more than as they are.
+fn explained_in_turns(arm: &Arm, moving: &[&Pair<'_>], smooth: &Smooth) -> Option<String> {
+    let within = moving.iter().all(|(joint, measured)| {
+        let limits = joint.limits;
+        let slack = 0.1 * (limits.upper - limits.lower) + 1e-2;
+        let (low, high) = measured.q_range;
+        limits.upper <= limits.lower || (low * TAU > limits.lower - slack && high * TAU < limits.upper + slack)
+    });
+    if moving.is_empty() || !within {
+        return None;
+    }
+    let [now, turned] = [Supposition::AsItIs, Supposition::Unit(TAU)].map(|supposition| fit(arm, smooth, supposition));
+    let has_size = |&joint: &usize| (0.3..3.0).contains(&turned.factor[joint]);
+    let judged: Vec<usize> = (0..arm.dof()).filter(|&joint| turned.needs_model(joint)).collect();
+    let is_right = 2 * judged.len() >= moving.len() && judged.iter().all(has_size);
+    if !is_right || now.score() - turned.score() < LEAD * moving.len() as f64 {
+        return None;
+    }
+    let share = |residuals: &[f64]| {
+        let left: f64 = judged.iter().map(|&joint| residuals[joint]).sum();
+        percent(1.0 - left / judged.len() as f64)
+    };
+    Some(format!(
+        "explain {} of the torques; without it, {}",
+        share(&turned.residual_share),
+        share(&now.residual_share)
+    ))
 }
 
 /// Whether the positions span more than two turns and more than 1.5 times the URDF's range. A zero that is off by whole

@@ -47,7 +47,7 @@ const UNITS: [Unit; 4] = [
     },
     Unit {
         factor: 1e-3,
-        name: "kN m (or kN)",
+        name: "kN m (or kN), or the masses of the URDF in g",
         remedy: "tau_unit = \"kN m\", or \"kN\"",
         key: ("tau_scale", Value::Number(1e3)),
     },
