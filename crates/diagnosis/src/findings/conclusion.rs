@@ -84,7 +84,7 @@ impl Conclusion {
             .collect();
         let fit = fit(study, [residual, &by_exported], identified);
         let mut unexplained = unexplained(study, judged, &transients, residual);
-        poorly_predicted(study, &fit, &mut unexplained);
+        poorly_predicted(study, &fit, !findings.is_empty(), &mut unexplained);
         if !not_enough_data.is_empty() {
             // More data are the only next step.
             unexplained.clear();

@@ -10,7 +10,7 @@ use crate::report::{Finding, JointFit, Located, TimeWindow, Unexplained, Verdict
 use crate::search::study::Study;
 use crate::selection::judge::Judged;
 use crate::selection::predict::structured;
-use crate::thresholds::{LEAST_MOTION, POOR, POOR_ABOVE_NOISE, STRUCTURED};
+use crate::thresholds::{LEAST_MOTION, PARTLY, POOR, POOR_ABOVE_NOISE, STRUCTURED};
 
 /// The structured residuals on each joint that no effect in the catalogue explains.
 pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, residual: &[Vec<f64>]) -> Vec<Unexplained> {
@@ -63,12 +63,19 @@ pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, resi
 }
 
 /// Adds the joints that are poorly predicted with the findings.
-pub fn poorly_predicted(study: &Study, fit: &BTreeMap<String, JointFit>, unexplained: &mut Vec<Unexplained>) {
+pub fn poorly_predicted(
+    study: &Study,
+    fit: &BTreeMap<String, JointFit>,
+    has_findings: bool,
+    unexplained: &mut Vec<Unexplained>,
+) {
     for (joint, name) in study.arm.joints().iter().map(|joint| &joint.name).enumerate() {
         let Some(this) = fit.get(name) else { continue };
         let error = error(this);
         let is_known = unexplained.iter().any(|residual| residual.joint == *name);
-        let is_poor = error >= POOR && error * this.torque_std >= POOR_ABOVE_NOISE * this.noise;
+        // Without findings, a torque that looks like noise is no torque of the model either.
+        let is_unrelated = !has_findings && error >= PARTLY;
+        let is_poor = is_unrelated || error >= POOR && error * this.torque_std >= POOR_ABOVE_NOISE * this.noise;
         if is_known || !(is_poor || structured(this).is_some()) {
             continue;
         }
