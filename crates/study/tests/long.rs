@@ -146,7 +146,10 @@ fn a_slow_log_is_distinguished_from_stamps_in_milliseconds() {
         panic!("no doubt")
     };
     assert!(
-        doubt.text.contains("are its stamps in ms?") && doubt.column_map.is_some(),
+        doubt
+            .text
+            .contains("are its stamps in ms, or are they the numbers of the rows")
+            && doubt.column_map.is_some(),
         "{doubt:?}"
     );
 }
