@@ -9,7 +9,7 @@ use crate::data::input::Input;
 use crate::data::measure;
 use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
-use crate::data::statistics::mean;
+use crate::data::statistics::{mean, quantile};
 use crate::thresholds::{
     CHANNEL_MOVES, EXPLAINS_THE_LIMITED, FAR_TOO_SMALL, IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED,
 };
@@ -133,7 +133,9 @@ fn of_another_kind(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: u
     let error = cross_validated(&plain, &rows.torque).min(cross_validated(&all, &rows.torque));
     let is_limited = || {
         // A drive that reports the torque that is commanded reaches its limit: only the part below the limit moves the joint.
-        let limits = LIMITS.map(|share| quantile(&rows.torque, share));
+        let mut sizes: Vec<f64> = rows.torque.iter().map(|tau| tau.abs()).collect();
+        sizes.sort_by(f64::total_cmp);
+        let limits = LIMITS.map(|share| quantile(&sizes, share));
         let clipped = |limit: f64| {
             rows.torque
                 .iter()
@@ -145,13 +147,6 @@ fn of_another_kind(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: u
             .any(|limit| cross_validated(&all, &clipped(limit)) < EXPLAINS_THE_LIMITED)
     };
     (error > UNRELATED && !is_limited()).then(|| Why::Unrelated((1.0 - error * error).max(0.0)))
-}
-
-/// The quantile of the magnitudes of a signal.
-fn quantile(signal: &[f64], share: f64) -> f64 {
-    let mut sizes: Vec<f64> = signal.iter().map(|value| value.abs()).collect();
-    sizes.sort_by(f64::total_cmp);
-    sizes[(share * (sizes.len() - 1) as f64).round() as usize]
 }
 
 fn rows(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Rows {

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 use crate::data::motion::{Chunk, Motions, SourceRecording};
 use crate::data::rigid::Rigid;
-use crate::data::statistics::{deviation, mean};
+use crate::data::statistics::{deviation, mean, quantile};
 use crate::thresholds::{DEAD, NEEDED_QUANTILE, NOISE_ALONE, RANGE_QUANTILES, REST, REST_NOISE, SPEED_QUANTILE};
 
 /// The number of poses of a section at which the mass matrix is evaluated to judge the noise.
@@ -128,13 +128,6 @@ pub fn scales(motions: &Motions, torque: Vec<f64>) -> Scales {
         let mut values: Vec<f64> = motions.chunks.iter().flat_map(pick).collect();
         values.sort_by(f64::total_cmp);
         values
-    };
-    let quantile = |sorted: &[f64], share: f64| -> f64 {
-        let last = sorted.len().saturating_sub(1);
-        sorted
-            .get((share * last as f64).round() as usize)
-            .copied()
-            .unwrap_or(0.0)
     };
     let mut scales = Scales {
         speed: Vec::new(),

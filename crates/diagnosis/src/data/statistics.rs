@@ -1,4 +1,4 @@
-//! Mean, median, standard deviation and root mean square.
+//! Mean, median, quantiles, standard deviation and root mean square.
 
 use std::borrow::Borrow;
 
@@ -19,6 +19,15 @@ pub fn mean<T: Borrow<f64>>(values: impl IntoIterator<Item = T>) -> f64 {
 pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// The value below which the part `share` of ascending values lies; zero for no values.
+pub fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let last = sorted.len().saturating_sub(1);
+    sorted
+        .get((share * last as f64).round() as usize)
+        .copied()
+        .unwrap_or(0.0)
 }
 
 /// The mean and the variance about it; zero for no values.

@@ -230,8 +230,6 @@ pub struct Background {
     pub precision: DMatrix<f64>,
     /// m, the coefficients about which the prior is centred.
     pub centre: DVector<f64>,
-    /// K m.
-    pub pull: DVector<f64>,
     /// ln det K.
     pub log_det: f64,
     /// The evidence that its strengths must bring (nats).
@@ -346,7 +344,6 @@ impl Prior {
         let log_det = 2.0 * factor.l_dirty().diagonal().iter().map(|d| d.ln()).sum::<f64>();
         Some(Background {
             columns,
-            pull: &precision * &centre,
             centre,
             precision,
             log_det,

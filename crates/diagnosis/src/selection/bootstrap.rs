@@ -6,7 +6,7 @@ use effects::{Size, Term};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::data::statistics::NORMAL_95;
+use crate::data::statistics::{NORMAL_95, quantile};
 use crate::search::problem::Selection;
 use crate::search::refine::{sizes, varied};
 use crate::search::study::Study;
@@ -62,8 +62,7 @@ impl Resampled {
         }
         draws.sort_by(f64::total_cmp);
         // Half the interquartile range of a normal distribution is 0.6745 of its standard deviation.
-        let at = |share: f64| draws[(share * (draws.len() - 1) as f64).round() as usize];
-        let spread = (at(0.75) - at(0.25)) / (2.0 * 0.6745);
+        let spread = (quantile(&draws, 0.75) - quantile(&draws, 0.25)) / (2.0 * 0.6745);
         let half = self.inflation * NORMAL_95 * spread + systematic * value.abs();
         (value, [value - half, value + half])
     }
@@ -234,7 +233,8 @@ impl PriorDraws {
         let background = study.background();
         let mut pull = DVector::zeros(p);
         if let Some(background) = &background {
-            pull.rows_mut(0, background.pull.len()).copy_from(&background.pull);
+            let own = background.pull();
+            pull.rows_mut(0, own.len()).copy_from(&own);
         }
         let own = background.map_or_else(|| DMatrix::zeros(0, 0), |b| b.precision);
         let mut precision = DMatrix::zeros(p, p);

@@ -145,7 +145,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
         )
     };
     let mut results: Vec<_> = alone.iter().map(|(c, next)| result(*c, next)).collect();
-    let mut on_all_joints = f64::INFINITY;
+    let mut on_all_joints = Vec::new();
     if let Some(same) = finding.hypothesis.spec().same_on_all_joints {
         // Without a known load, a common factor of all masses and one of all torques cannot be distinguished.
         let factors: Vec<usize> = (0..study.candidates.len())
@@ -153,8 +153,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
             .collect();
         let next = problem.choose([&set[..], &factors].concat(), &chosen.fit.weights);
         if factors.iter().all(|&c| problem.is_possible(c, &next.fit)) {
-            on_all_joints = next.score - chosen.score;
-            results.extend(factors.iter().map(|&c| result(c, &next)));
+            on_all_joints.extend(factors.iter().map(|&c| result(c, &next)));
         }
     }
     let explained = without.fit.loss - chosen.fit.loss;
@@ -179,6 +178,11 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
         let best = trials.into_iter().map(results_of).min_by(|a, b| a.1.total_cmp(&b.1));
         results.extend(best);
     }
+    let best = |results: &[(f64, f64, Hypothesis, Option<usize>)]| {
+        results.iter().map(|result| result.1).fold(f64::INFINITY, f64::min)
+    };
+    let (single, of_all_joints) = (best(&results), best(&on_all_joints));
+    results.extend(on_all_joints);
     results.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)).then(a.3.cmp(&b.3)));
     let mut rivals: Vec<Named> = results
         .iter()
@@ -199,14 +203,9 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
         found.pairs(alone, &others)
     };
     // A simpler hypothesis is more probable: the margin includes the costs.
-    let scores = results
-        .iter()
-        .map(|result| result.1)
-        .chain(pairs.iter().map(|pair| pair.1));
-    let scores: Vec<f64> = scores.collect();
-    let margin = scores.iter().copied().fold(explained, f64::min);
-    let singles = scores.iter().copied().filter(|&score| score != on_all_joints);
-    let margin_over_single = singles.fold(explained, f64::min);
+    let pair = pairs.iter().map(|pair| pair.1).fold(f64::INFINITY, f64::min);
+    let margin_over_single = explained.min(single).min(pair);
+    let margin = margin_over_single.min(of_all_joints);
     rivals.extend(alias.filter(|alias| !rivals.contains(alias)));
     Standing {
         rivals,

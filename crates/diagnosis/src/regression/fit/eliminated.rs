@@ -6,7 +6,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock, PoisonError};
 
-use nalgebra::{Cholesky, DMatrix};
+use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::Products;
 use super::lanes::{LANES, Lanes, dot, dots_of, dots_with, forward};
@@ -40,6 +40,11 @@ pub struct Eliminated {
 }
 
 impl Background {
+    /// K m: what the prior adds to the right side of the normal equations.
+    pub fn pull(&self) -> DVector<f64> {
+        &self.precision * &self.centre
+    }
+
     /// Twice the cost of coefficients (nats): (δ − m)ᵀ K (δ − m).
     pub fn energy(&self, coefficients: &[f64]) -> f64 {
         let p = coefficients.len();
@@ -76,7 +81,7 @@ impl Eliminated {
             occam: 0.5 * (log_det - background.log_det),
         };
         let with_y = |(&column, pull): (&usize, &f64)| products.product(table, &eliminated.scaled, column, None) + pull;
-        let right = columns.iter().zip(&background.pull).map(with_y).collect();
+        let right = columns.iter().zip(&background.pull()).map(with_y).collect();
         eliminated.with_y = eliminated.forward(right);
         eliminated
     }
