@@ -87,7 +87,7 @@ fn finding(
             held_out_gain: gain,
             confusable_with: if k == 0 {
                 let mut list: Vec<Confusable> = Vec::new();
-                for rival in standing.rivals.iter().map(confusable) {
+                for rival in standing.rivals.iter().chain(&standing.as_likely).map(confusable) {
                     if !list.contains(&rival) {
                         list.push(rival);
                     }

@@ -31,6 +31,9 @@ pub struct Standing {
     pub margin: f64,
     /// The same without the alternative of one effect on each joint, which is less likely than a common cause.
     pub margin_over_single: f64,
+    /// The inertial parameters of a link, or of all (`None`), if a stronger background without the finding is as likely by its
+    /// score, although it explains less. The probability of the name is then one half.
+    pub as_likely: Option<Named>,
 }
 
 impl Standing {
@@ -164,6 +167,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
     let sets_in = || study.terms(member).iter().any(|term| term.onset().is_some());
     let equally_likely = alias.filter(|_| sets_in());
     results.extend(equally_likely.map(|(hypothesis, joint)| (0.0, 0.0, hypothesis, joint)));
+    let mut as_likely = None;
     if finding.hypothesis.spec().may_be_inertial {
         let hypothesis = Hypothesis::of(&InertialParameters);
         let trials = study.in_the_background(problem.products, &set, chosen);
@@ -176,6 +180,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
             )
         };
         let best = trials.into_iter().map(results_of).min_by(|a, b| a.1.total_cmp(&b.1));
+        as_likely = best.filter(|result| result.1 <= 0.0).map(|result| (result.2, result.3));
         results.extend(best);
     }
     let best = |results: &[(f64, f64, Hypothesis, Option<usize>)]| {
@@ -212,6 +217,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
         pairs: pairs.into_iter().map(|pair| pair.2).collect(),
         margin,
         margin_over_single,
+        as_likely,
     }
 }
 
