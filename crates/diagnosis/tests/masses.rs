@@ -93,6 +93,40 @@ fn exact_torque_constants_name_each_scale_once() {
     );
 }
 
+/// A forearm that is too heavy for the URDF hides most of a torque constant of the shoulder that is too small. The recordings determine
+/// both.
+#[test]
+fn a_torque_constant_that_a_wrong_mass_hides_is_named() {
+    let robot = trio().with_scaled_link(2, 1.5);
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        baseline_friction(motion, tau);
+        tau[1] *= 0.765;
+    };
+    let found = named(&robot, &injected);
+    let expected = [
+        of("link_inertial_error", Some("elbow")),
+        of("torque_scale", Some("shoulder")),
+    ];
+    assert_eq!(found, expected);
+}
+
+/// Friction that depends on the load on each joint is too small for a name. It improves the fit beside a common factor of all masses
+/// as much as in its place, and is therefore no alternative of that factor.
+#[test]
+fn what_improves_the_fit_beside_a_common_factor_is_not_its_alternative() {
+    let robot = trio().with_scaled_inertias(1.3);
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        let rigid = tau.to_vec();
+        baseline_friction(motion, tau);
+        for joint in 0..3 {
+            tau[joint] +=
+                (0.012 * rigid[joint].abs() + 0.05 * (9.0 * motion.q[joint]).sin()) * motion.qd[joint].signum();
+        }
+    };
+    let found = named(&robot, &injected);
+    assert!(found.contains(&of("inertial_scale", None)), "{found:?}");
+}
+
 /// A centre of mass that is 3 cm from where the URDF has it, on the upper arm or on the forearm, is named on that link, and
 /// not as a spring, a counterbalance or an encoder offset.
 #[test]

@@ -1,6 +1,7 @@
 //! Physical limits of coefficients.
 
 use arm::Arm;
+use effects::sensor::TorqueScale;
 use effects::{Fitted, Term, UNIT};
 
 use crate::regression::fit::Fit;
@@ -67,9 +68,10 @@ impl Fitted for InFit<'_> {
 
 /// Whether `candidate` is possible at the coefficients of `fit`.
 pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bool {
-    // Masses with the opposite error may hide an effect that every drive has.
+    // Masses with the opposite error may hide an effect that every drive has, and a torque constant.
     let cancels = |joint| torque_share(candidate, table, fit, joint) >= LARGEST_TORQUE_SHARE;
-    if !candidate.hypothesis.is_baseline() && candidate.joint.is_some_and(cancels) {
+    let may_be_hidden = candidate.hypothesis.is_baseline() || candidate.hypothesis.is(&TorqueScale);
+    if !may_be_hidden && candidate.joint.is_some_and(cancels) {
         return false;
     }
     is_physical(candidate, table, fit, arm)

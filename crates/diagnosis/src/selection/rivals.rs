@@ -17,6 +17,9 @@ const TRIED: usize = 8;
 const PAIRED: usize = 3;
 const PARTNERS: usize = 2;
 
+/// The margin at which the probability hardly increases any more, relative to [`MARGIN_SCALE`].
+const SATURATED: f64 = 3.5;
+
 /// An effect and its joint; `None` is the whole arm.
 pub type Named = (Hypothesis, Option<usize>);
 
@@ -138,16 +141,14 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
         .map(|c| (c, problem.choose([&set[..], &[c]].concat(), &chosen.fit.weights)))
         .filter(|(c, next)| problem.is_possible(*c, &next.fit))
         .collect();
+    let explained = without.fit.loss - chosen.fit.loss;
+    let allowance = allowance(explained);
     let result = |c: usize, next: &Selection| -> (f64, f64, Hypothesis, Option<usize>) {
         let Candidate { hypothesis, joint, .. } = study.candidates[c];
-        (
-            next.fit.loss - chosen.fit.loss,
-            next.score - chosen.score,
-            hypothesis,
-            joint,
-        )
+        let (loss, score) = in_place(problem, chosen, member, &[c], next, allowance);
+        (loss, score, hypothesis, joint)
     };
-    let mut results: Vec<_> = alone.iter().map(|(c, next)| result(*c, next)).collect();
+    let mut results: Vec<_> = alone.par_iter().map(|(c, next)| result(*c, next)).collect();
     let mut on_all_joints = Vec::new();
     if let Some(same) = finding.hypothesis.spec().same_on_all_joints {
         // Without a known load, a common factor of all masses and one of all torques cannot be distinguished.
@@ -159,9 +160,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
             on_all_joints.extend(factors.iter().map(|&c| result(c, &next)));
         }
     }
-    let explained = without.fit.loss - chosen.fit.loss;
     let alias = alias(study, chosen, member, &set);
-    let allowance = allowance(explained);
     // If the torque is constant from the beginning, its size relative to the friction decides between the names. What has changed
     // while the friction was the same may be either.
     let sets_in = || study.terms(member).iter().any(|term| term.onset().is_some());
@@ -198,6 +197,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
         study,
         problem,
         chosen,
+        member,
         set: &set,
         allowance,
         rivals: &rivals,
@@ -221,11 +221,40 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
     }
 }
 
+/// The loss and the score of `next` (nats), in which `alternatives` stand in the place of `member`, beyond those of `chosen`; or, if
+/// the alternatives improve the fit beside `member` too, beyond those of the fit with all of them. What explains something else of
+/// its own would otherwise seem to explain what `member` does. Only alternatives that may be `within` an allowance (nats) are fitted
+/// beside `member`.
+fn in_place(
+    problem: &Problem<'_>,
+    chosen: &Selection,
+    member: usize,
+    alternatives: &[usize],
+    next: &Selection,
+    within: f64,
+) -> (f64, f64) {
+    let beyond = |reference: &Selection| (next.fit.loss - reference.fit.loss, next.score - reference.score);
+    let (loss, score) = beyond(chosen);
+    let excludes = |&c: &usize| chosen.set.iter().any(|&known| problem.exclude(c, known));
+    if loss > within && score > SATURATED * MARGIN_SCALE || alternatives.iter().any(excludes) {
+        return (loss, score);
+    }
+    let all = problem.choose([&chosen.set[..], alternatives].concat(), &chosen.fit.weights);
+    let is_possible = |&c: &usize| problem.is_possible(c, &all.fit);
+    if all.score < chosen.score && alternatives.iter().chain([&member]).all(is_possible) {
+        beyond(&all)
+    } else {
+        (loss, score)
+    }
+}
+
 /// The search for two effects that together explain as much as a finding.
 struct Paired<'a> {
     study: &'a Study,
     problem: &'a Problem<'a>,
     chosen: &'a Selection,
+    /// The finding.
+    member: usize,
     /// The set beside which alternatives are tried.
     set: &'a [usize],
     /// The largest loss of an alternative (nats).
@@ -260,10 +289,20 @@ impl Paired<'_> {
                 let both = self.problem.choose(set, &self.chosen.fit.weights);
                 let mut names = [self.named(one), self.named(other)];
                 names.sort();
-                let loss = both.fit.loss - self.chosen.fit.loss;
                 let are_possible = [one, other].iter().all(|&c| self.problem.is_possible(c, &both.fit));
-                if are_possible && loss <= self.allowance && !pairs.iter().any(|pair| pair.2 == names) {
-                    pairs.push((loss, both.score - self.chosen.score, names));
+                if !are_possible || pairs.iter().any(|pair| pair.2 == names) {
+                    continue;
+                }
+                let (loss, score) = in_place(
+                    self.problem,
+                    self.chosen,
+                    self.member,
+                    &[one, other],
+                    &both,
+                    self.allowance,
+                );
+                if loss <= self.allowance {
+                    pairs.push((loss, score, names));
                 }
             }
         }

@@ -52,6 +52,29 @@ impl Problem<'_> {
             .collect()
     }
 
+    /// `chosen` without a factor of all masses and without the torque constants that it has, and with those of the other joints: all
+    /// torque constants but one that have the inverse of a factor of all masses resemble the factor of the one.
+    fn other_constants(&self, chosen: &Selection, allowed: &[usize]) -> Option<Selection> {
+        let spec = |c: usize| self.candidates[c].hypothesis.spec();
+        let common = chosen.set.iter().find_map(|&c| Some((c, spec(c).same_on_all_joints?)));
+        let (factor, constant) = common?;
+        let is_constant = |c: &usize| spec(*c).name == constant && self.onset(&self.candidates[*c]).is_none();
+        let named: Vec<Option<usize>> = chosen
+            .set
+            .iter()
+            .copied()
+            .filter(is_constant)
+            .map(|c| self.candidates[c].joint)
+            .collect();
+        let rest = chosen.others(factor).into_iter().filter(|c| !is_constant(c));
+        let others = allowed
+            .iter()
+            .copied()
+            .filter(|c| is_constant(c) && !named.contains(&self.candidates[*c].joint));
+        let set = rest.chain(others).collect();
+        Some(self.prune(self.choose(set, &chosen.fit.weights)))
+    }
+
     /// Replaces single members by better ones, until none is better.
     pub fn swap(&self, mut chosen: Selection, allowed: &[usize], rounds: usize) -> Selection {
         for _ in 0..rounds {
@@ -80,7 +103,8 @@ impl Problem<'_> {
             let trials = trials
                 .into_iter()
                 .chain(self.arm_wide(&chosen, allowed))
-                .chain(self.other_masses(&chosen, allowed));
+                .chain(self.other_masses(&chosen, allowed))
+                .chain(self.other_constants(&chosen, allowed));
             match trials.min_by(|a, b| a.score.total_cmp(&b.score)) {
                 Some(next) if next.score < chosen.score - SWAP_GAIN => chosen = self.prune(self.reweighted(next)),
                 _ => break,
