@@ -1,9 +1,11 @@
-//! A column map is proposed only if the recording agrees with the robot with it.
+//! A column map is proposed only if the recording agrees with the robot with it, and what one joint's columns prevent.
+
+use std::f64::consts::FRAC_PI_2;
 
 use recording::Recording;
 
 use crate::diagnose_mistakes::{doubted, with_numbers};
-use crate::diagnose_refusals::{case, says};
+use crate::diagnose_refusals::{case, changed, says};
 use crate::support::{Sandbox, root};
 
 #[test]
@@ -30,4 +32,33 @@ fn numbers_of_rows_are_no_milliseconds() {
     let said = sandbox.succeed(&["inspect", "rows.csv", "--robot", &robot, "--json", "o.json"]);
     says(&said, &["or are they the numbers of the rows"]);
     assert!(sandbox.json("o.json")["files"][0]["column_map"].is_null(), "{said}");
+}
+
+/// What is certain of one or two joints alone also prevents a diagnosis: with a wrong position of one, the model's torques of all
+/// joints before it are wrong, and effects would be named on them.
+#[test]
+fn one_joint_in_degrees_or_off_by_a_quarter_and_two_swapped_torques_prevent_a_diagnosis() {
+    let number = |cell: &String| cell.parse::<f64>().expect("a number");
+    let degrees = changed(|cells| cells[3] = number(&cells[3]).to_degrees().to_string());
+    says(
+        &doubted(&case(), &degrees),
+        &[
+            "elbow: the position is in degrees",
+            "[joints.elbow]",
+            "q_unit = \"deg\"",
+        ],
+    );
+    let turned = changed(|cells| cells[2] = (number(&cells[2]) + FRAC_PI_2).to_string());
+    says(
+        &doubted(&case(), &turned),
+        &[
+            "shoulder: the position's zero is off by π/2",
+            "q_offset = -1.5707963267948966",
+        ],
+    );
+    let swapped = changed(|cells| cells.swap(5, 6));
+    says(
+        &doubted(&case(), &swapped),
+        &["the torques of shoulder and elbow seem swapped"],
+    );
 }

@@ -19,7 +19,7 @@ pub enum DiagnosisError {
     #[error(transparent)]
     Known(#[from] torque::TorqueError),
     /// An effect to be fitted that the catalogue or the arm does not have.
-    #[error("{effect}{}: {reason}", joint.as_ref().map(|joint| format!(" on {joint}")).unwrap_or_default())]
+    #[error("--only {effect}{}: {reason}", joint.as_ref().map(|joint| format!(" on {joint}")).unwrap_or_default())]
     Wanted {
         /// Its name.
         effect: String,

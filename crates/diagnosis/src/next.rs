@@ -13,7 +13,9 @@ use torque::Reference;
 
 use crate::findings::observability;
 use crate::regression::fit::Products;
-use crate::report::{Confusable, Finding, NextExperiment, NotObservable, Obstacle, Separation, Shows, Unexplained};
+use crate::report::{
+    Confusable, Finding, NextExperiment, NotObservable, NotSeparated, Obstacle, Separation, Shows, Unexplained,
+};
 use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::selection::rivals;
@@ -93,7 +95,7 @@ pub fn propose(
     hidden: &[NotObservable],
     unexplained: &[Unexplained],
 ) -> Result<Next, torque::TorqueError> {
-    let confusions = confusions(study, chosen, findings, unexplained);
+    let (confusions, unpredicted) = confusions(study, chosen, findings, unexplained);
     let hidden = visible(study, chosen, hidden);
     let columns = confusions
         .iter()
@@ -103,7 +105,7 @@ pub fn propose(
         report: NextExperiment {
             duration: None,
             separates: Vec::new(),
-            not_separated: Vec::new(),
+            not_separated: unpredicted.clone(),
             shows: Vec::new(),
             limits: Vec::new(),
         },
@@ -138,7 +140,9 @@ pub fn propose(
         let (design, parts) = (list[best].design.clone(), list[best].parts);
         match design.surely_within(&limits, parts) {
             Some((_, within)) if within == parts => {
-                return Ok(described(&limits, &confusions, &hidden, &before, &list, best));
+                let mut next = described(&limits, &confusions, &hidden, &before, &list, best);
+                next.report.not_separated.extend(unpredicted);
+                return Ok(next);
             }
             Some((motion, within)) => {
                 list[best] = tried(&prospect, &confusions, &hidden, (design, within), motion);
@@ -209,20 +213,20 @@ fn shows(prospect: &Prospect<'_>, outlook: &Outlook, hidden: &[Hidden<'_>]) -> V
     hidden.iter().map(size).collect()
 }
 
-/// The alternatives of each finding, as sets of columns. Findings without columns (a contact, a second encoder) are
-/// omitted.
+/// The alternatives of each finding, as sets of columns, and those without columns, for which nothing can be predicted. Findings
+/// without columns (a contact, a second encoder) are omitted.
 fn confusions(
     study: &Study,
     chosen: &Selection,
     findings: &[(Finding, Option<usize>)],
     unexplained: &[Unexplained],
-) -> Vec<Confusion> {
+) -> (Vec<Confusion>, Vec<NotSeparated>) {
     let columns_of = |set: &[usize]| -> Vec<usize> {
         let columns = set.iter().flat_map(|&c| study.candidates[c].columns.iter().copied());
         columns.collect::<BTreeSet<usize>>().into_iter().collect()
     };
     let index = |name: &str| study.arm.joints().iter().position(|joint| joint.name == name);
-    let mut list = Vec::new();
+    let (mut list, mut unpredicted) = (Vec::new(), Vec::new());
     for (finding, member) in findings {
         let Some(member) = *member else { continue };
         let this = &study.candidates[member];
@@ -249,7 +253,15 @@ fn confusions(
             } else {
                 forms.iter().map(|&form| (with(&[form]), vec![form])).collect()
             };
+            // Wrong inertial parameters have no columns of their own: they are in the background.
             if instead.is_empty() {
+                unpredicted.push(advice::unpredicted(
+                    Confusable {
+                        effect: finding.effect,
+                        joint: finding.joint.clone(),
+                    },
+                    rival.clone(),
+                ));
                 continue;
             }
             let pair = Pair {
@@ -271,7 +283,7 @@ fn confusions(
             });
         }
     }
-    list
+    (list, unpredicted)
 }
 
 /// The `hidden` effects whose size can be predicted without simulation: torque limits, and linear effects.

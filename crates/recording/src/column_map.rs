@@ -201,6 +201,12 @@ impl ColumnMap {
         }
     }
 
+    /// The column that numbers the runs. A file of a known system may lack it, if it holds one run.
+    fn run_of<'a>(&self, time: &'a Time, headers: &[String]) -> Option<&'a (String, usize)> {
+        let may_lack = |run: &&(String, usize)| self.system.is_none() || headers.contains(&run.0);
+        time.run.as_ref().filter(may_lack)
+    }
+
     /// The plan for a file with these headers, whose first row has the cells `first`.
     pub(crate) fn plan(&self, headers: &[String], first: &[String], file: &Path) -> Result<Plan, RecordingError> {
         let find = |(name, line): &(String, usize)| {
@@ -228,7 +234,7 @@ impl ColumnMap {
             header,
             factor: time.factor,
             nanos: time.nanosec.as_ref().map(find).transpose()?,
-            run: time.run.as_ref().map(find).transpose()?,
+            run: self.run_of(time, headers).map(find).transpose()?,
         };
         let expanded = self.expand(headers, first)?;
         let mut channels = Vec::new();

@@ -147,8 +147,9 @@ impl Recording {
                     warnings.push(note);
                     plan
                 }
-                None => header::plan_by_names(&table.headers)
-                    .map_err(|reason| header_error(reason + &draft::of(&table.headers)))?,
+                None => header::plan_by_names(&table.headers).map_err(|reason| {
+                    header_error(header::twice(&table.headers) + &reason + &draft::of(&table.headers))
+                })?,
             },
         };
         if let Some(header) = header::doubled(&table.headers, &plan) {

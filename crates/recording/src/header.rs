@@ -112,6 +112,15 @@ pub fn doubled<'a>(headers: &'a [String], plan: &Plan) -> Option<&'a str> {
         .find(|used| headers.iter().filter(|header| header == used).count() > 1)
 }
 
+/// That a column is there twice, before the message that another one is missing.
+pub fn twice(headers: &[String]) -> String {
+    let is_twice = |header: &&String| !header.is_empty() && headers.iter().filter(|other| other == header).count() > 1;
+    let doubled = headers.iter().find(is_twice);
+    doubled.map_or_else(String::new, |header| {
+        format!("column \"{header}\" is there twice (rename one), and ")
+    })
+}
+
 /// The plan for headers with testbed's own names; the error contains what is missing.
 pub fn plan_by_names(headers: &[String]) -> Result<Plan, String> {
     let at = |name: &str| headers.iter().position(|header| header == name);

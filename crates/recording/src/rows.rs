@@ -165,7 +165,12 @@ impl<'a> Rows<'a> {
                 &time.header,
                 unusable(
                     row.cell(time.index),
-                    "give the time as a number or in ISO 8601 (2024-03-01T12:00:00.004Z), or delete the row",
+                    // Where the first row fails, all probably do.
+                    if self.values.read() == 0 {
+                        "give the times as numbers or in ISO 8601 (2024-03-01T12:00:00.004Z)"
+                    } else {
+                        "give the time as a number or in ISO 8601 (2024-03-01T12:00:00.004Z), or delete the row"
+                    },
                 ),
             )),
         }

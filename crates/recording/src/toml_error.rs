@@ -1,12 +1,30 @@
 //! Errors of the TOML parser, for the author of the file.
 
+/// Keys that only one kind of file has.
+const KINDS: [(&[&str], &str); 3] = [
+    (
+        &["controller", "reference", "duration", "plant", "sensors", "training"],
+        "a scenario (--scenario)",
+    ),
+    (
+        &["time", "joints", "system", "topics", "delimiter"],
+        "a column map (--map)",
+    ),
+    (&["effects"], "a model of effects (--known)"),
+];
+
 /// The error in one line; for an unknown key, with the nearest known one.
 pub fn toml_reason(message: &str) -> String {
     match unknown_field(message) {
         Some((unknown, known)) => {
-            let hint = match nearest(&unknown, &known) {
-                Some(nearest) => format!("did you mean `{nearest}`? "),
-                None => String::new(),
+            // A file of another kind that was given in its place.
+            let kind = KINDS
+                .iter()
+                .find(|(keys, _)| keys.contains(&unknown.as_str()) && !known.contains(&unknown));
+            let hint = match (kind, nearest(&unknown, &known)) {
+                (Some((_, kind)), _) => format!("is this {kind}? "),
+                (None, Some(nearest)) => format!("did you mean `{nearest}`? "),
+                (None, None) => String::new(),
             };
             format!("unknown key `{unknown}`; {hint}known here: {}", known.join(", "))
         }

@@ -209,6 +209,10 @@ fn parquet_is_read_whatever_its_compression() {
     let calendar = read("datetime.parquet");
     check(&calendar, 60, 0.0);
     assert!((calendar.time[0] - 0.25).abs() < 1e-12);
+    // Time differences of pandas, which Parquet holds as integers.
+    check(&read("timedelta.parquet"), 60, 0.0);
+    let empty = refusal("empty.parquet");
+    assert!(empty.contains("the table has no rows"), "{empty}");
 }
 
 #[test]
@@ -225,6 +229,7 @@ fn episodes_of_lerobot_are_runs() {
     }
     let told = |warning: &Warning| matches!(warning, Warning::Runs { runs: 2, .. });
     assert!(recording.warnings.iter().any(told), "{:?}", recording.warnings);
+    assert_eq!(read("lerobot_one_episode.parquet").len(), 60);
     let lacking = refusal("lerobot_no_torques.parquet");
     assert!(
         lacking.contains("those of LeRobot") && lacking.contains("observation.effort"),
@@ -256,6 +261,17 @@ fn arrays_of_numpy_and_matlab_are_read() {
     assert!(
         newer.contains("\"-v7\")") && newer.contains("scipy.io.savemat"),
         "{newer}"
+    );
+    check(&read("half.npz"), 60, 1e-3);
+    let complex = refusal("complex.npz");
+    assert!(
+        complex.contains("q has the type <c16") && complex.contains("q.astype(float)"),
+        "{complex}"
+    );
+    let old = refusal("version_4.mat");
+    assert!(
+        old.contains("version 4 is not read") && old.contains("scipy.io.savemat"),
+        "{old}"
     );
     let short = refusal("short.npz");
     assert!(

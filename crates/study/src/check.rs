@@ -11,7 +11,7 @@ mod torque_unit;
 use arm::Arm;
 use effects::Quantity;
 use recording::{FindingKind, Quality, Recording, RegularRecording, nearest};
-use report::numbers::rounded;
+use report::numbers::{percent, rounded};
 use serde::Serialize;
 
 use self::column_map::Change;
@@ -128,7 +128,7 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
     for (joint, measured) in &pairs {
         let limits = joint.limits;
         let (low, high) = measured.q_range;
-        if let Some(misfit) = positions::of_one(&(joint, measured)) {
+        if let Some(misfit) = positions::of_one(arm, &(joint, measured), smooth) {
             misfits.push(misfit);
             in_degrees += 1;
             continue;
@@ -166,14 +166,13 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
     if let (Some(order), Some(smooth)) = (order, smooth) {
         let moves: Vec<bool> = order.iter().map(|&joint| quality.joints[joint].moves).collect();
         // With positions in degrees or of another joint, the model's torques are meaningless.
-        let doubted = quality.findings.iter().any(|finding| {
-            matches!(
-                finding.kind,
-                FindingKind::TimeUnit | FindingKind::Degrees | FindingKind::VelocityUnit | FindingKind::VelocitySwapped
-            )
-        });
-        if !doubted && in_degrees == 0 && !has_other_time {
-            misfits.extend(torques(arm, smooth, &moves));
+        let has = |kinds: &[FindingKind]| quality.findings.iter().any(|finding| kinds.contains(&finding.kind));
+        let has_other_units = has(&[FindingKind::TimeUnit, FindingKind::Degrees, FindingKind::VelocityUnit]);
+        if !has_other_units && in_degrees == 0 && !has_other_time {
+            let mut shown = torques(arm, smooth, &moves);
+            // If the columns of positions are swapped and not those of velocities, the torques show it with certainty.
+            shown.retain(|misfit| misfit.prevents_diagnosis || !has(&[FindingKind::VelocitySwapped]));
+            misfits.extend(shown);
         }
     }
     misfits
@@ -233,19 +232,33 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
         }];
     }
     if let Some(misfit) = supposed(arm, smooth, moves, &names, &as_it_is) {
-        // Wrong signs or a wrong order of all joints make a diagnosis useless. A wrong zero, sign or swap of one or two
-        // joints is only reported, because it may not be one: where the URDF's inertial parameters are wrong, the centre of
+        // Wrong signs or a wrong order of all joints make a diagnosis useless, and so does a wrong zero or swap of one or two joints
+        // that is certain. One that is not, and a wrong sign, is only reported, because it may not be one: where the URDF's inertial parameters are wrong, the centre of
         // mass of a light link may lie in another direction, and torques do not distinguish that from a zero that is off by
         // a quarter of a turn. The same holds for inverted signs of all joints if the heavy links explain the torque of
         // most joints without the inversion: the light links alone fit a mirrored arm as well.
         let is_changed = |name: &&str| misfit.changes.iter().any(|change| change.is_of(name));
-        let prevents_diagnosis = names.iter().all(is_changed) && !as_it_is.explains_most(moves);
+        let is_of_all = names.iter().all(is_changed) && !as_it_is.explains_most(moves);
+        let prevents_diagnosis = misfit.prevents_diagnosis || is_of_all;
         return vec![Misfit {
             prevents_diagnosis,
             ..misfit
         }];
     }
     let mut misfits = Vec::new();
+    for (joint, name) in names.iter().enumerate() {
+        let is_constant = smooth.q[joint].windows(2).all(|pair| pair[0] == pair[1]);
+        if is_constant && as_it_is.residual_share[joint] > 0.5 && as_it_is.size[joint] > OF_SIZE.start {
+            let text = format!(
+                "the position is {} in all rows, but the torque varies by {} times as much as the model's at that position, which \
+                 explains {} of it; was the position recorded?",
+                rounded(smooth.q[joint][0], 4),
+                rounded(as_it_is.size[joint], 2),
+                percent(1.0 - as_it_is.residual_share[joint])
+            );
+            misfits.push(Misfit::new(Some(name), text, Vec::new()));
+        }
+    }
     for (joint, &factor) in as_it_is.factor.iter().enumerate() {
         let matters = moves[joint] && as_it_is.needs_model(joint);
         let size = factor.abs();

@@ -145,7 +145,7 @@ fn recording_samples(scenario: &Scenario, recording: &Recording, samples: &mut S
     for joint in joints {
         let index = column(&joint.name).with_context(|| {
             format!(
-                "it has no column \"q_{}\"; the robot's joints are named in its URDF",
+                "it has no column \"q_{}\"; give a recording of the scenario's robot, or name its columns as the URDF names the joints",
                 joint.name
             )
         })?;

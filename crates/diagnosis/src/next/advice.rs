@@ -1,5 +1,6 @@
 //! The experiment to make where no motion distinguishes two effects.
 use crate::report::{Confusable, NotSeparated, Obstacle};
+use crate::thresholds::NEARLY_NATS;
 
 /// Evidence below this (nats), or below this part of the needed evidence, counts as none: the two effects have the same torque.
 const ALIAS: (f64, f64) = (1.0, 0.1);
@@ -53,6 +54,23 @@ pub fn not_separated(
         best,
         needed,
         kind,
+        because,
+        instead,
+    }
+}
+
+/// The confusion of `finding` with `rival`, for which no motion is predicted.
+pub fn unpredicted(finding: Confusable, rival: Confusable) -> NotSeparated {
+    let because =
+        "the alternative is a correction of all inertial parameters together, for which no motion is predicted"
+            .to_owned();
+    let instead = instead(finding.effect, rival.effect).to_owned();
+    NotSeparated {
+        finding,
+        rival,
+        best: 0.0,
+        needed: NEARLY_NATS,
+        kind: Obstacle::NotForetold,
         because,
         instead,
     }

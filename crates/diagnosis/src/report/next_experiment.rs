@@ -67,8 +67,8 @@ pub enum Obstacle {
     AnotherMotion,
     /// The joint has an unexplained residual, so that the outcome of a motion cannot be predicted.
     Unexplained,
-    /// The prediction fails on the present recordings: it states that they already distinguish the two, so that no outcome is
-    /// predicted.
+    /// No outcome is predicted: the alternative is a correction of all inertial parameters together, or the prediction fails on the
+    /// present recordings, because it states that they already distinguish the two.
     NotForetold,
 }
 

@@ -120,8 +120,10 @@ fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, Diag
             return Err(refused(one, no_effect(&one.effect)));
         };
         match (joint, spec.scope) {
-            (Some(_), Scope::Arm) => return Err(refused(one, "is on the whole arm; leave the joint out")),
-            (None, Scope::Joint) => return Err(refused(one, "is on a joint; give it as effect:joint")),
+            (Some(_), Scope::Arm) => return Err(refused(one, "acts on the whole arm; leave the joint out")),
+            (None, Scope::Joint) => {
+                return Err(refused(one, format!("acts on a joint; give {}:JOINT", one.effect)));
+            }
             _ => {}
         }
         if !spec.may_repeat && wanted[..k].contains(one) {
@@ -140,7 +142,14 @@ fn no_effect(name: &str) -> String {
     let titled = CATALOGUE
         .iter()
         .find(|kind| kind.spec().title.eq_ignore_ascii_case(name));
-    let meant = titled.map(|kind| kind.spec().name).or_else(|| nearest(name, &names));
+    let part = name.to_lowercase();
+    let mut with_it = names.iter().filter(|known| known.contains(&part));
+    // A part of one name only.
+    let only_one = with_it.next().filter(|_| !part.is_empty() && with_it.next().is_none());
+    let meant = titled
+        .map(|kind| kind.spec().name)
+        .or(only_one.map(String::as_str))
+        .or_else(|| nearest(name, &names));
     match meant {
         Some(meant) => format!("no such effect is in the catalogue; did you mean {meant}?"),
         None => format!("no such effect is in the catalogue, which has {}", names.join(", ")),

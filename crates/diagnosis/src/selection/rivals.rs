@@ -83,6 +83,9 @@ pub fn beside(study: &Study, chosen: &Selection, member: usize) -> Vec<usize> {
 /// the direction. No motion distinguishes the two. `set` is the set [`beside`] the finding.
 pub fn alias(study: &Study, chosen: &Selection, member: usize, set: &[usize]) -> Option<Named> {
     let finding = &study.candidates[member];
+    if finding.hypothesis.is(&FrictionAsymmetry) {
+        return Some((Hypothesis::of(&TorqueOffset), finding.joint));
+    }
     let constant = *finding.columns.first()?;
     let is_larger_friction = |&c: &usize| {
         let other = &study.candidates[c];
@@ -161,10 +164,10 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
         }
     }
     let alias = alias(study, chosen, member, &set);
-    // If the torque is constant from the beginning, its size relative to the friction decides between the names. What has changed
-    // while the friction was the same may be either.
+    // If an offset is constant from the beginning, its size relative to the friction is that of few asymmetries. What has changed
+    // while the friction was the same may be either, and so may an asymmetry: it has the size of both.
     let sets_in = || study.terms(member).iter().any(|term| term.onset().is_some());
-    let equally_likely = alias.filter(|_| sets_in());
+    let equally_likely = alias.filter(|_| finding.hypothesis.is(&FrictionAsymmetry) || sets_in());
     results.extend(equally_likely.map(|(hypothesis, joint)| (0.0, 0.0, hypothesis, joint)));
     let mut as_likely = None;
     if finding.hypothesis.spec().may_be_inertial {

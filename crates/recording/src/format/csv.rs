@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use csv::ByteRecord;
 
-use super::csv_text::{self, Separator, Squeezed};
+use super::csv_text::{self, Comments, Separator, Squeezed};
 use super::{Format, Options};
 use crate::input::Input;
 use crate::place::Place;
@@ -26,12 +26,17 @@ impl Format for Csv {
             let place = Place::Line(line);
             return Err(RecordingError::Row { path, place, reason });
         }
+        let (comments, start) = csv_text::comments(&input.head);
         let separator = match options.delimiter {
             Some(b' ') => Separator::Spaces,
             Some(delimiter) => Separator::Byte(delimiter),
-            None => csv_text::find_separator(&input.head),
+            None => csv_text::find_separator(start),
         };
-        let headless = csv_text::headless(&input.head, separator);
+        let has_comments = comments != Comments::None;
+        let headless = match comments {
+            Comments::HeaderIsLast(headers) => Some(headers),
+            _ => csv_text::headless(start, separator),
+        };
         let (stream, ends_whole) = input.into_stream()?;
         let (delimiter, stream): (u8, Box<dyn Read>) = match separator {
             Separator::Byte(delimiter) => (delimiter, stream),
@@ -41,6 +46,7 @@ impl Format for Csv {
             .delimiter(delimiter)
             .flexible(true)
             .has_headers(headless.is_none())
+            .comment(has_comments.then_some(b'#'))
             .buffer_capacity(1 << 18)
             .from_reader(stream);
         let headers = match headless {

@@ -343,3 +343,27 @@ fn spaces_and_the_other_forms_of_time_are_read() {
     let named = refusal("stamp,q_a,tau_a\n0,1,2\n1,1.5,2.5\n");
     assert!(named.contains("is \"stamp\" meant?"), "{named}");
 }
+
+#[test]
+fn comments_above_the_header_are_skipped() {
+    let rows = "0,1,2\n0.1,1,2\n0.2,1,2\n";
+    let plain = without_origin(read(&format!("t,q_a,tau_a\n{rows}")).expect("it reads"));
+    for text in [
+        format!("# by me\n# on a Tuesday\nt,q_a,tau_a\n{rows}"),
+        // As numpy.savetxt writes it.
+        format!("# t,q_a,tau_a\n{rows}"),
+        format!("# t q_a tau_a\n{}", rows.replace(',', " ")),
+    ] {
+        assert_eq!(without_origin(read(&text).expect("it reads")), plain, "{text}");
+    }
+    let wrong = refusal("# by me\nt,q_a,tau_a\n0,1,2\n1,x,2\n2,1,2\n");
+    assert!(wrong.contains("r.csv:4"), "{wrong}");
+}
+
+#[test]
+fn a_doubled_column_and_a_date_of_another_form_are_named() {
+    let doubled = refusal("t,q_a,q_b,tau_a,tau_a\n0,1,2,3,4\n1,1,2,3,4\n");
+    assert!(doubled.contains("\"tau_a\" is there twice (rename one)"), "{doubled}");
+    let date = refusal("t,q_a,tau_a\n03/01/2026 12:00:00,1,2\n03/01/2026 12:00:01,1,2\n");
+    assert!(date.contains("ISO 8601") && !date.contains("delete the row"), "{date}");
+}

@@ -39,6 +39,50 @@ pub fn no_table(start: &[u8]) -> Option<(u64, String)> {
     None
 }
 
+/// What lines that begin with `#` above the table are.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Comments {
+    /// There are none.
+    None,
+    /// They are above the header.
+    AboveHeader,
+    /// The last of them is the header, as numpy.savetxt writes it.
+    HeaderIsLast(Vec<String>),
+}
+
+/// What the lines at the beginning that begin with `#` are, and the text after them.
+pub fn comments(start: &[u8]) -> (Comments, &[u8]) {
+    let mut rest = start.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(start);
+    let mut last: Option<&[u8]> = None;
+    while rest.starts_with(b"#") {
+        let end = rest
+            .iter()
+            .position(|&byte| byte == b'\n')
+            .map_or(rest.len(), |end| end + 1);
+        last = Some(&rest[1..end]);
+        rest = &rest[end..];
+    }
+    let Some(last) = last else {
+        return (Comments::None, start);
+    };
+    let separator = find_separator(rest);
+    let cells = |line: &[u8]| -> Vec<String> {
+        let line = String::from_utf8_lossy(line);
+        let cells: Vec<&str> = match separator {
+            Separator::Byte(byte) => line.trim().split(char::from(byte)).collect(),
+            Separator::Spaces => line.split_whitespace().collect(),
+        };
+        cells.into_iter().map(|cell| cell.trim().to_owned()).collect()
+    };
+    let (names, values) = (cells(last), cells(first_line(rest)));
+    let are_numbers = values.iter().all(|cell| cell.parse::<f64>().is_ok());
+    if are_numbers && names.len() == values.len() {
+        (Comments::HeaderIsLast(names), rest)
+    } else {
+        (Comments::AboveHeader, rest)
+    }
+}
+
 /// The separator of the cells: a semicolon, a tab or spaces where the header has no comma.
 pub fn find_separator(start: &[u8]) -> Separator {
     let header = first_line(start).trim_ascii();

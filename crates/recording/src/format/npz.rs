@@ -27,6 +27,9 @@ impl Format for Npz {
     }
 }
 
+/// The arrays that a recording consists of.
+const WANTED: [&str; 4] = ["t", "q", "qd", "tau"];
+
 /// The arrays of numbers in the archive.
 fn read(data: &[u8]) -> Result<Vec<Array>, String> {
     let damaged = |error: rawzip::Error| format!("the archive is damaged or cut ({error}); copy it again");
@@ -91,14 +94,21 @@ fn array(name: &str, data: &[u8]) -> Result<Option<Array>, String> {
         _ => return Ok(None),
     };
     let count = shape.0.checked_mul(shape.1).ok_or_else(damaged)?;
-    let values = values(descr, count, bytes)?
-        .map(|values| values.ok_or_else(damaged))
-        .transpose()?;
-    Ok(values.map(|values| Array {
+    let Some(values) = values(descr, count, bytes)? else {
+        // Other arrays may have any type.
+        return if WANTED.contains(&name) {
+            Err(format!(
+                "the array {name} has the type {descr}, which is not read; save it as numbers: {name}.astype(float)"
+            ))
+        } else {
+            Ok(None)
+        };
+    };
+    Ok(Some(Array {
         name: name.to_owned(),
         shape,
         by_rows,
-        values,
+        values: values.ok_or_else(damaged)?,
     }))
 }
 
@@ -137,7 +147,7 @@ fn values(descr: &str, count: usize, bytes: Bytes<'_>) -> Result<Option<Option<C
     }
     let size = kind.get(1..).and_then(|size| size.parse::<usize>().ok()).unwrap_or(0);
     Ok(match (kind.chars().next(), size) {
-        (Some('f'), 4 | 8) => Some(bytes.numbers(size, count).map(Column::Numbers)),
+        (Some('f'), 2 | 4 | 8) => Some(bytes.numbers(size, count).map(Column::Numbers)),
         (Some('i'), 1 | 2 | 4 | 8) => Some(bytes.integers(size, true, count).map(Column::Integers)),
         (Some('u' | 'b'), 1 | 2 | 4 | 8) => Some(bytes.integers(size, false, count).map(Column::Integers)),
         _ => None,

@@ -6,9 +6,10 @@ use parquet::basic::{Compression, ConvertedType, LogicalType, TimeUnit};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
-use parquet::file::metadata::{ColumnChunkMetaData, RowGroupMetaData};
+use parquet::file::metadata::{ColumnChunkMetaData, KeyValue, RowGroupMetaData};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
+use serde::Deserialize;
 
 use super::{Format, Options};
 use crate::RecordingError;
@@ -85,8 +86,19 @@ fn columns(file: std::fs::File) -> Result<Vec<(String, Column)>, String> {
                 .to_owned(),
         );
     }
-    let schema = reader.metadata().file_metadata().schema_descr_ptr();
+    let file = reader.metadata().file_metadata();
+    if file.num_rows() == 0 {
+        return Err("the table has no rows; a motion takes at least two, and a fit thousands".to_owned());
+    }
+    let schema = file.schema_descr_ptr();
     let mut leaves: Vec<Option<Leaf>> = schema.columns().iter().map(|column| leaf(column)).collect();
+    let durations = durations(file.key_value_metadata().map_or(&[], Vec::as_slice));
+    for leaf in leaves.iter_mut().flatten() {
+        let unit = durations.iter().find(|(name, _)| *name == leaf.name);
+        if let (Values::Integers(_), Some((_, unit))) = (&leaf.values, unit) {
+            leaf.values = Values::Nanos(Vec::new(), *unit);
+        }
+    }
     let mut room = MOST.min(usize::try_from(most_expanded(size) / 8).unwrap_or(MOST));
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(damaged)?;
@@ -117,6 +129,40 @@ fn columns(file: std::fs::File) -> Result<Vec<(String, Column)>, String> {
         return Err("there are no columns of numbers; give a recording with time, positions and torques".to_owned());
     }
     Ok(columns)
+}
+
+/// The columns that pandas wrote from time differences, with their unit (ns). Parquet has no type for them; pandas describes its
+/// columns in the file's metadata.
+fn durations(metadata: &[KeyValue]) -> Vec<(String, i64)> {
+    let text = metadata
+        .iter()
+        .find(|pair| pair.key == "pandas")
+        .and_then(|pair| pair.value.as_deref());
+    let described: Option<Pandas> = text.and_then(|text| serde_json::from_str(text).ok());
+    let unit = |kind: &str| {
+        Some(match kind {
+            "timedelta64[ns]" => 1,
+            "timedelta64[us]" => 1_000,
+            "timedelta64[ms]" => 1_000_000,
+            "timedelta64[s]" => 1_000_000_000,
+            _ => return None,
+        })
+    };
+    let columns = described.map_or_else(Vec::new, |described| described.columns);
+    let of = |column: PandasColumn| Some((column.name?, unit(&column.numpy_type?)?));
+    columns.into_iter().filter_map(of).collect()
+}
+
+/// The part of pandas' description of a table that is used here.
+#[derive(Deserialize)]
+struct Pandas {
+    columns: Vec<PandasColumn>,
+}
+
+#[derive(Deserialize)]
+struct PandasColumn {
+    name: Option<String>,
+    numpy_type: Option<String>,
 }
 
 /// Whether the pages of a column are within a file of `size` bytes.

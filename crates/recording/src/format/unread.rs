@@ -40,11 +40,42 @@ const KNOWN: &[(&[u8], &str, &str)] = &[
 /// The format that is recognised but not read.
 pub struct Unread;
 
+/// Whether a file with this beginning is a .mat file of version 4: the type of its first variable (four decimal digits), its rows and
+/// columns, whether it is complex, and the length of its name with the zero byte at the end.
+fn is_mat_4(head: &[u8]) -> bool {
+    let word = |at: usize| {
+        let bytes = head.get(4 * at..4 * at + 4)?;
+        Some(u32::from_le_bytes(bytes.try_into().ok()?))
+    };
+    let (Some(kind), Some(rows), Some(columns), Some(complex), Some(length)) =
+        (word(0), word(1), word(2), word(3), word(4))
+    else {
+        return false;
+    };
+    let name = usize::try_from(length)
+        .ok()
+        .and_then(|length| head.get(20..20 + length));
+    let is_name = |name: &[u8]| {
+        let (end, letters) = name.split_last().unwrap_or((&1, &[]));
+        *end == 0
+            && !letters.is_empty()
+            && letters
+                .iter()
+                .all(|letter| letter.is_ascii_alphanumeric() || *letter == b'_')
+    };
+    kind < 60 && rows > 0 && columns > 0 && complex < 2 && name.is_some_and(is_name)
+}
+
 /// The name and the remedy of a format with this beginning.
 fn known(head: &[u8]) -> Option<(&'static str, &'static str)> {
     let known = KNOWN.iter().find(|(mark, _, _)| head.starts_with(mark));
     if let Some((_, name, remedy)) = known {
         return Some((name, remedy));
+    }
+    if is_mat_4(head) {
+        let remedy = "version 4 is not read; save it again from MATLAB: save(\"run.mat\", \"t\", \"q\", \"tau\", \"-v7\"); or from \
+                      Python: scipy.io.savemat(\"run.mat\", {\"t\": t, \"q\": q, \"tau\": tau})";
+        return Some((".mat", remedy));
     }
     // A pickle begins with its protocol, 2 to 5. JSON has no signature: an object begins with a name, an array with a value.
     if let [0x80, 2..=5, ..] = head {

@@ -206,6 +206,8 @@ def parquet_files():
     # A text, a gap in a column that is not needed, and stamps of a calendar.
     frame = frame.assign(t=pd.to_datetime(stamps, unit="ns"), mode="run", note=[None, *range(ROWS - 1)])
     frame.to_parquet(HERE / "datetime.parquet")
+    pd.DataFrame(named).assign(t=pd.to_timedelta(named["t"], unit="s")).to_parquet(HERE / "timedelta.parquet")
+    pd.DataFrame(named).iloc[:0].to_parquet(HERE / "empty.parquet")
     # LeRobot: lists, single precision, a clock that starts again with each of two episodes.
     single = lambda values: pa.array(values.astype(np.float32).tolist(), pa.list_(pa.float32()))
     twice = lambda values: np.concatenate([values, values])
@@ -219,6 +221,8 @@ def parquet_files():
         "frame_index": pa.array([k % ROWS for k in range(2 * ROWS)], pa.int64()),
     }
     pq.write_table(pa.table(data), HERE / "lerobot.parquet")
+    one = {name: values[:ROWS] for name, values in data.items() if name != "episode_index"}
+    pq.write_table(pa.table(one), HERE / "lerobot_one_episode.parquet")
     del data["observation.effort"]
     pq.write_table(pa.table(data), HERE / "lerobot_no_torques.parquet")
 
@@ -229,6 +233,9 @@ def array_files():
     np.savez_compressed(HERE / "short.npz", t=arrays["t"], q=arrays["q"][:-3], tau=arrays["tau"])
     np.savez_compressed(HERE / "arrays.npz", **arrays, rate=100.0, joints=np.array(NAMES))
     np.savez(HERE / "fortran.npz", **{name: np.asfortranarray(values.astype(">f8")) for name, values in arrays.items()})
+    np.savez(HERE / "half.npz", **{**arrays, "q": arrays["q"].astype(np.float16)})
+    np.savez(HERE / "complex.npz", **{**arrays, "q": arrays["q"].astype(complex)})
+    scipy.io.savemat(HERE / "version_4.mat", {"t": arrays["t"], "q": arrays["q"], "tau": arrays["tau"]}, format="4")
     scipy.io.savemat(HERE / "named.mat", named)
     # Rows of values, as MATLAB users have them; with what is no array of numbers.
     rows = {name: values.T for name, values in arrays.items()}

@@ -8,6 +8,7 @@ use report::numbers::{percent, rounded};
 
 use super::column_map::{Change, Value};
 use super::smooth::Smooth;
+use super::supposed::GAIN;
 use super::supposition::{Supposition, fit};
 use super::torque_unit::MOTOR_SIDE;
 use super::{BEYOND, Misfit};
@@ -244,8 +245,9 @@ fn is_beyond((joint, measured): &Pair<'_>) -> bool {
     limits.upper > limits.lower && high - low > (2.0 * TAU).max(1.5 * (limits.upper - limits.lower))
 }
 
-/// The contradiction if the positions of one joint fit into its limits only in degrees.
-pub fn of_one((joint, measured): &Pair<'_>) -> Option<Misfit> {
+/// The contradiction if the positions of one joint fit into its limits only in degrees. It prevents a diagnosis if the recorded
+/// velocities or the torques agree: a joint that turns without end may also exceed its limits that far.
+pub fn of_one(arm: &Arm, (joint, measured): &Pair<'_>, smooth: Option<&Smooth>) -> Option<Misfit> {
     let (low, high) = measured.q_range;
     let limits = joint.limits;
     let fits = low.to_radians() > limits.lower - 1e-2 && high.to_radians() < limits.upper + 1e-2;
@@ -268,7 +270,16 @@ pub fn of_one((joint, measured): &Pair<'_>) -> Option<Misfit> {
     {
         changes.push(Change::new(&joint.name, "qd_unit", Value::Unit(of_velocity, factor)));
     }
-    Some(Misfit::new(Some(&joint.name), text, changes))
+    let is_slope = |ratio: f64| (ratio.abs() * factor - 1.0).abs() < 0.04;
+    let agrees = |smooth: &Smooth| {
+        let at = arm.joints().iter().position(|other| other.name == joint.name);
+        let explains = |supposition| fit(arm, smooth, supposition).score();
+        at.is_some_and(|at| explains(Supposition::AsItIs) - explains(Supposition::UnitOf(at, factor)) > GAIN)
+    };
+    Some(Misfit {
+        prevents_diagnosis: measured.velocity_ratio.is_some_and(is_slope) || smooth.is_some_and(agrees),
+        ..Misfit::new(Some(&joint.name), text, changes)
+    })
 }
 
 /// The contradiction if the speeds of all joints that move are far beyond their limits.

@@ -8,12 +8,20 @@ use super::smooth::Smooth;
 use super::supposition::{EXPLAINED, Fit, Supposition, fit};
 
 /// A supposition must reduce the sum of the joints' log residuals by at least this much.
-const GAIN: f64 = 2.0;
+pub const GAIN: f64 = 2.0;
+/// A joint's torque is not explained if its residual has at least this share of its variance, and explained in full below the other.
+const NOT_EXPLAINED: f64 = 0.5;
+const IN_FULL: f64 = 0.05;
+/// The number of joints, not explained before and in full with it, from which a wrong zero or order of two joints is certain. A link
+/// whose centre of mass lies elsewhere than in the URDF is seen so at its own joint, if the links beyond it are light.
+const CERTAIN: usize = 2;
+
 /// A supposition must be better than the next one by at least this reduction of the sum of log residuals.
 const LEAD: f64 = 1.0;
 
 /// The contradiction that follows from the supposition that explains the torques far better than all others; `None` if
-/// there is no such supposition. `as_it_is` is the fit of the recording without a supposition.
+/// there is no such supposition. `as_it_is` is the fit of the recording without a supposition. A wrong zero or a swap that is certain
+/// prevents a diagnosis.
 pub fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_it_is: &Fit) -> Option<Misfit> {
     let mut scored: Vec<(f64, Supposition, Fit)> = Supposition::all(arm, moves)
         .into_iter()
@@ -103,7 +111,17 @@ pub fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_i
         };
         Some(Misfit::new(None, text, (0..=last).flat_map(of).collect()))
     };
-    match *best {
+    let becomes_clear =
+        |&joint: &usize| as_it_is.residual_share[joint] > NOT_EXPLAINED && fit.residual_share[joint] < IN_FULL;
+    let is_of_places = matches!(
+        best,
+        Supposition::Zero(..)
+            | Supposition::Swapped(..)
+            | Supposition::TorquesSwapped(..)
+            | Supposition::PositionsSwapped(..)
+    );
+    let is_certain = close.is_none() && is_of_places && (0..arm.dof()).filter(becomes_clear).count() >= CERTAIN;
+    let misfit = match *best {
         Supposition::AllTorquesFlipped if explained.len() > 1 => all(
             "the torques of all joints have the sign opposite to the URDF's axes; invert them (tau_sign = -1 for each joint in a \
              column map)",
@@ -184,5 +202,9 @@ pub fn supposed(arm: &Arm, smooth: &Smooth, moves: &[bool], names: &[&str], as_i
             ))
         }
         _ => None,
-    }
+    };
+    misfit.map(|misfit| Misfit {
+        prevents_diagnosis: is_certain,
+        ..misfit
+    })
 }

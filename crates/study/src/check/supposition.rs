@@ -27,6 +27,8 @@ pub enum Supposition {
     Zero(usize, f64),
     /// All positions are in a unit of this size (rad).
     Unit(f64),
+    /// The positions of one joint are in a unit of this size (rad).
+    UnitOf(usize, f64),
     /// All torques have the other sign, or all positions, or all of both.
     AllTorquesFlipped,
     AllPositionsFlipped,
@@ -89,7 +91,7 @@ impl Supposition {
     /// What is wrong, in a few words; `None` for a supposition that is never mentioned beside another one.
     pub fn words(self, names: &[&str]) -> Option<String> {
         Some(match self {
-            Self::AsItIs | Self::Unit(_) | Self::Gravity(_) => return None,
+            Self::AsItIs | Self::Unit(_) | Self::UnitOf(..) | Self::Gravity(_) => return None,
             Self::Flipped(joint) => format!("the position of {} has the other sign", names[joint]),
             Self::TorqueFlipped(joint) => format!("the torque of {} has the other sign", names[joint]),
             Self::Swapped(a, b) => format!("the columns of {} and {} are swapped", names[a], names[b]),
@@ -183,6 +185,7 @@ pub fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
                 }
             }
         }
+        Supposition::UnitOf(joint, factor) => scale[joint] = factor,
         Supposition::AllTorquesFlipped => torque_sign = -1.0,
         Supposition::AllPositionsFlipped => sign.fill(-1.0),
         Supposition::AllFlipped => {
