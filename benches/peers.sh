@@ -3,14 +3,14 @@
 #
 # usage: benches/peers.sh [--venv DIR] [--rounds N] [--only NAME,...]
 #
-# Peers are installed by pip into DIR (default target/peers-venv). Names: arm, plant, gp (the default), and sparse, which
+# Peers are installed by pip into DIR (default target/peers-venv). Names: arm, plant, gp, diagnosis (the default), and sparse, which
 # installs GPyTorch, several gigabytes. A peer that is missing is named, and its rows are left out.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
 venv=$root/target/peers-venv
 rounds=7
-only=arm,plant,gp
+only=arm,plant,gp,diagnosis
 while [ $# -gt 0 ]; do
     case $1 in
         --venv) venv=$2; shift 2 ;;
@@ -28,11 +28,13 @@ install() { "$venv/bin/pip" install --quiet "$@" || echo "pip could not install:
 have pinocchio || install pin cmeel-eigen cmeel-boost cmeel-urdfdom cmeel-urdfdom-headers
 have mujoco || install mujoco
 have sklearn || install scikit-learn
+case ,$only, in *,diagnosis,*) have figaroh || install figaroh ;; esac
 case ,$only, in *,sparse,*) have gpytorch || install gpytorch ;; esac
 
 cd "$root"
 for crate in arm plant gp torque; do
     cargo build --quiet --release --package $crate --example ${crate}_peers
 done
+case ,$only, in *,diagnosis,*) cargo build --quiet --release --package testbed --no-default-features ;; esac
 mkdir -p target/peers
 exec "$venv/bin/python" benches/peers/compare.py --rounds "$rounds" --only "$only" --ours "${CARGO_TARGET_DIR:-target}/release/examples" --build target/peers

@@ -8,6 +8,7 @@ import pathlib
 import statistics
 import subprocess
 import sys
+import time
 from xml.etree import ElementTree
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -183,14 +184,48 @@ def sparse(programs, build, rounds):
         row(f"{samples} noisy points, test error", [a["error"] / b["error"] for a, b in answers], 1.0, note)
 
 
+def diagnosis(programs, build, rounds):
+    """The diagnosis of five recordings, and FIGAROH's identification of the same, without the import of its libraries."""
+    try:
+        import figaroh
+    except ImportError:
+        raise Missing("FIGAROH: pip install figaroh")
+    testbed, case, report = programs.parent / "testbed", build / "diagnosis" / "case_000", build / "diagnosis.json"
+    if not case.exists():
+        effects = HERE.parents[1] / "examples" / "concealed" / "effects.toml"
+        options = f"--robot seven_axis --effects {effects} --seed 11 --friction --training 4 --out {case.parent}"
+        subprocess.run([testbed, "conceal", *options.split()], check=True, stdout=subprocess.DEVNULL)
+    train, held_out = sorted(case.glob("train_*.csv")), case / "held_out.csv"
+    ours = [testbed, "diagnose", "--robot", case / "robot.urdf", "--train", *train, "--held-out", held_out]
+    ours += ["--torques-only", "--quiet", "--json", report]
+    theirs = [sys.executable, HERE / "identify.py", case / "robot.urdf", *train, held_out]
+    one = dict(os.environ, RAYON_NUM_THREADS="1")
+    ratios, times = [], []
+    for _ in range(rounds):
+        begun = time.perf_counter()
+        subprocess.run([str(part) for part in ours], env=one, check=True, capture_output=True)
+        our = time.perf_counter() - begun
+        their = run(theirs)
+        ratios.append(our / their["seconds"])
+        times.append((our, their["seconds"]))
+    fit = json.loads(report.read_text())["fit"].values()
+    median = lambda values: 100 * statistics.median(values)
+    our, their_time = (statistics.median(side) for side in zip(*times))
+    note = (
+        f"{our:.2f} s, held-out error {median(joint['held_out_nrmse_augmented'] for joint in fit):.1f} % (median of the joints); "
+        f"FIGAROH {figaroh.__version__} {their_time:.2f} s, {median(their['held_out']):.1f} % (rows near reversals included); one thread each"
+    )
+    row("diagnosis, 7 joints, 4 × 25 s × 250 Hz", ratios, 0.2, note)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=7)
-    parser.add_argument("--only", default="arm,plant,gp")
+    parser.add_argument("--only", default="arm,plant,gp,diagnosis")
     parser.add_argument("--ours", type=pathlib.Path, required=True, help="folder of our programs")
     parser.add_argument("--build", type=pathlib.Path, required=True, help="folder for what is made on the way")
     options = parser.parse_args()
-    parts = {"arm": arm, "plant": plant, "gp": gp, "sparse": sparse}
+    parts = {"arm": arm, "plant": plant, "gp": gp, "sparse": sparse, "diagnosis": diagnosis}
     print("| row | ours / theirs, median | range | target | times of the last round or median |")
     print("|---|---|---|---|---|")
     missing = []
