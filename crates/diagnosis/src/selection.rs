@@ -50,7 +50,7 @@ impl FinalFit {
             }
             None => selected(study, progress),
         };
-        resampled.allow_for_all_links(study, &judged.named);
+        resampled.allow_for_other_background(study, &judged.named);
         let joints = (0..study.arm.dof()).into_par_iter();
         let residual = joints
             .map(|joint| predict::augmented(study, &judged.named, joint))

@@ -117,8 +117,8 @@ fn unknown_effects_and_joints_are_refused() {
             vec![("spring", Some("elbw"))],
             "the robot has no joint elbw; did you mean elbow? its joints are turn, shoulder, elbow",
         ),
-        (vec![("spring", None)], "is on a joint"),
-        (vec![("payload", Some("elbow"))], "is on the whole arm"),
+        (vec![("spring", None)], "acts on a joint; give spring:JOINT"),
+        (vec![("payload", Some("elbow"))], "acts on the whole arm"),
         (
             vec![("spring", Some("elbow")), ("spring", Some("elbow"))],
             "given twice",

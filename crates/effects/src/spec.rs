@@ -272,7 +272,8 @@ pub struct Spec {
     /// Effects on the same joint, with the part of each that this one must exceed, because the error of their forms resembles
     /// it.
     pub least_beside: &'static [(&'static str, f64)],
-    /// The multiple of the residual structure on its joint that it must exceed, if it may be a part of that structure.
+    /// The multiple of the residual structure on its joint that it must exceed, if it may be a part of that structure; on any joint, for
+    /// an effect on the whole arm.
     pub least_beside_residual: Option<f64>,
     /// Whether it is simulated at its size, so that its coefficient must be one. Its torque is not a function of the motion at
     /// one time.

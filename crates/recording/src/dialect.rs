@@ -11,7 +11,7 @@ use crate::{ColumnMap, Quantity, RecordingError, Warning};
 /// A ready map: its file in `assets/maps` and its text.
 macro_rules! ready {
     ($name:literal) => {
-        ($name, include_str!(concat!("../../../assets/maps/", $name, ".toml")))
+        ($name, include_str!(concat!("../maps/", $name, ".toml")))
     };
 }
 

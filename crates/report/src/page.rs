@@ -132,9 +132,9 @@ impl<'a> Page<'a> {
 /// The library that draws zoomable figures, with its licence, and the script that gives it the data.
 const UPLOT: &str = concat!(
     "/*\n",
-    include_str!("../../../assets/uplot/LICENSE"),
+    include_str!("../uplot/LICENSE"),
     "*/\n",
-    include_str!("../../../assets/uplot/uPlot.iife.min.js")
+    include_str!("../uplot/uPlot.iife.min.js")
 );
 const VIEWER: &str = include_str!("page/viewer.js");
 

@@ -4,7 +4,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// The style of all pages.
 const STYLE: &str = concat!(
-    include_str!("../../../assets/uplot/uPlot.min.css"),
+    include_str!("../uplot/uPlot.min.css"),
     "\n",
     include_str!("page/style.css")
 );

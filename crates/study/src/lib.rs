@@ -36,7 +36,6 @@ pub mod held;
 pub mod inputs;
 pub mod mjcf_file;
 pub mod named;
-mod nearest_body;
 pub mod notes;
 mod request;
 pub mod robot;

@@ -14,7 +14,7 @@ use quick_xml::events::{BytesEnd, BytesStart, BytesText, Event};
 use torque::Corrected;
 
 use crate::held::{self, Export, Held};
-use crate::nearest_body::{LEAST_MASS, nearest_body};
+use validate::{LEAST_MASS, nearest_body};
 
 /// `arm` with `effects` as MJCF: bodies, joints with damping, frictionloss, armature, linear springs and encoder offsets
 /// (`ref`), the payload as a body of its own, and a motor on each joint. The frames of welded links are sites; shapes are

@@ -8,8 +8,8 @@ use recording::nearest;
 
 /// The files are part of the program, so that it runs from any folder.
 const ROBOTS: [(&str, &str); 2] = [
-    ("puma560", include_str!("../../../assets/puma560.urdf")),
-    ("seven_axis", include_str!("../../../assets/seven_axis.urdf")),
+    ("puma560", include_str!("../robots/puma560.urdf")),
+    ("seven_axis", include_str!("../robots/seven_axis.urdf")),
 ];
 
 /// The names of the robots that come with testbed.

@@ -15,7 +15,7 @@ use torque::Corrected;
 
 use self::scan::{JointPlaces, LinkPlaces, Place, Places};
 use crate::held::{self, Export, Held};
-use crate::nearest_body::nearest_body;
+use validate::nearest_body;
 
 /// The attribute of a `<dynamics>` element whose friction a diagnosis found; other programs ignore it.
 const SOURCE: (&str, &str) = ("source", "testbed");

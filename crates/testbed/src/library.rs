@@ -14,11 +14,11 @@ const MOST_LISTED: usize = 20;
 
 /// The files are part of the program, so that it runs from any folder.
 const SCENARIOS: [(&str, &str); 5] = [
-    ("taskA", include_str!("../../../scenarios/taskA.toml")),
-    ("taskB", include_str!("../../../scenarios/taskB.toml")),
-    ("taskC", include_str!("../../../scenarios/taskC.toml")),
-    ("taskD", include_str!("../../../scenarios/taskD.toml")),
-    ("beyond", include_str!("../../../scenarios/beyond.toml")),
+    ("taskA", include_str!("../scenarios/taskA.toml")),
+    ("taskB", include_str!("../scenarios/taskB.toml")),
+    ("taskC", include_str!("../scenarios/taskC.toml")),
+    ("taskD", include_str!("../scenarios/taskD.toml")),
+    ("beyond", include_str!("../scenarios/beyond.toml")),
 ];
 
 /// Motor inertias (kg m²) and gear ratios of robots whose URDFs omit them. PUMA 560: Corke and Armstrong-Hélouvry 1994.

@@ -23,8 +23,10 @@
 mod complete;
 mod error;
 pub mod learned;
+mod nearest_body;
 pub mod rollout;
 mod statistics;
 
 pub use complete::{Complete, complete};
 pub use error::ValidateError;
+pub use nearest_body::{LEAST_MASS, nearest_body};

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use effects::arm::{InertialParameters, Payload};
 use effects::laws::ACCELERATION;
 
 use crate::regression::fit::Products;
@@ -12,10 +13,13 @@ use crate::search::study::Study;
 use crate::selection::bootstrap::Resampled;
 use crate::selection::gain::held_out_gain;
 use crate::selection::judge::{Judged, Member};
-use crate::selection::naming::name;
+use crate::selection::naming::{may_be_nothing, name};
 use crate::selection::predict::deviation;
 use crate::selection::rivals::{Named, Standing, standing};
 use crate::thresholds::LISTED_SHARE;
+
+/// The probability of a name with an equally good alternative.
+const EQUAL: f64 = 0.5;
 
 /// The findings, each with its candidate.
 pub fn findings(
@@ -63,6 +67,7 @@ fn finding(
         effect: hypothesis.name().unwrap_or_default(),
         joint: joint.map(joint_name),
     };
+    let last_link = as_last_link(study, member.candidate);
     let mut list = Vec::new();
     for (k, named) in name(study, resampled, member.candidate).into_iter().enumerate() {
         let share = if k == 0 {
@@ -70,10 +75,16 @@ fn finding(
         } else {
             rotor_share(study, judged, member.candidate)
         };
+        // A mass that may be zero is that of no body: only moments are determined, which a link may have, too.
+        let may_be_nothing = last_link.is_some() && may_be_nothing(named.effect.spec(), &named.parameters);
         list.push(Finding {
             other: named.other,
             parameters: named.parameters,
-            probability: Some(standing.probability(member.evidence)),
+            probability: Some(if may_be_nothing {
+                standing.probability(member.evidence).min(EQUAL)
+            } else {
+                standing.probability(member.evidence)
+            }),
             share,
             share_by_joint: if k == 0 {
                 share_by_joint.clone()
@@ -87,7 +98,8 @@ fn finding(
             held_out_gain: gain,
             confusable_with: if k == 0 {
                 let mut list: Vec<Confusable> = Vec::new();
-                for rival in standing.rivals.iter().chain(&standing.as_likely).map(confusable) {
+                let rivals = standing.rivals.iter().chain(&standing.as_likely);
+                for rival in rivals.chain(&last_link).map(confusable) {
                     if !list.contains(&rival) {
                         list.push(rival);
                     }
@@ -113,6 +125,15 @@ fn finding(
         });
     }
     list
+}
+
+/// The last link as an alternative of a payload that was always there, if the links are wrong in any case: the inertial parameters of
+/// both have the same torque. Without wrong links, a body at the tool is the likelier of the two.
+fn as_last_link(study: &Study, candidate: usize) -> Option<Named> {
+    let is_always = study.terms(candidate).iter().all(|term| term.onset().is_none());
+    let is_payload = study.candidates[candidate].hypothesis.is(&Payload);
+    let links = Hypothesis::of(&InertialParameters);
+    (is_payload && is_always && study.strengths.common() > 0.0).then(|| (links, study.arm.dof().checked_sub(1)))
 }
 
 /// The share of the drive's inertia that is named with a spring or a gap.

@@ -162,8 +162,9 @@ impl Strengths {
 
     /// These strengths with all links a finer step weaker or stronger than on the grid.
     pub fn finer(&self) -> Vec<Self> {
+        let most = LINK_STRENGTHS.into_iter().fold(0.0, f64::max);
         let scaled = |factor: f64| Self {
-            links: self.links.iter().map(|rho| rho * factor).collect(),
+            links: self.links.iter().map(|rho| (rho * factor).min(most)).collect(),
             ..self.clone()
         };
         if self.links.iter().all(|&rho| rho == 0.0) {

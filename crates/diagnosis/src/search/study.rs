@@ -66,6 +66,8 @@ pub struct Study {
     prior: Prior,
     /// The strengths of the background, selected by evidence.
     pub strengths: Strengths,
+    /// The strengths that the evidence prefers, if the held-out recordings reduced them.
+    pub preferred: Option<Strengths>,
     /// The strengths that the user states.
     pub stated: Stated,
     /// The thresholds.
@@ -184,6 +186,7 @@ impl Study {
             carries: false,
             moving: Moving::Steadily,
             strengths,
+            preferred: None,
             stated,
             thresholds,
             prior,

@@ -78,10 +78,16 @@ impl Resampled {
         }
     }
 
-    /// If only some links differ from the URDF, a background in which all links do may explain nearly as much as that of `chosen`,
-    /// with other sizes of the effects. The intervals then hold those of both backgrounds.
-    pub fn allow_for_all_links(&mut self, study: &mut Study, chosen: &Selection) {
-        let Some((strengths, next)) = study.with_all_links(chosen, NEARLY_AS_LIKELY) else {
+    /// If the held-out recordings reduced the background, or only some links differ from the URDF and a background in which all links
+    /// do may explain nearly as much as that of `chosen`, effects have other sizes beside the other background. The intervals then
+    /// hold those of both.
+    pub fn allow_for_other_background(&mut self, study: &mut Study, chosen: &Selection) {
+        let preferred = study.preferred.clone().map(|strengths| {
+            let products = study.products_at(&strengths);
+            let next = study.problem(&products).choose(chosen.set.clone(), &chosen.fit.weights);
+            (strengths, next)
+        });
+        let Some((strengths, next)) = preferred.or_else(|| study.with_all_links(chosen, NEARLY_AS_LIKELY)) else {
             return;
         };
         let own = std::mem::replace(&mut study.strengths, strengths);

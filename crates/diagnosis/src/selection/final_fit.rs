@@ -96,6 +96,7 @@ fn relinearise(study: &mut Study, judged: &mut Judged, as_given: bool) {
     judged.named = if as_given {
         refitted
     } else {
+        study.preferred = None;
         let best = study.with_best_strengths(refitted);
         study.about_own_bodies(best)
     };
@@ -223,7 +224,8 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str)
             return Some("another effect explains nearly as much in its place");
         }
         // If most links agree with the URDF, one wrong link is an unlikely explanation.
-        let is_wrong = study.strengths.common() > 0.0;
+        let preferred = study.preferred.as_ref().map_or(0.0, Strengths::common);
+        let is_wrong = study.strengths.common().max(preferred) > 0.0;
         let least = hypothesis.spec().least_beside_inertials.filter(|_| is_wrong)?;
         let evidence = study.evidence_beside_best_background(&judged.named, member.candidate);
         (evidence < least).then_some("wrong inertials explain nearly as much in its place")
@@ -233,27 +235,36 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str)
         .find_map(|member| Some((member.candidate, rule(member)?)))
 }
 
-/// Whether the effect is hardly larger than the structured residual of its joint, and of a kind that may be a part of that residual.
+/// Whether the effect is hardly larger than the structured residual of its joint, and of a kind that may be a part of that residual;
+/// for an effect on the whole arm, on every joint.
 fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Member) -> bool {
     let candidate = &study.candidates[member.candidate];
     let Some(factor) = candidate.hypothesis.spec().least_beside_residual else {
         return false;
     };
-    let Some(joint) = candidate.joint else { return false };
-    let fit = errors(study, joint, &augmented(study, &judged.named, joint));
-    // Unmodelled forms may represent parts of named effects. Therefore the residual of the named effects alone is compared.
-    let has_forms = judged.unmodelled.iter().any(|member| member.shares[joint] > 0.0);
-    let left = structured(&fit)
-        .into_iter()
-        .chain(has_forms.then_some(fit.train_nrmse_augmented));
-    factor * left.fold(0.0, f64::max) > member.shares[joint]
+    let is_part = |joint: usize| {
+        let fit = errors(study, joint, &augmented(study, &judged.named, joint));
+        // Unmodelled forms may represent parts of named effects. Therefore the residual of the named effects alone is compared.
+        let has_forms = judged.unmodelled.iter().any(|member| member.shares[joint] > 0.0);
+        let left = structured(&fit)
+            .into_iter()
+            .chain(has_forms.then_some(fit.train_nrmse_augmented));
+        factor * left.fold(0.0, f64::max) > member.shares[joint]
+    };
+    match candidate.joint {
+        Some(joint) => is_part(joint),
+        None => (0..study.motions.dof)
+            .filter(|&joint| member.shares[joint] > 0.0)
+            .all(is_part),
+    }
 }
 
 /// Reduces the background, and removes findings, until no joint's held-out error is larger than the nominal model's.
 fn guard(study: &mut Study, judged: &mut Judged) {
     while let Some(joint) = harmed(study, &judged.named) {
         if let Some((strengths, next)) = better_outside(study, &judged.named) {
-            study.strengths = strengths;
+            let before = std::mem::replace(&mut study.strengths, strengths);
+            study.preferred.get_or_insert(before);
             study.note_strengths(judge::HARMS, &judged.named, &next);
             judged.named = next;
         } else {

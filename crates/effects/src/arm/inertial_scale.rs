@@ -24,7 +24,10 @@ static SPEC: Spec = Spec {
     main: &["factor"],
     is_certain_in_form: true,
     may_be_inertial: true,
+    least_beside_inertials: Some(8.0),
     same_on_all_joints: Some("torque_scale"),
+    // As for a torque constant, of which it is the alias on all joints.
+    least_beside_residual: Some(1.5),
     is_wrong_mass: true,
     is_beyond_the_drive: true,
     in_urdf: InUrdf::Inertials,

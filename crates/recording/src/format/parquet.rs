@@ -1,13 +1,16 @@
 //! Parquet files, with one column per quantity or with lists of values (LeRobot).
 
+use std::fs::File;
+use std::io::{BufReader, Error, ErrorKind, Read};
 use std::panic::AssertUnwindSafe;
 
+use bytes::Bytes;
 use parquet::basic::{Compression, ConvertedType, LogicalType, TimeUnit};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::{ColumnChunkMetaData, KeyValue, RowGroupMetaData};
-use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::reader::{ChunkReader, FileReader, Length, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 use serde::Deserialize;
 
@@ -45,6 +48,49 @@ fn damaged(error: ParquetError) -> String {
     format!("the file is damaged or cut ({error}); write or copy it again")
 }
 
+/// The number of times that the end of the file may be read again before that is an error.
+const MOST_ENDS: usize = 100;
+
+/// A file whose end cannot be read without end: the library skips a list of as many items as a damaged header says, also where the
+/// file has ended.
+struct Guarded(File);
+
+/// Reads a [`Guarded`] file from a place on.
+struct Reading {
+    inner: BufReader<File>,
+    ends: usize,
+}
+
+impl Read for Reading {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let read = self.inner.read(buffer)?;
+        self.ends += usize::from(read == 0 && !buffer.is_empty());
+        if self.ends > MOST_ENDS {
+            return Err(Error::new(ErrorKind::UnexpectedEof, "the file ends within a header"));
+        }
+        Ok(read)
+    }
+}
+
+impl Length for Guarded {
+    fn len(&self) -> u64 {
+        Length::len(&self.0)
+    }
+}
+
+impl ChunkReader for Guarded {
+    type T = Reading;
+
+    fn get_read(&self, start: u64) -> Result<Reading, ParquetError> {
+        let inner = self.0.get_read(start)?;
+        Ok(Reading { inner, ends: 0 })
+    }
+
+    fn get_bytes(&self, start: u64, length: usize) -> Result<Bytes, ParquetError> {
+        self.0.get_bytes(start, length)
+    }
+}
+
 /// The values of a column so far.
 enum Values {
     Numbers(Vec<f64>),
@@ -63,9 +109,9 @@ struct Leaf {
 }
 
 /// The columns of numbers.
-fn columns(file: std::fs::File) -> Result<Vec<(String, Column)>, String> {
+fn columns(file: File) -> Result<Vec<(String, Column)>, String> {
     let size = file.metadata().map_or(0, |metadata| metadata.len());
-    let reader = SerializedFileReader::new(file).map_err(damaged)?;
+    let reader = SerializedFileReader::new(Guarded(file)).map_err(damaged)?;
     // The library does not check the positions in the footer.
     let groups = reader.metadata().row_groups().iter();
     if !groups

@@ -9,6 +9,7 @@ use super::drive::{Connection, Drives};
 use super::start::Start;
 use super::{Course, Path};
 use crate::error::ValidateError;
+use crate::nearest_body::nearest_body;
 
 /// The distance (rad or m) from which a simulated joint counts as lost.
 const LOST: f64 = std::f64::consts::TAU;
@@ -56,15 +57,26 @@ impl Variant {
             viscous: model.viscous(),
             coulomb: Vec::new(),
         };
-        let plant =
-            Plant::new(&model.arm().clone().with_rotor_inertias(&rotors), &options).map_err(|source| match source {
-                PlantError::Massless { joint } if !effects.is_empty() => ValidateError::Emptied { which, joint },
-                source => ValidateError::Plant { which, source },
-            })?;
+        let (robot, replaced) = if effects.is_empty() {
+            (model.arm().clone(), Vec::new())
+        } else {
+            with_possible_bodies(model.arm())
+        };
+        let mut remarks = drives.remarks.clone();
+        if !replaced.is_empty() {
+            remarks.push(format!(
+                "the effects leave bodies that cannot exist beyond {}; the nearest possible ones are simulated",
+                replaced.join(", ")
+            ));
+        }
+        let plant = Plant::new(&robot.with_rotor_inertias(&rotors), &options).map_err(|source| match source {
+            PlantError::Massless { joint } if !effects.is_empty() => ValidateError::Emptied { which, joint },
+            source => ValidateError::Plant { which, source },
+        })?;
         let zeros = || vec![0.0; dof];
         Ok(Self {
             is_loaded: !effects.is_empty(),
-            remarks: drives.remarks.clone(),
+            remarks,
             model,
             plant,
             drives,
@@ -173,6 +185,20 @@ impl Variant {
         }
         Ok(())
     }
+}
+
+/// `arm` with the nearest possible body in place of each that no mass or tensor can have, and the joints of those. Recordings
+/// determine the moments of a body that is not mounted less well than its mass.
+fn with_possible_bodies(arm: &Arm) -> (Arm, Vec<String>) {
+    let mut possible = arm.clone();
+    let mut replaced = Vec::new();
+    for (link, joint) in arm.joints().iter().enumerate() {
+        if let (body, true) = nearest_body(&joint.inertia) {
+            possible = possible.with_link_inertia(link, body);
+            replaced.push(joint.name.clone());
+        }
+    }
+    (possible, replaced)
 }
 
 /// The recorded torque of joint `j` (N m or N) at `into` seconds after `tick`: linear between ticks, or the mean over the step

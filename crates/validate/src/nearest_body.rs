@@ -2,7 +2,7 @@
 
 use arm::{Inertia, Matrix3};
 
-/// The mass and moment of inertia of links that the URDF leaves massless (kg, kg m²); MuJoCo requires more than 1e-15.
+/// The mass of links that the URDF leaves massless (kg); MuJoCo requires more than 1e-15.
 pub const LEAST_MASS: f64 = 1e-12;
 const LEAST_MOMENT: f64 = 1e-13;
 /// The share of a body's largest second moment of mass by which its smallest may be negative, for rounding.
