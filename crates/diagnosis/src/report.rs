@@ -154,6 +154,10 @@ pub struct Finding {
     /// Whether it is present since the recordings from before.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub since_before: bool,
+    /// The further sensor that shows it, where the torque does not: `motor_current` (friction between the motor and a torque sensor) or
+    /// `second_encoder`. Such a finding may stand beside another of the same name on the joint.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor: Option<&'static str>,
     /// Whether it corrects the model of the measured torque; not if another sensor shows it (a second encoder, motor currents).
     #[serde(skip)]
     pub corrects: bool,
@@ -179,6 +183,7 @@ impl Finding {
             place: Place::default(),
             sentence: String::new(),
             since_before: false,
+            sensor: None,
             corrects: false,
             as_effect: effect,
         }

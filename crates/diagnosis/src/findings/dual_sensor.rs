@@ -206,9 +206,13 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
         BTreeMap::from([("stiffness", stiffness)]),
         total / range,
         gain,
-        "between the two encoders",
+        SECOND_ENCODER,
     ))
 }
+
+/// The sensors that show what the torque does not, in the JSON and in words.
+const SECOND_ENCODER: (&str, &str) = ("second_encoder", "between the two encoders");
+const MOTOR_CURRENT: (&str, &str) = ("motor_current", "between the motor's current and the torque sensor");
 
 /// Friction between the motor's current and the torque sensor.
 fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Vec<Finding> {
@@ -237,7 +241,7 @@ fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>])
     let name = study.arm.joints()[joint].name.clone();
     let torque = study.scales.torque[joint].max(1e-300);
     let gain = result.held_out.map(|explained| 1.0 - (1.0 - explained).max(0.0).sqrt());
-    let place = "between the motor's current and the torque sensor";
+    let place = MOTOR_CURRENT;
     let mut list = Vec::new();
     if result.coefficients[0] > 0.0 && result.is_clear(0) {
         let level = result.parameter(0, Quantity::Torque.unit(kind));
@@ -276,14 +280,15 @@ fn finding(
     parameters: BTreeMap<&'static str, Parameter>,
     share: f64,
     gain: Option<f64>,
-    place: &str,
+    (sensor, between): (&'static str, &str),
 ) -> Finding {
-    let state = Some(place.to_owned());
+    let state = Some(between.to_owned());
     Finding {
         parameters,
         share,
         share_by_joint: BTreeMap::from([(joint.to_owned(), share)]),
         held_out_gain: gain,
+        sensor: Some(sensor),
         place: Place {
             state,
             ..Place::default()

@@ -61,6 +61,8 @@ class Effect:
     sentence: str
     since_before: bool
     """Whether it is present since the recordings from before."""
+    sensor: Optional[str]
+    """"motor_current" or "second_encoder", if that sensor shows it and the torque does not; None otherwise."""
     time: tuple[tuple[float, float], ...]
     """The stretches of time in which it acts (s); the whole time if empty."""
 
@@ -138,6 +140,7 @@ def _effect(finding: dict[str, Any]) -> Effect:
         ),
         sentence=finding["sentence"],
         since_before=finding.get("since_before", False),
+        sensor=finding.get("sensor"),
         time=tuple((start, end) for start, end in finding["where"]["time"]),
     )
 
