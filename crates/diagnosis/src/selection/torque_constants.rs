@@ -78,7 +78,8 @@ pub fn note_on_unnamed(study: &Study, chosen: &Selection) -> Option<String> {
     })
 }
 
-/// The joint whose torque constant deviates most beyond tolerance, with the candidate that names it.
+/// The joint whose torque constant deviates most beyond tolerance, with the candidate that names it; `None` also if most of the
+/// constants deviate alike.
 fn farthest(study: &Study, judged: &Judged, tried: &[usize]) -> Option<(usize, usize)> {
     // Without a background of torque constants, none deviates there.
     if study.strengths.gain == 0.0 {
@@ -93,12 +94,30 @@ fn farthest(study: &Study, judged: &Judged, tried: &[usize]) -> Option<(usize, u
         let column = study.torque_constant(joint)?;
         Some(judged.named.fit.coefficient(column).abs()).filter(|deviation| *deviation >= least)
     };
+    let deviations: Vec<f64> = (0..study.motions.dof)
+        .filter_map(|joint| Some(judged.named.fit.coefficient(study.torque_constant(joint)?)))
+        .collect();
+    if are_alike(&deviations, least) {
+        return None;
+    }
     let scale = |joint: usize| allowed.iter().copied().find(|&c| names(study, c) == Some(joint));
     (0..study.motions.dof)
         .filter(|joint| !tried.contains(joint) && !study.strengths.named_constants.contains(joint))
         .filter_map(|joint| Some((deviation(joint)?, joint, scale(joint)?)))
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, joint, scale)| (joint, scale))
+}
+
+/// Whether most of the torque constants deviate by `least` or more in the same direction: a common cause, and not an effect on each.
+fn are_alike(deviations: &[f64], least: f64) -> bool {
+    let count = |sign: f64| {
+        deviations
+            .iter()
+            .filter(|&&deviation| sign * deviation >= least)
+            .count()
+    };
+    let most = count(1.0).max(count(-1.0));
+    most > 1 && 2 * most > deviations.len()
 }
 
 /// Whether the interval of a torque scale of `chosen` excludes one.
@@ -109,4 +128,18 @@ fn is_clear(study: &mut Study, chosen: &Selection, scale: usize) -> bool {
         let (_, [low, high]) = resampled.interval_within(SYSTEMATIC, |draw| draw[at]);
         low > 0.0 || high < 0.0
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::are_alike;
+
+    /// A simulated arm of seven joints with an effect outside the catalogue on the sixth: five constants were off by the same factor.
+    #[test]
+    fn constants_that_deviate_alike_are_no_effects() {
+        assert!(are_alike(&[0.22, 0.22, 0.23, 0.23, 0.23, 0.0, 0.01], 0.125));
+        assert!(!are_alike(&[0.05, -0.16, -0.05], 0.125));
+        assert!(!are_alike(&[0.2, -0.2, 0.2, -0.2], 0.125));
+        assert!(!are_alike(&[0.3], 0.125));
+    }
 }
