@@ -261,6 +261,10 @@ pub struct Spec {
     /// The evidence that it must bring beside the correction of all inertial parameters that is best without it (nats),
     /// where the URDF is wrong everywhere; `None` for an effect without this test.
     pub least_beside_inertials: Option<f64>,
+    /// The largest deviation of its main parameter from that of no effect with which it is named where the URDF is wrong everywhere.
+    pub most_beside_inertials: Option<f64>,
+    /// Whether wrong masses may hide it, so that it may be larger than the torque to be explained. Baseline effects always may be.
+    pub may_be_hidden: bool,
     /// Whether it may be present in one recording only.
     pub is_passing: bool,
     /// Whether residuals suggest its forms; they are suggested again when more is known.
@@ -323,6 +327,8 @@ impl Spec {
         is_simple: false,
         is_certain_in_form: false,
         least_beside_inertials: None,
+        most_beside_inertials: None,
+        may_be_hidden: false,
         is_passing: false,
         is_suggested: false,
         may_be_inertial: false,

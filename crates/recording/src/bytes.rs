@@ -1,5 +1,7 @@
 //! A reader of binary values, which returns `None` at the end of the bytes.
 
+use half::f16;
+
 /// Bytes that are read from their start.
 #[derive(Clone, Debug)]
 pub struct Bytes<'a> {
@@ -112,43 +114,11 @@ impl<'a> Bytes<'a> {
         for _ in 0..count {
             let single = |bytes: &mut Self| bytes.u32().map(|bits| f64::from(f32::from_bits(bits)));
             values.push(match size {
-                2 => half(self.u16()?),
+                2 => f16::from_bits(self.u16()?).to_f64(),
                 4 => single(&mut self)?,
                 _ => self.f64()?,
             });
         }
         Some(values)
-    }
-}
-
-/// The number with these bits in the half precision of IEEE 754.
-fn half(bits: u16) -> f64 {
-    let fraction = f64::from(bits & 0x3FF) / 1024.0;
-    let size = match (bits >> 10) & 0x1F {
-        0 => fraction * 2.0_f64.powi(-14),
-        0x1F if fraction > 0.0 => f64::NAN,
-        0x1F => f64::INFINITY,
-        exponent => (1.0 + fraction) * 2.0_f64.powi(i32::from(exponent) - 15),
-    };
-    if bits >> 15 == 1 { -size } else { size }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::half;
-
-    #[test]
-    fn half_precision() {
-        let known = [
-            (0x3C00, 1.0),
-            (0xC000, -2.0),
-            (0x3555, 0.333_251_953_125),
-            (0x0001, 5.960_464_477_539_063e-8),
-            (0x7BFF, 65504.0),
-        ];
-        for (bits, value) in known {
-            assert_eq!(half(bits), value);
-        }
-        assert!(half(0x7E00).is_nan() && half(0xFC00) == f64::NEG_INFINITY);
     }
 }

@@ -17,7 +17,7 @@ use serde::Serialize;
 use self::column_map::Change;
 use self::positions::Pair;
 use self::smooth::Smooth;
-use self::supposed::supposed;
+use self::supposed::{NOT_EXPLAINED, supposed};
 use self::supposition::{Fit, Supposition, fit};
 use self::torque_unit::MOTOR_SIDE;
 
@@ -248,7 +248,7 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
     let mut misfits = Vec::new();
     for (joint, name) in names.iter().enumerate() {
         let is_constant = smooth.q[joint].windows(2).all(|pair| pair[0] == pair[1]);
-        if is_constant && as_it_is.residual_share[joint] > 0.5 && as_it_is.size[joint] > OF_SIZE.start {
+        if is_constant && as_it_is.residual_share[joint] > NOT_EXPLAINED && as_it_is.size[joint] > OF_SIZE.start {
             let text = format!(
                 "the position is {} in all rows, but the torque varies by {} times as much as the model's at that position, which \
                  explains {} of it; was the position recorded?",

@@ -18,9 +18,6 @@ use crate::selection::predict::deviation;
 use crate::selection::rivals::{Named, Standing, standing};
 use crate::thresholds::LISTED_SHARE;
 
-/// The probability of a name with an equally good alternative.
-const EQUAL: f64 = 0.5;
-
 /// The findings, each with its candidate.
 pub fn findings(
     study: &Study,
@@ -76,15 +73,11 @@ fn finding(
             rotor_share(study, judged, member.candidate)
         };
         // A mass that may be zero is that of no body: only moments are determined, which a link may have, too.
-        let may_be_nothing = last_link.is_some() && may_be_nothing(named.effect.spec(), &named.parameters);
+        let may_be_link = last_link.is_some() && may_be_nothing(named.effect.spec(), &named.parameters);
         list.push(Finding {
             other: named.other,
             parameters: named.parameters,
-            probability: Some(if may_be_nothing {
-                standing.probability(member.evidence).min(EQUAL)
-            } else {
-                standing.probability(member.evidence)
-            }),
+            probability: Some(standing.probability(if may_be_link { 0.0 } else { member.evidence })),
             share,
             share_by_joint: if k == 0 {
                 share_by_joint.clone()

@@ -1,7 +1,6 @@
 //! Physical limits of coefficients.
 
 use arm::Arm;
-use effects::sensor::TorqueScale;
 use effects::{Fitted, Term, UNIT};
 
 use crate::regression::fit::Fit;
@@ -68,9 +67,9 @@ impl Fitted for InFit<'_> {
 
 /// Whether `candidate` is possible at the coefficients of `fit`.
 pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bool {
-    // Masses with the opposite error may hide an effect that every drive has, and a torque constant.
+    // Masses with the opposite error may hide an effect that every drive has.
     let cancels = |joint| torque_share(candidate, table, fit, joint) >= LARGEST_TORQUE_SHARE;
-    let may_be_hidden = candidate.hypothesis.is_baseline() || candidate.hypothesis.is(&TorqueScale);
+    let may_be_hidden = candidate.hypothesis.is_baseline() || candidate.hypothesis.spec().may_be_hidden;
     if !may_be_hidden && candidate.joint.is_some_and(cancels) {
         return false;
     }

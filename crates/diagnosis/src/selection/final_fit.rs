@@ -1,7 +1,6 @@
 //! The final fit: the named effects are linearised about the arm that contains them, and effects that fail the last tests are removed.
 
 use effects::Effect;
-use effects::arm::InertialScale;
 use effects::sensor::TorqueScale;
 use torque::Corrected;
 
@@ -18,7 +17,7 @@ use crate::selection::rivals::standing;
 use crate::selection::torque_constants;
 
 use crate::thresholds::{
-    CLEAR_THOUGH_UNDETERMINED, FARTHEST_COMMON, HOPELESS, LEAST_FINAL_SHARE, LEAST_UNDECIDED, PARTLY, UNDECIDED_NATS,
+    CLEAR_THOUGH_UNDETERMINED, HOPELESS, LEAST_FINAL_SHARE, LEAST_UNDECIDED, PARTLY, UNDECIDED_NATS,
 };
 
 /// Fits the named effects about the arm that contains them, including the rows near reversals. Removes effects that increase the
@@ -228,18 +227,14 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str)
         let preferred = study.preferred.as_ref().map_or(0.0, Strengths::common);
         let is_wrong = study.strengths.common().max(preferred) > 0.0;
         let least = hypothesis.spec().least_beside_inertials.filter(|_| is_wrong)?;
-        let size = |candidate: usize| {
-            judged
-                .named
-                .fit
-                .coefficient(study.candidates[candidate].columns[0])
-                .abs()
-        };
-        if hypothesis.is(&InertialScale) && size(member.candidate) > FARTHEST_COMMON {
-            return Some("wrong inertials explain nearly as much in its place");
-        }
-        let evidence = study.evidence_beside_best_background(&judged.named, member.candidate);
-        (evidence < least).then_some("wrong inertials explain nearly as much in its place")
+        let size = judged
+            .named
+            .fit
+            .coefficient(study.candidates[member.candidate].columns[0])
+            .abs();
+        let is_too_far = hypothesis.spec().most_beside_inertials.is_some_and(|most| size > most);
+        let is_weak = is_too_far || study.evidence_beside_best_background(&judged.named, member.candidate) < least;
+        is_weak.then_some("wrong inertials explain nearly as much in its place")
     };
     members
         .into_iter()

@@ -17,9 +17,6 @@ const TRIED: usize = 8;
 const PAIRED: usize = 3;
 const PARTNERS: usize = 2;
 
-/// The margin at which the probability hardly increases any more, relative to [`MARGIN_SCALE`].
-const SATURATED: f64 = 3.5;
-
 /// An effect and its joint; `None` is the whole arm.
 pub type Named = (Hypothesis, Option<usize>);
 
@@ -239,7 +236,7 @@ fn in_place(
     let beyond = |reference: &Selection| (next.fit.loss - reference.fit.loss, next.score - reference.score);
     let (loss, score) = beyond(chosen);
     let excludes = |&c: &usize| chosen.set.iter().any(|&known| problem.exclude(c, known));
-    if loss > within && score > SATURATED * MARGIN_SCALE || alternatives.iter().any(excludes) {
+    if loss > within && probability(score) >= SUREST || alternatives.iter().any(excludes) {
         return (loss, score);
     }
     let all = problem.choose([&chosen.set[..], alternatives].concat(), &chosen.fit.weights);

@@ -36,9 +36,6 @@ pub const PARTLY: f64 = 0.8;
 /// The least share of an effect in the joint's torque with which it is named although another explains nearly as much in its place.
 /// Source: simulated cases of four sets; of twelve such names below 3 %, none was right.
 pub const LEAST_UNDECIDED: f64 = 0.03;
-/// The largest deviation from one of a common factor of all masses beside links that are wrong one by one. Source: simulated cases with
-/// URDFs wrong by 10 and 30 %, in which three false factors were 0.47, 0.49 and 0.56, and the true ones 0.75 to 1.3.
-pub const FARTHEST_COMMON: f64 = 0.4;
 /// How much more than its best alternative a smaller effect explains at least (nats), and a payload or a factor on inertials of any
 /// size. Source: simulated cases of seven sets; of six such payloads and factors, none was right.
 pub const UNDECIDED_NATS: f64 = 2.0;

@@ -66,6 +66,9 @@ fn relations() -> String {
                 "brings {nats} nats beside the best correction of all inertial parameters"
             ));
         }
+        if let Some(most) = spec.most_beside_inertials {
+            relations.push(format!("deviates by at most {most} where the URDF is wrong everywhere"));
+        }
         if let Some(multiple) = spec.least_beside_residual {
             relations.push(format!("exceeds {multiple} times the structured residual"));
         }

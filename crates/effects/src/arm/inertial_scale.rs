@@ -25,6 +25,8 @@ static SPEC: Spec = Spec {
     is_certain_in_form: true,
     may_be_inertial: true,
     least_beside_inertials: Some(8.0),
+    // In simulated cases with URDFs wrong by 10 and 30 %, three false factors were 0.47, 0.49 and 0.56, and the true ones 0.75 to 1.3.
+    most_beside_inertials: Some(0.4),
     same_on_all_joints: Some("torque_scale"),
     // As for a torque constant, of which it is the alias on all joints.
     least_beside_residual: Some(1.5),

@@ -26,6 +26,7 @@ static SPEC: Spec = Spec {
     may_set_in: true,
     is_certain_in_form: true,
     may_be_inertial: true,
+    may_be_hidden: true,
     // Unmodelled structure of the residual resembles a factor on the load.
     least_beside_residual: Some(1.5),
     // Both multiply the load: one that of the drive, the other that of the link.

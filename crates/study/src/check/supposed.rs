@@ -10,7 +10,7 @@ use super::supposition::{EXPLAINED, Fit, Supposition, fit};
 /// A supposition must reduce the sum of the joints' log residuals by at least this much.
 pub const GAIN: f64 = 2.0;
 /// A joint's torque is not explained if its residual has at least this share of its variance, and explained in full below the other.
-const NOT_EXPLAINED: f64 = 0.5;
+pub const NOT_EXPLAINED: f64 = 0.5;
 const IN_FULL: f64 = 0.05;
 /// The number of joints, not explained before and in full with it, from which a wrong zero or order of two joints is certain. A link
 /// whose centre of mass lies elsewhere than in the URDF is seen so at its own joint, if the links beyond it are light.

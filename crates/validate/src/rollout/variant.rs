@@ -44,7 +44,12 @@ impl Variant {
         let dof = arm.dof();
         let names: Vec<String> = arm.joints().iter().map(|joint| joint.name.clone()).collect();
         let mut rotors: Vec<f64> = model.arm().joints().iter().map(|joint| joint.rotor_inertia).collect();
-        let links = link_inertias(model.arm(), &rotors);
+        let (robot, replaced) = if effects.is_empty() {
+            (model.arm().clone(), Vec::new())
+        } else {
+            with_possible_bodies(model.arm())
+        };
+        let links = link_inertias(&robot, &rotors);
         let drives = Drives::new(model.machine(), &names, &rotors, &links, course.step);
         for (j, rotor) in rotors.iter_mut().enumerate() {
             if drives.is_separate(j) {
@@ -56,11 +61,6 @@ impl Variant {
             order: course.order,
             viscous: model.viscous(),
             coulomb: Vec::new(),
-        };
-        let (robot, replaced) = if effects.is_empty() {
-            (model.arm().clone(), Vec::new())
-        } else {
-            with_possible_bodies(model.arm())
         };
         let mut remarks = drives.remarks.clone();
         if !replaced.is_empty() {
