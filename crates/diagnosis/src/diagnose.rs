@@ -9,6 +9,7 @@ use crate::diagnosis::Diagnosis;
 use crate::error::DiagnosisError;
 use crate::findings::conclusion::Conclusion;
 use crate::findings::identified::identified;
+use crate::findings::loads::OwnLoad;
 use crate::next::{self, Next};
 use crate::options::{Options, Step};
 use crate::search::study::Study;
@@ -31,10 +32,14 @@ pub fn diagnose(
     progress(Step::new(0.08, "filtering, rigid-body torques"));
     let data = Data::new(arm, inputs, options)?;
     let mut study = Study::new(data, options);
+    let own_load = OwnLoad::found(&study).filter(|load| !(study.motions.one_clock && load.changed_once(&study)));
+    if let (Some(load), None) = (&own_load, study.motions.changed_at) {
+        study = study.with_own_load(&load.recordings, &load.prior(), options);
+    }
     let identified = identified(&study);
     let last = FinalFit::new(&mut study, options, progress)?;
     progress(Step::new(0.78, "alternatives of the findings"));
-    let conclusion = Conclusion::new(&study, &last, &identified, inputs, options);
+    let conclusion = Conclusion::new(&study, &last, (&identified, own_load.as_ref()), inputs, options);
     let next = next_experiment(&mut study, &last, &conclusion, (arm, options), progress)?;
     let mut diagnosis = conclusion.diagnosis(arm, study);
     if let Some(next) = next {

@@ -41,6 +41,7 @@ impl Diagnosis {
             located: Vec::new(),
             fit: BTreeMap::new(),
             changed: None,
+            different_load: None,
             inertials: BTreeMap::new(),
             rollout: BTreeMap::new(),
             next_experiment: None,

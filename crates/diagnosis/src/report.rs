@@ -7,9 +7,11 @@ use effects::{CATALOGUE, Effect};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+mod different_load;
 mod next_experiment;
 mod schema;
 
+pub use different_load::DifferentLoad;
 pub use next_experiment::{JointLimits, NextExperiment, NotSeparated, Obstacle, Separation, Shows};
 pub use schema::json_schema;
 
@@ -48,6 +50,9 @@ pub struct Report {
     /// What changed since the recordings from before, in sentences, if there are such recordings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub changed: Option<Vec<String>>,
+    /// The load at the tip that only some of the recordings have, if there is one. No model of one arm holds for all of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub different_load: Option<DifferentLoad>,
     /// The estimates of the links' inertial parameters, by the joint before the link; empty if the links do not differ from the
     /// URDF's.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]

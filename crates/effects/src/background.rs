@@ -42,6 +42,14 @@ fn friction_curve(term: &Term, joint: usize, motion: &Signals<'_>) -> Option<Vec
     })
 }
 
+/// The torque for a unit of one of the ten inertial parameters (`of[1]`) of a load on the last link (`of[0]`) that only some of
+/// the recordings have; zero in the others. Its columns are formed from those of the link.
+pub static OWN_LOAD: Law = Law {
+    name: "own load",
+    needs_model: true,
+    ..Law::PLAIN
+};
+
 /// The rigid torque of a joint; its coefficient is the relative error of the torque constant.
 pub static GAIN: Law = Law {
     name: "gain",

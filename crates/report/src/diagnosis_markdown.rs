@@ -20,8 +20,11 @@ pub fn diagnosis_markdown(report: &Report, arm: &Arm) -> String {
 
 fn blocks(report: &Report, arm: &Arm) -> Vec<Block> {
     let mut blocks = vec![Block::Title(format!("Diagnosis of {}", report.robot))];
-    if let Some(changed) = &report.changed {
-        blocks.push(text(words::changed(changed)));
+    if let Some(changed) = words::changed(report) {
+        blocks.push(text(changed));
+    }
+    if let Some(load) = words::different_load(report) {
+        blocks.push(text(load));
     }
     blocks.push(text(format!("**{}**", words::verdict(report))));
     for group in doubts::groups(report) {

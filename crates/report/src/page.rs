@@ -85,7 +85,8 @@ impl<'a> Page<'a> {
         let body = html! {
             header {
                 p.eyebrow { "testbed diagnosis · " (name(&self.report.robot)) " · " (self.recordings_in_short()) }
-                @if let Some(changed) = &self.report.changed { p.lead { (words::changed(changed)) } }
+                @if let Some(changed) = words::changed(self.report) { p.lead { (changed) } }
+                @if let Some(load) = words::different_load(self.report) { p.lead { (load) } }
                 h1 { (words::verdict(self.report)) }
                 (self.lead())
             }

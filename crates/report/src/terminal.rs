@@ -95,8 +95,12 @@ pub fn complete(report: &Report, arm: &Arm) -> String {
 
 /// The changes, the verdict, and the table.
 fn opening(report: &Report) -> String {
-    let changed = report.changed.as_ref().map(|list| wrapped(&words::changed(list), ""));
+    let changed = words::changed(report).map(|text| wrapped(&text, ""));
     let mut text = changed.unwrap_or_default();
+    if let Some(load) = words::different_load(report) {
+        text += &wrapped(&load, "");
+        text.push('\n');
+    }
     text += &wrapped(&words::verdict(report), "");
     for group in doubts::groups(report) {
         for sentence in &group.texts {

@@ -173,12 +173,57 @@ pub fn shows_on(finding: &Finding) -> Option<&str> {
     })
 }
 
-/// The changes since the recordings from before (`--before`) in a sentence, which comes before everything else.
-pub fn changed(list: &[String]) -> String {
-    match list {
+/// The changes since the recordings from before (`--before`) in a sentence, which comes before everything else; nothing if a
+/// load that only some recordings have is the only one.
+pub fn changed(report: &Report) -> Option<String> {
+    let text = match report.changed.as_deref()? {
+        [] if report.different_load.is_some() => return None,
         [] => "Since the recordings from before, no change was found.".to_owned(),
         list => format!("Since the recordings from before, this changed: {}.", list.join("; ")),
+    };
+    Some(text)
+}
+
+/// The most recordings whose names a sentence lists.
+const NAMED_RECORDINGS: usize = 4;
+
+/// The load that only some of the recordings have, and what to do, in two sentences; `None` if all have the same.
+pub fn different_load(report: &Report) -> Option<String> {
+    let (load, recordings) = (report.different_load.as_ref()?, &report.recordings);
+    let short = |path: &String| path.rsplit(['/', '\\']).next().unwrap_or(path).to_owned();
+    let all = recordings.train.len() + recordings.held_out.len();
+    let (with, others) = (load.recordings.len(), all - load.recordings.len());
+    let mut names: Vec<String> = load.recordings.iter().map(short).collect();
+    if with > NAMED_RECORDINGS {
+        names.truncate(NAMED_RECORDINGS - 1);
+        names.push(format!("{} more", with + 1 - NAMED_RECORDINGS));
     }
+    let Parameter {
+        value,
+        ci95: [low, high],
+        unit,
+    } = load.more_than_others;
+    let (size, word) = if value < 0.0 {
+        ([-value, -high, -low], "less")
+    } else {
+        ([value, low, high], "more")
+    };
+    let size = Parameter {
+        value: size[0],
+        ci95: [size[1], size[2]],
+        unit,
+    };
+    let advice = if report.changed.is_some() {
+        ""
+    } else {
+        " This is taken into account. To name what else differs between them, diagnose each group alone, or give one of them with --before."
+    };
+    Some(format!(
+        "{} {} made with {} {word} at the tip than the other {others}.{advice}",
+        list(&names),
+        if with == 1 { "was" } else { "were" },
+        numbers::with_interval("mass", &size),
+    ))
 }
 
 /// The verdict in one sentence or two. When most of the mismatch remains unexplained, the first sentence says so.

@@ -44,10 +44,17 @@ pub fn complete(
         .rfind(|input| input.held_out)
         .or(recordings.last())
         .filter(|_| !diagnosis.effects.is_empty());
+    // The friction of a joint that no training recording moves is unknown.
+    let training = || diagnosis.traces.recordings.iter().filter(|trace| !trace.held_out);
+    let never_moves = |joint: usize| !training().any(|trace| trace.moving[joint].iter().any(|&moving| moving));
+    let options = RolloutOptions {
+        guided: (0..arm.dof()).map(never_moves).collect(),
+        ..RolloutOptions::default()
+    };
     let remarks = simulated.map_or_else(Vec::new, |input| {
         // Known effects are part of the model to which the findings are added.
         let corrected = [known, &diagnosis.effects].concat();
-        simulate(arm, known, &corrected, input.recording, &mut report)
+        simulate(arm, known, &corrected, input.recording, &options, &mut report)
     });
     Ok(Complete { report, remarks })
 }
@@ -106,9 +113,10 @@ fn simulate(
     known: &[Effect],
     corrected: &[Effect],
     recording: &RegularRecording,
+    options: &RolloutOptions,
     report: &mut Report,
 ) -> Vec<String> {
-    let result = match rollout(arm, known, corrected, recording, &RolloutOptions::default()) {
+    let result = match rollout(arm, known, corrected, recording, options) {
         Ok(result) => result,
         Err(error) => return vec![format!("not done: {error}")],
     };
@@ -116,9 +124,25 @@ fn simulate(
         .joints()
         .iter()
         .zip(&result.joints)
-        .map(|(joint, rollout)| (joint.name.clone(), JointRollout { ..*rollout }))
+        .zip(&options.guided)
+        .filter(|(_, guided)| !**guided)
+        .map(|((joint, rollout), _)| (joint.name.clone(), JointRollout { ..*rollout }))
         .collect();
     let mut remarks = result.remarks;
+    let names: Vec<&str> = arm
+        .joints()
+        .iter()
+        .zip(&options.guided)
+        .filter_map(|(joint, guided)| guided.then_some(joint.name.as_str()))
+        .collect();
+    if !names.is_empty() {
+        remarks.push(format!(
+            "{} follow{} the recorded motion, because no training recording moves {}",
+            names.join(", "),
+            if names.len() == 1 { "s" } else { "" },
+            if names.len() == 1 { "it" } else { "them" },
+        ));
+    }
     let windows = result.windows.len();
     for (name, count) in [
         ("nominal", result.runaway_nominal),
@@ -126,7 +150,7 @@ fn simulate(
     ] {
         if count > 0 {
             remarks.push(format!(
-                "the {name} arm departs from the recorded motion by more than one revolution or one metre in {count} of {windows} windows; its position error is a lower bound"
+                "the {name} arm departs from the recorded motion by more than one revolution or one metre in {count} of {windows} windows; the windows end there"
             ));
         }
     }

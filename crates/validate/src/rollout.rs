@@ -23,7 +23,7 @@ use crate::error::ValidateError;
 use crate::statistics::mean_square;
 
 /// Options of a rollout.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RolloutOptions {
     /// The length of a window (s).
     pub window: f64,
@@ -33,6 +33,9 @@ pub struct RolloutOptions {
     pub step: f64,
     /// The plant's extrapolation order.
     pub order: usize,
+    /// Joints that follow their recorded path instead of their recorded torque, base to tip; empty if there are none. For a
+    /// joint that no training recording moves, friction is unknown: it would leave its path and disturb all others.
+    pub guided: Vec<bool>,
 }
 
 impl Default for RolloutOptions {
@@ -42,6 +45,7 @@ impl Default for RolloutOptions {
             simulated: 6.0,
             step: 2e-3,
             order: 2,
+            guided: Vec::new(),
         }
     }
 }
@@ -49,7 +53,8 @@ impl Default for RolloutOptions {
 /// How closely the simulated arm follows the recorded one. Joints are the arm's, base to tip.
 #[derive(Clone, Debug, Default)]
 pub struct Rollout {
-    /// RMS distance of the simulated from the measured position over all windows, one per joint (rad or m).
+    /// RMS distance of the simulated from the measured position over all windows, one per joint (rad or m). Of a window that
+    /// a variant leaves, both are compared up to that time.
     pub joints: Vec<JointRollout>,
     /// The windows in order of time.
     pub windows: Vec<Window>,
@@ -61,12 +66,13 @@ pub struct Rollout {
     pub remarks: Vec<String>,
 }
 
-/// One window; signals are `[joint][instant]`, positions as the encoders report them (rad or m).
+/// One window, up to the time at which a variant leaves it; signals are `[joint][instant]`, positions as the encoders report
+/// them (rad or m).
 #[derive(Clone, Debug, Default)]
 pub struct Window {
     /// Recorded positions.
     pub measured: Vec<Vec<f64>>,
-    /// Simulated positions without the effects. After the arm has left the window, the distance stays constant.
+    /// Simulated positions without the effects.
     pub nominal: Vec<Vec<f64>>,
     /// Simulated positions with the effects.
     pub augmented: Vec<Vec<f64>>,
@@ -84,12 +90,12 @@ struct Course<'a> {
     /// The plant's step (s).
     step: f64,
     order: usize,
+    guided: &'a [bool],
 }
 
 /// Drives the plant of `arm`, and that of `arm` with `effects`, by the torques of `recording` over windows.
 ///
-/// Equal inputs give equal bits. A window that a variant leaves counts with its distance at that time (a lower bound) and is
-/// counted in [`Rollout`].
+/// Equal inputs give equal bits. A window that a variant leaves ends for both at that time, and is counted in [`Rollout`].
 ///
 /// # Errors
 /// [`ValidateError`], if a joint is not in the recording, an effect does not fit the arm, no window fits in the recording, or the plant
@@ -125,6 +131,7 @@ pub fn rollout(
         substeps,
         step: interval / substeps as f64,
         order: options.order,
+        guided: &options.guided,
     };
     let instants = (options.window / interval).round().max(1.0) as usize;
     let starts = course.starts(instants, options)?;
@@ -159,8 +166,12 @@ pub fn rollout(
         remarks: augmented.remarks,
         ..Rollout::default()
     };
-    for ((start, nominal), augmented) in starts.iter().zip(nominal.paths).zip(augmented.paths) {
-        let ticks = || (0..=instants).map(|k| start.tick + k * stride);
+    for ((start, mut nominal), mut augmented) in starts.iter().zip(nominal.paths).zip(augmented.paths) {
+        let common = nominal.q[0].len().min(augmented.q[0].len());
+        for path in nominal.q.iter_mut().chain(&mut augmented.q) {
+            path.truncate(common);
+        }
+        let ticks = || (0..common).map(|k| start.tick + k * stride);
         result.windows.push(Window {
             measured: course
                 .columns
@@ -182,6 +193,7 @@ pub fn rollout(
 
 /// The positions of one variant.
 struct Path {
+    /// Positions up to the last instant before the plant failed, or the first one at which the arm was lost.
     q: Vec<Vec<f64>>,
     ran_away: bool,
 }
@@ -207,6 +219,10 @@ fn rms(windows: &[Window], joint: usize, simulated: impl Fn(&Window) -> &Vec<Vec
 }
 
 impl Course<'_> {
+    fn is_guided(&self, joint: usize) -> bool {
+        self.guided.get(joint).is_some_and(|&guided| guided)
+    }
+
     /// Evenly spread windows of `instants` intervals, with the measured state at the start of each.
     fn starts(&self, instants: usize, options: &RolloutOptions) -> Result<Vec<Start>, ValidateError> {
         let side = start::side(self.recording.period);

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use super::found::findings;
 use super::inertials::{Inertials, inertials};
+use super::loads::OwnLoad;
 use super::locate::locate;
 use super::observability::not_testable;
 use super::traces::traces;
@@ -18,7 +19,8 @@ use crate::data::motion::SourceRecording;
 use crate::diagnosis::Diagnosis;
 use crate::options::Options;
 use crate::report::{
-    Finding, JointFit, Located, NotObservable, RecordingNames, Report, SCHEMA, Traces, Unexplained, UsedPart,
+    DifferentLoad, Finding, JointFit, Located, NotObservable, RecordingNames, Report, SCHEMA, Traces, Unexplained,
+    UsedPart,
 };
 use crate::search::study::Study;
 use crate::selection::FinalFit;
@@ -39,17 +41,19 @@ pub struct Conclusion {
     /// Effects that are not testable with these recordings.
     pub not_observable: Vec<NotObservable>,
     changed: Option<Vec<String>>,
+    different_load: Option<DifferentLoad>,
     traces: Traces,
     /// A note on torques that only the background explains.
     unnamed: Option<String>,
 }
 
 impl Conclusion {
-    /// The conclusions from the fit `last`; `identified` is each joint's held-out error with full linear identification.
+    /// The conclusions from the fit `last`; `identified` is each joint's held-out error with full linear identification, `own_load` a load that only some of the
+    /// recordings have.
     pub fn new(
         study: &Study,
         last: &FinalFit,
-        identified: &[Option<f64>],
+        (identified, own_load): (&[Option<f64>], Option<&OwnLoad>),
         inputs: &[Input<'_>],
         options: &Options,
     ) -> Self {
@@ -104,6 +108,11 @@ impl Conclusion {
             let new = findings.iter().filter(|(finding, _)| finding.since_before);
             new.map(|(finding, _)| sentences::changed(finding)).collect()
         });
+        // If the change is named, nothing is to be added.
+        let is_named = |(finding, _): &(Finding, _)| finding.since_before && finding.as_effect.spec().is_wrong_mass;
+        let different_load = own_load
+            .filter(|_| !findings.iter().any(is_named))
+            .map(|load| load.report(study));
         for (finding, _) in &mut findings {
             finding.sentence = sentences::of(finding, &fit);
         }
@@ -118,6 +127,7 @@ impl Conclusion {
             fit,
             unexplained,
             changed,
+            different_load,
         }
     }
 
@@ -154,6 +164,7 @@ impl Conclusion {
             located: self.located,
             fit: self.fit,
             changed: self.changed,
+            different_load: self.different_load,
             inertials: self.inertials.links,
             rollout: BTreeMap::new(),
             next_experiment: None,

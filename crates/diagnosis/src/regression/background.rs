@@ -10,7 +10,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use effects::Term;
 use effects::arm::INERTIAL_PARAMETER;
-use effects::background::{FRICTION_CURVE, GAIN as GAIN_LAW, OWN_FRICTION};
+use effects::background::{FRICTION_CURVE, GAIN as GAIN_LAW, OWN_FRICTION, OWN_LOAD};
 
 use crate::regression::bodies::{PER_LINK, Quadratic, prior_about};
 use crate::thresholds::{
@@ -240,8 +240,15 @@ pub struct Background {
 impl Prior {
     /// The prior for an arm with the inertial `parameters` (ten per link). The torques of its joints have the standard
     /// deviations `torque` (N m or N), their speeds are up to `speed` (rad/s or m/s); `moved` are the training recordings that
-    /// move each joint.
-    pub fn new(parameters: &[f64], torque: &[f64], speed: &[f64], moved: &[Vec<usize>]) -> Self {
+    /// move each joint. A load that some recordings have of their own has ten inertial parameters with the standard deviations
+    /// `own_load`.
+    pub fn new(
+        parameters: &[f64],
+        torque: &[f64],
+        speed: &[f64],
+        moved: &[Vec<usize>],
+        own_load: Option<&[f64; PER_LINK]>,
+    ) -> Self {
         let mut prior = Self {
             nominal: parameters.to_vec(),
             ..Self::default()
@@ -269,6 +276,9 @@ impl Prior {
                 }
             }
             prior.push(Term::on(&GAIN_LAW, joint), GAIN_PRIOR);
+        }
+        for (parameter, &deviation) in own_load.into_iter().flatten().enumerate() {
+            prior.push(Term::about(&OWN_LOAD, moved.len() - 1).of(parameter), deviation);
         }
         prior
     }
@@ -301,12 +311,13 @@ impl Prior {
         std::array::from_fn(|k| inverse.as_ref().map_or(0.0, |inverse| rho * rho * inverse[(k, k)]))
     }
 
-    /// The background at `strengths`; `None` if they are all zero.
+    /// The background at `strengths`; `None` if they are all zero and all recordings have the same load.
     pub fn at(&self, strengths: &Strengths) -> Option<Background> {
-        if strengths.is_none() {
+        if strengths.is_none() && !self.terms.iter().any(|term| term.is(&OWN_LOAD)) {
             return None;
         }
         let strength = |column: usize| match self.terms[column] {
+            term if term.is(&OWN_LOAD) => 1.0,
             term if term.is(&INERTIAL_PARAMETER) => strengths.links[term.of[0]],
             term if term.is(&GAIN_LAW) => {
                 let is_left_out = |joint: usize| {

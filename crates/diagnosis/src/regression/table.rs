@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use effects::arm::INERTIAL_PARAMETER;
+use effects::background::OWN_LOAD;
 use effects::{LinkSide, Scales, Term};
 use rayon::prelude::*;
 
@@ -234,6 +235,12 @@ impl Table {
                 if term.is(&INERTIAL_PARAMETER) {
                     let k = term.of[0] * bodies::PER_LINK + term.of[1];
                     column = inertial.iter().flat_map(|chunk| &chunk[joint][k]).copied().collect();
+                } else if term.is(&OWN_LOAD) {
+                    let k = term.of[0] * bodies::PER_LINK + term.of[1];
+                    for (chunk, inertial) in motions.chunks.iter().zip(&inertial) {
+                        let share = f64::from(u8::from(motions.sources[chunk.recording].has_own_load));
+                        column.extend(inertial[joint][k].iter().map(|value| share * value));
+                    }
                 } else {
                     for (c, (chunk, rigid)) in motions.chunks.iter().zip(rigid).enumerate() {
                         let values = match links.get(c) {

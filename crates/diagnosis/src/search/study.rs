@@ -12,6 +12,7 @@ use crate::data::rigid::Rigid;
 use crate::data::statistics::mean;
 use crate::options::Options;
 use crate::regression::background::{Background, Prior, Strengths};
+use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::Products;
 use crate::regression::stated::Stated;
 use crate::regression::table::{Moving, Table};
@@ -90,6 +91,31 @@ fn begun(hypothesis: Hypothesis, terms: &[Term], at: f64) -> Vec<Term> {
 impl Study {
     /// The candidates that `options` allow, with their columns along `data`.
     pub fn new(data: Data, options: &Options) -> Self {
+        Self::with(data, options, None)
+    }
+
+    /// This study, in whose background the `recordings` have a load of their own, with ten inertial parameters of the standard
+    /// deviations `deviations`.
+    pub fn with_own_load(self, recordings: &[usize], deviations: &[f64; PER_LINK], options: &Options) -> Self {
+        let mut motions = self.motions;
+        for &recording in recordings {
+            motions.sources[recording].has_own_load = true;
+        }
+        let data = Data {
+            arm: self.arm,
+            past: self.past,
+            motions,
+            rigid: self.rigid,
+            scales: self.scales,
+            measured: self.measured,
+            noise: self.noise,
+            seconds: self.seconds,
+            fitted: self.fitted,
+        };
+        Self::with(data, options, Some(deviations))
+    }
+
+    fn with(data: Data, options: &Options, own_load: Option<&[f64; PER_LINK]>) -> Self {
         let (stated, thresholds) = (Stated::of(options), options.thresholds.clone());
         let Data {
             arm,
@@ -121,6 +147,7 @@ impl Study {
             &scales.torque,
             &scales.speed,
             &strengths::moved(&motions, &scales),
+            own_load,
         );
         let mut terms: Vec<Term> = prior.terms().to_vec();
         let mut candidates = Vec::new();
@@ -219,6 +246,11 @@ impl Study {
     /// The background of every fit, if there is one.
     pub fn background(&self) -> Option<Background> {
         self.prior.at(&self.strengths)
+    }
+
+    /// A background of other `strengths`; `None` if they are all zero.
+    pub fn background_at(&self, strengths: &Strengths) -> Option<Background> {
+        self.prior.at(strengths)
     }
 
     /// Inner products over the recordings that `chosen` selects, without background.

@@ -265,15 +265,21 @@ fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Membe
     }
 }
 
-/// Reduces the background, and removes findings, until no joint's held-out error is larger than the nominal model's.
+/// Reduces the background, and removes findings, until no joint's held-out error is larger than the nominal model's. For errors
+/// at rest, which friction changes, only the background is reduced.
 fn guard(study: &mut Study, judged: &mut Judged) {
-    while let Some(joint) = harmed(study, &judged.named) {
+    loop {
+        let (moving, resting) = harmed(study, &judged.named);
+        if moving.is_none() && !resting {
+            break;
+        }
         if let Some((strengths, next)) = better_outside(study, &judged.named) {
             let before = std::mem::replace(&mut study.strengths, strengths);
             study.preferred.get_or_insert(before);
             study.note_strengths(judge::HARMS, &judged.named, &next);
             judged.named = next;
         } else {
+            let Some(joint) = moving else { break };
             let products = study.training_products();
             let problem = study.problem(&products);
             let acts = |member: &&judge::Member| {
@@ -281,7 +287,12 @@ fn guard(study: &mut Study, judged: &mut Judged) {
             };
             let without = judged.members.iter().filter(acts).map(|member| {
                 let next = problem.choose(judged.named.others(member.candidate), &judged.named.fit.weights);
-                (held_out(study, &next, joint).1.unwrap_or(f64::INFINITY), next)
+                (
+                    fit_of(study, &next, joint)
+                        .held_out_nrmse_augmented
+                        .unwrap_or(f64::INFINITY),
+                    next,
+                )
             });
             let Some((_, next)) = without.min_by(|a, b| a.0.total_cmp(&b.0)) else {
                 break;
@@ -295,26 +306,42 @@ fn guard(study: &mut Study, judged: &mut Judged) {
     }
 }
 
-/// The held-out errors of `joint` with the nominal model and with `chosen`.
-fn held_out(study: &Study, chosen: &Selection, joint: usize) -> (Option<f64>, Option<f64>) {
-    let fit = errors(study, joint, &augmented(study, chosen, joint));
-    (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented)
+/// The fit of `joint` with `chosen`.
+fn fit_of(study: &Study, chosen: &Selection, joint: usize) -> JointFit {
+    errors(study, joint, &augmented(study, chosen, joint))
 }
 
-/// The first joint whose held-out error is larger with `chosen` than with the nominal model.
-fn harmed(study: &Study, chosen: &Selection) -> Option<usize> {
-    (0..study.motions.dof).find(|&joint| match held_out(study, chosen, joint) {
-        (Some(nominal), Some(augmented)) => judge::harms(nominal, augmented),
-        _ => false,
-    })
+/// The first joint whose held-out error in motion is larger with `chosen` than with the nominal model, and whether that at rest
+/// is for any joint.
+fn harmed(study: &Study, chosen: &Selection) -> (Option<usize>, bool) {
+    let is_worse = |nominal: Option<f64>, augmented: Option<f64>| {
+        nominal
+            .zip(augmented)
+            .is_some_and(|(nominal, augmented)| judge::harms(nominal, augmented))
+    };
+    let (mut moving, mut resting) = (None, false);
+    for joint in 0..study.motions.dof {
+        let fit = fit_of(study, chosen, joint);
+        if is_worse(fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented) {
+            moving = moving.or(Some(joint));
+        }
+        resting |= is_worse(fit.held_out_nrmse_resting_nominal, fit.held_out_nrmse_resting);
+    }
+    (moving, resting)
 }
 
 /// The smaller background with the smallest held-out errors of all joints together, if they are smaller than now. Errors at rest
 /// are included, because wrong links that explain the motion of some joints change the weight on joints at rest.
 fn better_outside(study: &Study, chosen: &Selection) -> Option<(Strengths, Selection)> {
     let loss = |chosen: &Selection| {
-        let errors = (0..study.motions.dof).filter_map(|joint| held_out(study, chosen, joint).1);
-        errors.map(|error| error.max(f64::MIN_POSITIVE).ln()).sum::<f64>()
+        let of = |joint: usize| {
+            let fit = fit_of(study, chosen, joint);
+            let error = fit
+                .held_out_nrmse_augmented?
+                .hypot(fit.held_out_nrmse_resting.unwrap_or(0.0));
+            Some(error.max(f64::MIN_POSITIVE).ln())
+        };
+        (0..study.motions.dof).filter_map(of).sum::<f64>()
     };
     let weaker = study.strengths.weaker().into_iter();
     let trials = weaker

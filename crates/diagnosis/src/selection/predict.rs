@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use effects::background::{FRICTION_CURVE, GAIN, OWN_FRICTION};
+use effects::background::{FRICTION_CURVE, GAIN, OWN_FRICTION, OWN_LOAD};
 use effects::{Cone, Term};
 
 use crate::data::statistics::{self, rms};
@@ -18,9 +18,12 @@ pub fn augmented(study: &Study, named: &Selection, joint: usize) -> Vec<f64> {
 }
 
 /// The residual of the exported model: the links' inertial parameters and the named effects, without the background's
-/// corrections of friction and torque constants, which no file holds.
+/// corrections of friction and torque constants and the load of some recordings, which no file holds.
 pub fn exported(study: &Study, named: &Selection, joint: usize) -> Vec<f64> {
-    let is_exported = |term: &Term| [&OWN_FRICTION, &FRICTION_CURVE, &GAIN].iter().all(|law| !term.is(law));
+    let is_exported = |term: &Term| {
+        let kept_apart = [&OWN_FRICTION, &FRICTION_CURVE, &GAIN, &OWN_LOAD];
+        kept_apart.iter().all(|law| !term.is(law))
+    };
     residual(study, named, joint, is_exported)
 }
 

@@ -4,6 +4,8 @@ use super::Course;
 
 /// Half the span of the cubic (s).
 const HALF_SPAN: f64 = 0.04;
+/// The rate at which a guided joint returns to its recorded path (rad/s).
+const GUIDING_RATE: f64 = 50.0;
 
 /// The number of ticks on either side of the start that the cubic uses.
 pub(super) fn side(period: f64) -> usize {
@@ -37,6 +39,30 @@ impl Start {
             tau: of(&recording.tau).iter().map(|m| m[0]).collect(),
         }
     }
+}
+
+/// The torque that keeps joint `j` of `inertia` on its recorded path, `into` seconds after `tick`, at `q` and `qd` (rad, rad/s).
+pub(super) fn guiding_torque(
+    course: &Course<'_>,
+    j: usize,
+    tick: usize,
+    into: f64,
+    (q, qd): (f64, f64),
+    inertia: f64,
+) -> f64 {
+    let recording = course.recording;
+    let side = side(recording.period);
+    let inside = recording.segments.iter().find(|segment| segment.ticks.contains(&tick));
+    let ticks = inside.map_or(0..recording.q[0].len(), |segment| segment.ticks.clone());
+    // Near the end of its segment, the last cubic is continued.
+    let middle = tick.clamp(ticks.start + side, ticks.end - 1 - side);
+    let [place, slope, bend] = cubic(
+        &recording.q[course.columns[j]][middle - side..=middle + side],
+        recording.period,
+    );
+    let time = (tick as f64 - middle as f64) * recording.period + into;
+    let (wanted, rate) = (place + time * (slope + 0.5 * time * bend), slope + time * bend);
+    inertia * (bend + 2.0 * GUIDING_RATE * (rate - qd) + GUIDING_RATE * GUIDING_RATE * (wanted - q))
 }
 
 /// Value, slope and second derivative at the middle of equidistant values (an odd number), from a cubic least-squares fit.

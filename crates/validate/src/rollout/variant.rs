@@ -6,13 +6,16 @@ use plant::{Plant, PlantError, PlantOptions};
 use torque::{Corrected, Workspace};
 
 use super::drive::{Connection, Drives};
-use super::start::Start;
+use super::start::{Start, guiding_torque};
 use super::{Course, Path};
 use crate::error::ValidateError;
 use crate::nearest_body::nearest_body;
 
 /// The distance (rad or m) from which a simulated joint counts as lost.
 const LOST: f64 = std::f64::consts::TAU;
+
+/// The inertia of guided joints, as a multiple of the largest of the arm's own.
+const GUIDE: f64 = 1e5;
 
 /// The plant of an arm with effects, and its drives.
 pub(super) struct Variant {
@@ -21,6 +24,8 @@ pub(super) struct Variant {
     drives: Drives,
     workspace: Workspace,
     is_loaded: bool,
+    /// The inertia that guided joints have, so that no other torque moves them (kg m² or kg).
+    guide: f64,
     /// Effects that are only partly simulated.
     pub(super) remarks: Vec<String>,
     qdd: Vec<f64>,
@@ -50,9 +55,17 @@ impl Variant {
             with_possible_bodies(model.arm())
         };
         let links = link_inertias(&robot, &rotors);
-        let drives = Drives::new(model.machine(), &names, &rotors, &links, course.step);
+        let mut drives = Drives::new(model.machine(), &names, &rotors, &links, course.step);
+        let guide = GUIDE
+            * links
+                .iter()
+                .chain(&rotors)
+                .fold(0.0, |most: f64, &inertia| most.max(inertia));
         for (j, rotor) in rotors.iter_mut().enumerate() {
-            if drives.is_separate(j) {
+            if course.is_guided(j) {
+                drives.connections[j] = None;
+                *rotor = guide;
+            } else if drives.is_separate(j) {
                 *rotor = 0.0;
             }
         }
@@ -75,6 +88,7 @@ impl Variant {
         })?;
         let zeros = || vec![0.0; dof];
         Ok(Self {
+            guide,
             is_loaded: !effects.is_empty(),
             remarks,
             model,
@@ -95,22 +109,20 @@ impl Variant {
     pub(super) fn run(&mut self, course: &Course<'_>, start: &Start, instants: usize) -> Path {
         let dof = start.q.len();
         let mut q = vec![Vec::with_capacity(instants + 1); dof];
-        let mut ran_away = self.begin(course, start).is_err();
         for (j, path) in q.iter_mut().enumerate() {
             path.push(start.q[j]);
         }
+        let mut ran_away = self.begin(course, start).is_err();
         for k in 1..=instants {
             let tick = start.tick + (k - 1) * course.stride;
-            ran_away = ran_away || self.advance(course, tick).is_err() || self.is_lost(course, tick + course.stride);
-            for (j, path) in q.iter_mut().enumerate() {
-                let measured = |tick: usize| course.recording.q[course.columns[j]][tick];
-                path.push(if ran_away {
-                    // After the arm is lost, the distance remains constant.
-                    measured(tick + course.stride) + path[k - 1] - measured(tick)
-                } else {
-                    self.encoder(j)
-                });
+            if ran_away || self.advance(course, tick).is_err() {
+                ran_away = true;
+                break;
             }
+            for (j, path) in q.iter_mut().enumerate() {
+                path.push(self.encoder(j));
+            }
+            ran_away = self.is_lost(course, tick + course.stride);
         }
         Path { q, ran_away }
     }
@@ -176,6 +188,10 @@ impl Variant {
                     self.tau[j] = connection.advance(self.tau[j], q, qd, self.qdd[j], step);
                 }
                 self.tau[j] -= self.opposing[j];
+                if course.is_guided(j) {
+                    let state = (self.plant.q()[j], self.plant.qd()[j]);
+                    self.tau[j] = guiding_torque(course, j, tick, into, state, self.guide);
+                }
             }
             self.before.copy_from_slice(self.plant.qd());
             self.plant.step(&self.tau)?;

@@ -182,6 +182,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
             .collect(),
         fit,
         changed: None,
+        different_load: None,
         inertials: BTreeMap::new(),
         rollout: (0..joints)
             .map(|j| {

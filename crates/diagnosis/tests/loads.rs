@@ -1,0 +1,110 @@
+//! Recordings that were made with different loads at the tip.
+
+mod support;
+
+use arm::{Arm, Inertia, Matrix3, Vector3, Workspace};
+use diagnosis::{Diagnosis, Options, diagnose};
+use recording::RegularRecording;
+use support::{ELBOW, Motion, SHOULDER, baseline_friction, inputs, motion, named, recorded, regular, sentences, trio};
+
+/// The arm with `mass` (kg) at the tip.
+fn with_load(arm: &Arm, mass: f64) -> Arm {
+    arm.clone().with_payload(&Inertia {
+        mass,
+        com: Vector3::new(0.01, 0.02, 0.1),
+        tensor: Matrix3::identity() * 1e-3 * mass,
+    })
+}
+
+/// The diagnosis of four recordings of 16 s with the loads `masses` (kg), the third held out. In each, only the joints that
+/// `moves` selects move; a joint at rest carries its weight without friction, as a torque sensor beyond the gear reads it.
+fn diagnosed(
+    masses: [f64; 4],
+    moves: impl Fn(usize, usize) -> bool,
+    injected: impl Fn(usize, &Motion, &mut [f64]),
+) -> Diagnosis {
+    let recordings: Vec<RegularRecording> = (0..4)
+        .map(|variant| {
+            let robot = with_load(&trio(), masses[variant]);
+            let still = motion(3, 0.0, 0).q;
+            let of_robot = |motion: &mut Motion, tau: &mut [f64]| {
+                for joint in (0..3).filter(|&joint| !moves(variant, joint)) {
+                    (motion.q[joint], motion.qd[joint], motion.qdd[joint]) = (still[joint], 0.0, 0.0);
+                }
+                robot.inverse_dynamics(&mut Workspace::new(&robot), &motion.q, &motion.qd, &motion.qdd, tau);
+                let mut friction = [0.0; 3];
+                baseline_friction(motion, &mut friction);
+                for joint in (0..3).filter(|&joint| moves(variant, joint)) {
+                    tau[joint] += friction[joint];
+                }
+                injected(variant, motion, tau);
+            };
+            regular(&recorded(&robot, variant, 16.0, &of_robot))
+        })
+        .collect();
+    diagnose(&trio(), &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed")
+}
+
+fn nothing(_: usize, _: &Motion, _: &mut [f64]) {}
+
+#[track_caller]
+fn assert_load(diagnosis: &Diagnosis, recordings: &[&str], mass: f64) {
+    let load = diagnosis.report.different_load.as_ref();
+    let load = load.unwrap_or_else(|| panic!("{:?}", sentences(diagnosis)));
+    assert_eq!(load.recordings, recordings);
+    let [low, high] = load.more_than_others.ci95;
+    assert!(low <= mass && mass <= high && high - low < 0.3, "{load:?}");
+}
+
+/// The load is told with its recordings, and is in no name. The load of all recordings is a payload.
+#[test]
+fn recordings_with_another_load_are_told() {
+    let diagnosis = diagnosed([0.0, 0.8, 0.8, 0.0], |_, _| true, nothing);
+    assert_load(&diagnosis, &["b", "c"], 0.8);
+    assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
+    let errors = diagnosis.report.fit.values().map(|fit| fit.held_out_nrmse_augmented);
+    assert!(errors.flatten().all(|error| error < 0.03), "{:?}", diagnosis.report.fit);
+
+    let diagnosis = diagnosed([0.5, 0.5, 1.0, 0.5], |_, _| true, nothing);
+    assert_load(&diagnosis, &["c"], 0.5);
+    assert_eq!(named(&diagnosis), [("payload", None)], "{:?}", sentences(&diagnosis));
+}
+
+/// If each joint moves in recordings of its own, only torques at rest show that the load differs.
+#[test]
+fn torques_at_rest_show_another_load() {
+    let alone = |variant: usize, joint: usize| joint == [SHOULDER, ELBOW, ELBOW, SHOULDER][variant];
+    let diagnosis = diagnosed([0.0, 0.8, 0.8, 0.0], alone, nothing);
+    assert_load(&diagnosis, &["b", "c"], 0.8);
+    assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
+}
+
+/// The same load everywhere, one that changes once on a common clock, and a push are not recordings with another load.
+#[test]
+fn what_an_effect_explains_is_not_told_as_another_load() {
+    let is_told = |diagnosis: &Diagnosis| diagnosis.report.different_load.is_some();
+    let diagnosis = diagnosed([0.8; 4], |_, _| true, nothing);
+    assert!(!is_told(&diagnosis));
+    assert_eq!(named(&diagnosis), [("payload", None)], "{:?}", sentences(&diagnosis));
+
+    let diagnosis = diagnosed([0.0, 0.0, 0.8, 0.8], |_, _| true, nothing);
+    assert!(!is_told(&diagnosis));
+    let payload = diagnosis
+        .report
+        .findings
+        .iter()
+        .find(|finding| finding.effect == "payload");
+    assert!(
+        payload.is_some_and(|payload| payload.parameters.contains_key("onset")),
+        "{:?}",
+        sentences(&diagnosis)
+    );
+
+    let push = |variant: usize, motion: &Motion, tau: &mut [f64]| {
+        if variant == 1 && (5.0..7.0).contains(&motion.time) {
+            tau[SHOULDER] += 6.0;
+            tau[ELBOW] += 3.0;
+        }
+    };
+    assert!(!is_told(&diagnosed([0.0; 4], |_, _| true, push)));
+}
