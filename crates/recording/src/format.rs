@@ -7,6 +7,7 @@ mod mcap;
 mod npz;
 mod parquet;
 mod rosbag2;
+mod thrift;
 mod unread;
 
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Parquet files, with one column per quantity or with lists of values (LeRobot).
 
 use std::fs::File;
-use std::io::{BufReader, Error, ErrorKind, Read};
+use std::io::{BufReader, Error, ErrorKind, Read, Seek, SeekFrom};
 use std::panic::AssertUnwindSafe;
 
 use bytes::Bytes;
@@ -14,6 +14,7 @@ use parquet::file::reader::{ChunkReader, FileReader, Length, SerializedFileReade
 use parquet::schema::types::ColumnDescriptor;
 use serde::Deserialize;
 
+use super::thrift::has_endless_list;
 use super::{Format, Options};
 use crate::RecordingError;
 use crate::input::{Input, most_expanded};
@@ -108,9 +109,24 @@ struct Leaf {
     width: Option<usize>,
 }
 
+/// The message at the end of a file of `size` bytes, before its length and the magic bytes.
+fn footer(mut file: &File, size: u64) -> std::io::Result<Vec<u8>> {
+    let mut end = [0; 8];
+    file.seek(SeekFrom::End(-8))?;
+    file.read_exact(&mut end)?;
+    let length = u64::from(u32::from_le_bytes([end[0], end[1], end[2], end[3]])).min(size.saturating_sub(8));
+    file.seek(SeekFrom::Start(size.saturating_sub(8 + length)))?;
+    let mut footer = Vec::new();
+    file.take(length).read_to_end(&mut footer)?;
+    Ok(footer)
+}
+
 /// The columns of numbers.
 fn columns(file: File) -> Result<Vec<(String, Column)>, String> {
     let size = file.metadata().map_or(0, |metadata| metadata.len());
+    if footer(&file, size).is_ok_and(|footer| has_endless_list(&footer)) {
+        return Err("its footer is damaged; write or copy it again".to_owned());
+    }
     let reader = SerializedFileReader::new(Guarded(file)).map_err(damaged)?;
     // The library does not check the positions in the footer.
     let groups = reader.metadata().row_groups().iter();
