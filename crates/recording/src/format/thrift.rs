@@ -55,9 +55,9 @@ impl Walk<'_> {
             for &kind in kinds {
                 // Unlike a field, an item that is a truth value has a byte.
                 if matches!(kind, 1 | 2) {
-                    self.skip(1)?
+                    self.skip(1)?;
                 } else {
-                    self.value(kind, depth)?
+                    self.value(kind, depth)?;
                 }
             }
         }
