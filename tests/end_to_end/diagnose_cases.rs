@@ -96,3 +96,37 @@ fn friction_that_fades_is_warming() {
 fn what_is_outside_the_catalogue_gets_no_name() {
     check("outside_the_catalogue");
 }
+
+/// Recordings of two cases with different loads: the answer begins with it, and names the folders that distinguish the files.
+#[test]
+fn recordings_with_another_load_come_first() {
+    let folder = root().join("tests/cases");
+    let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
+    let [robot, loaded, train, held_out] = [
+        "arm.urdf",
+        "spring_and_payload/train_1.csv",
+        "friction/train_1.csv",
+        "friction/held_out.csv",
+    ]
+    .map(path);
+    let sandbox = Sandbox::new();
+    let inputs = [
+        "diagnose",
+        "--robot",
+        &robot,
+        "--train",
+        &loaded,
+        &train,
+        "--held-out",
+        &held_out,
+    ];
+    let text = sandbox.succeed(&[&inputs[..], &["--torques-only", "--json", "d.json"]].concat());
+    let load = &sandbox.json("d.json")["different_load"];
+    assert_eq!(load["recordings"], serde_json::json!([loaded]));
+    let end = |k: usize| load["more_than_others"]["ci95"][k].as_f64().expect("a number");
+    assert!(end(0) < 1.0 && 1.0 < end(1), "{load}");
+    assert!(
+        text.starts_with("spring_and_payload/train_1.csv was made with"),
+        "{text}"
+    );
+}

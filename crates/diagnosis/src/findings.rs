@@ -6,7 +6,6 @@ pub mod dual_sensor;
 pub mod found;
 pub mod identified;
 pub mod inertials;
-pub mod loads;
 pub mod locate;
 pub mod observability;
 pub mod sentences;

@@ -220,3 +220,14 @@ def test_ctrl_c_interrupts(tmp_path):
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
     assert done.stdout == "interrupted\n", done.stderr
+
+
+def test_recordings_with_another_load_are_told(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    result = jointwise.diagnose("tests/cases/arm.urdf", train=[PAYLOAD[0], FRICTION[0]], held_out=FRICTION[1])
+    assert result.different_load is not None
+    assert result.different_load.recordings == (PAYLOAD[0],)
+    low, high = result.different_load.more_than_others.interval
+    assert low < 1.0 < high
+    alone = jointwise.diagnose("tests/cases/arm.urdf", train=FRICTION[0], held_out=FRICTION[1])
+    assert alone.different_load is None

@@ -190,7 +190,17 @@ const NAMED_RECORDINGS: usize = 4;
 /// The load that only some of the recordings have, and what to do, in two sentences; `None` if all have the same.
 pub fn different_load(report: &Report) -> Option<String> {
     let (load, recordings) = (report.different_load.as_ref()?, &report.recordings);
-    let short = |path: &String| path.rsplit(['/', '\\']).next().unwrap_or(path).to_owned();
+    // Names that differ in their folders only keep what differs.
+    let mut paths = recordings.train.iter().chain(&recordings.held_out);
+    let first = paths.next().map_or("", String::as_str);
+    let common = paths.fold(first.len(), |length, path| {
+        let pairs = first.bytes().zip(path.bytes());
+        length.min(pairs.take_while(|(a, b)| a == b).count())
+    });
+    let folder = first.as_bytes()[..common]
+        .iter()
+        .rposition(|&byte| matches!(byte, b'/' | b'\\'));
+    let short = |path: &String| path[folder.map_or(0, |at| at + 1)..].to_owned();
     let all = recordings.train.len() + recordings.held_out.len();
     let (with, others) = (load.recordings.len(), all - load.recordings.len());
     let mut names: Vec<String> = load.recordings.iter().map(short).collect();

@@ -39,9 +39,16 @@ pub fn complete(
     progress(Step::new(0.86, "learned correction, for comparison"));
     learn(arm, &diagnosis.traces.recordings, &mut report)?;
     progress(Step::new(0.93, "simulation"));
+    // The corrected arm has the load of most recordings.
+    let as_most = |input: &&Input<'_>| {
+        let load = report.different_load.as_ref();
+        !load.is_some_and(|load| load.recordings.iter().any(|name| name == input.name))
+    };
+    let held_out = |input: &&Input<'_>| input.held_out;
     let simulated = recordings
         .iter()
-        .rfind(|input| input.held_out)
+        .rfind(|input| held_out(input) && as_most(input))
+        .or_else(|| recordings.iter().rfind(held_out))
         .or(recordings.last())
         .filter(|_| !diagnosis.effects.is_empty());
     // The friction of a joint that no training recording moves is unknown.

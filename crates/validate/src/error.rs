@@ -27,6 +27,9 @@ pub enum ValidateError {
         /// The window's length (s).
         window: f64,
     },
+    /// There is nothing to compare.
+    #[error("an arm leaves every window within one step")]
+    Left,
     /// An effect does not fit the arm.
     #[error("{which} cannot be simulated: {source}")]
     Effects {

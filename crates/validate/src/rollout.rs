@@ -98,8 +98,8 @@ struct Course<'a> {
 /// Equal inputs give equal bits. A window that a variant leaves ends for both at that time, and is counted in [`Rollout`].
 ///
 /// # Errors
-/// [`ValidateError`], if a joint is not in the recording, an effect does not fit the arm, no window fits in the recording, or the plant
-/// cannot simulate the arm.
+/// [`ValidateError`], if a joint is not in the recording, an effect does not fit the arm, no window fits in the recording, an arm
+/// leaves all of them at once, or the plant cannot simulate the arm.
 pub fn rollout(
     arm: &Arm,
     nominal: &[Effect],
@@ -181,6 +181,9 @@ pub fn rollout(
             nominal: nominal.q,
             augmented: augmented.q,
         });
+    }
+    if result.windows.iter().all(|window| window.measured[0].len() < 2) {
+        return Err(ValidateError::Left);
     }
     result.joints = (0..arm.dof())
         .map(|joint| JointRollout {

@@ -8,7 +8,6 @@ use rayon::prelude::*;
 
 use super::found::findings;
 use super::inertials::{Inertials, inertials};
-use super::loads::OwnLoad;
 use super::locate::locate;
 use super::observability::not_testable;
 use super::traces::traces;
@@ -16,12 +15,14 @@ use super::verdict::{beyond_limits, not_enough, poorly_predicted, unexplained, v
 use super::{dual_sensor, sentences, transients};
 use crate::data::input::Input;
 use crate::data::motion::SourceRecording;
+use crate::data::statistics::NORMAL_95;
 use crate::diagnosis::Diagnosis;
 use crate::options::Options;
 use crate::report::{
-    DifferentLoad, Finding, JointFit, Located, NotObservable, RecordingNames, Report, SCHEMA, Traces, Unexplained,
-    UsedPart,
+    DifferentLoad, Finding, JointFit, Located, NotObservable, Parameter, RecordingNames, Report, SCHEMA, Traces,
+    Unexplained, UsedPart,
 };
+use crate::search::own_load::OwnLoad;
 use crate::search::study::Study;
 use crate::selection::FinalFit;
 use crate::selection::predict::{errors, exported};
@@ -48,8 +49,8 @@ pub struct Conclusion {
 }
 
 impl Conclusion {
-    /// The conclusions from the fit `last`; `identified` is each joint's held-out error with full linear identification, `own_load` a load that only some of the
-    /// recordings have.
+    /// The conclusions from the fit `last`; `identified` is each joint's held-out error with full linear identification,
+    /// `own_load` a load that only some of the recordings have.
     pub fn new(
         study: &Study,
         last: &FinalFit,
@@ -112,7 +113,7 @@ impl Conclusion {
         let is_named = |(finding, _): &(Finding, _)| finding.since_before && finding.as_effect.spec().is_wrong_mass;
         let different_load = own_load
             .filter(|_| !findings.iter().any(is_named))
-            .map(|load| load.report(study));
+            .map(|load| different(load, &study.motions.sources));
         for (finding, _) in &mut findings {
             finding.sentence = sentences::of(finding, &fit);
         }
@@ -178,6 +179,20 @@ impl Conclusion {
             remarks: std::mem::take(&mut study.motions.remarks),
             trace: study.trace.take(),
         }
+    }
+}
+
+/// How the report tells of `load`.
+fn different(load: &OwnLoad, sources: &[SourceRecording]) -> DifferentLoad {
+    let names = load.recordings.iter().map(|&recording| sources[recording].name.clone());
+    let (value, half) = (load.load[0], NORMAL_95 * load.deviations[0]);
+    DifferentLoad {
+        recordings: names.collect(),
+        more_than_others: Parameter {
+            value,
+            ci95: [value - half, value + half],
+            unit: "kg",
+        },
     }
 }
 

@@ -141,7 +141,7 @@ impl<'a> Prospect<'a> {
         }
         let seconds = chunk.period * chunk.stride as f64;
         let mut source = study.motions.sources[self.template].clone();
-        source.held_out = false;
+        (source.held_out, source.has_own_load) = (false, false);
         let motions = Motions {
             changed_at: None,
             dof,

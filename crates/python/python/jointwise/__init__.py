@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ._core import JointwiseError
 from ._diagnose import RecordingWarning, diagnose
 from ._dynamics import InverseDynamics
-from ._result import Alternative, Diagnosis, Doubt, Effect, JointFit, NotTestable, Parameter, Unexplained
+from ._result import Alternative, Diagnosis, DifferentLoad, Doubt, Effect, JointFit, NotTestable, Parameter, Unexplained
 
 if TYPE_CHECKING:
     from ._learning import IndependentJointLearning
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Alternative",
     "Diagnosis",
+    "DifferentLoad",
     "Doubt",
     "Effect",
     "IndependentJointLearning",

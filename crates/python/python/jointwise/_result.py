@@ -117,11 +117,12 @@ def _frozen(mapping: dict[str, Any]) -> Mapping[str, Any]:
     return MappingProxyType(mapping)
 
 
-def _effect(finding: dict[str, Any]) -> Effect:
-    def parameter(of: dict[str, Any]) -> Parameter:
-        low, high = of["ci95"]
-        return Parameter(of["value"], (low, high), of["unit"])
+def _parameter(of: dict[str, Any]) -> Parameter:
+    low, high = of["ci95"]
+    return Parameter(of["value"], (low, high), of["unit"])
 
+
+def _effect(finding: dict[str, Any]) -> Effect:
     def alternative(of: dict[str, Any]) -> Alternative:
         return Alternative(of["effect"], of["joint"])
 
@@ -129,7 +130,7 @@ def _effect(finding: dict[str, Any]) -> Effect:
         name=finding["effect"],
         joint=finding["joint"],
         other=finding.get("other"),
-        parameters=_frozen({key: parameter(of) for key, of in finding["parameters"].items()}),
+        parameters=_frozen({key: _parameter(of) for key, of in finding["parameters"].items()}),
         probability=finding["probability"],
         share=finding["share"],
         share_by_joint=_frozen(finding["share_by_joint"]),
@@ -156,6 +157,16 @@ def _fit(of: dict[str, Any]) -> JointFit:
         train_nominal=of["train_nrmse_nominal"],
         train_augmented=of["train_nrmse_augmented"],
     )
+
+
+@dataclass(frozen=True)
+class DifferentLoad:
+    """A load at the tip that only some of the recordings have."""
+
+    recordings: tuple[str, ...]
+    """These recordings, at most half of all."""
+    more_than_others: Parameter
+    """The mass that they have more than the others; negative if they have less."""
 
 
 @dataclass(frozen=True)
@@ -189,6 +200,8 @@ class Diagnosis:
     """The reasons why the data are not sufficient for a diagnosis; empty if there are."""
     changed: Optional[tuple[str, ...]]
     """What changed since the recordings from before, in sentences; None without such recordings."""
+    different_load: Optional[DifferentLoad]
+    """The load at the tip that only some of the recordings have; None if all have the same."""
     notes: tuple[str, ...]
     """The notes on the robot and the recordings."""
     _outcome: Outcome = field(repr=False, compare=False)
@@ -196,7 +209,7 @@ class Diagnosis:
     @classmethod
     def _of(cls, outcome: Outcome, notes: tuple[str, ...]) -> Diagnosis:
         report = json.loads(outcome.json())
-        changed = report.get("changed")
+        changed, load = report.get("changed"), report.get("different_load")
         return cls(
             robot=report["robot"],
             verdict=report["verdict"],
@@ -221,6 +234,9 @@ class Diagnosis:
             ),
             not_enough_data=tuple(report["not_enough_data"]),
             changed=None if changed is None else tuple(changed),
+            different_load=None
+            if load is None
+            else DifferentLoad(tuple(load["recordings"]), _parameter(load["more_than_others"])),
             notes=notes,
             _outcome=outcome,
         )

@@ -153,14 +153,38 @@ fn windows_that_cannot_be_simulated_are_reported() {
     assert!(error.contains("no gap-free part"), "{error}");
     // Torques unlike the robot's: both variants leave the windows and report it.
     for tau in &mut recording.tau {
-        tau.fill(5000.0);
+        tau.fill(500.0);
     }
     let result = rollout(&arm, &[], &[], &recording, &RolloutOptions::default()).expect("it runs");
     assert!(result.runaway_nominal > 0 && result.runaway_augmented == result.runaway_nominal);
     assert!(result.joints.iter().all(|joint| joint.nominal_rms_rad.is_finite()));
+    for tau in &mut recording.tau {
+        tau.fill(5000.0);
+    }
+    let error = rollout(&arm, &[], &[], &recording, &RolloutOptions::default())
+        .expect_err("nothing can be compared")
+        .to_string();
+    assert!(error.contains("within one step"), "{error}");
     recording.joints[0] = "other".into();
     let error = rollout(&arm, &[], &[], &recording, &RolloutOptions::default())
         .expect_err("a joint lacks")
         .to_string();
     assert!(error.contains("is not in the recording"), "{error}");
+}
+
+/// A guided joint stays on its recorded path whatever its torque is, and the others move as if it did.
+#[test]
+fn a_guided_joint_follows_its_recorded_path() {
+    let arm = puma();
+    let recording = record(&arm, 0.0, 0.0, 3.0, |j, tau, q| (if j == 5 { 20.0 } else { tau }, q));
+    let free = rollout(&arm, &[], &[], &recording, &RolloutOptions::default()).expect("it runs");
+    assert!(free.joints[5].nominal_rms_rad > 1.0, "{:?}", free.joints);
+    let options = RolloutOptions {
+        guided: vec![false, false, false, false, false, true],
+        ..RolloutOptions::default()
+    };
+    let guided = rollout(&arm, &[], &[], &recording, &options).expect("it runs");
+    assert_eq!(guided.runaway_nominal, 0);
+    let farthest = guided.joints.iter().map(|joint| joint.nominal_rms_rad);
+    assert!(farthest.fold(0.0, f64::max) < 2e-3, "{:?}", guided.joints);
 }

@@ -7,13 +7,13 @@
 use effects::Term;
 use effects::arm::INERTIAL_PARAMETER;
 use effects::laws::{SIGN, VELOCITY};
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::data::statistics::NORMAL_95;
 use crate::regression::background::{Background, Strengths};
 use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::evidence_rate;
-use crate::report::{DifferentLoad, Parameter};
 use crate::search::study::Study;
 use crate::thresholds::{LEAST_LOAD, LEAST_OF_RECORDING, LEAST_OF_RESIDUAL};
 
@@ -65,7 +65,7 @@ impl OwnLoad {
         }
         let normal = Normal::new(&parts, &variances, &background, (dof, recordings))?;
         let found = grown(&normal, &parts, &variances, recordings);
-        if found.recordings.is_empty() || found.load[0].abs() < LEAST_LOAD.max(1.96 * found.deviations[0]) {
+        if found.recordings.is_empty() || found.load[0].abs() < LEAST_LOAD.max(NORMAL_95 * found.deviations[0]) {
             return None;
         }
         let mut group = found.recordings;
@@ -112,23 +112,6 @@ impl OwnLoad {
                 reach(0) * LOAD_SIZE * LOAD_SIZE
             }
         })
-    }
-
-    /// How the report tells it.
-    pub fn report(&self, study: &Study) -> DifferentLoad {
-        let names = self
-            .recordings
-            .iter()
-            .map(|&recording| study.motions.sources[recording].name.clone());
-        let (mass, deviation) = (self.load[0], self.deviations[0]);
-        DifferentLoad {
-            recordings: names.collect(),
-            more_than_others: Parameter {
-                value: mass,
-                ci95: [mass - 1.96 * deviation, mass + 1.96 * deviation],
-                unit: "kg",
-            },
-        }
     }
 }
 
@@ -265,8 +248,9 @@ impl Variances {
 
 /// The normal equations of one arm for all recordings, and what a load in each recording adds to them.
 struct Normal {
-    factor: Cholesky<f64, Dyn>,
     right: DVector<f64>,
+    /// The unknowns without a load.
+    common: DVector<f64>,
     /// One per recording: the products of the load with the other unknowns, with itself, and with the torque.
     loads: Vec<(DMatrix<f64>, DMatrix<f64>, DVector<f64>)>,
     /// N⁻¹ times the products of the load with the other unknowns.
@@ -351,7 +335,7 @@ impl Normal {
         let factor = Cholesky::new(matrix)?;
         let solved = loads.iter().map(|(cross, ..)| factor.solve(cross)).collect();
         Some(Self {
-            factor,
+            common: factor.solve(&right),
             right,
             loads,
             solved,
@@ -362,7 +346,7 @@ impl Normal {
     /// The solution with the same load in all recordings.
     fn alone(&self) -> Solution {
         Solution {
-            common: self.factor.solve(&self.right),
+            common: self.common.clone(),
             load: DVector::zeros(LOAD),
             recordings: Vec::new(),
             last: self.last,
@@ -389,7 +373,7 @@ impl Normal {
         let inverse = Cholesky::new(own)?.inverse();
         let load = &inverse * &right;
         Some(Solution {
-            common: self.factor.solve(&self.right) - &solved * &load,
+            common: &self.common - &solved * &load,
             gain: 0.5 * right.dot(&load),
             deviations: std::array::from_fn(|k| inverse[(k, k)].sqrt()),
             load,
