@@ -43,6 +43,7 @@ impl Diagnosis {
             changed: None,
             different_load: None,
             inertials: BTreeMap::new(),
+            constant_torques: BTreeMap::new(),
             rollout: BTreeMap::new(),
             next_experiment: None,
         };

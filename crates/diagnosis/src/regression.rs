@@ -6,4 +6,5 @@ pub mod columns;
 pub mod fit;
 pub mod small;
 pub mod stated;
+pub mod strengths;
 pub mod table;

@@ -57,6 +57,10 @@ pub struct Report {
     /// URDF's.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub inertials: BTreeMap<String, LinkInertials>,
+    /// The constant torques that correct the joints and that no finding names: small offsets of the torque sensors of most joints.
+    /// Empty if the recordings need none.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub constant_torques: BTreeMap<String, Parameter>,
     /// How closely the simulated arm follows the recorded one; empty where it was not simulated.
     pub rollout: BTreeMap<String, JointRollout>,
     /// The motion that best distinguishes the remaining alternatives, if one was requested.

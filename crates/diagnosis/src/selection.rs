@@ -11,6 +11,7 @@ use crate::selection::bootstrap::Resampled;
 use crate::thresholds::MOST_REFUSED;
 
 pub mod bootstrap;
+pub mod constant_torques;
 pub mod final_fit;
 pub mod gain;
 pub mod hypothesis;

@@ -42,6 +42,13 @@ fn friction_curve(term: &Term, joint: usize, motion: &Signals<'_>) -> Option<Vec
     })
 }
 
+/// A constant torque; its coefficient is the offset of the torque's sensor, or of a friction curve.
+pub static OFFSET: Law = Law {
+    name: "offset",
+    column: |_, _, motion| Some(vec![1.0; motion.ticks()]),
+    ..Law::PLAIN
+};
+
 /// The torque for a unit of one of the ten inertial parameters (`of[1]`) of a load on the last link (`of[0]`) that only some of
 /// the recordings have; zero in the others. Its columns are formed from those of the link.
 pub static OWN_LOAD: Law = Law {

@@ -231,3 +231,19 @@ def test_recordings_with_another_load_are_told(monkeypatch):
     assert low < 1.0 < high
     alone = jointwise.diagnose("tests/cases/arm.urdf", train=FRICTION[0], held_out=FRICTION[1])
     assert alone.different_load is None
+    assert dict(alone.constant_torques) == {}
+
+
+def test_small_constant_torques_of_all_joints(monkeypatch):
+    pandas = pytest.importorskip("pandas")
+    monkeypatch.chdir(ROOT)
+    constants = {"turn": 0.012, "shoulder": -0.014, "elbow": 0.004}
+    train, held_out = (pandas.read_csv(path) for path in FRICTION)
+    for joint, constant in constants.items():
+        train[f"tau_{joint}"] += constant
+        held_out[f"tau_{joint}"] += constant
+    result = jointwise.diagnose("tests/cases/arm.urdf", train=train, held_out=held_out)
+    assert result.constant_torques.keys() == constants.keys()
+    for joint, constant in constants.items():
+        low, high = result.constant_torques[joint].interval
+        assert low < constant < high

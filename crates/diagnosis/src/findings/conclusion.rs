@@ -26,13 +26,15 @@ use crate::search::own_load::OwnLoad;
 use crate::search::study::Study;
 use crate::selection::FinalFit;
 use crate::selection::predict::{errors, exported};
-use crate::selection::torque_constants;
+use crate::selection::{constant_torques, torque_constants};
 
 /// The conclusions from the final fit.
 pub struct Conclusion {
     /// The findings, the largest share first, each with its candidate.
     pub findings: Vec<(Finding, Option<usize>)>,
     inertials: Inertials,
+    /// The constant torques of the joints that no finding names, and the same as effects.
+    constant_torques: (BTreeMap<String, Parameter>, Vec<Effect>),
     located: Vec<Located>,
     /// The reasons why the data are not sufficient for a diagnosis; empty if they are.
     pub not_enough_data: Vec<String>,
@@ -44,8 +46,8 @@ pub struct Conclusion {
     changed: Option<Vec<String>>,
     different_load: Option<DifferentLoad>,
     traces: Traces,
-    /// A note on torques that only the background explains.
-    unnamed: Option<String>,
+    /// Notes on torques that only the background explains.
+    unnamed: Vec<String>,
 }
 
 impl Conclusion {
@@ -117,9 +119,20 @@ impl Conclusion {
         for (finding, _) in &mut findings {
             finding.sentence = sentences::of(finding, &fit);
         }
+        let constants = constant_torques::corrections(study, &judged.named, resampled);
+        let unnamed = [
+            torque_constants::note_on_unnamed(study, &judged.named),
+            sentences::constant_torques(&constant_torques::by_joint(
+                study,
+                constant_torques::told(study, &constants),
+            )),
+        ];
+        let unnamed = unnamed.into_iter().flatten().collect();
+        let constant_effects = constant_torques::effects(study, &constants);
         Self {
             located,
-            unnamed: torque_constants::note_on_unnamed(study, &judged.named),
+            constant_torques: (constant_torques::by_joint(study, constants), constant_effects),
+            unnamed,
             traces: traces(study, judged, &findings, [residual, &by_exported]),
             not_observable: not_named(not_testable(study, products, &judged.named), &findings),
             findings,
@@ -136,7 +149,10 @@ impl Conclusion {
     pub fn effects(&self) -> impl Iterator<Item = Effect> {
         let found = self.findings.iter().filter(|(finding, _)| finding.corrects);
         let found = found.map(|(finding, _)| &finding.as_effect);
-        found.chain(&self.inertials.effects).cloned()
+        found
+            .chain(&self.inertials.effects)
+            .chain(&self.constant_torques.1)
+            .cloned()
     }
 
     /// The diagnosis of `arm`, without a next experiment.
@@ -167,6 +183,7 @@ impl Conclusion {
             changed: self.changed,
             different_load: self.different_load,
             inertials: self.inertials.links,
+            constant_torques: self.constant_torques.0,
             rollout: BTreeMap::new(),
             next_experiment: None,
             findings,

@@ -4,7 +4,7 @@ use effects::drive::RotorInertia;
 use effects::friction::{CoulombFriction, ViscousFriction};
 use effects::sensor::TorqueOffset;
 
-use crate::regression::background::Strengths;
+use crate::regression::strengths::Strengths;
 use crate::search::study::Study;
 use crate::selection::predict::{augmented, errors};
 

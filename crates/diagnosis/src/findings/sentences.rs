@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use effects::Effect;
 use effects::arm::InertialParameters;
 
-use crate::report::{Finding, JointFit};
+use crate::report::{Finding, JointFit, Parameter};
 use crate::selection::naming::may_be_nothing;
 
 /// A number with three significant digits, with an exponent only when it is very small or very large.
@@ -19,6 +19,22 @@ fn number(value: f64) -> String {
     } else {
         format!("{value:.2e}")
     }
+}
+
+/// A note on constant torques that no finding names, by joint; `None` if there are none.
+pub fn constant_torques(constants: &BTreeMap<String, Parameter>) -> Option<String> {
+    if constants.is_empty() {
+        return None;
+    }
+    let list: Vec<String> = constants
+        .iter()
+        .map(|(joint, offset)| format!("{joint} {} {}", number(offset.value), offset.unit))
+        .collect();
+    Some(format!(
+        "the corrected model adds constant torques that no finding names, because most joints have one: {}. Their torque sensors may \
+         have offsets, or the joints more friction in one direction. The torques at rest in several postures would tell",
+        list.join(", ")
+    ))
 }
 
 /// The finding's effect as a noun phrase with its parameters; `quantity` formats a value with its unit (`1` for none).

@@ -1,7 +1,7 @@
 //! The strengths of the background that the user states.
 
 use crate::options::Options;
-use crate::regression::background::Strengths;
+use crate::regression::strengths::Strengths;
 use crate::thresholds::GAIN_PRIOR;
 
 /// Strengths that the user states, so that they are not selected by evidence.
@@ -26,10 +26,8 @@ impl Stated {
     pub fn first(self, links: usize) -> Strengths {
         Strengths {
             links: vec![self.links.unwrap_or(0.0); links],
-            friction: 0.0,
             gain: self.gain.map_or(0.0, |gain| gain / GAIN_PRIOR),
-            named_constants: Vec::new(),
-            impossible_constants: Vec::new(),
+            ..Strengths::none(links)
         }
     }
 

@@ -11,9 +11,10 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::data::statistics::NORMAL_95;
-use crate::regression::background::{Background, Strengths};
+use crate::regression::background::Background;
 use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::evidence_rate;
+use crate::regression::strengths::Strengths;
 use crate::search::study::Study;
 use crate::thresholds::{LEAST_LOAD, LEAST_OF_RECORDING, LEAST_OF_RESIDUAL};
 

@@ -1,6 +1,7 @@
 //! Intervals by resampling: each draw fits the data with random weights on blocks of time (Rubin 1981, The Bayesian
 //! bootstrap). All blocks have a positive weight, so that rows of a short event, such as a contact, always count.
 
+use effects::background::OFFSET;
 use effects::laws::RIGID;
 use effects::{Size, Term};
 use nalgebra::{DMatrix, DVector};
@@ -195,7 +196,7 @@ fn scaled(study: &Study, chosen: &Selection) -> Vec<ScaledBy> {
     let of = |scale: usize| {
         let is_scaled = move |&k: &usize| {
             let (this, law) = (term(k), term(k).law);
-            k >= chosen.fit.background
+            (k >= chosen.fit.background || this.is(&OFFSET))
                 && this.joint() == term(scale).joint()
                 && !this.always().is(&RIGID)
                 && law.carry.is_none()

@@ -4,7 +4,7 @@ use effects::Effect;
 use effects::sensor::TorqueScale;
 use torque::Corrected;
 
-use crate::regression::background::Strengths;
+use crate::regression::strengths::Strengths;
 use crate::report::JointFit;
 use crate::search::problem::{IMPOSSIBLE, Problem, Selection};
 use crate::search::study::Study;

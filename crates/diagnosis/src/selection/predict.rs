@@ -17,8 +17,8 @@ pub fn augmented(study: &Study, named: &Selection, joint: usize) -> Vec<f64> {
     residual(study, named, joint, |_| true)
 }
 
-/// The residual of the exported model: the links' inertial parameters and the named effects, without the background's
-/// corrections of friction and torque constants and the load of some recordings, which no file holds.
+/// The residual of the exported model: the links' inertial parameters, the constant torques and the named effects, without the
+/// background's corrections of friction and torque constants and the load of some recordings, which no file holds.
 pub fn exported(study: &Study, named: &Selection, joint: usize) -> Vec<f64> {
     let is_exported = |term: &Term| {
         let kept_apart = [&OWN_FRICTION, &FRICTION_CURVE, &GAIN, &OWN_LOAD];

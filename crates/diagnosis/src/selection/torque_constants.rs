@@ -5,6 +5,7 @@ use effects::sensor::TorqueScale;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::selection::bootstrap::resample;
+use crate::selection::constant_torques;
 use crate::selection::judge::{self, Judged};
 use crate::thresholds::{LEAST_TORQUE_ACCURACY, MOST_USUAL, SYSTEMATIC, TOLERANCE};
 
@@ -28,9 +29,10 @@ fn names(study: &Study, candidate: usize) -> Option<usize> {
     study.candidates[candidate].joint.filter(|_| is_scale && always)
 }
 
-/// Removes the torque constants that `set` names from the background. Otherwise a named torque constant would explain only the part that
-/// the background does not.
+/// Removes the torque constants and the constant torques that `set` names from the background. Otherwise the named effect would explain
+/// only the part that the background does not.
 pub fn keep_named_ones(study: &mut Study, set: &[usize]) {
+    study.strengths.named_offsets = set.iter().filter_map(|&c| constant_torques::names(study, c)).collect();
     study.strengths.named_constants = set.iter().filter_map(|&c| names(study, c)).collect();
 }
 

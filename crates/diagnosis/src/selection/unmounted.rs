@@ -6,8 +6,8 @@
 
 use effects::arm::Payload;
 
-use crate::regression::background::Strengths;
 use crate::regression::bodies::PER_LINK;
+use crate::regression::strengths::Strengths;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::selection::bootstrap::{Resampled, resample};

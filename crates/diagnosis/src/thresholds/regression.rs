@@ -48,6 +48,8 @@ pub const OWN_STRENGTHS: [f64; 3] = [0.1, 0.3, 1.0];
 pub const FINER_STRENGTH: f64 = 1.4;
 /// The strengths of friction's form that are tried.
 pub const FRICTION_STRENGTHS: [f64; 3] = [0.0, 1.0, 3.0];
+/// The strengths of the joints' constant torques that are tried, relative to [`FRICTION_PRIOR`].
+pub const OFFSET_STRENGTHS: [f64; 3] = [0.0, 1.0, 3.0];
 /// The strengths of the torque constants that are tried.
 pub const GAIN_STRENGTHS: [f64; 3] = [0.0, 1.0, 2.0];
 /// The radius of gyration about which a body that is a point in the URDF may have (m).

@@ -202,6 +202,8 @@ class Diagnosis:
     """What changed since the recordings from before, in sentences; None without such recordings."""
     different_load: Optional[DifferentLoad]
     """The load at the tip that only some of the recordings have; None if all have the same."""
+    constant_torques: Mapping[str, Parameter]
+    """The constant torques that correct the joints and that no effect names, in N m or N, by the joints' names."""
     notes: tuple[str, ...]
     """The notes on the robot and the recordings."""
     _outcome: Outcome = field(repr=False, compare=False)
@@ -237,6 +239,7 @@ class Diagnosis:
             different_load=None
             if load is None
             else DifferentLoad(tuple(load["recordings"]), _parameter(load["more_than_others"])),
+            constant_torques=_frozen({joint: _parameter(of) for joint, of in report.get("constant_torques", {}).items()}),
             notes=notes,
             _outcome=outcome,
         )

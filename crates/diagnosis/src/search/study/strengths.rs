@@ -5,9 +5,9 @@ use rayon::prelude::*;
 
 use super::Study;
 use crate::data::motion::{Chunk, Motions};
-use crate::regression::background::Strengths;
 use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::{Fit, Products};
+use crate::regression::strengths::Strengths;
 use crate::search::problem::{Growth, MOST, Selection};
 use crate::thresholds::{LINK_STRENGTHS, MOST_CONSTANT, MOST_DEVIATIONS, MOVED, OWN_STRENGTHS, PER_IMITATION};
 
@@ -117,6 +117,7 @@ impl Study {
         let stronger = |strengths: &Strengths| {
             let pairs = strengths.links.iter().zip(&self.strengths.links);
             strengths.friction == self.strengths.friction
+                && strengths.offset == self.strengths.offset
                 && strengths.gain == self.strengths.gain
                 && pairs.clone().all(|(new, old)| new >= old)
                 && pairs.clone().any(|(new, old)| new > old)
@@ -251,6 +252,7 @@ impl Study {
                 Strengths::neighbours,
                 Strengths::with_other_links,
                 Strengths::in_one_link,
+                Strengths::with_other_offsets,
                 Strengths::finer,
             ];
             let next = kinds

@@ -1,0 +1,234 @@
+//! The strengths of the background's parts, and those that are tried beside them.
+
+use std::fmt;
+
+use crate::thresholds::{
+    FINER_STRENGTH, FRICTION_STRENGTHS, GAIN_STRENGTHS, LINK_STRENGTHS, OFFSET_STRENGTHS, OWN_STRENGTHS,
+    PER_BACKGROUND_PART, PER_LINK_APART, USUAL_STRENGTH,
+};
+
+/// The strengths of the parts of the background, as standard deviations; zero switches a part off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strengths {
+    /// ρ of each link's inertial parameters.
+    pub links: Vec<f64>,
+    /// The form of each joint's friction, relative to its prior.
+    pub friction: f64,
+    /// The constant torques of the joints, relative to their prior.
+    pub offset: f64,
+    /// The torque constants, relative to their prior.
+    pub gain: f64,
+    /// The joints whose constant torque is a named effect, so that it is not in the background.
+    pub named_offsets: Vec<usize>,
+    /// The joints whose torque constant is a named effect, so that it is not in the background.
+    pub named_constants: Vec<usize>,
+    /// The joints whose torque constant would be wrong by more than any is, so that it is not in the background either: an effect
+    /// must explain that.
+    pub impossible_constants: Vec<usize>,
+}
+
+impl fmt::Display for Strengths {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let links: Vec<String> = self.links.iter().map(f64::to_string).collect();
+        write!(
+            f,
+            "links {}; friction {}; offsets {}; torque constants {}",
+            links.join(" "),
+            self.friction,
+            self.offset,
+            self.gain
+        )
+    }
+}
+
+impl Strengths {
+    /// No background: the nominal model.
+    pub fn none(links: usize) -> Self {
+        Self {
+            links: vec![0.0; links],
+            friction: 0.0,
+            offset: 0.0,
+            gain: 0.0,
+            named_offsets: Vec::new(),
+            named_constants: Vec::new(),
+            impossible_constants: Vec::new(),
+        }
+    }
+
+    /// The evidence that they must bring (nats).
+    pub fn cost(&self) -> f64 {
+        let part = |strength: f64| if strength > 0.0 { PER_BACKGROUND_PART } else { 0.0 };
+        let common = self.common();
+        let apart = self.links.iter().filter(|&&rho| rho != common).count();
+        let unlikely = 0.5 * (common / USUAL_STRENGTH).powi(2);
+        // Several wrong links among links that are exact are less likely than links that are all somewhat wrong.
+        let several = if common == 0.0 { apart.saturating_sub(1) } else { 0 };
+        part(self.friction)
+            + part(self.offset)
+            + part(self.gain)
+            + part(common)
+            + unlikely
+            + PER_LINK_APART * (apart + several) as f64
+    }
+
+    /// The strengths that are tried for one link, below and above that of most links.
+    pub fn around_common(&self) -> (f64, f64) {
+        let common = self.common();
+        let below = LINK_STRENGTHS
+            .into_iter()
+            .filter(|&rho| rho < common)
+            .fold(0.0, f64::max);
+        let above = LINK_STRENGTHS
+            .into_iter()
+            .filter(|&rho| rho > common)
+            .fold(f64::INFINITY, f64::min);
+        (below, if above.is_finite() { above } else { 2.0 * common })
+    }
+
+    /// ρ of most links.
+    pub fn common(&self) -> f64 {
+        self.links.iter().copied().fold(f64::INFINITY, f64::min).min(1e3)
+    }
+
+    /// The strengths that differ from these in a part common to all links or joints.
+    pub fn neighbours(&self) -> Vec<Self> {
+        let mut list = Vec::new();
+        let mut add = |next: Self| {
+            if next != *self && !list.contains(&next) {
+                list.push(next);
+            }
+        };
+        let common = self.common();
+        for rho in LINK_STRENGTHS {
+            add(Self {
+                links: vec![rho; self.links.len()],
+                ..self.clone()
+            });
+            // Links that differ more than most still do.
+            let of_link = |&own: &f64| if own == common { rho } else { own.max(rho) };
+            add(Self {
+                links: self.links.iter().map(of_link).collect(),
+                ..self.clone()
+            });
+        }
+        for friction in FRICTION_STRENGTHS {
+            add(Self {
+                friction,
+                ..self.clone()
+            });
+        }
+        for gain in GAIN_STRENGTHS {
+            add(Self { gain, ..self.clone() });
+        }
+        list
+    }
+
+    /// The strengths that differ from these in the constant torques.
+    pub fn with_other_offsets(&self) -> Vec<Self> {
+        let others = OFFSET_STRENGTHS.into_iter().filter(|&offset| offset != self.offset);
+        others.map(|offset| Self { offset, ..self.clone() }).collect()
+    }
+
+    /// The strengths that differ from these in one link.
+    pub fn with_other_links(&self) -> Vec<Self> {
+        let mut list = Vec::new();
+        let mut add = |next: Self| {
+            if next != *self && !list.contains(&next) {
+                list.push(next);
+            }
+        };
+        for link in 0..self.links.len() {
+            for rho in std::iter::once(self.common()).chain(OWN_STRENGTHS) {
+                let mut next = self.clone();
+                next.links[link] = rho;
+                if rho >= self.common() {
+                    add(next);
+                }
+            }
+        }
+        list
+    }
+
+    /// The strengths with which one link alone differs from the URDF.
+    pub fn in_one_link(&self) -> Vec<Self> {
+        let mut list = Vec::new();
+        if self.common() > 0.0 {
+            for link in 0..self.links.len() {
+                for rho in OWN_STRENGTHS.into_iter().filter(|&rho| rho >= self.common()) {
+                    let mut next = Self {
+                        links: vec![0.0; self.links.len()],
+                        ..self.clone()
+                    };
+                    next.links[link] = rho;
+                    list.push(next);
+                }
+            }
+        }
+        list
+    }
+
+    /// These strengths with all links a finer step weaker or stronger than on the grid.
+    pub fn finer(&self) -> Vec<Self> {
+        let most = LINK_STRENGTHS.into_iter().fold(0.0, f64::max);
+        let scaled = |factor: f64| Self {
+            links: self.links.iter().map(|rho| (rho * factor).min(most)).collect(),
+            ..self.clone()
+        };
+        if self.links.iter().all(|&rho| rho == 0.0) {
+            return Vec::new();
+        }
+        vec![scaled(1.0 / FINER_STRENGTH), scaled(FINER_STRENGTH)]
+    }
+
+    /// These strengths with less of one part, except for the constant torques, which no other effect replaces.
+    pub fn weaker(&self) -> Vec<Self> {
+        let mut list = Vec::new();
+        let largest = self.links.iter().copied().fold(0.0, f64::max);
+        for rho in LINK_STRENGTHS.into_iter().filter(|&rho| rho < largest) {
+            list.push(Self {
+                links: self.links.iter().map(|&own| own.min(rho)).collect(),
+                ..self.clone()
+            });
+        }
+        for friction in FRICTION_STRENGTHS
+            .into_iter()
+            .filter(|&friction| friction < self.friction)
+        {
+            list.push(Self {
+                friction,
+                ..self.clone()
+            });
+        }
+        for gain in GAIN_STRENGTHS.into_iter().filter(|&gain| gain < self.gain) {
+            list.push(Self { gain, ..self.clone() });
+        }
+        list
+    }
+
+    /// Whether friction curves or torque constants differ from the model's.
+    pub fn is_of_joints(&self) -> bool {
+        self.friction > 0.0 || self.gain > 0.0
+    }
+
+    /// Whether there is no background.
+    pub fn is_none(&self) -> bool {
+        !self.is_of_joints() && self.offset == 0.0 && self.links.iter().all(|&rho| rho == 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_common_strength_may_change_while_one_link_stays_apart() {
+        let strengths = Strengths {
+            links: vec![0.0, 1.0, 0.0],
+            ..Strengths::none(3)
+        };
+        let neighbours = strengths.neighbours();
+        let has = |links: [f64; 3]| neighbours.iter().any(|next| next.links == links);
+        assert!(has([0.1, 1.0, 0.1]) && has([0.1; 3]));
+        assert!(!has([0.0, 0.1, 0.0]), "this changes one link, not the common strength");
+    }
+}

@@ -1,0 +1,83 @@
+//! Small constant torques on all joints, as real torque sensors have them.
+
+mod support;
+
+use diagnosis::{Diagnosis, Options, diagnose};
+use effects::Effect;
+use support::{Motion, baseline_friction, inputs, named, recorded, regular, sentences, trio};
+
+/// The diagnosis of four recordings of 16 s in which the joints have the constant torques `constants` (N m), the third held out.
+fn diagnosed(constants: [f64; 3], known: &[Effect]) -> Diagnosis {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        let mut friction = [0.0; 3];
+        baseline_friction(motion, &mut friction);
+        for joint in 0..3 {
+            tau[joint] += friction[joint] + constants[joint];
+        }
+    };
+    let recordings: Vec<_> = (0..4)
+        .map(|variant| regular(&recorded(&trio(), variant, 16.0, &injected)))
+        .collect();
+    let options = Options {
+        known: known.to_vec(),
+        ..Options::default()
+    };
+    diagnose(&trio(), &inputs(&recordings), &options, &|_| {}).expect("it can be diagnosed")
+}
+
+/// Checks that the constants of exactly these `joints` are corrected, and within their intervals.
+#[track_caller]
+fn assert_constants(diagnosis: &Diagnosis, joints: &[(&str, f64)]) {
+    let found = &diagnosis.report.constant_torques;
+    assert_eq!(found.len(), joints.len(), "{found:?}");
+    for &(joint, constant) in joints {
+        let [low, high] = found[joint].ci95;
+        assert!(low <= constant && constant <= high, "{joint}: {:?}", found[joint]);
+        assert!(
+            (found[joint].value - constant).abs() < 0.004,
+            "{joint}: {:?}",
+            found[joint]
+        );
+    }
+}
+
+/// They are too small for names, and the corrected model contains them: as known effects, they leave nothing.
+#[test]
+fn small_constants_of_all_joints_are_corrected_without_names() {
+    let diagnosis = diagnosed([0.026, -0.05, 0.015], &[]);
+    assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
+    assert_constants(&diagnosis, &[("turn", 0.026), ("shoulder", -0.05), ("elbow", 0.015)]);
+    let is_told = |remark: &String| remark.contains("turn 0.0") && remark.contains("elbow 0.0");
+    assert!(diagnosis.remarks.iter().any(is_told), "{:?}", diagnosis.remarks);
+
+    let again = diagnosed([0.026, -0.05, 0.015], &diagnosis.effects);
+    assert!(again.report.constant_torques.is_empty() && again.report.findings.is_empty());
+    for (joint, fit) in &diagnosis.report.fit {
+        let exported = fit.held_out_nrmse_exported.expect("it is moved");
+        let known = again.report.fit[joint].held_out_nrmse_nominal.expect("it is moved");
+        assert!(
+            (exported - known).abs() < 1e-3,
+            "{joint}: {exported} reported, {known} with the effects"
+        );
+    }
+}
+
+/// A large constant is named, and the background then has none on its joint.
+#[test]
+fn a_large_constant_has_a_name() {
+    let diagnosis = diagnosed([0.5, -0.05, 0.015], &[]);
+    assert_eq!(
+        named(&diagnosis),
+        [("torque_offset", Some("turn"))],
+        "{:?}",
+        sentences(&diagnosis)
+    );
+    assert_constants(&diagnosis, &[("shoulder", -0.05), ("elbow", 0.015)]);
+}
+
+#[test]
+fn exact_torques_need_no_constants() {
+    let diagnosis = diagnosed([0.0; 3], &[]);
+    assert!(diagnosis.report.constant_torques.is_empty());
+    assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
+}
