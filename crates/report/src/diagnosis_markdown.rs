@@ -6,7 +6,7 @@ use arm::{Arm, JointKind};
 use diagnosis::{Finding, NotObservable, Report};
 
 use crate::block::{Block, table, text};
-use crate::{doubts, markdown, next_words, numbers, terminal, words};
+use crate::{alternatives, doubts, markdown, next_words, numbers, terminal, words};
 
 /// The diagnosis of `arm` as Markdown; the same report gives the same bytes.
 pub fn diagnosis_markdown(report: &Report, arm: &Arm) -> String {
@@ -80,7 +80,7 @@ fn findings(report: &Report) -> Vec<Block> {
             words::main_parameter(finding).map_or("–".into(), |(name, parameter)| {
                 numbers::with_interval(name, parameter)
             }),
-            terminal::alternatives(finding),
+            alternatives::text(finding),
             words::share(finding).map_or_else(|| "–".into(), numbers::share),
             numbers::probability(finding.probability),
             terminal::error(report, finding),

@@ -13,6 +13,7 @@
 //! assert!(text.starts_with("# A report") && text.contains("| elbow | 0.22 |"));
 //! ```
 
+mod alternatives;
 pub mod block;
 mod block_page;
 pub mod chart;

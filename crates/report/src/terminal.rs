@@ -5,10 +5,10 @@ use std::fmt::Write;
 
 use arm::{Arm, JointKind};
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, Width, presets};
-use diagnosis::{Confusable, Finding, Located, NotObservable, Report, Unexplained};
+use diagnosis::{Finding, Located, NotObservable, Report, Unexplained};
 
 use crate::statistics::rms;
-use crate::{doubts, next_words, numbers, regions, words};
+use crate::{alternatives, doubts, next_words, numbers, regions, words};
 
 pub(crate) mod steps;
 
@@ -179,10 +179,10 @@ pub fn largest(report: &Report, open: &Unexplained, arm: Option<&Arm>) -> Option
 fn details(finding: &Finding) -> String {
     let place = finding.joint.as_deref().unwrap_or("whole arm");
     let start = format!("{place}, {}", words::effect(finding));
-    let could_be = format!("could also be {}", alternatives(finding));
+    let could_be = format!("could also be {}", alternatives::text(finding));
     let sizes = effects::spec(finding.effect).map_or(0, |spec| spec.sentence.matches('{').count());
     let has_more = sizes > 1 || finding.parameters.contains_key("onset") || !finding.corrects;
-    match (has_more, !has_alternatives(finding)) {
+    match (has_more, !alternatives::has_any(finding)) {
         (false, true) => String::new(),
         (false, false) => wrapped(&format!("{start}: {could_be}"), "- "),
         (true, is_alone) => {
@@ -202,26 +202,6 @@ fn columns(report: &Report) -> String {
         "share and error are relative to the standard deviation of the measured torque; share: standard deviation of the \
          effect's torque; error: RMS torque error on the {recordings} recordings, nominal model → with the effects found"
     )
-}
-
-/// A finding's alternatives: `payload, or asymmetric friction on joint_2, or torque scale on joint_2 with one on joint_3`.
-pub fn alternatives(finding: &Finding) -> String {
-    let one = |other: &Confusable| {
-        let name = words::wording(other.effect).name;
-        match &other.joint {
-            Some(joint) if Some(joint) != finding.joint.as_ref() => format!("{name} on {joint}"),
-            _ => name.to_owned(),
-        }
-    };
-    let alone = finding.confusable_with.iter().map(one);
-    let pairs = finding.confusable_with_pairs.iter();
-    let pairs = pairs.map(|[first, second]| format!("{} together with {}", one(first), one(second)));
-    alone.chain(pairs).collect::<Vec<_>>().join(", or ")
-}
-
-/// Whether a finding has alternatives.
-pub fn has_alternatives(finding: &Finding) -> bool {
-    !finding.confusable_with.is_empty() || !finding.confusable_with_pairs.is_empty()
 }
 
 /// The findings by joint, the joint with the largest share first.

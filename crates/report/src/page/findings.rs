@@ -9,7 +9,7 @@ use super::place::regions;
 use super::table::{name, number, table, words as text};
 use super::zoom::zoomable;
 use super::{Page, Section, key};
-use crate::{numbers, terminal, words};
+use crate::{alternatives, numbers, words};
 
 /// The share of a joint's torque from which a whole-arm effect is shown in the joint's section.
 const SHOWN_SHARE: f64 = 0.02;
@@ -232,7 +232,7 @@ impl Page<'_> {
     /// The effect's meaning, its alternatives, and where it acts.
     fn background(&self, finding: &Finding) -> Markup {
         let wording = words::wording(finding.effect);
-        let other = terminal::alternatives(finding);
+        let other = alternatives::text(finding);
         let experiments = words::experiments(finding);
         html! {
             dl {

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::table::{brief_table, number, words as text};
 use super::{Page, Section, key};
-use crate::{doubts, numbers, terminal, words};
+use crate::{alternatives, doubts, numbers, terminal, words};
 
 impl Page<'_> {
     /// `4 recordings, 1 held out`.
@@ -123,7 +123,7 @@ impl Page<'_> {
                 } },
                 html! { (numbers::probability(finding.probability)) },
                 html! { (terminal::error(self.report, finding)) },
-                html! { (terminal::alternatives(finding)) },
+                html! { (alternatives::text(finding)) },
             ]
         });
         let open = self.report.unexplained.iter().map(|open| {

@@ -2,8 +2,8 @@
 
 use diagnosis::{Report, Verdict};
 
-use super::{alternatives, has_alternatives, largest, unexplained};
-use crate::{next_words, words};
+use super::{largest, unexplained};
+use crate::{alternatives, next_words, words};
 
 /// The next steps, in sentences: missing data, unexplained residuals, the proposed motion, findings with alternatives.
 pub fn of(report: &Report) -> Vec<String> {
@@ -58,13 +58,13 @@ fn residuals(report: &Report) -> Vec<String> {
 
 /// The findings with alternatives, with the experiment that distinguishes them.
 fn ambiguous(report: &Report) -> Vec<String> {
-    let findings = report.findings.iter().filter(|finding| has_alternatives(finding));
+    let findings = report.findings.iter().filter(|finding| alternatives::has_any(finding));
     let said = findings.map(|finding| {
         let place = words::joint(finding.joint.as_deref());
         let what = format!(
             "{place}, {}: could also be {}",
             words::effect(finding),
-            alternatives(finding)
+            alternatives::text(finding)
         );
         match words::experiments(finding).as_str() {
             "" => what,

@@ -184,6 +184,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
         changed: None,
         different_load: None,
         inertials: BTreeMap::new(),
+        constant_torques: BTreeMap::new(),
         rollout: (0..joints)
             .map(|j| {
                 (
