@@ -325,11 +325,11 @@ impl<'a> Reader<'a> {
             .map(|(start, way)| choice(base, *start, way))
             .collect();
         if runs.len() > MOST_RUNS {
-            choices.push(format!("{} more", runs.len() - MOST_RUNS));
+            choices.push(format!("and {} more", runs.len() - MOST_RUNS));
         }
         Err(self.robot_error(
             format!("has {branches} chains of moving joints, and an arm is one chain"),
-            &format!("choose it: {}", choices.join("; ")),
+            &format!("choose it:\n  {}", choices.join("\n  ")),
         ))
     }
 

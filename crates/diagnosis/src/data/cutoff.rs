@@ -40,12 +40,19 @@ pub fn filtered(inputs: &[Input<'_>], cutoff: Option<f64>, arm: &Arm) -> Motions
         let least = LEAST_CUTOFF.max(LEAST_CUTOFF_PERIODS * tempo).min(motions.cutoff);
         let before = motions.cutoff;
         motions = at(quiet.max(least));
-        motions.remarks.push(format!(
-            "filtered at {:.1} Hz and not at {before:.1} Hz, where the noise of the positions alone would be {share:.2} times the \
-             torque of {}",
-            motions.cutoff,
-            arm.joints()[joint].name
-        ));
+        let joint = &arm.joints()[joint].name;
+        let [before, now] = [before, motions.cutoff].map(|cutoff| format!("{cutoff:.1} Hz"));
+        motions.remarks.push(if now == before {
+            format!(
+                "the noise of the positions alone is {share:.2} times the torque of {joint}, and the motion is too quick for a filter \
+                 below {now}"
+            )
+        } else {
+            format!(
+                "filtered at {now} and not at {before}, where the noise of the positions alone would be {share:.2} times the torque of \
+                 {joint}"
+            )
+        });
     }
     motions
 }
