@@ -195,12 +195,17 @@ fn details(finding: &Finding) -> String {
     }
 }
 
-/// The explanation of the table's last two columns.
+/// The explanation of the table's columns.
 fn columns(report: &Report) -> String {
     let recordings = recordings(report);
+    let undetermined = if report.findings.iter().any(diagnosis::is_undetermined) {
+        "; where the interval of a size holds the value without effect (0, or × 1), these recordings do not determine the size"
+    } else {
+        ""
+    };
     format!(
         "share and error are relative to the standard deviation of the measured torque; share: standard deviation of the \
-         effect's torque; error: RMS torque error on the {recordings} recordings, nominal model → with the effects found"
+         effect's torque; error: RMS torque error on the {recordings} recordings, nominal model → with the effects found{undetermined}"
     )
 }
 
@@ -362,4 +367,30 @@ pub fn wrapped(text: &str, start: &str) -> String {
         is_fresh = false;
     }
     lines + &line + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use diagnosis::{Diagnosis, Parameter, RecordingNames};
+    use effects::Effect;
+    use effects::friction::CoulombFriction;
+
+    use super::*;
+
+    #[test]
+    fn a_size_that_may_be_zero_is_explained() {
+        let mut report = Diagnosis::units_first("arm", RecordingNames::default(), Vec::new()).report;
+        let mut finding = Finding::of(Effect::of(&CoulombFriction).on("a".to_owned()));
+        let level = |low: f64| Parameter {
+            value: 0.1,
+            ci95: [low, 0.4],
+            unit: "N m",
+        };
+        finding.parameters.insert("level", level(0.05));
+        report.findings = vec![finding.clone()];
+        assert!(!columns(&report).contains("do not determine the size"));
+        finding.parameters.insert("level", level(-0.2));
+        report.findings.push(finding);
+        assert!(columns(&report).contains("do not determine the size"));
+    }
 }

@@ -58,7 +58,7 @@ pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> S
         }
         text.push_str(rest);
     }
-    if may_be_nothing(finding.as_effect.kind().get().spec(), &finding.parameters) {
+    if is_undetermined(finding) {
         text.push_str(", of a size that these recordings do not determine");
     }
     match finding.parameters.get("onset") {
@@ -69,6 +69,12 @@ pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> S
         Some(onset) => format!("{text} from {} on", quantity(onset.value, onset.unit)),
         None => text,
     }
+}
+
+/// Whether the recordings do not determine the size of a finding: its interval contains the value without effect. The name may be
+/// certain nevertheless.
+pub fn is_undetermined(finding: &Finding) -> bool {
+    may_be_nothing(finding.as_effect.kind().get().spec(), &finding.parameters)
 }
 
 /// Whether an effect states a level of dry friction that was there before it changed.
