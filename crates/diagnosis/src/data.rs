@@ -57,6 +57,7 @@ impl Data {
             })
             .collect();
         let torque = measure::deviations(&motions);
+        let mut recorded: Vec<Vec<Vec<f64>>> = motions.chunks.iter().map(|chunk| chunk.tau.clone()).collect();
         known.take_off(&mut motions);
         let offset = vec![0.0; arm.dof()];
         let nominal = arm.inertial_parameters();
@@ -65,7 +66,16 @@ impl Data {
             .map(|chunk| rigid::Rigid::new(arm, &nominal, &offset, chunk))
             .collect();
         let mut scales = measure::scales(&motions, torque);
-        for (joint, why) in channels::without_torque(inputs, &motions, &rigid, &scales) {
+        // A channel is judged as it was recorded: what known effects leave of it may be noise.
+        let mut exchange = |motions: &mut motion::Motions| {
+            for (chunk, tau) in motions.chunks.iter_mut().zip(&mut recorded) {
+                std::mem::swap(&mut chunk.tau, tau);
+            }
+        };
+        exchange(&mut motions);
+        let without = channels::without_torque(inputs, &motions, &rigid, &scales);
+        exchange(&mut motions);
+        for (joint, why) in without {
             scales.torque[joint] = 0.0;
             motions.remarks.push(why.remark(&arm.joints()[joint].name));
         }

@@ -4,6 +4,8 @@ mod support;
 
 use arm::{Arm, Vector3};
 use diagnosis::{Diagnosis, Options, diagnose};
+use effects::Effect;
+use effects::friction::CoulombFriction;
 use support::{Motion, TRIO, baseline_friction, diagnosed, inputs, named, recorded, regular, sentences, trio};
 
 /// The diagnosis of the trio's arm on a base turned by an angle (°) about an axis.
@@ -143,6 +145,20 @@ fn the_channel_of_a_drive_at_its_limit_is_a_torque() {
         tau[2] *= 1.0 + 300.0 * (phase - phase.floor()).powi(60) * window;
     };
     let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
+    let remarks = diagnosis.remarks.join("\n");
+    assert!(!remarks.contains("it is not the torque of this joint"), "{remarks}");
+}
+
+/// A channel is judged as it was recorded: what known effects leave of it may be noise.
+#[test]
+fn a_channel_that_known_effects_explain_is_a_torque() {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        baseline_friction(motion, tau);
+        let noise = (motion.clock * 23.0).sin() + (motion.clock * 31.7).sin() + (motion.clock * 43.1).sin();
+        tau[0] += 90.0 * motion.qd[0].signum() + 12.0 * noise;
+    };
+    let known = Effect::of(&CoulombFriction).on("turn".to_owned()).with("level", 90.0);
+    let diagnosis = diagnosed(&trio(), &trio(), &injected, vec![known]);
     let remarks = diagnosis.remarks.join("\n");
     assert!(!remarks.contains("it is not the torque of this joint"), "{remarks}");
 }
