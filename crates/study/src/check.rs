@@ -14,7 +14,7 @@ use recording::{FindingKind, Quality, Recording, RegularRecording, nearest};
 use report::numbers::{percent, rounded};
 use serde::Serialize;
 
-use self::column_map::Change;
+pub use self::column_map::Change;
 use self::positions::Pair;
 use self::smooth::Smooth;
 use self::supposed::{NOT_EXPLAINED, supposed};
@@ -44,6 +44,9 @@ pub struct Misfit {
     /// Whether it must be corrected before the robot can be diagnosed.
     #[serde(skip)]
     pub prevents_diagnosis: bool,
+    /// Whether it is a property of the robot that a wrong URDF may imitate in some motions, so that most recordings must show it.
+    #[serde(skip)]
+    pub is_of_robot: bool,
     /// The keys of a column map that correct it.
     #[serde(skip)]
     pub changes: Vec<Change>,
@@ -55,6 +58,7 @@ impl Misfit {
             joint: joint.map(str::to_owned),
             text: text.into(),
             prevents_diagnosis: false,
+            is_of_robot: false,
             changes,
         }
     }

@@ -14,8 +14,9 @@ use recording::{Column, ColumnMap, FindingKind, Quality, Recording, RecordingErr
 
 use self::independent::Stretches;
 use self::joints::{order, reordered};
+use crate::check::{self, Change, Misfit};
+use crate::named;
 use crate::notes::{Notes, shortened};
-use crate::{check, named};
 
 /// A recording to be read for a diagnosis.
 #[derive(Clone, Debug)]
@@ -80,8 +81,25 @@ pub struct Prepared {
     epoch: Option<i64>,
     /// The column map that corrects its contradictions with the arm.
     column_map: Option<String>,
+    /// What it supposes of the robot, until the other recordings confirm it.
+    guess: Option<Guess>,
     /// Why it cannot be diagnosed as it was read; empty if it can.
     pub doubts: Vec<Doubt>,
+}
+
+/// What one recording supposes of the robot, such as another zero of a joint. The other recordings of the robot should suppose it, too.
+struct Guess {
+    joint: Option<String>,
+    text: String,
+    changes: Vec<Change>,
+    /// The column map that corrects all contradictions of the recording, this one included.
+    column_map: Option<String>,
+}
+
+impl Guess {
+    fn is_same(&self, other: &Self) -> bool {
+        self.joint == other.joint && self.changes == other.changes
+    }
 }
 
 /// The role of a recording.
@@ -167,13 +185,6 @@ pub fn read(
         let map = map.as_ref().map(|(path, _)| *path);
         let order = order(&recording, arm, &name, &choosing, map)?;
         let prepared = prepare(recording, name, &order, role, arm, notes)?;
-        if let Some(map) = &prepared.column_map
-            && prepared.doubts.is_empty()
-            && list.iter().all(|other| other.column_map.as_ref() != Some(map))
-        {
-            let text = format!("a column map that corrects it; save it as map.toml, and add --map map.toml:\n{map}");
-            notes.add("note", &prepared.name, text);
-        }
         // The same samples under another name.
         let twin = list.iter().find(|known| {
             let (a, b) = (&known.regular, &prepared.regular);
@@ -199,6 +210,7 @@ pub fn read(
         list.push(prepared);
         memory::bound(&mut list);
     }
+    confirm(&mut list, notes);
     epoch::share(&mut list);
     let training = || list.iter().filter(|recording| recording.role == Role::Train);
     // Stamps in microseconds leave next to no rows of what is worth holding.
@@ -213,6 +225,34 @@ pub fn read(
         );
     }
     Ok(list)
+}
+
+/// Whether most of the recordings with these guesses suppose the same as each.
+fn confirmed(guesses: &[Option<Guess>]) -> Vec<bool> {
+    let alike = |guess: &Guess| guesses.iter().flatten().filter(|other| guess.is_same(other)).count();
+    let is_confirmed = |guess: &Option<Guess>| guess.as_ref().is_some_and(|guess| 2 * alike(guess) > guesses.len());
+    guesses.iter().map(is_confirmed).collect()
+}
+
+/// Adds what most recordings suppose of the robot to `notes`, and the column maps that correct the recordings.
+fn confirm(list: &mut [Prepared], notes: &mut Notes) {
+    let guesses: Vec<Option<Guess>> = list.iter_mut().map(|one| one.guess.take()).collect();
+    let is_confirmed = confirmed(&guesses);
+    let mut told: Vec<String> = Vec::new();
+    for ((one, guess), is_confirmed) in list.iter_mut().zip(guesses).zip(is_confirmed) {
+        if let Some(guess) = guess.filter(|_| is_confirmed) {
+            notes.add("warning", &one.name, guess.text);
+            one.column_map = guess.column_map;
+        }
+        if let Some(map) = &one.column_map
+            && one.doubts.is_empty()
+            && !told.contains(map)
+        {
+            let text = format!("a column map that corrects it; save it as map.toml, and add --map map.toml:\n{map}");
+            notes.add("note", &one.name, text);
+            told.push(map.clone());
+        }
+    }
 }
 
 fn refuse_twice(list: &[(&Given, Role)]) -> anyhow::Result<()> {
@@ -245,8 +285,14 @@ fn prepare(
 ) -> anyhow::Result<Prepared> {
     let (regular, warnings) = recording.regular().with_context(|| name.clone())?;
     let quality = Quality::of(&recording, &regular);
-    let misfits = check::check(arm, &regular, &quality);
-    let column_map = check::column_map(arm, &misfits, &recording);
+    let all = check::check(arm, &regular, &quality);
+    let map_of_all = check::column_map(arm, &all, &recording);
+    let (mut of_robot, misfits): (Vec<Misfit>, Vec<Misfit>) = all.into_iter().partition(|misfit| misfit.is_of_robot);
+    let column_map = if of_robot.is_empty() {
+        map_of_all.clone()
+    } else {
+        check::column_map(arm, &misfits, &recording)
+    };
     let (told, gaps) = shortened(recording.warnings.iter().chain(&warnings), |warning| warning);
     for warning in told {
         notes.add("note", &name, warning.to_string());
@@ -274,6 +320,12 @@ fn prepare(
     for misfit in misfits.iter().filter(|misfit| !misfit.prevents_diagnosis) {
         notes.add("warning", &name, about(&misfit.joint, &misfit.text));
     }
+    let guess = of_robot.pop().map(|misfit| Guess {
+        text: about(&misfit.joint, &misfit.text),
+        joint: misfit.joint,
+        changes: misfit.changes,
+        column_map: map_of_all,
+    });
     let prevents_diagnosis = misfits.into_iter().filter(|misfit| misfit.prevents_diagnosis);
     let doubts = prevents_diagnosis
         .map(|misfit| Doubt {
@@ -294,6 +346,7 @@ fn prepare(
         role,
         epoch: recording.epoch,
         column_map,
+        guess,
         doubts,
     })
 }
@@ -321,4 +374,27 @@ fn is_still(recording: &RegularRecording) -> bool {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
         high - low < 1e-3
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A zero is a property of the robot, so that most of its recordings show a wrong one; a centre of mass that lies elsewhere than
+    /// in the URDF looks like a wrong zero in some motions only.
+    #[test]
+    fn what_few_recordings_suppose_of_the_robot_is_not_told() {
+        let guess = |joint: &str| {
+            Some(Guess {
+                joint: Some(joint.to_owned()),
+                text: String::new(),
+                changes: Vec::new(),
+                column_map: None,
+            })
+        };
+        assert_eq!(confirmed(&[guess("a")]), [true]);
+        assert_eq!(confirmed(&[guess("a"), None]), [false, false]);
+        assert_eq!(confirmed(&[guess("a"), guess("b"), guess("a")]), [true, false, true]);
+        assert_eq!(confirmed(&[guess("a"), guess("b"), guess("a"), None]), [false; 4]);
+    }
 }
