@@ -9,6 +9,7 @@ use crate::report::JointFit;
 use crate::search::problem::{IMPOSSIBLE, Problem, Selection};
 use crate::search::study::Study;
 use crate::selection::bootstrap::{Resampled, resample};
+use crate::selection::constant_torques;
 use crate::selection::gain::useless;
 use crate::selection::judge::{self, Judged};
 use crate::selection::naming::{Named, may_be_nothing, name};
@@ -98,6 +99,7 @@ fn relinearise(study: &mut Study, judged: &mut Judged, as_given: bool) {
     } else {
         study.preferred = None;
         let best = study.with_best_strengths(refitted);
+        let best = constant_torques::leave_to_background(study, best);
         study.about_own_bodies(best)
     };
     let products = study.training_products();
