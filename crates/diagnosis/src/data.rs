@@ -57,8 +57,7 @@ impl Data {
             })
             .collect();
         let torque = measure::deviations(&motions);
-        let mut recorded: Vec<Vec<Vec<f64>>> = motions.chunks.iter().map(|chunk| chunk.tau.clone()).collect();
-        known.take_off(&mut motions);
+        let mut recorded = known.take_off(&mut motions);
         let offset = vec![0.0; arm.dof()];
         let nominal = arm.inertial_parameters();
         let chunks = motions.chunks.par_iter();

@@ -38,9 +38,13 @@ impl Known {
         })
     }
 
-    /// Subtracts known effects from the torques, and corrects the positions for known encoder offsets.
-    pub fn take_off(&self, motions: &mut Motions) {
-        let Some(model) = &self.model else { return };
+    /// Subtracts known effects from the torques, and corrects the positions for known encoder offsets. Returns the torques as they
+    /// were recorded, `[chunk][joint][tick]`; nothing if no effect is known.
+    pub fn take_off(&self, motions: &mut Motions) -> Vec<Vec<Vec<f64>>> {
+        let Some(model) = &self.model else {
+            return Vec::new();
+        };
+        let recorded = motions.chunks.iter().map(|chunk| chunk.tau.clone()).collect();
         let dof = self.arm.dof();
         let mut workspace = Workspace::new(dof);
         let mut prediction = Prediction::new(dof);
@@ -60,6 +64,7 @@ impl Known {
                 }
             }
         }
+        recorded
     }
 }
 

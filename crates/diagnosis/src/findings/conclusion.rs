@@ -33,8 +33,8 @@ pub struct Conclusion {
     /// The findings, the largest share first, each with its candidate.
     pub findings: Vec<(Finding, Option<usize>)>,
     inertials: Inertials,
-    /// The constant torques of the joints that no finding names, and the same as effects.
-    constant_torques: (BTreeMap<String, Parameter>, Vec<Effect>),
+    /// The constant torques of the joints that no finding names.
+    constant_torques: BTreeMap<String, Parameter>,
     located: Vec<Located>,
     /// The reasons why the data are not sufficient for a diagnosis; empty if they are.
     pub not_enough_data: Vec<String>,
@@ -122,16 +122,12 @@ impl Conclusion {
         let constants = constant_torques::corrections(study, &judged.named, resampled);
         let unnamed = [
             torque_constants::note_on_unnamed(study, &judged.named),
-            sentences::constant_torques(&constant_torques::by_joint(
-                study,
-                constant_torques::told(study, &constants),
-            )),
+            sentences::constant_torques(&constant_torques::told(study, &constants)),
         ];
         let unnamed = unnamed.into_iter().flatten().collect();
-        let constant_effects = constant_torques::effects(study, &constants);
         Self {
             located,
-            constant_torques: (constant_torques::by_joint(study, constants), constant_effects),
+            constant_torques: constants,
             unnamed,
             traces: traces(study, judged, &findings, [residual, &by_exported]),
             not_observable: not_named(not_testable(study, products, &judged.named), &findings),
@@ -149,10 +145,8 @@ impl Conclusion {
     pub fn effects(&self) -> impl Iterator<Item = Effect> {
         let found = self.findings.iter().filter(|(finding, _)| finding.corrects);
         let found = found.map(|(finding, _)| &finding.as_effect);
-        found
-            .chain(&self.inertials.effects)
-            .chain(&self.constant_torques.1)
-            .cloned()
+        let constants = self.constant_torques.iter().map(constant_torques::effect);
+        found.chain(&self.inertials.effects).cloned().chain(constants)
     }
 
     /// The diagnosis of `arm`, without a next experiment.
@@ -183,7 +177,7 @@ impl Conclusion {
             changed: self.changed,
             different_load: self.different_load,
             inertials: self.inertials.links,
-            constant_torques: self.constant_torques.0,
+            constant_torques: self.constant_torques,
             rollout: BTreeMap::new(),
             next_experiment: None,
             findings,

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use arm::Joint;
 use effects::background::OFFSET;
 use effects::friction::FrictionAsymmetry;
 use effects::sensor::TorqueOffset;
@@ -56,9 +57,9 @@ pub fn leave_to_background(study: &mut Study, mut chosen: Selection) -> Selectio
     }
 }
 
-/// The constant torques in the fit `chosen`, each with the joint on which it acts.
-pub fn corrections(study: &Study, chosen: &Selection, resampled: &Resampled) -> Vec<(usize, Parameter)> {
-    let of = |joint: usize| {
+/// The constant torques in the fit `chosen`, by the joints' names.
+pub fn corrections(study: &Study, chosen: &Selection, resampled: &Resampled) -> BTreeMap<String, Parameter> {
+    let of = |(joint, described): (usize, &Joint)| {
         let offset = Term::on(&OFFSET, joint);
         let column = study.table.terms.iter().position(|term| *term == offset)?;
         if !chosen.fit.columns.contains(&column) {
@@ -66,33 +67,23 @@ pub fn corrections(study: &Study, chosen: &Selection, resampled: &Resampled) -> 
         }
         let at = resampled.column(column)?;
         let (value, ci95) = resampled.interval_within(SYSTEMATIC, |draw| draw[at]);
-        let unit = Quantity::Torque.unit(study.arm.joints()[joint].kind);
-        Some((joint, Parameter { value, ci95, unit }))
+        let unit = Quantity::Torque.unit(described.kind);
+        Some((described.name.clone(), Parameter { value, ci95, unit }))
     };
-    (0..study.motions.dof).filter_map(of).collect()
+    study.arm.joints().iter().enumerate().filter_map(of).collect()
 }
 
 /// Those that are large enough to be told.
-pub fn told(study: &Study, corrections: &[(usize, Parameter)]) -> Vec<(usize, Parameter)> {
-    let is_told =
-        |(joint, offset): &&(usize, Parameter)| offset.value.abs() >= LEAST_FINAL_SHARE * study.scales.torque[*joint];
-    corrections.iter().filter(is_told).copied().collect()
-}
-
-/// The effects that correct the torque model by these constants.
-pub fn effects(study: &Study, corrections: &[(usize, Parameter)]) -> Vec<Effect> {
-    let effect = |(joint, offset): &(usize, Parameter)| {
-        let name = study.arm.joints()[*joint].name.clone();
-        Effect::of(&TorqueOffset).on(name).with("offset", offset.value)
+pub fn told(study: &Study, corrections: &BTreeMap<String, Parameter>) -> BTreeMap<String, Parameter> {
+    let of = |(joint, described): (usize, &Joint)| {
+        let offset = corrections.get(&described.name)?;
+        let is_told = offset.value.abs() >= LEAST_FINAL_SHARE * study.scales.torque[joint];
+        is_told.then(|| (described.name.clone(), *offset))
     };
-    corrections.iter().map(effect).collect()
+    study.arm.joints().iter().enumerate().filter_map(of).collect()
 }
 
-/// These constants by the joints' names.
-pub fn by_joint(study: &Study, corrections: Vec<(usize, Parameter)>) -> BTreeMap<String, Parameter> {
-    let name = |joint: usize| study.arm.joints()[joint].name.clone();
-    corrections
-        .into_iter()
-        .map(|(joint, offset)| (name(joint), offset))
-        .collect()
+/// The effect that corrects the torque model by a constant.
+pub fn effect((joint, offset): (&String, &Parameter)) -> Effect {
+    Effect::of(&TorqueOffset).on(joint.clone()).with("offset", offset.value)
 }
