@@ -9,6 +9,7 @@ mod diagnose_made;
 mod diagnose_maps;
 mod diagnose_mistakes;
 mod diagnose_next;
+mod diagnose_readings;
 mod diagnose_refusals;
 mod diagnose_takeaways;
 mod diagnose_terminal;

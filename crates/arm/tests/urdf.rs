@@ -173,7 +173,7 @@ fn what_does_not_parse_has_its_line() {
 fn what_no_body_has_is_refused_by_name() {
     let with = |inertial: &str| robot(&[link("b", ""), link("arm", inertial), joint("j", "revolute", "b", "arm")]);
     let message = refusal(&with(""));
-    assert!(message.contains("no moving link has an <inertial>"), "{message}");
+    assert!(message.contains("no moving link has a mass or an inertia"), "{message}");
     let message = refusal(&with(&LINK.replace("value=\"2\"", "value=\"-2\"")));
     assert!(
         message.contains("robot.urdf:3: link \"arm\": has the mass -2 kg"),

@@ -79,7 +79,8 @@ fn next_experiment(
     Ok(Some(next))
 }
 
-fn check(arm: &Arm, inputs: &[Input<'_>], cutoff: f64) -> Result<(), DiagnosisError> {
+/// Whether `inputs` can be diagnosed with `arm` at all.
+pub(crate) fn check(arm: &Arm, inputs: &[Input<'_>], cutoff: f64) -> Result<(), DiagnosisError> {
     if inputs.iter().all(|input| input.held_out) {
         return Err(DiagnosisError::NoTraining);
     }

@@ -26,6 +26,12 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
+    /// This diagnosis, with what contradicts the URDF in the recordings and does not prevent a diagnosis.
+    pub fn with_warnings(mut self, warnings: Vec<Doubt>) -> Self {
+        self.report.warnings = warnings;
+        self
+    }
+
     /// The diagnosis of recordings that contradict the URDF of `robot`: it contains the `doubts` and no effects.
     pub fn units_first(robot: &str, recordings: RecordingNames, doubts: Vec<Doubt>) -> Self {
         let report = Report {
@@ -34,6 +40,7 @@ impl Diagnosis {
             recordings,
             verdict: Verdict::UnitsFirst,
             doubts,
+            warnings: Vec::new(),
             findings: Vec::new(),
             unexplained: Vec::new(),
             not_observable: Vec::new(),

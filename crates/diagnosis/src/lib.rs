@@ -18,6 +18,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod agreement;
 mod data;
 mod diagnose;
 mod diagnosis;
@@ -33,6 +34,7 @@ mod selection;
 mod thresholds;
 mod trace;
 
+pub use agreement::{Agreement, agreement};
 pub use data::input::Input;
 pub use data::used::{WORTH_HOLDING, worth_using};
 pub use diagnose::diagnose;

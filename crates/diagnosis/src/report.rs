@@ -8,10 +8,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 mod different_load;
+mod doubt;
 mod next_experiment;
 mod schema;
 
 pub use different_load::DifferentLoad;
+pub use doubt::Doubt;
 pub use next_experiment::{JointLimits, NextExperiment, NotSeparated, Obstacle, Separation, Shows};
 pub use schema::json_schema;
 
@@ -35,6 +37,10 @@ pub struct Report {
     /// they are corrected. Empty for every other verdict.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub doubts: Vec<Doubt>,
+    /// What contradicts the URDF in the recordings as they were read, and does not prevent a diagnosis: limits that are exceeded, or a
+    /// sign, zero or order that may be wrong.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<Doubt>,
     /// The effects found, the largest share first.
     pub findings: Vec<Finding>,
     /// Structured residuals that no effect in the catalogue explains.
@@ -112,19 +118,6 @@ pub enum Verdict {
     NotEnoughData,
     /// Units, signs, order or zeros of the recordings must be corrected first; no effect was searched.
     UnitsFirst,
-}
-
-/// A doubt about a recording that contradicts the robot's URDF as it was read.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct Doubt {
-    /// The recording, with the name that the user gave.
-    pub recording: String,
-    /// The joint, or `None` if the doubt concerns all joints that move.
-    pub joint: Option<String>,
-    /// What is wrong, and the remedy.
-    pub text: String,
-    /// The complete column map (TOML) that corrects it, if a column map can.
-    pub column_map: Option<String>,
 }
 
 /// One effect named.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use arm::{Arm, JointKind};
-use diagnosis::{Finding, NotObservable, Report};
+use diagnosis::{Doubt, Finding, NotObservable, Report};
 
 use crate::block::{Block, table, text};
 use crate::{alternatives, doubts, markdown, next_words, numbers, terminal, words};
@@ -27,15 +27,12 @@ fn blocks(report: &Report, arm: &Arm) -> Vec<Block> {
         blocks.push(text(load));
     }
     blocks.push(text(format!("**{}**", words::verdict(report))));
-    for group in doubts::groups(report) {
-        blocks.extend(group.texts.into_iter().map(|sentence| text(format!("{sentence}."))));
-        if let Some(map) = group.map {
-            blocks.push(text(doubts::USE));
-            let code = map.to_owned();
-            blocks.push(Block::Code { language: "toml", code });
-        }
-    }
+    blocks.extend(doubted(&report.doubts, report));
     blocks.push(text(recordings(report)));
+    if !report.warnings.is_empty() {
+        blocks.push(Block::Heading("Recordings that contradict the URDF"));
+        blocks.extend(doubted(&report.warnings, report));
+    }
     for reason in &report.not_enough_data {
         blocks.push(text(format!("Not enough data: {reason}.")));
     }
@@ -45,6 +42,20 @@ fn blocks(report: &Report, arm: &Arm) -> Vec<Block> {
     blocks.extend(rollout(report, arm));
     blocks.extend(not_testable(report, arm));
     blocks.extend(next_experiment(report));
+    blocks
+}
+
+/// Doubts or warnings, with the column maps that correct them.
+fn doubted(doubts: &[Doubt], report: &Report) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    for group in doubts::groups(doubts, report) {
+        blocks.extend(group.texts.into_iter().map(|sentence| text(format!("{sentence}."))));
+        if let Some(map) = group.map {
+            blocks.push(text(doubts::USE));
+            let code = map.to_owned();
+            blocks.push(Block::Code { language: "toml", code });
+        }
+    }
     blocks
 }
 

@@ -15,10 +15,10 @@ pub struct Group<'a> {
     pub map: Option<&'a str>,
 }
 
-/// The doubts of `report`. Recordings with the same map are one group, and the sentences name its first recording.
-pub fn groups(report: &Report) -> Vec<Group<'_>> {
-    let mut groups: Vec<Vec<&Doubt>> = Vec::new();
-    for doubt in &report.doubts {
+/// The `doubts` or warnings of `report`. Recordings with the same map are one group, and the sentences name its first recording.
+pub fn groups<'a>(doubts: &'a [Doubt], report: &Report) -> Vec<Group<'a>> {
+    let mut groups: Vec<Vec<&'a Doubt>> = Vec::new();
+    for doubt in doubts {
         let same = |group: &&mut Vec<&Doubt>| group[0].column_map == doubt.column_map;
         match groups.iter_mut().find(same) {
             Some(group) => group.push(doubt),

@@ -72,7 +72,13 @@ impl<'a> Page<'a> {
             self.has_section(joint)
         });
         let joints = (0..self.figures.arm.dof()).map(|joint| self.joint(joint));
-        let all = [self.doubts(), self.overview(), self.next_steps(), self.whole_arm()];
+        let all = [
+            self.doubts(),
+            self.overview(),
+            self.warnings(),
+            self.next_steps(),
+            self.whole_arm(),
+        ];
         let rest = [
             self.quiet_joints(),
             self.errors(),

@@ -102,7 +102,7 @@ fn opening(report: &Report) -> String {
         text.push('\n');
     }
     text += &wrapped(&words::verdict(report), "");
-    for group in doubts::groups(report) {
+    for group in doubts::groups(&report.doubts, report) {
         for sentence in &group.texts {
             text += &wrapped(sentence, "- ");
         }

@@ -2,11 +2,13 @@
 
 mod applied;
 mod column_map;
+mod fit;
 mod positions;
 mod smooth;
 mod supposed;
 mod supposition;
 mod torque_unit;
+mod wording;
 
 use arm::Arm;
 use effects::Quantity;
@@ -14,11 +16,12 @@ use recording::{FindingKind, Quality, Recording, RegularRecording, nearest};
 use report::numbers::{percent, rounded};
 use serde::Serialize;
 
-pub use self::column_map::Change;
+pub use self::column_map::{Change, Layout};
+use self::fit::{Fit, fit};
 use self::positions::Pair;
 use self::smooth::Smooth;
-use self::supposed::{NOT_EXPLAINED, supposed};
-use self::supposition::{Fit, Supposition, fit};
+pub use self::supposed::{Supposed, supposed};
+use self::supposition::Supposition;
 use self::torque_unit::MOTOR_SIDE;
 
 /// A torque that exceeds the model's by more than this factor is in another unit.
@@ -31,6 +34,8 @@ const LEAST_INSTANTS: usize = 100;
 /// A column map may not increase the sum of the joints' log residuals by more than this. Factors of torques do not change it.
 const WORSE: f64 = 0.5;
 
+/// A joint's torque is not explained if its residual has at least this share of its variance.
+const NOT_EXPLAINED: f64 = 0.5;
 /// The ratios of a torque to the model's that a wrong URDF may have.
 const OF_SIZE: std::ops::Range<f64> = 0.1..10.0;
 
@@ -44,21 +49,18 @@ pub struct Misfit {
     /// Whether it must be corrected before the robot can be diagnosed.
     #[serde(skip)]
     pub prevents_diagnosis: bool,
-    /// Whether it is a property of the robot that a wrong URDF may imitate in some motions, so that most recordings must show it.
-    #[serde(skip)]
-    pub is_of_robot: bool,
     /// The keys of a column map that correct it.
     #[serde(skip)]
     pub changes: Vec<Change>,
 }
 
 impl Misfit {
-    fn new(joint: Option<&str>, text: impl Into<String>, changes: Vec<Change>) -> Self {
+    /// A contradiction that does not prevent a diagnosis, with the keys of a column map that correct it.
+    pub fn new(joint: Option<&str>, text: impl Into<String>, changes: Vec<Change>) -> Self {
         Self {
             joint: joint.map(str::to_owned),
             text: text.into(),
             prevents_diagnosis: false,
-            is_of_robot: false,
             changes,
         }
     }
@@ -71,11 +73,11 @@ pub fn column_map(arm: &Arm, misfits: &[Misfit], recording: &Recording) -> Optio
         .iter()
         .flat_map(|misfit| misfit.changes.iter().cloned())
         .collect();
-    let text = column_map::text(recording, &changes)?;
+    let text = Layout::of(recording).map(&changes)?;
     let new = applied::applied(recording, &changes);
     let (new_regular, _) = new.regular().ok()?;
     let remaining = check(arm, &new_regular, &Quality::of(&new, &new_regular));
-    if remaining.iter().any(|misfit| misfit.prevents_diagnosis) {
+    if remaining.misfits.iter().any(|misfit| misfit.prevents_diagnosis) {
         return None;
     }
     let has_time = changes.iter().any(Change::is_of_time);
@@ -105,13 +107,25 @@ fn order(arm: &Arm, regular: &RegularRecording) -> Option<Vec<usize>> {
         .collect()
 }
 
-/// The contradictions between `regular` and `arm`.
-pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Misfit> {
-    let mut misfits = names(arm, regular);
+/// What the check of one recording found.
+#[derive(Debug, Default)]
+pub struct Checked {
+    /// The contradictions between recording and URDF.
+    pub misfits: Vec<Misfit>,
+    /// Whether times, positions and torques seem to be in the model's units, so that signs, zeros and order can be judged.
+    pub has_model_units: bool,
+}
+
+/// The contradictions in names, units and limits between `regular` and `arm`.
+pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Checked {
+    let mut checked = Checked {
+        misfits: names(arm, regular),
+        has_model_units: false,
+    };
     if let Some(misfit) = positions::of_time(arm, quality) {
         // With a wrong unit of time, speeds and accelerations show nothing.
-        misfits.push(misfit);
-        return misfits;
+        checked.misfits.push(misfit);
+        return checked;
     }
     let order = order(arm, regular);
     let smooth = order.as_ref().map(|order| Smooth::of(regular, order));
@@ -121,23 +135,23 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
     let pairs: Vec<Pair<'_>> = joints.filter_map(|joint| Some((joint, find(&joint.name)?))).collect();
     let unit = positions::of_positions(arm, &pairs, smooth);
     if !unit.is_empty() {
-        misfits.extend(unit);
-        return misfits;
+        checked.misfits.extend(unit);
+        return checked;
     }
     let too_fast = positions::of_speeds(&pairs);
     // With a wrong unit of time, the model's torques are meaningless.
     let has_other_time = too_fast.is_some();
-    misfits.extend(too_fast);
+    checked.misfits.extend(too_fast);
     let mut in_degrees = 0;
     for (joint, measured) in &pairs {
         let limits = joint.limits;
         let (low, high) = measured.q_range;
         if let Some(misfit) = positions::of_one(arm, &(joint, measured), smooth) {
-            misfits.push(misfit);
+            checked.misfits.push(misfit);
             in_degrees += 1;
             continue;
         }
-        let mut add = |text: String| misfits.push(Misfit::new(Some(&joint.name), text, Vec::new()));
+        let mut add = |text: String| checked.misfits.push(Misfit::new(Some(&joint.name), text, Vec::new()));
         if measured.speed_max > BEYOND * limits.velocity && limits.velocity > 0.0 {
             add(format!(
                 "the speed reaches {}, {} times the URDF's velocity limit {} {}; check the units of position and time",
@@ -173,13 +187,12 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Vec<Mi
         let has = |kinds: &[FindingKind]| quality.findings.iter().any(|finding| kinds.contains(&finding.kind));
         let has_other_units = has(&[FindingKind::TimeUnit, FindingKind::Degrees, FindingKind::VelocityUnit]);
         if !has_other_units && in_degrees == 0 && !has_other_time {
-            let mut shown = torques(arm, smooth, &moves);
-            // If the columns of positions are swapped and not those of velocities, the torques show it with certainty.
-            shown.retain(|misfit| misfit.prevents_diagnosis || !has(&[FindingKind::VelocitySwapped]));
-            misfits.extend(shown);
+            checked.misfits.extend(torques(arm, smooth, &moves));
+            checked.has_model_units = true;
         }
     }
-    misfits
+    checked.has_model_units &= !checked.misfits.iter().any(|misfit| misfit.prevents_diagnosis);
+    checked
 }
 
 fn names(arm: &Arm, regular: &RegularRecording) -> Vec<Misfit> {
@@ -224,7 +237,7 @@ fn names(arm: &Arm, regular: &RegularRecording) -> Vec<Misfit> {
     misfits
 }
 
-/// Contradictions in units, signs, order and zeros that the torques show.
+/// Contradictions in units that the torques show.
 fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
     let names: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
     let as_it_is = fit(arm, smooth, Supposition::AsItIs);
@@ -233,20 +246,6 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
         return vec![Misfit {
             prevents_diagnosis,
             ..Misfit::new(None, text, changes)
-        }];
-    }
-    if let Some(misfit) = supposed(arm, smooth, moves, &names, &as_it_is) {
-        // Wrong signs or a wrong order of all joints make a diagnosis useless, and so does a wrong zero or swap of one or two joints
-        // that is certain. One that is not, and a wrong sign, is only reported, because it may not be one: where the URDF's inertial parameters are wrong, the centre of
-        // mass of a light link may lie in another direction, and torques do not distinguish that from a zero that is off by
-        // a quarter of a turn. The same holds for inverted signs of all joints if the heavy links explain the torque of
-        // most joints without the inversion: the light links alone fit a mirrored arm as well.
-        let is_changed = |name: &&str| misfit.changes.iter().any(|change| change.is_of(name));
-        let is_of_all = names.iter().all(is_changed) && !as_it_is.explains_most(moves);
-        let prevents_diagnosis = misfit.prevents_diagnosis || is_of_all;
-        return vec![Misfit {
-            prevents_diagnosis,
-            ..misfit
         }];
     }
     let mut misfits = Vec::new();

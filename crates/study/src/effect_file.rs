@@ -267,7 +267,7 @@ fn key_span(text: &str, table: &Range<usize>, key: Option<&str>) -> Range<usize>
 }
 
 /// The unit of a parameter, for a comment.
-fn unit(effect: &Effect, key: &str) -> Option<&'static str> {
+pub(crate) fn unit(effect: &Effect, key: &str) -> Option<&'static str> {
     let parameter = effect.spec().parameter(key)?;
     let remark = parameter
         .remark

@@ -4,6 +4,9 @@ use arm::Joint;
 use effects::drive::RotorInertia;
 use effects::friction::{CoulombFriction, FrictionAsymmetry, LoadDependentFriction, StribeckFriction, ViscousFriction};
 use effects::{Effect, InUrdf};
+use report::numbers;
+
+use crate::effect_file::unit;
 
 /// A robot in the format of another program.
 #[derive(Debug)]
@@ -95,11 +98,38 @@ pub fn left_out(effects: &[Effect], held: impl Fn(&Effect) -> Held) -> anyhow::R
             Held::Without(what) => format!(" ({what})"),
             Held::Nothing => String::new(),
         };
-        let table = toml::to_string(effect)?;
-        let parameters: Vec<&str> = table.lines().skip(1).filter(|line| *line != "curve = []").collect();
-        lines.push(format!("{}{what}: {}", effect.name(), parameters.join(", ")));
+        let table = toml::Table::try_from(effect)?;
+        let is_shown = |(key, value): &(&String, &toml::Value)| {
+            !matches!(key.as_str(), "effect" | "joint") && value.as_array().is_none_or(|list| !list.is_empty())
+        };
+        let place = |key: &str| {
+            effect
+                .spec()
+                .parameters
+                .iter()
+                .position(|parameter| parameter.key == key)
+        };
+        let mut parameters: Vec<(&String, &toml::Value)> = table.iter().filter(is_shown).collect();
+        parameters.sort_by_key(|(key, _)| place(key).unwrap_or(usize::MAX));
+        let parameters = parameters.into_iter().map(|(key, value)| {
+            let unit = unit(effect, key).map_or_else(String::new, |unit| format!(" {unit}"));
+            format!("{key} {}{unit}", shown(value))
+        });
+        let parameters: Vec<String> = parameters.collect();
+        let joint = effect.joint().map_or_else(String::new, |joint| format!(" of {joint}"));
+        lines.push(format!("{}{joint}{what}: {}", effect.name(), parameters.join(", ")));
     }
     Ok(lines)
+}
+
+/// A parameter with four digits; the file that `--model` writes has all of them.
+fn shown(value: &toml::Value) -> String {
+    match value {
+        toml::Value::Float(number) => numbers::rounded(*number, 4),
+        toml::Value::Array(list) => list.iter().map(shown).collect::<Vec<_>>().join(" "),
+        toml::Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
 }
 
 /// Lines as the text of an XML comment.

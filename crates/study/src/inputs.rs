@@ -10,13 +10,16 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use arm::Arm;
 use diagnosis::Doubt;
+use effects::Effect;
 use recording::{Column, ColumnMap, FindingKind, Quality, Recording, RecordingError, RegularRecording};
 
 use self::independent::Stretches;
+pub use self::joints::in_order_of;
 use self::joints::{order, reordered};
-use crate::check::{self, Change, Misfit};
+use crate::check::{self, Layout};
 use crate::named;
 use crate::notes::{Notes, shortened};
+use crate::turns;
 
 /// A recording to be read for a diagnosis.
 #[derive(Clone, Debug)]
@@ -79,27 +82,14 @@ pub struct Prepared {
     stretches: Stretches,
     /// The calendar time (s since 1970) from which its time is counted; `None` for stamps without a date.
     epoch: Option<i64>,
-    /// The column map that corrects its contradictions with the arm.
-    column_map: Option<String>,
-    /// What it supposes of the robot, until the other recordings confirm it.
-    guess: Option<Guess>,
+    /// Its columns.
+    layout: Layout,
+    /// Whether its signs, zeros and order can be judged.
+    has_model_units: bool,
+    /// What contradicts the URDF and does not prevent the diagnosis.
+    pub warnings: Vec<Doubt>,
     /// Why it cannot be diagnosed as it was read; empty if it can.
     pub doubts: Vec<Doubt>,
-}
-
-/// What one recording supposes of the robot, such as another zero of a joint. The other recordings of the robot should suppose it, too.
-struct Guess {
-    joint: Option<String>,
-    text: String,
-    changes: Vec<Change>,
-    /// The column map that corrects all contradictions of the recording, this one included.
-    column_map: Option<String>,
-}
-
-impl Guess {
-    fn is_same(&self, other: &Self) -> bool {
-        self.joint == other.joint && self.changes == other.changes
-    }
 }
 
 /// The role of a recording.
@@ -157,13 +147,13 @@ impl<'a> Opened<'a> {
     }
 }
 
-/// Reads and checks the recordings of `opened`; doubts are added to `notes`, also before an error.
+/// Reads and checks the recordings of `opened`, of an arm with the effects `known`; doubts are added to `notes`, also before an error.
 ///
 /// # Errors
 /// If one cannot be read, does not fit the arm, holds no motion or no torque, or is both fitted and held out.
 pub fn read(
     opened: Opened<'_>,
-    arm: &Arm,
+    (arm, known): (&Arm, &[Effect]),
     progress: &dyn Fn(&str),
     notes: &mut Notes,
 ) -> anyhow::Result<Vec<Prepared>> {
@@ -210,7 +200,9 @@ pub fn read(
         list.push(prepared);
         memory::bound(&mut list);
     }
-    confirm(&mut list, notes);
+    progress("checking signs, zeros and order");
+    suppose(&mut list, arm, known, notes);
+    tell_maps(&list, notes);
     epoch::share(&mut list);
     let training = || list.iter().filter(|recording| recording.role == Role::Train);
     // Stamps in microseconds leave next to no rows of what is worth holding.
@@ -227,31 +219,46 @@ pub fn read(
     Ok(list)
 }
 
-/// Whether most of the recordings with these guesses suppose the same as each.
-fn confirmed(guesses: &[Option<Guess>]) -> Vec<bool> {
-    let alike = |guess: &Guess| guesses.iter().flatten().filter(|other| guess.is_same(other)).count();
-    let is_confirmed = |guess: &Option<Guess>| guess.as_ref().is_some_and(|guess| 2 * alike(guess) > guesses.len());
-    guesses.iter().map(is_confirmed).collect()
+/// Adds what the torques of all recordings tell about their signs, zeros and order.
+fn suppose(list: &mut [Prepared], arm: &Arm, known: &[Effect], notes: &mut Notes) {
+    let judged: Vec<usize> = (0..list.len()).filter(|&at| list[at].has_model_units).collect();
+    let recordings: Vec<&RegularRecording> = judged.iter().map(|&at| &list[at].regular).collect();
+    let Some(supposed) = check::supposed(arm, known, &recordings) else {
+        return;
+    };
+    for at in supposed.recordings.iter().map(|&at| judged[at]) {
+        let one = &mut list[at];
+        let doubt = Doubt {
+            recording: one.name.clone(),
+            joint: supposed.joint.clone(),
+            text: supposed.text.clone(),
+            column_map: one.layout.map(&supposed.changes),
+        };
+        if supposed.is_certain {
+            one.doubts.push(doubt);
+        } else {
+            notes.add("warning", &one.name, about(doubt.joint.as_deref(), &doubt.text));
+            one.warnings.push(doubt);
+        }
+    }
 }
 
-/// Adds what most recordings suppose of the robot to `notes`, and the column maps that correct the recordings.
-fn confirm(list: &mut [Prepared], notes: &mut Notes) {
-    let guesses: Vec<Option<Guess>> = list.iter_mut().map(|one| one.guess.take()).collect();
-    let is_confirmed = confirmed(&guesses);
-    let mut told: Vec<String> = Vec::new();
-    for ((one, guess), is_confirmed) in list.iter_mut().zip(guesses).zip(is_confirmed) {
-        if let Some(guess) = guess.filter(|_| is_confirmed) {
-            notes.add("warning", &one.name, guess.text);
-            one.column_map = guess.column_map;
+/// Says where the column maps are that correct what does not prevent the diagnosis.
+fn tell_maps(list: &[Prepared], notes: &mut Notes) {
+    for one in list.iter().filter(|one| one.doubts.is_empty()) {
+        if one.warnings.iter().any(|warning| warning.column_map.is_some()) {
+            let text = "a column map that corrects it is in the report (--json, --markdown or --report); save it as map.toml, and add \
+                        --map map.toml";
+            notes.add("note", &one.name, text.to_owned());
         }
-        if let Some(map) = &one.column_map
-            && one.doubts.is_empty()
-            && !told.contains(map)
-        {
-            let text = format!("a column map that corrects it; save it as map.toml, and add --map map.toml:\n{map}");
-            notes.add("note", &one.name, text);
-            told.push(map.clone());
-        }
+    }
+}
+
+/// `text` on a joint, if it concerns one.
+fn about(joint: Option<&str>, text: &str) -> String {
+    match joint {
+        Some(joint) => format!("{joint}: {text}"),
+        None => text.to_owned(),
     }
 }
 
@@ -276,23 +283,20 @@ fn refuse_twice(list: &[(&Given, Role)]) -> anyhow::Result<()> {
 }
 
 fn prepare(
-    recording: Recording,
+    mut recording: Recording,
     name: String,
     order: &[usize],
     role: Role,
     arm: &Arm,
     notes: &mut Notes,
 ) -> anyhow::Result<Prepared> {
+    for (joint, text) in turns::into_limits(&mut recording, arm) {
+        notes.add("note", &name, about(Some(&joint), &text));
+    }
     let (regular, warnings) = recording.regular().with_context(|| name.clone())?;
     let quality = Quality::of(&recording, &regular);
-    let all = check::check(arm, &regular, &quality);
-    let map_of_all = check::column_map(arm, &all, &recording);
-    let (mut of_robot, misfits): (Vec<Misfit>, Vec<Misfit>) = all.into_iter().partition(|misfit| misfit.is_of_robot);
-    let column_map = if of_robot.is_empty() {
-        map_of_all.clone()
-    } else {
-        check::column_map(arm, &misfits, &recording)
-    };
+    let checked = check::check(arm, &regular, &quality);
+    let column_map = check::column_map(arm, &checked.misfits, &recording);
     let (told, gaps) = shortened(recording.warnings.iter().chain(&warnings), |warning| warning);
     for warning in told {
         notes.add("note", &name, warning.to_string());
@@ -304,10 +308,6 @@ fn prepare(
             format!("further gaps: {gaps} (testbed inspect --json lists them)"),
         );
     }
-    let about = |joint: &Option<String>, text: &str| match joint {
-        Some(joint) => format!("{joint}: {text}"),
-        None => text.to_owned(),
-    };
     for finding in &quality.findings {
         let weight = match finding.kind {
             // The diagnosis differentiates the positions itself.
@@ -315,26 +315,24 @@ fn prepare(
             FindingKind::Saturation | FindingKind::JointAtRest | FindingKind::CoarseEncoder => "note",
             _ => "warning",
         };
-        notes.add(weight, &name, about(&finding.joint, &finding.text));
+        notes.add(weight, &name, about(finding.joint.as_deref(), &finding.text));
     }
-    for misfit in misfits.iter().filter(|misfit| !misfit.prevents_diagnosis) {
-        notes.add("warning", &name, about(&misfit.joint, &misfit.text));
-    }
-    let guess = of_robot.pop().map(|misfit| Guess {
-        text: about(&misfit.joint, &misfit.text),
-        joint: misfit.joint,
-        changes: misfit.changes,
-        column_map: map_of_all,
-    });
-    let prevents_diagnosis = misfits.into_iter().filter(|misfit| misfit.prevents_diagnosis);
-    let doubts = prevents_diagnosis
-        .map(|misfit| Doubt {
+    let has_model_units = checked.has_model_units;
+    let (mut doubts, mut warnings) = (Vec::new(), Vec::new());
+    for misfit in checked.misfits {
+        let list = if misfit.prevents_diagnosis {
+            &mut doubts
+        } else {
+            notes.add("warning", &name, about(misfit.joint.as_deref(), &misfit.text));
+            &mut warnings
+        };
+        list.push(Doubt {
             recording: name.clone(),
             joint: misfit.joint,
             text: misfit.text,
             column_map: column_map.clone(),
-        })
-        .collect();
+        });
+    }
     let regular = memory::without_unused(reordered(regular, order));
     if let Some(reason) = unusable(&regular) {
         bail!("{name}: {reason}");
@@ -345,8 +343,9 @@ fn prepare(
         regular,
         role,
         epoch: recording.epoch,
-        column_map,
-        guess,
+        layout: Layout::of(&recording),
+        has_model_units,
+        warnings,
         doubts,
     })
 }
@@ -374,27 +373,4 @@ fn is_still(recording: &RegularRecording) -> bool {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
         high - low < 1e-3
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A zero is a property of the robot, so that most of its recordings show a wrong one; a centre of mass that lies elsewhere than
-    /// in the URDF looks like a wrong zero in some motions only.
-    #[test]
-    fn what_few_recordings_suppose_of_the_robot_is_not_told() {
-        let guess = |joint: &str| {
-            Some(Guess {
-                joint: Some(joint.to_owned()),
-                text: String::new(),
-                changes: Vec::new(),
-                column_map: None,
-            })
-        };
-        assert_eq!(confirmed(&[guess("a")]), [true]);
-        assert_eq!(confirmed(&[guess("a"), None]), [false, false]);
-        assert_eq!(confirmed(&[guess("a"), guess("b"), guess("a")]), [true, false, true]);
-        assert_eq!(confirmed(&[guess("a"), guess("b"), guess("a"), None]), [false; 4]);
-    }
 }

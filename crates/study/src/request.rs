@@ -91,10 +91,17 @@ impl Request {
         let only = self.only.as_deref().map(|only| wanted(only, &arm)).transpose()?;
         listener.doing(Step::new(0.0, "reading"));
         let mut notes = Notes::default();
-        let recordings = inputs::read(opened, &arm, &|doing| listener.doing(Step::new(0.0, doing)), &mut notes);
+        let recordings = inputs::read(
+            opened,
+            (&arm, &known),
+            &|doing| listener.doing(Step::new(0.0, doing)),
+            &mut notes,
+        );
         let joints: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
         listener.recordings(&notes, &joints);
         let recordings = recordings?;
+        let warnings = recordings.iter().flat_map(|recording| recording.warnings.clone());
+        let warnings = with_one_map(warnings.collect());
         let doubts = recordings.iter().flat_map(|recording| recording.doubts.clone());
         let doubts = with_one_map(doubts.collect());
         if !doubts.is_empty() {
@@ -110,7 +117,7 @@ impl Request {
                 used_in_part: Vec::new(),
             };
             return Ok(Diagnosed {
-                diagnosis: Diagnosis::units_first(arm.name(), names, doubts),
+                diagnosis: Diagnosis::units_first(arm.name(), names, doubts).with_warnings(warnings),
                 robot,
                 arm,
                 effects: known,
@@ -134,7 +141,8 @@ impl Request {
             next: self.next,
             ..Options::default()
         };
-        let mut diagnosis = diagnosis::diagnose(&arm, &list, &options, &|step| listener.doing(step))?;
+        let mut diagnosis =
+            diagnosis::diagnose(&arm, &list, &options, &|step| listener.doing(step))?.with_warnings(warnings);
         for remark in &diagnosis.remarks {
             listener.note(remark);
         }

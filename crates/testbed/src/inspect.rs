@@ -9,7 +9,7 @@ use recording::{ColumnMap, Quality, Recording, Warning};
 use serde::Serialize;
 use study::notes::shortened;
 use study::robot::{self, RobotFile};
-use study::{check, named};
+use study::{check, inputs, named, turns};
 
 use crate::cli::InspectArgs;
 use crate::output::{self, OutputFile};
@@ -106,11 +106,31 @@ fn load_arm(args: &InspectArgs, robot: &RobotFile, map: Option<&ColumnMap>) -> a
 }
 
 fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> anyhow::Result<FileReport<'a>> {
-    let recording = named::read(file, map, arm)?;
+    let mut recording = named::read(file, map, arm)?;
+    let moved = arm.map_or(Vec::new(), |arm| turns::into_limits(&mut recording, arm));
     let (regular, found) = recording.regular().with_context(|| file.display().to_string())?;
     let quality = Quality::of(&recording, &regular);
-    let against_robot = arm.map_or(Vec::new(), |arm| check::check(arm, &regular, &quality));
-    let column_map = arm.and_then(|arm| check::column_map(arm, &against_robot, &recording));
+    let (mut against_robot, mut column_map) = (Vec::new(), None);
+    if let Some(arm) = arm {
+        let checked = check::check(arm, &regular, &quality);
+        column_map = check::column_map(arm, &checked.misfits, &recording);
+        let moved = moved
+            .into_iter()
+            .map(|(joint, text)| check::Misfit::new(Some(&joint), text, Vec::new()));
+        against_robot = moved.chain(checked.misfits).collect();
+        let in_order = inputs::in_order_of(arm, regular);
+        if checked.has_model_units
+            && let Some(in_order) = in_order
+            && let Some(supposed) = check::supposed(arm, &[], &[&in_order])
+        {
+            column_map = check::Layout::of(&recording).map(&supposed.changes).or(column_map);
+            against_robot.push(check::Misfit::new(
+                supposed.joint.as_deref(),
+                supposed.text,
+                supposed.changes,
+            ));
+        }
+    }
     let warnings = recording.warnings.iter().cloned().chain(found);
     Ok(FileReport {
         file,

@@ -123,7 +123,7 @@ impl<'a> Reader<'a> {
             return Ok(());
         }
         Err(self.robot_error(
-            "no moving link has an <inertial>".into(),
+            "no moving link has a mass or an inertia (<inertial>)".into(),
             "dynamics need masses and inertias: export them from the CAD model",
         ))
     }

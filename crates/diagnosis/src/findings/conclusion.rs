@@ -168,6 +168,7 @@ impl Conclusion {
                 used_in_part: used_in_part(&study.motions.sources),
             },
             doubts: Vec::new(),
+            warnings: Vec::new(),
             verdict: verdict(&findings, &self.unexplained, &self.not_enough_data),
             unexplained: self.unexplained,
             not_observable: self.not_observable,

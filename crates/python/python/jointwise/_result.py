@@ -122,6 +122,10 @@ def _parameter(of: dict[str, Any]) -> Parameter:
     return Parameter(of["value"], (low, high), of["unit"])
 
 
+def _doubts(of: list[dict[str, Any]]) -> tuple[Doubt, ...]:
+    return tuple(Doubt(one["recording"], one["joint"], one["text"], one["column_map"]) for one in of)
+
+
 def _effect(finding: dict[str, Any]) -> Effect:
     def alternative(of: dict[str, Any]) -> Alternative:
         return Alternative(of["effect"], of["joint"])
@@ -190,6 +194,8 @@ class Diagnosis:
     verdict: Verdict
     doubts: tuple[Doubt, ...]
     """What comes first where the verdict is `units_first`: no effect was searched then. Empty otherwise."""
+    warnings: tuple[Doubt, ...]
+    """What contradicts the URDF in the recordings as they were read, and does not prevent a diagnosis."""
     effects: tuple[Effect, ...]
     """The effects that the model omits, the largest share first."""
     joints: Mapping[str, JointFit]
@@ -215,9 +221,8 @@ class Diagnosis:
         return cls(
             robot=report["robot"],
             verdict=report["verdict"],
-            doubts=tuple(
-                Doubt(of["recording"], of["joint"], of["text"], of["column_map"]) for of in report.get("doubts", [])
-            ),
+            doubts=_doubts(report.get("doubts", [])),
+            warnings=_doubts(report.get("warnings", [])),
             effects=tuple(_effect(finding) for finding in report["findings"]),
             joints=_frozen({joint: _fit(of) for joint, of in report["fit"].items()}),
             unexplained=tuple(

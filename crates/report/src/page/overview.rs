@@ -1,5 +1,6 @@
 //! The first screen: the held-out error in one sentence, and the findings as a table.
 
+use diagnosis::Doubt;
 use maud::{Markup, html};
 
 use super::table::{brief_table, number, words as text};
@@ -75,12 +76,22 @@ impl Page<'_> {
 
     /// Doubts about units, signs, order or zeros, with the column maps that correct them.
     pub(super) fn doubts(&self) -> Option<Section> {
-        let groups = doubts::groups(self.report);
-        if groups.is_empty() {
+        let title = html! { "Units, signs, order or zeros first" };
+        self.doubted(&self.report.doubts, "units", title)
+    }
+
+    /// What contradicts the URDF and does not prevent the diagnosis.
+    pub(super) fn warnings(&self) -> Option<Section> {
+        let title = html! { "Recordings that contradict the URDF" };
+        self.doubted(&self.report.warnings, "contradictions", title)
+    }
+
+    fn doubted(&self, doubts: &[Doubt], id: &'static str, title: Markup) -> Option<Section> {
+        if doubts.is_empty() {
             return None;
         }
         let body = html! {
-            @for group in groups {
+            @for group in doubts::groups(doubts, self.report) {
                 ul.steps { @for sentence in &group.texts { li { (sentence) "." } } }
                 @if let Some(map) = group.map {
                     p { (coded(doubts::USE)) }
@@ -88,11 +99,7 @@ impl Page<'_> {
                 }
             }
         };
-        Some(Section::new(
-            "units",
-            html! { "Units, signs, order or zeros first" },
-            body,
-        ))
+        Some(Section::new(id, title, body))
     }
 
     /// All findings in a table.

@@ -81,53 +81,62 @@ impl Change {
     }
 }
 
-/// The whole map of `recording` with `changes`; `None` if there are none.
-pub fn text(recording: &Recording, changes: &[Change]) -> Option<String> {
-    if changes.is_empty() {
-        return None;
-    }
-    let own;
-    let origin = match &recording.origin {
-        Some(origin) => origin,
-        None => {
-            own = own_columns(recording);
-            &own
-        }
-    };
-    let mut text = format!("[time]\ncolumn = {}\n", quoted(&origin.time));
-    let of_time = changes.iter().find(|change| change.joint.is_none());
-    let unit = match of_time.map(|change| &change.value) {
-        Some(Value::Unit(unit, _)) => Some(*unit),
-        _ => time_unit(origin.time_factor),
-    };
-    let keys = [
-        ("unit", unit),
-        ("nanosec", origin.nanosec.as_deref()),
-        ("run", origin.run.as_deref()),
-    ];
-    for (key, value) in keys {
-        if let Some(value) = value {
-            let _ = writeln!(text, "{key} = {}", quoted(value));
+/// The columns of a recording, from which its column map is written.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    origin: Origin,
+    joints: Vec<String>,
+}
+
+impl Layout {
+    /// The columns of `recording`.
+    pub fn of(recording: &Recording) -> Self {
+        Self {
+            origin: recording.origin.clone().unwrap_or_else(|| own_columns(recording)),
+            joints: recording.joints.clone(),
         }
     }
-    if let Some(one) = for_all(recording, origin, changes) {
-        return Some(text + &one);
+
+    /// The whole map with `changes`; `None` if there are none.
+    pub fn map(&self, changes: &[Change]) -> Option<String> {
+        if changes.is_empty() {
+            return None;
+        }
+        let Self { origin, joints } = self;
+        let mut text = format!("[time]\ncolumn = {}\n", quoted(&origin.time));
+        let of_time = changes.iter().find(|change| change.joint.is_none());
+        let unit = match of_time.map(|change| &change.value) {
+            Some(Value::Unit(unit, _)) => Some(*unit),
+            _ => time_unit(origin.time_factor),
+        };
+        let keys = [
+            ("unit", unit),
+            ("nanosec", origin.nanosec.as_deref()),
+            ("run", origin.run.as_deref()),
+        ];
+        for (key, value) in keys {
+            if let Some(value) = value {
+                let _ = writeln!(text, "{key} = {}", quoted(value));
+            }
+        }
+        if let Some(one) = for_all(joints, origin, changes) {
+            return Some(text + &one);
+        }
+        for (index, joint) in joints.iter().enumerate() {
+            let here: Vec<&Change> = changes
+                .iter()
+                .filter(|change| change.joint.as_ref() == Some(joint))
+                .collect();
+            let _ = writeln!(text, "[joints.{}]", key_of(joint));
+            text += &keys_of_joint(origin, joints, index, &here);
+        }
+        Some(text)
     }
-    for (index, joint) in recording.joints.iter().enumerate() {
-        let here: Vec<&Change> = changes
-            .iter()
-            .filter(|change| change.joint.as_ref() == Some(joint))
-            .collect();
-        let _ = writeln!(text, "[joints.{}]", key_of(joint));
-        text += &keys_of_joint(origin, &recording.joints, index, &here);
-    }
-    Some(text)
 }
 
 /// One table for all joints, if all have the same changes and column names that differ only in the joint's name.
-fn for_all(recording: &Recording, origin: &Origin, changes: &[Change]) -> Option<String> {
+fn for_all(names: &[String], origin: &Origin, changes: &[Change]) -> Option<String> {
     const JOINT: &str = "{joint}";
-    let names = &recording.joints;
     let tables = names.iter().enumerate().map(|(index, joint)| {
         let here: Vec<&Change> = changes
             .iter()
@@ -297,14 +306,16 @@ mod tests {
             Change::scale("b/c", 0.012_345).with_remark("a guess"),
             Change::time("ms", 1e-3),
         ];
-        let whole = text(&recording(true), &changes).expect("there are changes");
+        let whole = Layout::of(&recording(true)).map(&changes).expect("there are changes");
         let expected = "[time]\ncolumn = \"t\"\nunit = \"ms\"\n[joints.a]\nq = \"q_a\"\nqd = \"qd_a\"\ntau = \"tau_b/c\"\n\
                         [joints.\"b/c\"]\nq = \"q_b/c\"\nqd = \"qd_b/c\"\ntau = \"tau_b/c\"\nq_unit = \"deg\"\n\
                         qd_unit = \"deg/s\"\ntau_scale = 0.0123 # a guess\n";
         assert_eq!(whole, expected);
-        let without = text(&recording(false), &changes[1..3]).expect("there are changes");
+        let without = Layout::of(&recording(false))
+            .map(&changes[1..3])
+            .expect("there are changes");
         assert!(without.contains("q_unit") && !without.contains("qd"), "{without}");
-        assert_eq!(text(&recording(true), &[]), None);
+        assert_eq!(Layout::of(&recording(true)).map(&[]), None);
     }
 
     #[test]
@@ -317,9 +328,9 @@ mod tests {
             .map(|joint| Change::new(joint, "q_unit", Value::Unit("deg", 0.0174)))
             .collect();
         let expected = "[time]\ncolumn = \"t\"\n[joints.\"{joint}\"]\nq = \"q_{joint}\"\ntau = \"tau_{joint}\"\nq_unit = \"deg\"\n";
-        assert_eq!(text(&recording, &changes).as_deref(), Some(expected));
+        assert_eq!(Layout::of(&recording).map(&changes).as_deref(), Some(expected));
         changes.pop();
-        let apart = text(&recording, &changes).expect("there are changes");
+        let apart = Layout::of(&recording).map(&changes).expect("there are changes");
         assert!(apart.contains("[joints.six]") && !apart.contains('{'), "{apart}");
     }
 
@@ -342,6 +353,6 @@ mod tests {
         let expected = "[time]\ncolumn = \"stamp\"\nunit = \"ms\"\n[joints.a]\nq = \"q_a\"\nq_scale = -0.5\nq_offset = 0.75\n\
                         tau = \"tau_a\"\ntau_scale = -6\n[joints.\"b/c\"]\nq = \"q_b/c\"\nq_scale = 0.5\nq_offset = 0.25\n\
                         tau = \"tau_b/c\"\ntau_scale = 3\n";
-        assert_eq!(text(&recording, &changes).as_deref(), Some(expected));
+        assert_eq!(Layout::of(&recording).map(&changes).as_deref(), Some(expected));
     }
 }

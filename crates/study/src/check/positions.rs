@@ -7,14 +7,16 @@ use recording::{FindingKind, JointQuality, Quality};
 use report::numbers::{percent, rounded};
 
 use super::column_map::{Change, Value};
+use super::fit::fit;
 use super::smooth::Smooth;
-use super::supposed::GAIN;
-use super::supposition::{Supposition, fit};
+use super::supposition::Supposition;
 use super::torque_unit::MOTOR_SIDE;
 use super::{BEYOND, Misfit};
 
 /// The largest time between rows of a recording that shows a drive's motion (s).
 const SLOWEST_PERIOD: f64 = 0.1;
+/// One joint's positions are in degrees if that reduces the sum of the joints' log residuals by at least this much.
+const GAIN: f64 = 2.0;
 /// Degrees and milliradians: the unit of positions, the unit of velocities, its size in rad.
 const UNITS: [(&str, &str, f64); 2] = [("deg", "deg/s", PI / 180.0), ("mrad", "mrad/s", 1e-3)];
 /// Turns of a joint, which make positions too small.

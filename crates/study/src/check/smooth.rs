@@ -4,6 +4,8 @@ use recording::RegularRecording;
 
 /// Half the span of a parabola (s).
 const HALF_SPAN: f64 = 0.04;
+/// A joint moves if its position changes by more than this (rad or m).
+const MOVES: f64 = 0.01;
 /// The number of instants.
 const INSTANTS: usize = 800;
 
@@ -74,6 +76,16 @@ impl Smooth {
             qdd: sample(&parabola.bend, &regular.q),
             tau: sample(&parabola.value, &regular.tau),
         }
+    }
+
+    /// Whether each joint moves by more than [`MOVES`].
+    pub fn moves(&self) -> Vec<bool> {
+        let span = |q: &Vec<f64>| {
+            let bounds = (f64::INFINITY, f64::NEG_INFINITY);
+            let (low, high) = q.iter().fold(bounds, |(low, high), q| (low.min(*q), high.max(*q)));
+            high - low
+        };
+        self.q.iter().map(|q| span(q) > MOVES).collect()
     }
 
     /// The number of instants.

@@ -1,7 +1,7 @@
 //! Detects torques of all joints in another unit or on the motors' side of the gears.
 
 use super::column_map::{Change, Value};
-use super::supposition::Fit;
+use super::fit::Fit;
 use report::numbers::rounded;
 
 /// The least ratio of a torque to the model's on the joint's side; a payload only makes it larger.

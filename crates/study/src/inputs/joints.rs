@@ -105,6 +105,13 @@ pub(super) fn order(
         .collect())
 }
 
+/// The recording with the joints of `arm` in its order, if it has all of them; other joints are omitted.
+pub fn in_order_of(arm: &Arm, recording: RegularRecording) -> Option<RegularRecording> {
+    let place = |joint: &arm::Joint| recording.joints.iter().position(|name| *name == joint.name);
+    let order: Vec<usize> = arm.joints().iter().map(place).collect::<Option<_>>()?;
+    Some(reordered(recording, &order))
+}
+
 /// The recording with its joints in another order; other joints are omitted.
 pub(super) fn reordered(mut recording: RegularRecording, order: &[usize]) -> RegularRecording {
     let signal = |signal: &Signal| -> Signal { order.iter().map(|&from| signal[from].clone()).collect() };

@@ -79,7 +79,7 @@ fn effects_that_a_urdf_can_hold_are_written() {
     assert_eq!((a.damping, a.friction), (1.25, 0.0));
     assert_eq!((b.damping, b.friction), (0.0, 0.75));
     let [offset] = &omitted[..] else { panic!("{omitted:?}") };
-    assert_eq!(offset, "torque_offset: joint = \"b\", offset = 0.3");
+    assert_eq!(offset, "torque_offset of b: offset 0.3000 N m");
     assert!(text.contains(offset) && text.contains("5 of 6 effects"), "{text}");
 }
 
@@ -152,7 +152,7 @@ fn what_a_urdf_holds_in_part_is_written_and_listed() {
     assert_eq!(friction, [2.5, 1.0]);
     assert_eq!(omitted.len(), 2);
     assert!(
-        omitted[0].starts_with("friction_asymmetry (the difference between the directions"),
+        omitted[0].starts_with("friction_asymmetry of a (the difference between the directions"),
         "{}",
         omitted[0]
     );

@@ -133,6 +133,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
             Plot::TooShort => Verdict::NotEnoughData,
         },
         doubts: Vec::new(),
+        warnings: Vec::new(),
         findings,
         unexplained: (rich && joints > 4)
             .then(|| Unexplained {
