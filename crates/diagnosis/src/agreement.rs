@@ -62,6 +62,8 @@ pub fn agreement(
         ..Options::default()
     };
     let mut study = Study::new(Data::new(arm, inputs, &options)?, &options);
+    // Forms of friction in the background have no sign, and may drive a joint.
+    study.stated.is_friction_plain = true;
     let is_plain = |&candidate: &usize| study.terms(candidate).iter().all(|term| term.onset().is_none());
     let mut set: Vec<usize> = (0..study.candidates.len()).filter(is_plain).collect();
     loop {

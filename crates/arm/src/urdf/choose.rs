@@ -328,8 +328,8 @@ impl<'a> Reader<'a> {
             choices.push(format!("and {} more", runs.len() - MOST_RUNS));
         }
         Err(self.robot_error(
-            format!("has {branches} chains of moving joints, and an arm is one chain"),
-            &format!("choose it:\n  {}", choices.join("\n  ")),
+            format!("branches into chains of moving joints with {branches} ends, and an arm is one chain"),
+            &format!("choose one:\n  {}", choices.join("\n  ")),
         ))
     }
 

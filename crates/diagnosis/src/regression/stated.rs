@@ -11,6 +11,8 @@ pub struct Stated {
     pub links: Option<f64>,
     /// The standard deviation of the torque constants.
     pub gain: Option<f64>,
+    /// Whether no form of friction is in the background.
+    pub is_friction_plain: bool,
 }
 
 impl Stated {
@@ -19,6 +21,7 @@ impl Stated {
         Self {
             links: options.urdf_accuracy,
             gain: options.torque_accuracy,
+            is_friction_plain: false,
         }
     }
 
@@ -41,5 +44,6 @@ impl Stated {
         let first = self.first(strengths.links.len());
         (self.links.is_none() || strengths.links == first.links)
             && (self.gain.is_none() || strengths.gain == first.gain)
+            && (!self.is_friction_plain || strengths.friction == 0.0)
     }
 }

@@ -120,10 +120,12 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
         })
     };
     let mut possible: Vec<(&str, &str, f64)> = UNITS.into_iter().filter(fits).collect();
-    if let (Some(smooth), [a, b]) = (smooth, &possible[..]) {
+    if let Some(smooth) = smooth.filter(|_| !possible.is_empty()) {
         let score = |unit: &(&str, &str, f64)| fit(arm, smooth, Supposition::Unit(unit.2)).score();
-        if score(a) - score(b) > LEAD {
-            possible.swap(0, 1);
+        // Limits that a motion exceeds are wrong more often than torques that agree.
+        let best = UNITS.into_iter().min_by(|a, b| score(a).total_cmp(&score(b)));
+        if let Some(best) = best.filter(|best| score(&possible[0]) - score(best) > LEAD) {
+            possible[0] = best;
         }
     }
     let shown = evident.first().or(moving.first().as_ref()).map(|pair| **pair);
@@ -161,6 +163,10 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
         format!(
             "their slopes are {} times the recorded velocities",
             rounded(1.0 / factor, 3)
+        )
+    } else if !fits(&(unit, of_velocity, factor)) {
+        format!(
+            "{range}, and the torques agree with the model far better in {name} than in any unit that the URDF's limits allow"
         )
     } else {
         format!(

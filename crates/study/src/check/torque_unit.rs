@@ -56,7 +56,11 @@ const UNITS: [Unit; 4] = [
 /// The message on a wrong unit of the torques, if all joints that move have the same error, and the keys of a column map
 /// that correct it.
 pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Change>)> {
-    let moving: Vec<usize> = (0..moves.len()).filter(|&joint| moves[joint]).collect();
+    // A channel without a torque has no unit.
+    let has_torque = |joint: usize| fit.size[joint] > 1e-9;
+    let moving: Vec<usize> = (0..moves.len())
+        .filter(|&joint| moves[joint] && has_torque(joint))
+        .collect();
     let is_evident = |joint: &usize| fit.factor[*joint] > 0.0 && fit.needs_model(*joint);
     let evident: Vec<usize> = moving.iter().copied().filter(is_evident).collect();
     let all = |outside: &dyn Fn(f64) -> bool| {
@@ -65,11 +69,7 @@ pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Chan
     if evident.is_empty() {
         // Friction makes a measured torque larger than the model's, and no effect makes it that much smaller. Columns
         // without a torque are checked elsewhere.
-        let sizes: Vec<f64> = moving
-            .iter()
-            .map(|&joint| fit.size[joint])
-            .filter(|&size| size > 1e-9)
-            .collect();
+        let sizes: Vec<f64> = moving.iter().map(|&joint| fit.size[joint]).collect();
         let largest = sizes.iter().copied().fold(0.0, f64::max);
         return (sizes.len() > 1 && largest < MOTOR_SIDE).then(|| {
             let least = 1.0 / largest;

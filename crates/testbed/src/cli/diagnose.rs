@@ -76,8 +76,8 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "OUT")]
     pub markdown: Option<PathBuf>,
 
-    /// Write measured torques, the nominal and the corrected model's predictions and the residuals, row by row, to this file
-    /// (.csv or .parquet)
+    /// Write measured torques, the nominal and the corrected model's predictions and the residuals to this file (.csv or .parquet);
+    /// one row for each time of the filtered signals, which are fewer than the recorded rows
     #[arg(long, value_name = "OUT")]
     pub residuals: Option<PathBuf>,
 
