@@ -39,7 +39,7 @@ fn zeros_signs_and_order_are_told_with_the_map_that_mends_them() {
         says(&said, &parts);
         says(
             &said,
-            &["with this correction, the model, other inertial parameters and friction explain"],
+            &["remains unexplained by the model, other inertial parameters and friction; without it"],
         );
         case.sandbox.write("map.toml", &map_in(&said));
         let mended = case

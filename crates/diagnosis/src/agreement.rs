@@ -12,15 +12,21 @@ use crate::data::statistics::deviation;
 use crate::diagnose::check;
 use crate::error::DiagnosisError;
 use crate::options::{Options, Wanted};
+use crate::regression::fit::Products;
+use crate::regression::strengths::Strengths;
+use crate::search::plan;
+use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::thresholds::CUTOFF;
 
 /// The effects that nearly every URDF leaves out.
 const PLAIN: [&dyn EffectKind; 4] = [&CoulombFriction, &ViscousFriction, &RotorInertia, &TorqueOffset];
 
+/// A reading that has less evidence than another one by this much (nats), beside the background of the other one, is not fitted further.
+const FAR_LESS: f64 = 200.0;
+
 /// How well the model of an arm explains recordings, with plain friction, drive inertia and a constant torque at every joint, and
-/// with a background of inertial parameters, forms of friction and torque constants that differ from the URDF as far as the evidence
-/// says.
+/// with a background of inertial parameters and torque constants that differ from the URDF as far as the evidence says.
 #[derive(Clone, Debug)]
 pub struct Agreement {
     /// Minus the logarithm of the evidence of the torques, each joint's relative to its standard deviation (nats). It is comparable
@@ -31,11 +37,16 @@ pub struct Agreement {
     /// The share of the variance of each joint's torque that is not explained.
     pub unexplained: Vec<f64>,
     /// The half-power frequency of the low-pass filter (Hz).
-    pub cutoff: f64,
+    cutoff: f64,
+    /// The strengths of the background.
+    strengths: Strengths,
 }
 
 /// The agreement of all `inputs` that are not held out with `arm`, the effects `known` included. Effects that are physically
 /// impossible with their coefficients, such as friction that drives the joint, are left out.
+///
+/// The same rows that are read in another way are filtered as for `other`, and are not fitted beyond its background if they agree far
+/// less.
 ///
 /// # Errors
 /// [`DiagnosisError`], if there is nothing to fit or a recording does not fit the arm.
@@ -43,8 +54,9 @@ pub fn agreement(
     arm: &Arm,
     inputs: &[Input<'_>],
     known: &[Effect],
-    cutoff: Option<f64>,
+    other: Option<&Agreement>,
 ) -> Result<Agreement, DiagnosisError> {
+    let cutoff = other.map(|other| other.cutoff);
     check(arm, inputs, cutoff.unwrap_or(CUTOFF))?;
     let wanted = |kind: &&dyn EffectKind| {
         let joints = arm.joints().iter();
@@ -66,36 +78,65 @@ pub fn agreement(
     study.stated.is_friction_plain = true;
     let is_plain = |&candidate: &usize| study.terms(candidate).iter().all(|term| term.onset().is_none());
     let mut set: Vec<usize> = (0..study.candidates.len()).filter(is_plain).collect();
+    if let Some(other) = other {
+        study.strengths = other.strengths.clone();
+    }
+    let is_far = |found: &Agreement| other.is_some_and(|other| found.misfit > other.misfit + FAR_LESS);
     loop {
         let products = study.training_products();
         let problem = study.problem(&products);
-        let chosen = problem.reweighted(problem.choose(set.clone(), &products.first_weights()));
-        let chosen = study.with_best_strengths(chosen);
+        let mut chosen = problem.reweighted(problem.choose(set.clone(), &products.first_weights()));
+        if !is_far(&found(&study, &products, &chosen)) {
+            chosen = study.with_best_strengths(chosen);
+        }
         let products = study.training_products();
         let problem = study.problem(&products);
         let before = set.len();
         set.retain(|&candidate| problem.is_possible(candidate, &chosen.fit));
-        if set.len() == before {
-            // The mean square about the mean, of the rows that are fitted.
-            let variance = |joint: usize| {
-                let rows = study.training_rows(joint);
-                let torques: Vec<f64> = rows.iter().map(|&row| study.measured[joint][row]).collect();
-                deviation(torques.iter()).powi(2).max(f64::MIN_POSITIVE)
-            };
-            let variances: Vec<f64> = (0..arm.dof()).map(variance).collect();
-            let size: Vec<f64> = (0..arm.dof())
-                .map(|j| 0.5 * products.evidence[j] * variances[j].ln())
-                .collect();
-            let unexplained =
-                |joint: usize| chosen.fit.rss[joint] / (products.count[joint].max(1.0) * variances[joint]);
-            return Ok(Agreement {
-                misfit: chosen.score - size.iter().sum::<f64>(),
-                misfit_of: (0..arm.dof())
-                    .map(|joint| products.joint_loss(joint, chosen.fit.rss[joint]) - size[joint])
-                    .collect(),
-                unexplained: (0..arm.dof()).map(unexplained).collect(),
-                cutoff: study.motions.cutoff,
-            });
+        let found = found(&study, &products, &chosen);
+        if set.len() == before || is_far(&found) {
+            return Ok(found);
         }
+    }
+}
+
+/// The misfit of the same recordings as [`Agreement::misfit`] has it, if the whole catalogue of effects is searched (nats), with the
+/// filter of `other`. It is comparable with another one of the same kind only.
+///
+/// # Errors
+/// [`DiagnosisError`], if there is nothing to fit or a recording does not fit the arm.
+pub fn searched(arm: &Arm, inputs: &[Input<'_>], known: &[Effect], other: &Agreement) -> Result<f64, DiagnosisError> {
+    check(arm, inputs, other.cutoff)?;
+    let options = Options {
+        cutoff: Some(other.cutoff),
+        known: known.to_vec(),
+        ..Options::default()
+    };
+    let mut study = Study::new(Data::new(arm, inputs, &options)?, &options);
+    let chosen = plan::search(&mut study, &|_| ());
+    Ok(found(&study, &study.training_products(), &chosen).misfit)
+}
+
+/// What the fit `chosen` says.
+fn found(study: &Study, products: &Products, chosen: &Selection) -> Agreement {
+    let joints = || 0..study.arm.dof();
+    // The mean square about the mean, of the rows that are fitted.
+    let variance = |joint: usize| {
+        let rows = study.training_rows(joint);
+        let torques: Vec<f64> = rows.iter().map(|&row| study.measured[joint][row]).collect();
+        deviation(torques.iter()).powi(2) + products.floor[joint]
+    };
+    let variances: Vec<f64> = joints().map(|joint| variance(joint).max(f64::MIN_POSITIVE)).collect();
+    let size = |joint: usize| 0.5 * products.evidence[joint] * variances[joint].ln();
+    Agreement {
+        misfit: chosen.score - joints().map(size).sum::<f64>(),
+        misfit_of: joints()
+            .map(|joint| products.joint_loss(joint, chosen.fit.rss[joint]) - size(joint))
+            .collect(),
+        unexplained: joints()
+            .map(|joint| chosen.fit.rss[joint] / (products.count[joint].max(1.0) * variances[joint]))
+            .collect(),
+        cutoff: study.motions.cutoff,
+        strengths: study.strengths.clone(),
     }
 }

@@ -34,7 +34,7 @@ mod selection;
 mod thresholds;
 mod trace;
 
-pub use agreement::{Agreement, agreement};
+pub use agreement::{Agreement, agreement, searched};
 pub use data::input::Input;
 pub use data::used::{WORTH_HOLDING, worth_using};
 pub use diagnose::diagnose;

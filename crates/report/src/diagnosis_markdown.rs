@@ -51,7 +51,7 @@ fn doubted(doubts: &[Doubt], report: &Report) -> Vec<Block> {
     for group in doubts::groups(doubts, report) {
         blocks.extend(group.texts.into_iter().map(|sentence| text(format!("{sentence}."))));
         if let Some(map) = group.map {
-            blocks.push(text(doubts::USE));
+            blocks.push(text(group.usage));
             let code = map.to_owned();
             blocks.push(Block::Code { language: "toml", code });
         }

@@ -4,8 +4,11 @@ use diagnosis::{Doubt, Report};
 
 use crate::words;
 
-/// How a column map is used.
-pub const USE: &str = "A column map that corrects it: save it as `map.toml`, and add `--map map.toml` to the command.";
+/// How a column map is used that concerns all recordings.
+const USE: &str = "A column map that corrects it: save it as `map.toml`, and add `--map map.toml` to the command.";
+/// How it is used if it does not concern all recordings.
+const USE_FOR_SOME: &str = "A column map that corrects it. With `--map`, all files of a command are read with one map, and this one is \
+                            wrong for the others: correct the columns of this file as the map says, or leave the file out.";
 
 /// The doubts about recordings that have the same column map.
 pub struct Group<'a> {
@@ -13,6 +16,8 @@ pub struct Group<'a> {
     pub texts: Vec<String>,
     /// The map (TOML), if one corrects them.
     pub map: Option<&'a str>,
+    /// How the map is used.
+    pub usage: &'static str,
 }
 
 /// The `doubts` or warnings of `report`. Recordings with the same map are one group, and the sentences name its first recording.
@@ -51,5 +56,6 @@ fn group<'a>(doubts: &[&'a Doubt], all: usize) -> Group<'a> {
     Group {
         texts: own.map(text).collect(),
         map: doubts[0].column_map.as_deref(),
+        usage: if files.len() < all { USE_FOR_SOME } else { USE },
     }
 }

@@ -107,7 +107,7 @@ fn opening(report: &Report) -> String {
             text += &wrapped(sentence, "- ");
         }
         if let Some(map) = group.map {
-            let _ = write!(text, "\n{}\n{map}\n", wrapped(&doubts::USE.replace('`', ""), ""));
+            let _ = write!(text, "\n{}\n{map}\n", wrapped(&group.usage.replace('`', ""), ""));
         }
     }
     if !report.findings.is_empty() {

@@ -17,10 +17,7 @@ pub fn into_limits(recording: &mut Recording, arm: &Arm) -> Vec<(String, String)
         let Some(joint) = joint.filter(|joint| joint.kind == JointKind::Revolute) else {
             continue;
         };
-        let known = q.iter().copied().filter(|q| q.is_finite());
-        let (low, high) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), q| {
-            (low.min(q), high.max(q))
-        });
+        let (low, high) = range(q);
         let turns = turns_off(low, high, joint.limits.lower, joint.limits.upper);
         if turns == 0.0 {
             continue;
@@ -37,6 +34,31 @@ pub fn into_limits(recording: &mut Recording, arm: &Arm) -> Vec<(String, String)
         said.push((name.clone(), text));
     }
     said
+}
+
+/// By how much the positions `q` of the joints of `arm` exceed its limits at most (rad or m), after whole turns.
+pub fn beyond_limits(arm: &Arm, q: &[Vec<f64>]) -> f64 {
+    let of = |(joint, q): (&arm::Joint, &Vec<f64>)| {
+        let (lower, upper) = (joint.limits.lower, joint.limits.upper);
+        let (low, high) = range(q);
+        if upper <= lower || low > high {
+            return 0.0;
+        }
+        let turns = match joint.kind {
+            JointKind::Revolute => ((0.5 * (low + high) - 0.5 * (lower + upper)) / TAU).round() * TAU,
+            JointKind::Prismatic => 0.0,
+        };
+        (lower - (low - turns)).max(high - turns - upper).max(0.0)
+    };
+    arm.joints().iter().zip(q).map(of).fold(0.0, f64::max)
+}
+
+/// The least and the largest of the finite values; the first is larger if there are none.
+fn range(q: &[f64]) -> (f64, f64) {
+    let known = q.iter().copied().filter(|q| q.is_finite());
+    known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), q| {
+        (low.min(q), high.max(q))
+    })
 }
 
 /// The whole turns by which a range lies beyond limits; 0 if it is within them, if no number of turns brings it there, or if there are

@@ -15,6 +15,9 @@ use crate::search::study::Study;
 use crate::selection::bootstrap::Resampled;
 use crate::thresholds::{LEAST_FINAL_SHARE, OFFSET_STRENGTHS, SYSTEMATIC};
 
+/// A constant below this share of the joint's typical torque is rounding, and not a correction.
+const NEGLIGIBLE: f64 = 1e-6;
+
 /// The joint whose constant torque a candidate names, for all times.
 pub fn names(study: &Study, candidate: usize) -> Option<usize> {
     let hypothesis = study.candidates[candidate].hypothesis;
@@ -67,6 +70,9 @@ pub fn corrections(study: &Study, chosen: &Selection, resampled: &Resampled) -> 
         }
         let at = resampled.column(column)?;
         let (value, ci95) = resampled.interval_within(SYSTEMATIC, |draw| draw[at]);
+        if value.abs() < NEGLIGIBLE * study.scales.torque[joint] {
+            return None;
+        }
         let unit = Quantity::Torque.unit(described.kind);
         Some((described.name.clone(), Parameter { value, ci95, unit }))
     };

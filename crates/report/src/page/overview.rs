@@ -94,7 +94,7 @@ impl Page<'_> {
             @for group in doubts::groups(doubts, self.report) {
                 ul.steps { @for sentence in &group.texts { li { (sentence) "." } } }
                 @if let Some(map) = group.map {
-                    p { (coded(doubts::USE)) }
+                    p { (coded(group.usage)) }
                     pre { code { (map) } }
                 }
             }

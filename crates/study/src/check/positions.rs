@@ -262,14 +262,6 @@ pub fn of_one(arm: &Arm, (joint, measured): &Pair<'_>, smooth: Option<&Smooth>) 
     if joint.kind != JointKind::Revolute || !is_beyond(&(joint, measured)) || !fits {
         return None;
     }
-    let text = format!(
-        "the position is in degrees: it spans {} … {}, which the URDF's limits {:.3} … {:.3} rad allow in degrees only; \
-         say so in a column map (--map): q_unit = \"deg\"",
-        rounded(low, 4),
-        rounded(high, 4),
-        limits.lower,
-        limits.upper
-    );
     let (unit, of_velocity, factor) = UNITS[0];
     let mut changes = vec![Change::new(&joint.name, "q_unit", Value::Unit(unit, factor))];
     if measured
@@ -284,8 +276,18 @@ pub fn of_one(arm: &Arm, (joint, measured): &Pair<'_>, smooth: Option<&Smooth>) 
         let explains = |supposition| fit(arm, smooth, supposition).score();
         at.is_some_and(|at| explains(Supposition::AsItIs) - explains(Supposition::UnitOf(at, factor)) > GAIN)
     };
+    let is_certain = measured.velocity_ratio.is_some_and(is_slope) || smooth.is_some_and(agrees);
+    let text = format!(
+        "the position {} in degrees: it spans {} … {}, which the URDF's limits {:.3} … {:.3} rad allow in degrees only; \
+         say so in a column map (--map): q_unit = \"deg\"",
+        if is_certain { "is" } else { "may be" },
+        rounded(low, 4),
+        rounded(high, 4),
+        limits.lower,
+        limits.upper
+    );
     Some(Misfit {
-        prevents_diagnosis: measured.velocity_ratio.is_some_and(is_slope) || smooth.is_some_and(agrees),
+        prevents_diagnosis: is_certain,
         ..Misfit::new(Some(&joint.name), text, changes)
     })
 }

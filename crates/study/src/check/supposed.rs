@@ -1,16 +1,18 @@
 //! Weighs suppositions on signs, order and zeros of the recordings by the evidence of all their torques.
 
 use arm::Arm;
-use diagnosis::{Agreement, Input, agreement};
+use diagnosis::{Agreement, Input, agreement, searched};
 use effects::Effect;
+use rayon::prelude::*;
 use recording::RegularRecording;
-use report::numbers::percent_to_a_tenth;
+use report::numbers::rounded;
 
 use super::column_map::Change;
 use super::fit::fit;
 use super::smooth::Smooth;
 use super::supposition::Supposition;
 use super::{LEAST_INSTANTS, order};
+use crate::turns;
 
 /// The number of suppositions that are weighed.
 const WEIGHED: usize = 8;
@@ -40,6 +42,8 @@ const REDUCED: f64 = 3.0;
 const SUPPORTS: f64 = 15.0;
 /// A supposition is the only one if the next one has less evidence by this much (nats).
 const LEAD: f64 = 10.0;
+/// A supposition that moves positions beyond the URDF's limits by this much more than they are is not certain (rad or m).
+const BEYOND_LIMITS: f64 = 0.3;
 /// The share of the variance of a joint's torque that may remain with a correct reading of the joint.
 const EXPLAINED: f64 = 0.3;
 
@@ -73,18 +77,14 @@ struct Weighed {
 ///
 /// A supposition is found with the URDF's own model, and weighed with inertial parameters, friction and torque constants that differ
 /// from the URDF as far as the evidence says. It is certain if it concerns a sign that friction shows, because friction never drives a
-/// joint, or if several joints' torques show it.
+/// joint, or if several joints' torques show it, and if no effect of the catalogue explains the recordings as they are.
 pub fn supposed(arm: &Arm, known: &[Effect], recordings: &[&RegularRecording]) -> Option<Supposed> {
     let mut scanned = scanned(arm, recordings);
     let is_worth = |one: &Scanned| one.gains.iter().any(|gain| *gain > WORTH_WEIGHING);
     if !scanned.iter().any(is_worth) {
         return None;
     }
-    let weigh = |supposition: Supposition, of: &[usize], cutoff: Option<f64>| {
-        let turned = match supposition {
-            Supposition::Gravity(gravity) => arm.clone().with_gravity(gravity),
-            _ => arm.clone(),
-        };
+    let weigh = |supposition: Supposition, of: &[usize], other: Option<&Agreement>| {
         let read: Vec<RegularRecording> = recordings
             .iter()
             .enumerate()
@@ -93,17 +93,8 @@ pub fn supposed(arm: &Arm, known: &[Effect], recordings: &[&RegularRecording]) -
                 false => (*recording).clone(),
             })
             .collect();
-        let inputs: Vec<Input<'_>> = read
-            .iter()
-            .map(|recording| Input {
-                name: "",
-                recording,
-                held_out: false,
-                before: false,
-            })
-            .collect();
         // Recordings that are too short to be diagnosed are refused later.
-        agreement(&turned, &inputs, known, cutoff).ok()
+        agreement(&supposition.arm(arm), &inputs(&read), known, other).ok()
     };
     let as_it_is = weigh(Supposition::AsItIs, &[], None)?;
     let (mut first, rest): (Vec<Scanned>, Vec<Scanned>) = scanned.drain(..).partition(is_worth);
@@ -116,12 +107,12 @@ pub fn supposed(arm: &Arm, known: &[Effect], recordings: &[&RegularRecording]) -
     let more = rest
         .into_iter()
         .filter(|one| concerns_such(one) && one.gains.iter().sum::<f64>() > -NOT_CONTRADICTED * one.gains.len() as f64);
-    let mut weighed: Vec<Weighed> = first
-        .into_iter()
-        .chain(more.take(WEIGHED))
+    let chosen: Vec<Scanned> = first.into_iter().chain(more.take(WEIGHED)).collect();
+    let mut weighed: Vec<Weighed> = chosen
+        .into_par_iter()
         .filter_map(|one| {
             let of = one.concerned();
-            let with = weigh(one.supposition, &of, Some(as_it_is.cutoff))?;
+            let with = weigh(one.supposition, &of, Some(&as_it_is))?;
             let pairs = as_it_is.misfit_of.iter().zip(&with.misfit_of);
             Some(Weighed {
                 supposition: one.supposition,
@@ -133,7 +124,60 @@ pub fn supposed(arm: &Arm, known: &[Effect], recordings: &[&RegularRecording]) -
         })
         .collect();
     weighed.sort_by(|a, b| b.nats.total_cmp(&a.nats));
-    judged(arm, &as_it_is, &weighed)
+    let judged = judged(arm, &as_it_is, &weighed)?;
+    let nats = nats_beside_catalogue(arm, known, recordings, &judged, &as_it_is)?;
+    // What the catalogue explains as well is a warning if it would be certain otherwise.
+    let is_told = nats > if judged.is_shown { -TOLD } else { TOLD };
+    is_told.then(|| judged.told(arm, &as_it_is, recordings, nats))
+}
+
+/// Recordings to be fitted.
+fn inputs(recordings: &[RegularRecording]) -> Vec<Input<'_>> {
+    let input = |recording| Input {
+        name: "",
+        recording,
+        held_out: false,
+        before: false,
+    };
+    recordings.iter().map(input).collect()
+}
+
+/// The evidence for the best supposition if the whole catalogue is searched with it and without it, in the recordings that it concerns:
+/// springs, payloads and other effects may explain what looks like a wrong sign or zero. `None` if that cannot be computed.
+fn nats_beside_catalogue(
+    arm: &Arm,
+    known: &[Effect],
+    recordings: &[&RegularRecording],
+    judged: &Judged<'_>,
+    as_it_is: &Agreement,
+) -> Option<f64> {
+    let best = judged.best;
+    let old: Vec<RegularRecording> = best.recordings.iter().map(|&at| recordings[at].clone()).collect();
+    let new: Vec<RegularRecording> = old.iter().map(|one| best.supposition.applied(arm, one)).collect();
+    let bases = if best.recordings.len() < recordings.len() {
+        // The base may hang otherwise in some of the recordings.
+        Supposition::bases(arm)
+    } else {
+        Vec::new()
+    };
+    let bases: Vec<Arm> = bases
+        .into_iter()
+        .map(|base| base.arm(arm))
+        .chain([arm.clone()])
+        .collect();
+    let misfits = bases.into_par_iter().map(|arm| {
+        let misfit = agreement(&arm, &inputs(&old), known, Some(as_it_is)).map(|found| found.misfit);
+        (misfit.unwrap_or(f64::INFINITY), arm)
+    });
+    let (_, base) = misfits
+        .collect::<Vec<_>>()
+        .into_iter()
+        .min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let (without, with) = rayon::join(
+        || searched(&base, &inputs(&old), known, as_it_is),
+        || searched(arm, &inputs(&new), known, as_it_is),
+    );
+    Some(without.ok()? - with.ok()?)
 }
 
 /// A supposition with its gain in each recording.
@@ -164,8 +208,11 @@ fn scanned(arm: &Arm, recordings: &[&RegularRecording]) -> Vec<Scanned> {
             continue;
         }
         let before = fit(arm, &smooth, Supposition::AsItIs).score();
-        for supposition in Supposition::all(arm, &smooth.moves()) {
-            let gain = before - fit(arm, &smooth, supposition).score();
+        let gains: Vec<(Supposition, f64)> = Supposition::all(arm, &smooth.moves())
+            .into_par_iter()
+            .map(|supposition| (supposition, before - fit(arm, &smooth, supposition).score()))
+            .collect();
+        for (supposition, gain) in gains {
             match all.iter_mut().find(|known| known.supposition == supposition) {
                 Some(known) => known.gains[at] = gain,
                 None => {
@@ -182,9 +229,22 @@ fn scanned(arm: &Arm, recordings: &[&RegularRecording]) -> Vec<Scanned> {
     all
 }
 
-/// What follows from the suppositions `weighed`, the best one first.
-fn judged(arm: &Arm, as_it_is: &Agreement, weighed: &[Weighed]) -> Option<Supposed> {
-    let names: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
+/// The best supposition, with what is as likely.
+struct Judged<'a> {
+    best: &'a Weighed,
+    rivals: Vec<&'a Weighed>,
+    /// Whether the base may hang from a ceiling or a wall as well.
+    may_be_base: bool,
+    /// The joint whose torque shows it most.
+    shown_at: usize,
+    /// The number of joints whose torques show it.
+    supporters: usize,
+    /// Whether it is certain, as far as the model and friction tell.
+    is_shown: bool,
+}
+
+/// The best of the suppositions `weighed`, which begin with the one of most evidence; `None` if it is not worth telling.
+fn judged<'a>(arm: &Arm, as_it_is: &Agreement, weighed: &'a [Weighed]) -> Option<Judged<'a>> {
     let is_base = |one: &Weighed| matches!(one.supposition, Supposition::Gravity(_));
     let most = weighed.first()?.nats;
     let close: Vec<&Weighed> = weighed.iter().filter(|one| most - one.nats < LEAD).collect();
@@ -196,12 +256,15 @@ fn judged(arm: &Arm, as_it_is: &Agreement, weighed: &[Weighed]) -> Option<Suppos
     let may_be_base = close.iter().any(|one| is_base(one));
     let is_rival = |one: &&&Weighed| one.supposition != best.supposition && !is_base(one);
     let rivals: Vec<&Weighed> = close.iter().filter(is_rival).copied().collect();
-    let is_same_sign = |other: &Weighed| other.supposition.as_sign_of_the_torque() == Some(best.supposition);
-    // The joint whose torque shows it most.
-    let shown_at = (0..names.len()).max_by(|&a, &b| best.nats_of[a].total_cmp(&best.nats_of[b]))?;
+    let supports = |&joint: &usize| best.nats_of[joint] > SUPPORTS;
+    let supporters = (0..arm.dof()).filter(supports).count();
+    let reduction = |joint: usize| as_it_is.unexplained[joint] / best.with.unexplained[joint].max(f64::MIN_POSITIVE);
+    let shown_at = (0..arm.dof())
+        .filter(supports)
+        .max_by(|&a, &b| reduction(a).total_cmp(&reduction(b)))
+        .or_else(|| (0..arm.dof()).max_by(|&a, &b| best.nats_of[a].total_cmp(&best.nats_of[b])))?;
     let (without, with) = (as_it_is.unexplained[shown_at], best.with.unexplained[shown_at]);
     let is_clear = without > UNEXPLAINED && without > REDUCED * with;
-    let supporters = best.nats_of.iter().filter(|nats| **nats > SUPPORTS).count();
     let is_explained = |&joint: &usize| best.with.unexplained[joint] < EXPLAINED;
     let of = best.supposition.joints(arm);
     let of_friction = best.supposition.is_of_a_sign_of_friction();
@@ -212,45 +275,83 @@ fn judged(arm: &Arm, as_it_is: &Agreement, weighed: &[Weighed]) -> Option<Suppos
     }
     let contradicts = |joint: &&usize| !is_explained(joint) && best.nats_of[**joint] < -SUPPORTS;
     let is_shown = if of_friction {
-        is_clear || is_overwhelming
+        is_clear || best.nats > CERTAIN
     } else {
         let has_evidence = best.nats > if is_clear { CERTAIN } else { CERTAIN_WHERE_EXPLAINED };
         let is_contradicted = of.iter().filter(contradicts).count() > of.len() / 3;
         supporters > 1 && has_evidence && (is_overwhelming || !is_contradicted)
     };
-    let is_certain = is_shown && !may_be_base;
-    let share = |agreement: &Agreement| percent_to_a_tenth(1.0 - agreement.unexplained[shown_at].min(1.0));
-    let mut text = format!(
-        "{}: with this correction, the model, other inertial parameters and friction explain {} of the torque's variance at {}; \
-         without it, {}",
-        best.supposition.sentence(&names, is_certain),
-        share(&best.with),
-        names[shown_at],
-        share(as_it_is)
-    );
-    if may_be_base {
-        text += ". The base may also hang from a ceiling or a wall";
-    }
-    let mut others: Vec<String> = rivals
-        .iter()
-        .filter_map(|next| next.supposition.words(&names))
-        .collect();
-    others.dedup();
-    if !others.is_empty() {
-        text += &format!(". As likely: {}", others.join(", or "));
-    }
-    if !is_certain && supporters < 2 {
-        text += ". No other joint's torque shows it, so that it may have another cause";
-    }
-    Some(Supposed {
-        joint: best.supposition.joint().map(|joint| names[joint].to_owned()),
-        text,
-        changes: if rivals.iter().all(|other| is_same_sign(other)) {
-            best.supposition.changes(&names)
-        } else {
-            Vec::new()
-        },
-        is_certain,
-        recordings: best.recordings.clone(),
+    Some(Judged {
+        best,
+        rivals,
+        may_be_base,
+        shown_at,
+        supporters,
+        is_shown,
     })
+}
+
+impl Judged<'_> {
+    /// What is told, if the supposition has the evidence `nats` beside the whole catalogue.
+    fn told(&self, arm: &Arm, as_it_is: &Agreement, recordings: &[&RegularRecording], nats: f64) -> Supposed {
+        let names: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
+        let best = self.best;
+        let leaves_limits = best.recordings.iter().any(|&at| {
+            let new = best.supposition.applied(arm, recordings[at]);
+            turns::beyond_limits(arm, &new.q) > turns::beyond_limits(arm, &recordings[at].q) + BEYOND_LIMITS
+        });
+        let is_certain = self.is_shown && !self.may_be_base && nats > CERTAIN && !leaves_limits;
+        let is_one = self
+            .rivals
+            .iter()
+            .all(|other| other.supposition.as_sign_of_the_torque() == Some(best.supposition));
+        let left = |agreement: &Agreement| {
+            let share = agreement.unexplained[self.shown_at].min(1.0);
+            format!("{} %", rounded(100.0 * share, 2))
+        };
+        let mut text = format!(
+            "{}: with this correction, {} of the torque's variance at {} remains unexplained by the model, other inertial parameters \
+             and friction; without it, {}",
+            best.supposition.sentence(&names, is_certain && is_one),
+            left(&best.with),
+            names[self.shown_at],
+            left(as_it_is)
+        );
+        let mut others: Vec<String> = self
+            .rivals
+            .iter()
+            .filter_map(|next| next.supposition.words(&names))
+            .collect();
+        others.dedup();
+        if !others.is_empty() {
+            text += &format!(". As likely: {}", others.join(", or "));
+        }
+        if self.may_be_base {
+            text += ". The base may also hang from a ceiling or a wall";
+        } else if leaves_limits {
+            text += ". The positions would lie farther beyond the URDF's limits with it, so that something else may be wrong";
+        } else if !is_certain && self.supporters < 2 {
+            text += ". No other joint's torque shows it, so that it may have another cause";
+        } else if !is_certain {
+            text += ". An effect that the model omits may be the cause, too";
+        }
+        // With the correct reading, the joints that it concerns are explained, unless they never were.
+        let of = best.supposition.joints(arm);
+        let remains = |&joint: &usize| best.with.unexplained[joint] > EXPLAINED.max(as_it_is.unexplained[joint]);
+        let is_whole = !of.iter().any(remains);
+        if is_certain && !is_whole {
+            text += ". Other columns may be wrong, too, because torques remain unexplained";
+        }
+        Supposed {
+            joint: best.supposition.joint().map(|joint| names[joint].to_owned()),
+            text,
+            changes: if is_one && is_whole && !leaves_limits {
+                best.supposition.changes(&names)
+            } else {
+                Vec::new()
+            },
+            is_certain,
+            recordings: best.recordings.clone(),
+        }
+    }
 }

@@ -68,12 +68,25 @@ impl Supposition {
         if dof > 3 {
             all.extend([Self::Reversed, Self::TorquesReversed]);
         }
+        all.extend(Self::bases(arm));
+        all
+    }
+
+    /// The attitudes of the base on walls and on a ceiling.
+    pub fn bases(arm: &Arm) -> Vec<Self> {
         let strength = arm.gravity().norm();
         let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
         let directions = axes.into_iter().flat_map(|axis| [axis * strength, -axis * strength]);
         let others = directions.filter(|gravity| (gravity - arm.gravity()).norm() > 0.1 * strength);
-        all.extend(others.map(Self::Gravity));
-        all
+        others.map(Self::Gravity).collect()
+    }
+
+    /// The arm under this supposition.
+    pub fn arm(self, arm: &Arm) -> Arm {
+        match self {
+            Self::Gravity(gravity) => arm.clone().with_gravity(gravity),
+            _ => arm.clone(),
+        }
     }
 
     /// From which columns the joints of `arm` are read.

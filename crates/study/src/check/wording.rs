@@ -16,7 +16,7 @@ impl Supposition {
             Self::Swapped(a, b) => format!("the columns of {} and {} are swapped", names[a], names[b]),
             Self::TorquesSwapped(a, b) => format!("the torques of {} and {} are swapped", names[a], names[b]),
             Self::PositionsSwapped(a, b) => format!("the positions of {} and {} are swapped", names[a], names[b]),
-            Self::Zero(joint, _) => format!("the zero of {} is off by a quarter or half of a turn", names[joint]),
+            Self::Zero(joint, added) => format!("the zero of {} is off by {}", names[joint], turn(added)),
             Self::AllTorquesFlipped => "all torques have the other sign".to_owned(),
             Self::AllPositionsFlipped => "all positions have the other sign".to_owned(),
             Self::AllFlipped => "all positions and torques have the other sign".to_owned(),
@@ -113,11 +113,7 @@ impl Supposition {
                 "position and torque {have} the sign opposite to the URDF's axis; invert both (sign = -1 in a column map)"
             ),
             Self::Zero(_, added) => {
-                let turn = match added {
-                    added if added.abs() > 3.0 => "π",
-                    added if added > 0.0 => "-π/2",
-                    _ => "π/2",
-                };
+                let turn = turn(added);
                 format!(
                     "the position's zero {} off by {turn} from the URDF's; correct it (q_offset = {added:.4} in a column map)",
                     pick("is", "may be")
@@ -129,5 +125,14 @@ impl Supposition {
             Self::Reversed => in_order("columns of the joints"),
             Self::TorquesReversed => in_order("torques of the joints"),
         }
+    }
+}
+
+/// By how much a zero is off to which `added` must be added.
+fn turn(added: f64) -> &'static str {
+    match added {
+        added if added.abs() > 3.0 => "π",
+        added if added > 0.0 => "-π/2",
+        _ => "π/2",
     }
 }
