@@ -34,7 +34,7 @@ pub fn doubted(case: &Case, text: &str) -> String {
     }
     // The map is the same everywhere.
     if let Some(map) = doubt["column_map"].as_str() {
-        says(&said, &[map, "--map map.toml"]);
+        says(&said, &[map, "A column map that corrects it"]);
         says(&markdown, &[map.trim_end()]);
         says(&page, &[map.lines().next().expect("a line"), "<pre>"]);
     }

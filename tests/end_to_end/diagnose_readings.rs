@@ -12,7 +12,7 @@ use crate::support::{Sandbox, root};
 #[test]
 fn zeros_signs_and_order_are_told_with_the_map_that_mends_them() {
     let case = case();
-    let told = ["zero is off", "opposite", "swapped", "column map"];
+    let told = ["zero", "opposite", "swapped", "column map"];
     for (text, parts) in [
         (
             with_numbers(|row| row[1 + SHOULDER] += FRAC_PI_2),
@@ -20,11 +20,17 @@ fn zeros_signs_and_order_are_told_with_the_map_that_mends_them() {
         ),
         (
             with_numbers(|row| row[1 + ELBOW] -= FRAC_PI_2),
-            ["elbow: the position's zero is off by -π/2", "q_offset = 1.5708"],
+            [
+                "elbow: the position's zero",
+                "off by -π/2 from the URDF's; correct it (q_offset = 1.5708",
+            ],
         ),
         (
             with_numbers(|row| row[1 + ELBOW] += PI),
-            ["elbow: the position's zero is off by π", "q_offset = 3.14"],
+            [
+                "elbow: the position's zero",
+                "off by π from the URDF's; correct it (q_offset = 3.14",
+            ],
         ),
         (
             with_numbers(|row| row.swap(4 + SHOULDER, 4 + ELBOW)),
@@ -147,7 +153,10 @@ fn walls_ceilings_and_offsets_of_effects_are_no_mistakes() {
 #[test]
 #[ignore = "needs ../shared"]
 fn inverted_torques_of_real_robots_are_told_and_the_map_mends_them() {
-    for (robot, names) in [("lwr4", ["run_2", "run_1"]), ("lbr_med7", ["may12_a", "may12_b"])] {
+    for (robot, names) in [
+        ("lwr4", &["run_2", "run_3", "run_1"][..]),
+        ("lbr_med7", &["may12_a", "may12_b"]),
+    ] {
         let shared = root().join("../shared/recordings").join(robot);
         let sandbox = Sandbox::new();
         for name in names {
@@ -169,19 +178,19 @@ fn inverted_torques_of_real_robots_are_told_and_the_map_mends_them() {
             sandbox.write(&format!("{name}.csv"), &format!("{header}\n{}\n", rows.join("\n")));
         }
         let urdf = shared.join("robot.urdf").to_string_lossy().into_owned();
-        let files = names.map(|name| format!("{name}.csv"));
-        let command = [
+        let files: Vec<String> = names.iter().map(|name| format!("{name}.csv")).collect();
+        let (held_out, train) = files.split_last().expect("files");
+        let mut command = vec![
             "diagnose",
             "--robot",
             &urdf,
-            "--train",
-            &files[0],
-            "--held-out",
-            &files[1],
             "--json",
             "o.json",
             "--torques-only",
+            "--train",
         ];
+        command.extend(train.iter().map(String::as_str));
+        command.extend(["--held-out", held_out]);
         sandbox.succeed(&command);
         let report = sandbox.json("o.json");
         assert_eq!(report["verdict"], "units_first", "{robot}");

@@ -337,7 +337,7 @@ impl Judged<'_> {
         }
         // With the correct reading, the joints that it concerns are explained, unless they never were.
         let of = best.supposition.joints(arm);
-        let remains = |&joint: &usize| best.with.unexplained[joint] > EXPLAINED.max(as_it_is.unexplained[joint]);
+        let remains = |&joint: &usize| best.with.unexplained[joint] > EXPLAINED.max(2.0 * as_it_is.unexplained[joint]);
         let is_whole = !of.iter().any(remains);
         if is_certain && !is_whole {
             text += ". Other columns may be wrong, too, because torques remain unexplained";
