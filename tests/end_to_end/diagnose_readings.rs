@@ -234,3 +234,29 @@ fn what_is_not_certain_is_a_warning_in_every_report() {
         says(&case.text(file), &["Recordings that contradict the URDF", said]);
     }
 }
+
+/// Who knows better may go on.
+#[test]
+fn recordings_are_diagnosed_as_they_were_read_if_the_user_says_so() {
+    let case = case();
+    case.sandbox
+        .write("a.csv", &with_numbers(|row| row[4 + SHOULDER] *= -1.0));
+    let command = [
+        "diagnose",
+        "--robot",
+        "robot.urdf",
+        "--train",
+        "a.csv",
+        "--torques-only",
+        "--json",
+        "o.json",
+    ];
+    says(&case.sandbox.succeed(&command), &["--as-read searches nevertheless"]);
+    let first = case.sandbox.json("o.json");
+    assert_eq!(first["verdict"], "units_first");
+    case.sandbox.succeed(&[&command[..], &["--as-read"]].concat());
+    let second = case.sandbox.json("o.json");
+    assert_ne!(second["verdict"], "units_first");
+    assert!(second["doubts"].is_null());
+    assert_eq!(second["warnings"], first["doubts"]);
+}

@@ -179,7 +179,7 @@ type Answer = (Option<Outcome>, Option<PyErr>, Vec<(String, bool)>);
 #[pyfunction]
 #[pyo3(signature = (
     urdf, before, train, held_out, *, base, tip, locks, column_map, known_file, known_text, only, urdf_friction, cutoff,
-    urdf_accuracy, torque_accuracy, torques_only, next_experiment, threads, progress
+    urdf_accuracy, torque_accuracy, as_read, torques_only, next_experiment, threads, progress
 ))]
 #[expect(clippy::too_many_arguments, reason = "the Python function gives them by name")]
 pub fn diagnose(
@@ -199,6 +199,7 @@ pub fn diagnose(
     cutoff: Option<f64>,
     urdf_accuracy: Option<f64>,
     torque_accuracy: Option<f64>,
+    as_read: bool,
     torques_only: bool,
     next_experiment: bool,
     threads: usize,
@@ -234,6 +235,7 @@ pub fn diagnose(
         cutoff,
         urdf_accuracy,
         torque_accuracy,
+        as_read,
         torques_only,
         next: next_experiment,
     };

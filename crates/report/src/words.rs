@@ -305,7 +305,7 @@ pub fn verdict(report: &Report) -> String {
         Verdict::NotEnoughData => "The recordings do not contain enough data for a diagnosis.".into(),
         Verdict::UnitsFirst => {
             "Units, signs, order or zeros first: no effect was searched, because the recordings do not fit \
-                                the robot as they were read."
+                                the robot as they were read. If they are right, --as-read searches nevertheless."
                 .into()
         }
     }

@@ -76,6 +76,7 @@ def diagnose(
     cutoff: float | None,
     urdf_accuracy: float | None,
     torque_accuracy: float | None,
+    as_read: bool,
     torques_only: bool,
     next_experiment: bool,
     threads: int,

@@ -46,6 +46,7 @@ def diagnose(
     cutoff: Optional[float] = None,
     urdf_accuracy: Optional[float] = None,
     torque_accuracy: Optional[float] = None,
+    as_read: bool = False,
     torques_only: bool = False,
     next_experiment: bool = False,
     jobs: Optional[int] = None,
@@ -72,6 +73,7 @@ def diagnose(
     cutoff: Half-power frequency of the low-pass filter (Hz), 0.1 to 1000.
     urdf_accuracy: How far the URDF's inertial parameters may be off, as a fraction (0.1: ten per cent).
     torque_accuracy: The relative standard deviation of the torque constants.
+    as_read: Diagnoses the recordings as they were read, even if their units, signs, order or zeros seem wrong.
     torques_only: Skips the simulation and the learned correction, which is faster.
     next_experiment: Proposes the motion that best distinguishes the remaining alternatives; `to_dict()` has it.
     jobs: The number of threads, which does not change the result.
@@ -116,6 +118,7 @@ def diagnose(
         cutoff=cutoff,
         urdf_accuracy=urdf_accuracy,
         torque_accuracy=torque_accuracy,
+        as_read=as_read,
         torques_only=torques_only,
         next_experiment=next_experiment,
         threads=jobs or 0,

@@ -59,6 +59,10 @@ pub struct DiagnoseArgs {
     #[arg(long)]
     pub torques_only: bool,
 
+    /// Diagnose the recordings as they were read, even if their units, signs, order or zeros seem wrong
+    #[arg(long)]
+    pub as_read: bool,
+
     /// Test a hypothesis by fitting only these effects: effect:joint, or effect for the whole arm; or a file (.toml, as written
     /// by --model), whose parameter values are ignored
     #[arg(long, value_name = "EFFECT:JOINT,…|FILE", conflicts_with = "known")]
@@ -154,6 +158,7 @@ impl DiagnoseArgs {
             cutoff: self.cutoff,
             urdf_accuracy: self.urdf_accuracy,
             torque_accuracy: self.torque_accuracy,
+            as_read: self.as_read,
             torques_only: self.torques_only,
             next: self.next.is_some(),
         }
