@@ -112,7 +112,7 @@ fn the_arm_of_a_branching_robot_is_the_recorded_one_or_chosen() {
         "--base column --tip fore (2 joints: shoulder … elbow) or --base floor --tip fore (3 joints: turn … elbow)";
     says(
         &case.sandbox.refuse(&conceal),
-        &["--robot: robot.urdf:1: ", "2 chains", flags],
+        &["--robot: robot.urdf:1: ", "with 2 ends", flags],
     );
     let chosen = [&conceal[..], &["--tip", "fore", "--lock", "swing=0.5"]].concat();
     case.sandbox.succeed(&chosen);
@@ -123,7 +123,7 @@ fn the_arm_of_a_branching_robot_is_the_recorded_one_or_chosen() {
                     frequency_1 = 0.5\nfrequency_2 = 0.7\n";
     case.sandbox.write("s.toml", scenario);
     let task = ["--scenario", "s.toml", "--rerun", "off"];
-    says(&case.sandbox.refuse(&task), &["s.toml:1", "2 chains"]);
+    says(&case.sandbox.refuse(&task), &["s.toml:1", "with 2 ends"]);
     case.sandbox
         .succeed(&[&task[..], &["--base", "column", "--tip", "fore", "--out", "two"]].concat());
     assert_eq!(

@@ -61,7 +61,7 @@ fn recorded(joints: &[&str]) -> ChainOptions {
 fn a_branching_robot_is_refused_with_the_flags_to_give() {
     let message = load(&ChainOptions::default()).expect_err("it has two arms");
     for part in [
-        "2 chains",
+        "chains of moving joints with 2 ends",
         "--base carriage --tip left_lower (2 joints: left_shoulder … left_elbow) or --base root --tip left_lower (3 joints: \
          lift … left_elbow)",
         "--base carriage --tip right_lower (2 joints",

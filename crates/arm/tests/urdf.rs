@@ -66,7 +66,7 @@ fn what_is_no_serial_arm_is_refused_by_name() {
     ]);
     let message = refusal(&branch);
     assert!(
-        message.contains("2 chains") && message.contains("--tip a") && message.contains("--tip c"),
+        message.contains("with 2 ends") && message.contains("--tip a") && message.contains("--tip c"),
         "{message}"
     );
 
