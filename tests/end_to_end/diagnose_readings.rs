@@ -9,6 +9,18 @@ use crate::diagnose_mistakes::{inspected, map_in, with_numbers};
 use crate::diagnose_refusals::{case, changed, says};
 use crate::support::{Sandbox, root};
 
+/// One recording, by its torques.
+const DIAGNOSE: [&str; 8] = [
+    "diagnose",
+    "--robot",
+    "robot.urdf",
+    "--train",
+    "a.csv",
+    "--torques-only",
+    "--json",
+    "o.json",
+];
+
 #[test]
 fn zeros_signs_and_order_are_told_with_the_map_that_mends_them() {
     let case = case();
@@ -66,16 +78,7 @@ fn whole_turns_change_nothing() {
     let case = case();
     let sentences = |text: &str| -> Vec<String> {
         case.sandbox.write("a.csv", text);
-        case.sandbox.succeed(&[
-            "diagnose",
-            "--robot",
-            "robot.urdf",
-            "--train",
-            "a.csv",
-            "--torques-only",
-            "--json",
-            "o.json",
-        ]);
+        case.sandbox.succeed(&DIAGNOSE);
         let report = case.sandbox.json("o.json");
         assert!(report["warnings"].is_null(), "{}", report["warnings"]);
         let findings = report["findings"].as_array().expect("findings").iter();
@@ -213,20 +216,8 @@ fn what_is_not_certain_is_a_warning_in_every_report() {
         .text("robot.urdf")
         .replace("lower=\"-3\" upper=\"3\"", "lower=\"-0.3\" upper=\"0.3\"");
     case.sandbox.write("robot.urdf", &text);
-    case.sandbox.succeed(&[
-        "diagnose",
-        "--robot",
-        "robot.urdf",
-        "--train",
-        "a.csv",
-        "--torques-only",
-        "--json",
-        "o.json",
-        "--markdown",
-        "o.md",
-        "--report",
-        "o.html",
-    ]);
+    case.sandbox
+        .succeed(&[&DIAGNOSE[..], &["--markdown", "o.md", "--report", "o.html"]].concat());
     let warnings = case.sandbox.json("o.json")["warnings"].clone();
     let said = "exceed the URDF's limits";
     says(&warnings[0]["text"].to_string(), &[said]);
@@ -241,20 +232,10 @@ fn recordings_are_diagnosed_as_they_were_read_if_the_user_says_so() {
     let case = case();
     case.sandbox
         .write("a.csv", &with_numbers(|row| row[4 + SHOULDER] *= -1.0));
-    let command = [
-        "diagnose",
-        "--robot",
-        "robot.urdf",
-        "--train",
-        "a.csv",
-        "--torques-only",
-        "--json",
-        "o.json",
-    ];
-    says(&case.sandbox.succeed(&command), &["--as-read"]);
+    says(&case.sandbox.succeed(&DIAGNOSE), &["--as-read"]);
     let first = case.sandbox.json("o.json");
     assert_eq!(first["verdict"], "units_first");
-    case.sandbox.succeed(&[&command[..], &["--as-read"]].concat());
+    case.sandbox.succeed(&[&DIAGNOSE[..], &["--as-read"]].concat());
     let second = case.sandbox.json("o.json");
     assert_ne!(second["verdict"], "units_first");
     assert!(second["doubts"].is_null());

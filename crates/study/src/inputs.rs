@@ -368,9 +368,7 @@ fn unusable(regular: &RegularRecording) -> Option<String> {
 /// Whether no joint moves: less than a thousandth of a radian or metre.
 fn is_still(recording: &RegularRecording) -> bool {
     recording.q.iter().all(|q| {
-        let (low, high) = q
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+        let (low, high) = turns::range(q);
         high - low < 1e-3
     })
 }

@@ -44,21 +44,26 @@ pub fn beyond_limits(arm: &Arm, q: &[Vec<f64>]) -> f64 {
         if upper <= lower || low > high {
             return 0.0;
         }
-        let turns = match joint.kind {
-            JointKind::Revolute => ((0.5 * (low + high) - 0.5 * (lower + upper)) / TAU).round() * TAU,
+        let moved = match joint.kind {
+            JointKind::Revolute => nearest_turns(low, high, lower, upper) * TAU,
             JointKind::Prismatic => 0.0,
         };
-        (lower - (low - turns)).max(high - turns - upper).max(0.0)
+        (lower - (low - moved)).max(high - moved - upper).max(0.0)
     };
     arm.joints().iter().zip(q).map(of).fold(0.0, f64::max)
 }
 
 /// The least and the largest of the finite values; the first is larger if there are none.
-fn range(q: &[f64]) -> (f64, f64) {
+pub(crate) fn range(q: &[f64]) -> (f64, f64) {
     let known = q.iter().copied().filter(|q| q.is_finite());
     known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), q| {
         (low.min(q), high.max(q))
     })
+}
+
+/// The whole turns between the middle of a range and that of the limits.
+fn nearest_turns(low: f64, high: f64, lower: f64, upper: f64) -> f64 {
+    ((0.5 * (low + high) - 0.5 * (lower + upper)) / TAU).round()
 }
 
 /// The whole turns by which a range lies beyond limits; 0 if it is within them, if no number of turns brings it there, or if there are
@@ -68,7 +73,7 @@ fn turns_off(low: f64, high: f64, lower: f64, upper: f64) -> f64 {
     if upper <= lower || !low.is_finite() || !high.is_finite() || is_within(0.0) {
         return 0.0;
     }
-    let turns = ((0.5 * (low + high) - 0.5 * (lower + upper)) / TAU).round();
+    let turns = nearest_turns(low, high, lower, upper);
     if is_within(turns) { turns } else { 0.0 }
 }
 

@@ -2,6 +2,8 @@
 
 use recording::RegularRecording;
 
+use crate::turns::range;
+
 /// Half the span of a parabola (s).
 const HALF_SPAN: f64 = 0.04;
 /// A joint moves if its position changes by more than this (rad or m).
@@ -80,12 +82,11 @@ impl Smooth {
 
     /// Whether each joint moves by more than [`MOVES`].
     pub fn moves(&self) -> Vec<bool> {
-        let span = |q: &Vec<f64>| {
-            let bounds = (f64::INFINITY, f64::NEG_INFINITY);
-            let (low, high) = q.iter().fold(bounds, |(low, high), q| (low.min(*q), high.max(*q)));
-            high - low
+        let moves = |q: &Vec<f64>| {
+            let (low, high) = range(q);
+            high - low > MOVES
         };
-        self.q.iter().map(|q| span(q) > MOVES).collect()
+        self.q.iter().map(moves).collect()
     }
 
     /// The number of instants.

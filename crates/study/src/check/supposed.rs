@@ -154,25 +154,24 @@ fn nats_beside_catalogue(
     let best = judged.best;
     let old: Vec<RegularRecording> = best.recordings.iter().map(|&at| recordings[at].clone()).collect();
     let new: Vec<RegularRecording> = old.iter().map(|one| best.supposition.applied(arm, one)).collect();
-    let bases = if best.recordings.len() < recordings.len() {
+    let base = if best.recordings.len() < recordings.len() {
         // The base may hang otherwise in some of the recordings.
-        Supposition::bases(arm)
+        let bases: Vec<Supposition> = [Supposition::AsItIs]
+            .into_iter()
+            .chain(Supposition::bases(arm))
+            .collect();
+        let misfits: Vec<(f64, Arm)> = bases
+            .into_par_iter()
+            .map(|base| {
+                let arm = base.arm(arm);
+                let found = agreement(&arm, &inputs(&old), known, Some(as_it_is));
+                (found.map_or(f64::INFINITY, |found| found.misfit), arm)
+            })
+            .collect();
+        misfits.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?.1
     } else {
-        Vec::new()
+        arm.clone()
     };
-    let bases: Vec<Arm> = bases
-        .into_iter()
-        .map(|base| base.arm(arm))
-        .chain([arm.clone()])
-        .collect();
-    let misfits = bases.into_par_iter().map(|arm| {
-        let misfit = agreement(&arm, &inputs(&old), known, Some(as_it_is)).map(|found| found.misfit);
-        (misfit.unwrap_or(f64::INFINITY), arm)
-    });
-    let (_, base) = misfits
-        .collect::<Vec<_>>()
-        .into_iter()
-        .min_by(|a, b| a.0.total_cmp(&b.0))?;
     let (without, with) = rayon::join(
         || searched(&base, &inputs(&old), known, as_it_is),
         || searched(arm, &inputs(&new), known, as_it_is),
