@@ -85,15 +85,15 @@ pub fn agreement(
     loop {
         let products = study.training_products();
         let problem = study.problem(&products);
-        let mut chosen = problem.reweighted(problem.choose(set.clone(), &products.first_weights()));
-        if !is_far(&found(&study, &products, &chosen)) {
-            chosen = study.with_best_strengths(chosen);
+        let mut selected = problem.reweighted(problem.choose(set.clone(), &products.first_weights()));
+        if !is_far(&found(&study, &products, &selected)) {
+            selected = study.with_best_strengths(selected);
         }
         let products = study.training_products();
         let problem = study.problem(&products);
         let before = set.len();
-        set.retain(|&candidate| problem.is_possible(candidate, &chosen.fit));
-        let found = found(&study, &products, &chosen);
+        set.retain(|&candidate| problem.is_possible(candidate, &selected.fit));
+        let found = found(&study, &products, &selected);
         if set.len() == before || is_far(&found) {
             return Ok(found);
         }
@@ -113,12 +113,12 @@ pub fn searched(arm: &Arm, inputs: &[Input<'_>], known: &[Effect], other: &Agree
         ..Options::default()
     };
     let mut study = Study::new(Data::new(arm, inputs, &options)?, &options);
-    let chosen = plan::search(&mut study, &|_| ());
-    Ok(found(&study, &study.training_products(), &chosen).misfit)
+    let selected = plan::search(&mut study, &|_| ());
+    Ok(found(&study, &study.training_products(), &selected).misfit)
 }
 
-/// What the fit `chosen` says.
-fn found(study: &Study, products: &Products, chosen: &Selection) -> Agreement {
+/// What the fit `selected` says.
+fn found(study: &Study, products: &Products, selected: &Selection) -> Agreement {
     let joints = || 0..study.arm.dof();
     // The mean square about the mean, of the rows that are fitted.
     let variance = |joint: usize| {
@@ -129,12 +129,12 @@ fn found(study: &Study, products: &Products, chosen: &Selection) -> Agreement {
     let variances: Vec<f64> = joints().map(|joint| variance(joint).max(f64::MIN_POSITIVE)).collect();
     let size = |joint: usize| 0.5 * products.evidence[joint] * variances[joint].ln();
     Agreement {
-        misfit: chosen.score - joints().map(size).sum::<f64>(),
+        misfit: selected.score - joints().map(size).sum::<f64>(),
         misfit_of: joints()
-            .map(|joint| products.joint_loss(joint, chosen.fit.rss[joint]) - size(joint))
+            .map(|joint| products.joint_loss(joint, selected.fit.rss[joint]) - size(joint))
             .collect(),
         unexplained: joints()
-            .map(|joint| chosen.fit.rss[joint] / (products.count[joint].max(1.0) * variances[joint]))
+            .map(|joint| selected.fit.rss[joint] / (products.count[joint].max(1.0) * variances[joint]))
             .collect(),
         cutoff: study.motions.cutoff,
         strengths: study.strengths.clone(),

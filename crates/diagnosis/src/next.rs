@@ -89,14 +89,14 @@ struct Tried {
 pub fn propose(
     study: &Study,
     products: &Products,
-    chosen: &Selection,
+    selected: &Selection,
     (arm, effects): (&Arm, &[Effect]),
     findings: &[(Finding, Option<usize>)],
     hidden: &[NotObservable],
     unexplained: &[Unexplained],
 ) -> Result<Next, torque::TorqueError> {
-    let (confusions, unpredicted) = confusions(study, chosen, findings, unexplained);
-    let hidden = visible(study, chosen, hidden);
+    let (confusions, unpredicted) = confusions(study, selected, findings, unexplained);
+    let hidden = visible(study, selected, hidden);
     let columns = confusions
         .iter()
         .flat_map(|c| c.pair.instead.iter().flat_map(|(set, _)| set).chain(&c.pair.without));
@@ -111,7 +111,7 @@ pub fn propose(
         },
         motion: None,
     };
-    let Some(prospect) = Prospect::new(study, products, chosen, columns.collect()) else {
+    let Some(prospect) = Prospect::new(study, products, selected, columns.collect()) else {
         return Ok(nothing);
     };
     let limits = Limits::new(study, (arm, effects), unexplained.is_empty())?;
@@ -217,7 +217,7 @@ fn shows(prospect: &Prospect<'_>, outlook: &Outlook, hidden: &[Hidden<'_>]) -> V
 /// without columns (a contact, a second encoder) are omitted.
 fn confusions(
     study: &Study,
-    chosen: &Selection,
+    selected: &Selection,
     findings: &[(Finding, Option<usize>)],
     unexplained: &[Unexplained],
 ) -> (Vec<Confusion>, Vec<NotSeparated>) {
@@ -230,8 +230,8 @@ fn confusions(
     for (finding, member) in findings {
         let Some(member) = *member else { continue };
         let this = &study.candidates[member];
-        let set = rivals::beside(study, chosen, member);
-        let alias = rivals::alias(study, chosen, member, &set);
+        let set = rivals::beside(study, selected, member);
+        let alias = rivals::alias(study, selected, member, &set);
         let with = |added: &[usize]| columns_of(&[&set, added].concat());
         for rival in &finding.confusable_with {
             let joint = rival.joint.as_deref().and_then(index);
@@ -245,7 +245,7 @@ fn confusions(
                 alias.is_some_and(|(hypothesis, place)| hypothesis.name() == Some(rival.effect) && place == joint);
             let instead: Vec<(Vec<usize>, Vec<usize>)> = if is_alias {
                 // In the finding's place, this alternative would be the finding itself.
-                vec![(chosen.fit.columns.clone(), Vec::new())]
+                vec![(selected.fit.columns.clone(), Vec::new())]
             } else if this.hypothesis.spec().same_on_all_joints == Some(rival.effect) {
                 let is_factor = |c: &usize| study.candidates[*c].hypothesis.name() == Some(rival.effect);
                 let all: Vec<usize> = (0..study.candidates.len()).filter(is_factor).collect();
@@ -287,7 +287,7 @@ fn confusions(
 }
 
 /// The `hidden` effects whose size can be predicted without simulation: torque limits, and linear effects.
-fn visible<'a>(study: &Study, chosen: &Selection, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> {
+fn visible<'a>(study: &Study, selected: &Selection, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> {
     let of = |entry: &'a NotObservable| {
         let name = entry.joint.as_deref()?;
         let joint = study.arm.joints().iter().position(|joint| joint.name == name)?;
@@ -313,7 +313,7 @@ fn visible<'a>(study: &Study, chosen: &Selection, hidden: &'a [NotObservable]) -
             .columns
             .iter()
             .rev()
-            .find(|c| !chosen.fit.columns.contains(c))?;
+            .find(|c| !selected.fit.columns.contains(c))?;
         Some(Hidden {
             entry,
             parameter,
@@ -333,10 +333,10 @@ fn described(
     list: &[Tried],
     best: usize,
 ) -> Next {
-    let chosen = &list[best];
+    let selected = &list[best];
     let (mut separates, mut not_separated) = (Vec::new(), Vec::new());
     for (k, confusion) in confusions.iter().enumerate() {
-        let [after, needed] = chosen.separations[k];
+        let [after, needed] = selected.separations[k];
         let (finding, rival) = (confusion.finding.clone(), confusion.rival.clone());
         let barred = if !confusion.is_explained {
             Some(Obstacle::Unexplained)
@@ -367,7 +367,7 @@ fn described(
     }
     let shows: Vec<Shows> = hidden
         .iter()
-        .zip(&chosen.shows)
+        .zip(&selected.shows)
         .filter_map(|(hidden, after)| {
             let after = (*after)?;
             let is_better = hidden.gain(Some(after)).is_none_or(|gain| gain > -BETTER.ln());
@@ -381,9 +381,9 @@ fn described(
         })
         .collect();
     let tells = !separates.is_empty() || !shows.is_empty();
-    let needed = limits.needed(&chosen.motion, DURATION, FINE);
+    let needed = limits.needed(&selected.motion, DURATION, FINE);
     Next {
-        motion: tells.then(|| chosen.motion.clone()),
+        motion: tells.then(|| selected.motion.clone()),
         report: NextExperiment {
             duration: tells.then_some(DURATION),
             separates,

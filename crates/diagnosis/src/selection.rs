@@ -49,7 +49,7 @@ impl FinalFit {
                 let resampled = final_fit::as_given(study, &mut judged);
                 (judged, resampled)
             }
-            None => selected(study, progress),
+            None => found(study, progress),
         };
         resampled.allow_for_other_background(study, &judged.named);
         let joints = (0..study.arm.dof()).into_par_iter();
@@ -67,13 +67,13 @@ impl FinalFit {
 }
 
 /// Repeats search and selection until the final fit refuses no further name.
-fn selected(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> (judge::Judged, Resampled) {
+fn found(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> (judge::Judged, Resampled) {
     loop {
         let refused = study.refused();
-        let chosen = plan::search(study, progress);
+        let selected = plan::search(study, progress);
         progress(Step::new(0.6, "testing the selected effects"));
         let (products, held) = (study.training_products(), study.held_products());
-        let mut judged = judge::judge(study, &products, held.as_ref(), chosen);
+        let mut judged = judge::judge(study, &products, held.as_ref(), selected);
         progress(Step::new(0.61, "final fit and intervals"));
         let resampled = final_fit::confirmed(study, &mut judged);
         // A refused name may have prevented that another effect was found.

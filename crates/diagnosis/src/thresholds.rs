@@ -1,6 +1,6 @@
 //! All thresholds that decide on names, in the order of the phases.
 //!
-//! A threshold without a source was chosen on simulated cases with known ground truth. Limits of iterations, guards against
+//! A threshold without a source was selected on simulated cases with known ground truth. Limits of iterations, guards against
 //! rounding and the design of the filters do not decide on a name; they are beside their code. The physical limits of an effect
 //! are in its file in `effects`. `docs/thresholds.md` lists all thresholds and is generated from these files.
 

@@ -153,8 +153,8 @@ impl Conclusion {
     pub fn diagnosis(self, arm: &Arm, mut study: Study) -> Diagnosis {
         let names = |held_out: bool| {
             let sources = study.motions.sources.iter();
-            let chosen = sources.filter(|source| source.held_out == held_out);
-            chosen.map(|source| source.name.clone()).collect()
+            let selected = sources.filter(|source| source.held_out == held_out);
+            selected.map(|source| source.name.clone()).collect()
         };
         let effects = self.effects().collect();
         study.motions.remarks.extend(self.unnamed);

@@ -28,8 +28,8 @@ pub fn identified(study: &Study) -> Vec<Option<f64>> {
         always && (is(&ViscousFriction) || is(&CoulombFriction) || is(&RotorInertia) || is(&TorqueOffset))
     };
     let set: Vec<usize> = (0..study.candidates.len()).filter(is_part).collect();
-    let chosen = problem.reweighted(problem.choose(set, &products.first_weights()));
+    let selected = problem.reweighted(problem.choose(set, &products.first_weights()));
     (0..study.arm.dof())
-        .map(|joint| errors(study, joint, &augmented(study, &chosen, joint)).held_out_nrmse_augmented)
+        .map(|joint| errors(study, joint, &augmented(study, &selected, joint)).held_out_nrmse_augmented)
         .collect()
 }

@@ -41,12 +41,12 @@ impl Visibility {
     }
 }
 
-/// The effects that are not testable in addition to the selection `chosen`.
-pub fn not_testable(study: &Study, products: &Products, chosen: &Selection) -> Vec<NotObservable> {
+/// The effects that are not testable in addition to the selection `selected`.
+pub fn not_testable(study: &Study, products: &Products, selected: &Selection) -> Vec<NotObservable> {
     let dof = study.motions.dof;
     let mut list: Vec<NotObservable> = (0..dof)
         .into_par_iter()
-        .flat_map_iter(|joint| on_joint(study, products, chosen, joint))
+        .flat_map_iter(|joint| on_joint(study, products, selected, joint))
         .collect();
     for joint in 0..dof {
         if products.count[joint] > 0.0 {
@@ -71,12 +71,12 @@ pub fn not_testable(study: &Study, products: &Products, chosen: &Selection) -> V
     list
 }
 
-fn on_joint(study: &Study, products: &Products, chosen: &Selection, joint: usize) -> Vec<NotObservable> {
+fn on_joint(study: &Study, products: &Products, selected: &Selection, joint: usize) -> Vec<NotObservable> {
     let name = &study.arm.joints()[joint].name;
     if products.count[joint] == 0.0 {
         return Vec::new();
     }
-    let found: Vec<Kind> = chosen
+    let found: Vec<Kind> = selected
         .set
         .iter()
         .map(|&c| &study.candidates[c])
@@ -107,7 +107,7 @@ fn on_joint(study: &Study, products: &Products, chosen: &Selection, joint: usize
                 let mut sizes: Vec<(f64, bool)> = of(study, kind, joint)
                     .map(|candidate| {
                         let size = study.table.terms[candidate.columns[0]].sizes[0];
-                        (size, is_seen(study, products, chosen, candidate, joint))
+                        (size, is_seen(study, products, selected, candidate, joint))
                     })
                     .collect();
                 sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -133,12 +133,12 @@ fn on_joint(study: &Study, products: &Products, chosen: &Selection, joint: usize
                     }
                     continue;
                 };
-                let is_new = |column: &&usize| !chosen.fit.columns.contains(*column);
+                let is_new = |column: &&usize| !selected.fit.columns.contains(*column);
                 let Some(&column) = candidate.columns.iter().rev().find(is_new) else {
                     continue;
                 };
                 let visibility = Visibility {
-                    own: products.drop_of(&study.table, &chosen.fit, column),
+                    own: products.drop_of(&study.table, &selected.fit, column),
                     spread: spread(study, joint, column),
                     count: products.count[joint],
                     evidence: products.evidence[joint],
@@ -154,12 +154,12 @@ fn on_joint(study: &Study, products: &Products, chosen: &Selection, joint: usize
                 if share > HIDDEN {
                     let because = "the effects found explain the same torque in these motions";
                     let (table, arm) = (&study.table, &study.arm);
-                    if share > BEYOND || is_beyond_physics(least, column, candidate, table, &chosen.fit, arm) {
+                    if share > BEYOND || is_beyond_physics(least, column, candidate, table, &selected.fit, arm) {
                         add(because, None, None);
                         continue;
                     }
                     let size = if is_of_first {
-                        least / chosen.fit.coefficient(candidate.columns[0]).max(0.0)
+                        least / selected.fit.coefficient(candidate.columns[0]).max(0.0)
                     } else {
                         least
                     };
@@ -202,9 +202,9 @@ pub fn needed(study: &Study, candidate: &Candidate) -> f64 {
 }
 
 /// Whether an effect with a coefficient of one would have been detected at its size.
-fn is_seen(study: &Study, products: &Products, chosen: &Selection, candidate: &Candidate, joint: usize) -> bool {
+fn is_seen(study: &Study, products: &Products, selected: &Selection, candidate: &Candidate, joint: usize) -> bool {
     let column = candidate.columns[0];
-    let drop = products.drop_of(&study.table, &chosen.fit, column);
+    let drop = products.drop_of(&study.table, &selected.fit, column);
     let nats = 0.5 * products.evidence[joint] * (1.0 + drop / products.count[joint].max(1.0)).ln();
     let share = spread(study, joint, column) / study.scales.torque[joint].max(1e-300);
     nats > needed(study, candidate) && share > study.thresholds.least_share

@@ -34,7 +34,7 @@ pub struct Pair {
 /// The recordings reduced to some columns, to which a motion can be added.
 pub struct Prospect<'a> {
     study: &'a Study,
-    chosen: &'a Selection,
+    selected: &'a Selection,
     about: About,
     nominal: Vec<f64>,
     /// Indices of the study's columns, in ascending order.
@@ -65,8 +65,13 @@ pub struct Outlook {
 
 impl<'a> Prospect<'a> {
     /// The recordings fitted in `study`, reduced to `columns`; `None` if there are none.
-    pub fn new(study: &'a Study, products: &Products, chosen: &'a Selection, mut columns: Vec<usize>) -> Option<Self> {
-        columns.extend(&chosen.fit.columns);
+    pub fn new(
+        study: &'a Study,
+        products: &Products,
+        selected: &'a Selection,
+        mut columns: Vec<usize>,
+    ) -> Option<Self> {
+        columns.extend(&selected.fit.columns);
         columns.sort_unstable();
         columns.dedup();
         let terms: Vec<Term> = columns.iter().map(|&column| study.table.terms[column]).collect();
@@ -90,8 +95,8 @@ impl<'a> Prospect<'a> {
         }
         Some(Self {
             study,
-            chosen,
-            about: About::new(study, &chosen.fit),
+            selected,
+            about: About::new(study, &selected.fit),
             nominal: study.arm.inertial_parameters(),
             derivatives: terms.iter().any(needs),
             grid: (period, Kernel::new(study.motions.cutoff, period), stride),
@@ -110,7 +115,7 @@ impl<'a> Prospect<'a> {
         Outlook {
             products: self.old.clone(),
             torque: self.study.scales.torque.clone(),
-            weights: self.chosen.fit.weights.clone(),
+            weights: self.selected.fit.weights.clone(),
             largest: vec![0.0; self.study.motions.dof],
         }
     }
@@ -166,7 +171,7 @@ impl<'a> Prospect<'a> {
         let new = new.picked(&table, &(0..self.columns.len()).collect::<Vec<_>>());
         // The residual of the motion is predicted to be as large as that of the recordings.
         let variance: Vec<f64> = (0..dof)
-            .map(|j| self.chosen.fit.rss[j].max(0.0) / self.old.count[j].max(1.0))
+            .map(|j| self.selected.fit.rss[j].max(0.0) / self.old.count[j].max(1.0))
             .collect();
         let evidence = (0..dof)
             .map(|j| {
@@ -180,7 +185,7 @@ impl<'a> Prospect<'a> {
         Outlook {
             products: self.old.joined(&new, &variance, evidence, floor),
             torque,
-            weights: self.chosen.fit.weights.clone(),
+            weights: self.selected.fit.weights.clone(),
             largest,
         }
     }
@@ -216,7 +221,7 @@ impl<'a> Prospect<'a> {
 
     /// The torques that the motion needs by the findings.
     fn add_torques(&self, chunk: &mut Chunk, rigid: &Rigid) {
-        let fit = &self.chosen.fit;
+        let fit = &self.selected.fit;
         let is_carried = |term: Term| self.about.carried.iter().any(|(carried, _)| *carried == term);
         let scales = &self.study.scales;
         let mut free = rigid.tau.clone();
@@ -261,7 +266,7 @@ impl<'a> Prospect<'a> {
             let places = self.places(columns);
             outlook.products.fit(&self.bare, &places, &outlook.weights)
         };
-        let with = fit(&self.chosen.fit.columns).loss;
+        let with = fit(&self.selected.fit.columns).loss;
         let without = fit(&pair.without).loss;
         let mut rivals: Vec<_> = pair.instead.iter().map(|(set, added)| (fit(set), set, added)).collect();
         rivals.sort_by(|a, b| a.0.loss.total_cmp(&b.0.loss));
@@ -278,7 +283,7 @@ impl<'a> Prospect<'a> {
     /// The detectability of columns in addition to the findings, each on a joint.
     pub fn visibility(&self, outlook: &Outlook, wanted: &[(usize, usize)]) -> Vec<Visibility> {
         let products = &outlook.products;
-        let columns = self.places(&self.chosen.fit.columns);
+        let columns = self.places(&self.selected.fit.columns);
         let fit = products.fit(&self.bare, &columns, &outlook.weights);
         let of = |&(joint, column): &(usize, usize)| {
             let place = self.columns.binary_search(&column).ok()?;

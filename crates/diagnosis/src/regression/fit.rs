@@ -88,23 +88,23 @@ impl Fit {
     }
 
     /// The selected columns, without those of the background.
-    pub fn chosen(&self) -> &[usize] {
+    pub fn selected(&self) -> &[usize] {
         &self.columns[self.background..]
     }
 }
 
 impl Products {
-    /// The products over the recordings that `chosen` selects; `seconds` is the time between rows, `tempo` the frequency of
+    /// The products over the recordings that `selected` selects; `seconds` is the time between rows, `tempo` the frequency of
     /// each joint's motion (Hz).
-    pub fn new(table: &Table, chosen: impl Fn(usize) -> bool, seconds: &[f64], tempo: &[f64], floor: &[f64]) -> Self {
-        let recordings: Vec<usize> = (0..table.rows.len()).filter(|&r| chosen(r)).collect();
+    pub fn new(table: &Table, selected: impl Fn(usize) -> bool, seconds: &[f64], tempo: &[f64], floor: &[f64]) -> Self {
+        let recordings: Vec<usize> = (0..table.rows.len()).filter(|&r| selected(r)).collect();
         let sum = |joint: usize| -> Gram {
             let this = &table.joints[joint];
-            let chosen = this
+            let selected = this
                 .stretches
                 .iter()
                 .filter(|stretch| recordings.contains(&stretch.recording));
-            Gram::sum(this.x.len(), chosen.map(|stretch| &stretch.gram))
+            Gram::sum(this.x.len(), selected.map(|stretch| &stretch.gram))
         };
         let over = |joint: usize, weight: &dyn Fn(usize) -> f64| -> f64 {
             recordings
@@ -242,7 +242,7 @@ impl Products {
             if weights.iter().zip(&fit.weights).all(is_same) {
                 break;
             }
-            fit = self.solve(table, fit.chosen(), &weights);
+            fit = self.solve(table, fit.selected(), &weights);
         }
         fit
     }

@@ -21,13 +21,13 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
         .filter(|&c| study.candidates[c].hypothesis.is_friction())
         .collect();
     let products = study.training_products();
-    let mut chosen = study.problem(&products).choose(baseline, &products.first_weights());
+    let mut selected = study.problem(&products).choose(baseline, &products.first_weights());
     for round in 1..=SUGGESTIONS {
         progress(Step::new(
             0.12 + 0.08 * round as f64,
             &format!("searching effects, round {round}"),
         ));
-        let before = chosen.set.clone();
+        let before = selected.set.clone();
         // Unmodelled forms must not hide effects that the residual suggests. Neither must earlier suggestions, which were
         // made with a worse fit: the period of a ripple, a contact or an onset may have taken the place of another one.
         let products = study.training_products();
@@ -40,16 +40,16 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
                 hypothesis.name().is_some() && !sets_in && !hypothesis.spec().is_suggested
             })
             .collect();
-        let next = study.problem(&products).choose(named, &chosen.fit.weights);
-        study.note("searched again in this round", &chosen, &next);
-        chosen = next;
-        study.suggest(&chosen);
+        let next = study.problem(&products).choose(named, &selected.fit.weights);
+        study.note("searched again in this round", &selected, &next);
+        selected = next;
+        study.suggest(&selected);
         let products = study.training_products();
         let problem = study.problem(&products);
         let allowed = study.allowed();
-        chosen = problem.choose(chosen.set, &chosen.fit.weights);
-        chosen = study.grown(chosen, &allowed);
-        let mut sets = [before, chosen.set.clone()];
+        selected = problem.choose(selected.set, &selected.fit.weights);
+        selected = study.grown(selected, &allowed);
+        let mut sets = [before, selected.set.clone()];
         sets.iter_mut().for_each(|set| set.sort_unstable());
         if sets[0] == sets[1] {
             break;
@@ -60,24 +60,24 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
             0.32 + 0.1 * round as f64,
             &format!("refining sizes, round {round}"),
         ));
-        chosen = refine(study, chosen, round > 1);
-        let formed_anew = study.relinearise(&chosen.fit, &chosen.set);
+        selected = refine(study, selected, round > 1);
+        let formed_anew = study.relinearise(&selected.fit, &selected.set);
         let again = formed_anew.is_some();
-        let set = formed_anew.unwrap_or_else(|| chosen.set.clone());
+        let set = formed_anew.unwrap_or_else(|| selected.set.clone());
         let products = study.training_products();
         let problem = study.problem(&products);
         let allowed = study.allowed();
         let before = set.clone();
-        chosen = problem.choose(set, &chosen.fit.weights);
-        let pruned = problem.prune(chosen.clone());
-        study.note("costs more evidence than it brings", &chosen, &pruned);
-        chosen = study.grown(pruned, &allowed);
+        selected = problem.choose(set, &selected.fit.weights);
+        let pruned = problem.prune(selected.clone());
+        study.note("costs more evidence than it brings", &selected, &pruned);
+        selected = study.grown(pruned, &allowed);
         let products = study.training_products();
-        let swapped = study.problem(&products).swap(chosen.clone(), &allowed, SWAPS);
-        study.note("explains more in its place", &chosen, &swapped);
-        chosen = swapped;
-        if chosen.set != before {
-            chosen = refine(study, chosen, false);
+        let swapped = study.problem(&products).swap(selected.clone(), &allowed, SWAPS);
+        study.note("explains more in its place", &selected, &swapped);
+        selected = swapped;
+        if selected.set != before {
+            selected = refine(study, selected, false);
         } else if !again {
             break;
         }
@@ -86,15 +86,15 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
     for _ in 0..LAST {
         let products = study.training_products();
         let allowed = study.allowed();
-        let before = chosen.set.clone();
-        chosen = study.problem(&products).choose(chosen.set, &chosen.fit.weights);
-        chosen = study.grown(chosen, &allowed);
-        if chosen.set == before {
+        let before = selected.set.clone();
+        selected = study.problem(&products).choose(selected.set, &selected.fit.weights);
+        selected = study.grown(selected, &allowed);
+        if selected.set == before {
             break;
         }
-        chosen = refine(study, chosen, false);
+        selected = refine(study, selected, false);
     }
-    let chosen = study.without_imitations(chosen);
-    let chosen = study.with_payload_for_last_link(chosen);
-    study.without_payload_of_a_link(chosen)
+    let selected = study.without_imitations(selected);
+    let selected = study.with_payload_for_last_link(selected);
+    study.without_payload_of_a_link(selected)
 }

@@ -1,30 +1,23 @@
 //! The joint search: which candidates together explain the residual.
 
-use std::collections::HashMap;
-use std::sync::OnceLock;
-
 use arm::Arm;
 use rayon::prelude::*;
 
-use crate::regression::fit::{Fit, LeftOut, Products};
+use crate::regression::fit::{Fit, Products};
 use crate::regression::table::Table;
-use crate::search::candidate::{Candidate, Hypothesis};
+use crate::search::candidate::Candidate;
 use crate::search::physics::is_possible;
 use crate::thresholds::{KNOWN_DRIVE, TELLING_DRIVES, Thresholds};
 
 mod exchange;
 mod exclusion;
+mod growth;
 mod promise;
 
-/// The number of the most promising candidates that are fitted in full each round.
-const TRIED: usize = 8;
-/// The number of forms of one effect on one joint that are fitted in full before other effects.
-const AT_ONCE: usize = 3;
+pub use growth::Growth;
+
 /// The largest number of selected candidates.
 pub const MOST: usize = 60;
-
-/// The number of times that the next most promising candidates are tried if the first do not pay.
-const BATCHES: usize = 6;
 
 /// Selected candidates with their fit.
 #[derive(Clone, Debug)]
@@ -42,15 +35,6 @@ impl Selection {
     pub fn others(&self, member: usize) -> Vec<usize> {
         self.set.iter().copied().filter(|&c| c != member).collect()
     }
-}
-
-/// The memory of a stepwise growth.
-#[derive(Clone, Debug, Default)]
-pub struct Growth {
-    /// Candidates that do not improve the prediction of recordings that they were not fitted to.
-    pub refused: Vec<usize>,
-    /// Candidates that were fitted and not taken, with their score and the reason.
-    pub tried: Vec<(usize, f64, &'static str)>,
 }
 
 /// The rule that removes what is physically impossible.
@@ -102,11 +86,11 @@ impl Problem<'_> {
         Selection { set, fit, score }
     }
 
-    /// `chosen` with the joints weighted by their residuals.
-    pub fn reweighted(&self, chosen: Selection) -> Selection {
-        let fit = self.products.reweighted(self.table, chosen.fit);
-        let score = fit.loss + self.cost(&chosen.set) + self.misfit(&chosen.set, &fit);
-        Selection { fit, score, ..chosen }
+    /// `selected` with the joints weighted by their residuals.
+    pub fn reweighted(&self, selected: Selection) -> Selection {
+        let fit = self.products.reweighted(self.table, selected.fit);
+        let score = fit.loss + self.cost(&selected.set) + self.misfit(&selected.set, &fit);
+        Selection { fit, score, ..selected }
     }
 
     /// The cost of a simulated effect whose coefficient differs from one (nats).
@@ -124,90 +108,6 @@ impl Problem<'_> {
     /// Whether `candidate` is possible in `fit`.
     pub fn is_possible(&self, candidate: usize, fit: &Fit) -> bool {
         is_possible(&self.candidates[candidate], self.table, fit, self.arm)
-    }
-
-    /// The best addition to `chosen` among `allowed`, if one pays. Candidates that `growth` refused before are not tried again.
-    pub fn grow(&self, chosen: &Selection, allowed: &[usize], growth: &mut Growth) -> Option<Selection> {
-        let free: Vec<usize> = allowed
-            .iter()
-            .copied()
-            .filter(|&c| {
-                !growth.refused.contains(&c)
-                    && !chosen.set.contains(&c)
-                    && !chosen.set.iter().any(|&other| self.exclude(c, other))
-            })
-            .collect();
-        let mut promises = self.promises(chosen, &free);
-        promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        promises.retain(|(promise, _)| *promise > 0.0);
-        // The most promising candidates of each kind come first, because a candidate that contains a simpler one promises
-        // as much as that one, at all its sizes.
-        let kind = |c: usize| (self.candidates[c].joint, self.candidates[c].hypothesis);
-        let mut of_kind: HashMap<(Option<usize>, Hypothesis), usize> = HashMap::new();
-        let mut turns: Vec<(usize, usize)> = promises
-            .into_iter()
-            .map(|(_, candidate)| {
-                let before = of_kind.entry(kind(candidate)).or_default();
-                *before += 1;
-                ((*before - 1) / AT_ONCE, candidate)
-            })
-            .collect();
-        turns.sort_by_key(|&(turn, _)| turn);
-        let mut waiting = turns.into_iter().map(|(_, candidate)| candidate);
-        // The fit to which the candidates of a joint are added is computed once.
-        let bases: Vec<OnceLock<LeftOut<'_>>> = (0..self.table.dof()).map(|_| OnceLock::new()).collect();
-        for _ in 0..BATCHES {
-            let mut batch = Vec::with_capacity(TRIED);
-            while batch.len() < TRIED {
-                let next: Vec<usize> = waiting.by_ref().take(TRIED - batch.len()).collect();
-                if next.is_empty() {
-                    break;
-                }
-                let predicts = next
-                    .par_iter()
-                    .map(|&candidate| self.predicts(chosen, candidate, &bases));
-                let predicts: Vec<bool> = predicts.collect();
-                for (candidate, predicts) in next.into_iter().zip(predicts) {
-                    if predicts {
-                        batch.push(candidate);
-                    } else {
-                        growth.refused.push(candidate);
-                        growth.tried.push((
-                            candidate,
-                            chosen.score,
-                            "does not improve the prediction of recordings it was not fitted to",
-                        ));
-                    }
-                }
-            }
-            if batch.is_empty() {
-                break;
-            }
-            let tried: Vec<Selection> = batch
-                .par_iter()
-                .map(|&candidate| self.choose(self.with(&chosen.set, candidate), &chosen.fit.weights))
-                .collect();
-            let best = tried
-                .into_iter()
-                .filter(|next| {
-                    let added = next.set[next.set.len() - 1];
-                    let (possible, pays) = (self.is_possible(added, &next.fit), next.score < chosen.score);
-                    let rule = match (possible, pays) {
-                        (false, _) => IMPOSSIBLE,
-                        (true, false) => "costs more evidence than it brings",
-                        (true, true) => "another gains more",
-                    };
-                    growth.tried.push((added, next.score, rule));
-                    possible && pays
-                })
-                .min_by(|a, b| a.score.total_cmp(&b.score));
-            if let Some(best) = best {
-                let taken = best.set.last();
-                growth.tried.retain(|(candidate, ..)| Some(candidate) != taken);
-                return Some(best);
-            }
-        }
-        None
     }
 
     /// `set` and, last, `candidate`. Unmodelled structure comes with baseline friction: every drive has it, and a curve over
@@ -251,70 +151,44 @@ impl Problem<'_> {
         self.products.has_background() && candidate.hypothesis.is_certain_in_form()
     }
 
-    /// Whether `candidate` improves the prediction of recordings that it was not fitted to. `bases` are the fits of `chosen` on
-    /// the joints.
-    fn predicts<'a>(&'a self, chosen: &'a Selection, candidate: usize, bases: &[OnceLock<LeftOut<'a>>]) -> bool {
-        let candidate = &self.candidates[candidate];
-        if candidate.hypothesis.is_passing() || candidate.hypothesis.is_baseline() || self.is_background_too(candidate)
-        {
-            return true;
-        }
-        let columns = &chosen.fit.columns;
-        let Some(joint) = candidate.joint else {
-            return self
-                .products
-                .arm_gain(self.table, columns, &candidate.columns, &chosen.fit.weights)
-                > 0.0;
-        };
-        let fit = || self.products.left_out(self.table, joint, columns, &chosen.fit.weights);
-        let base = bases[joint].get_or_init(fit);
-        let (inside, outside) = self.products.gains(self.table, base, &candidate.columns);
-        outside
-            > if candidate.hypothesis.name().is_none() {
-                self.thresholds.predicted * inside
-            } else {
-                0.0
-            }
-    }
-
     /// Removes members that do not pay, or that are impossible, one by one.
-    pub fn prune(&self, mut chosen: Selection) -> Selection {
+    pub fn prune(&self, mut selected: Selection) -> Selection {
         loop {
-            let best = (0..chosen.set.len())
+            let best = (0..selected.set.len())
                 .into_par_iter()
                 .filter_map(|k| {
-                    let mut set = chosen.set.clone();
+                    let mut set = selected.set.clone();
                     let removed = set.remove(k);
-                    let must = !self.is_possible(removed, &chosen.fit);
+                    let must = !self.is_possible(removed, &selected.fit);
                     let may = must || self.may_go(&set, removed);
-                    may.then(|| (must, self.without(&chosen, removed)))
+                    may.then(|| (must, self.without(&selected, removed)))
                 })
                 .collect::<Vec<_>>()
                 .into_iter()
                 .min_by(|a, b| b.0.cmp(&a.0).then(a.1.score.total_cmp(&b.1.score)));
             match best {
-                Some((must, next)) if must || next.score <= chosen.score => chosen = self.reweighted(next),
-                _ => return chosen,
+                Some((must, next)) if must || next.score <= selected.score => selected = self.reweighted(next),
+                _ => return selected,
             }
         }
     }
 
     /// Adds candidates of `allowed` that pay, then removes those that no longer do.
-    pub fn forward(&self, mut chosen: Selection, allowed: &[usize]) -> Selection {
+    pub fn forward(&self, mut selected: Selection, allowed: &[usize]) -> Selection {
         let mut growth = Growth::default();
-        while chosen.set.len() < MOST {
-            match self.grow(&chosen, allowed, &mut growth) {
-                Some(next) => chosen = self.reweighted(next),
+        while selected.set.len() < MOST {
+            match self.grow(&selected, allowed, &mut growth) {
+                Some(next) => selected = self.reweighted(next),
                 None => break,
             }
         }
-        self.prune(chosen)
+        self.prune(selected)
     }
 
-    /// `chosen` without one of its members. A form of a simpler effect is replaced by that, if it pays.
-    pub fn without(&self, chosen: &Selection, member: usize) -> Selection {
-        let set = chosen.others(member);
-        let bare = self.choose(set.clone(), &chosen.fit.weights);
+    /// `selected` without one of its members. A form of a simpler effect is replaced by that, if it pays.
+    pub fn without(&self, selected: &Selection, member: usize) -> Selection {
+        let set = selected.others(member);
+        let bare = self.choose(set.clone(), &selected.fit.weights);
         let candidate = &self.candidates[member];
         let onset = |c: &Candidate| self.onset(c);
         let is_contained = |plain: &Candidate| plain.columns.iter().all(|column| candidate.columns.contains(column));
@@ -341,7 +215,7 @@ impl Problem<'_> {
         }
         let mut with = set;
         with.push(plain);
-        let simpler = self.choose(with, &chosen.fit.weights);
+        let simpler = self.choose(with, &selected.fit.weights);
         if simpler.score < bare.score && self.is_possible(plain, &simpler.fit) {
             simpler
         } else {

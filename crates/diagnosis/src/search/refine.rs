@@ -153,23 +153,23 @@ fn nudged(term: &Term, kind: usize, step: f64, changed_at: Option<f64>) -> Optio
     }
 }
 
-/// Refines the sizes in `chosen`, coarsely first if they were not refined before, and removes members that no longer pay.
-pub fn refine(study: &mut Study, chosen: Selection, again: bool) -> Selection {
-    let before = chosen.clone();
-    let chosen = resize(study, chosen, again);
-    study.note("a better size or form", &before, &chosen);
+/// Refines the sizes in `selected`, coarsely first if they were not refined before, and removes members that no longer pay.
+pub fn refine(study: &mut Study, selected: Selection, again: bool) -> Selection {
+    let before = selected.clone();
+    let selected = resize(study, selected, again);
+    study.note("a better size or form", &before, &selected);
     let products = study.training_products();
-    let pruned = study.problem(&products).prune(chosen.clone());
-    study.note("costs more evidence than it brings", &chosen, &pruned);
+    let pruned = study.problem(&products).prune(selected.clone());
+    study.note("costs more evidence than it brings", &selected, &pruned);
     pruned
 }
 
-/// Refines the sizes in `chosen`; all members stay, in their order.
-pub fn resize(study: &mut Study, mut chosen: Selection, again: bool) -> Selection {
+/// Refines the sizes in `selected`; all members stay, in their order.
+pub fn resize(study: &mut Study, mut selected: Selection, again: bool) -> Selection {
     for round in (if again { 2 } else { 0 })..ROUNDS.len() {
         let mut options: Vec<(usize, Vec<Vec<Term>>)> = Vec::new();
         let mut missing = Vec::new();
-        for &member in &chosen.set {
+        for &member in &selected.set {
             let candidate = &study.candidates[member];
             let terms: Vec<Term> = candidate
                 .columns
@@ -216,23 +216,23 @@ pub fn resize(study: &mut Study, mut chosen: Selection, again: bool) -> Selectio
             let best = indices
                 .into_par_iter()
                 .filter_map(|index| {
-                    let set = chosen
+                    let set = selected
                         .set
                         .iter()
                         .map(|&m| if m == member { index } else { m })
                         .collect();
-                    let next = problem.choose(set, &chosen.fit.weights);
+                    let next = problem.choose(set, &selected.fit.weights);
                     problem.is_possible(index, &next.fit).then_some(next)
                 })
                 .collect::<Vec<_>>()
                 .into_iter()
                 .min_by(|a, b| a.score.total_cmp(&b.score));
             if let Some(best) = best
-                && best.score < chosen.score
+                && best.score < selected.score
             {
-                chosen = best;
+                selected = best;
             }
         }
     }
-    chosen
+    selected
 }

@@ -228,9 +228,9 @@ impl Study {
         self.force
     }
 
-    /// Inner products over the recordings that `chosen` selects.
-    pub fn products(&self, chosen: impl Fn(usize) -> bool) -> Products {
-        self.bare_products(chosen).with_background(self.background())
+    /// Inner products over the recordings that `selected` selects.
+    pub fn products(&self, selected: impl Fn(usize) -> bool) -> Products {
+        self.bare_products(selected).with_background(self.background())
     }
 
     /// Inner products over the recordings to be fitted.
@@ -254,9 +254,9 @@ impl Study {
         self.prior.at(strengths)
     }
 
-    /// Inner products over the recordings that `chosen` selects, without background.
-    fn bare_products(&self, chosen: impl Fn(usize) -> bool) -> Products {
-        Products::new(&self.table, chosen, &self.seconds, &self.motions.tempo, &self.floor)
+    /// Inner products over the recordings that `selected` selects, without background.
+    fn bare_products(&self, selected: impl Fn(usize) -> bool) -> Products {
+        Products::new(&self.table, selected, &self.seconds, &self.motions.tempo, &self.floor)
     }
 
     /// The problem with these products.

@@ -14,16 +14,16 @@ use crate::search::study::Study;
 use crate::thresholds::{MOST_CONTACTS, MOST_OF_A_RECORDING, MOST_RIPPLES, MOST_WAVES};
 
 impl Study {
-    /// Adds the candidates that the residual of `chosen` suggests.
-    pub fn suggest(&mut self, chosen: &Selection) {
-        let residual = scan::residuals(&self.table, &chosen.fit);
+    /// Adds the candidates that the residual of `selected` suggests.
+    pub fn suggest(&mut self, selected: &Selection) {
+        let residual = scan::residuals(&self.table, &selected.fit);
         let times = self.motions.row_times();
         let dof = self.motions.dof;
         let windows = scan::contacts(
             &self.table,
             &times,
             &residual,
-            &chosen.fit.weights,
+            &selected.fit.weights,
             self.force(),
             &self.fitted,
             MOST_CONTACTS,
@@ -50,7 +50,7 @@ impl Study {
             })
             .collect();
         let of = |kind: &'static dyn EffectKind| Hypothesis::of(kind);
-        let mut new = scan::onsets(self, &chosen.fit.weights, &times, &residual);
+        let mut new = scan::onsets(self, &selected.fit.weights, &times, &residual);
         for (from, to) in windows {
             for round in [false, true] {
                 new.push((of(&ExternalContact), None, contact_columns(from, to, round)));

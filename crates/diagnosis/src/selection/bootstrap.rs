@@ -80,15 +80,17 @@ impl Resampled {
     }
 
     /// If the held-out recordings reduced the background, or only some links differ from the URDF and a background in which all links
-    /// do may explain nearly as much as that of `chosen`, effects have other sizes beside the other background. The intervals then
+    /// do may explain nearly as much as that of `selected`, effects have other sizes beside the other background. The intervals then
     /// hold those of both.
-    pub fn allow_for_other_background(&mut self, study: &mut Study, chosen: &Selection) {
+    pub fn allow_for_other_background(&mut self, study: &mut Study, selected: &Selection) {
         let preferred = study.preferred.clone().map(|strengths| {
             let products = study.products_at(&strengths);
-            let next = study.problem(&products).choose(chosen.set.clone(), &chosen.fit.weights);
+            let next = study
+                .problem(&products)
+                .choose(selected.set.clone(), &selected.fit.weights);
             (strengths, next)
         });
-        let Some((strengths, next)) = preferred.or_else(|| study.with_all_links(chosen, NEARLY_AS_LIKELY)) else {
+        let Some((strengths, next)) = preferred.or_else(|| study.with_all_links(selected, NEARLY_AS_LIKELY)) else {
             return;
         };
         let own = std::mem::replace(&mut study.strengths, strengths);
@@ -122,11 +124,11 @@ impl Resampled {
     }
 }
 
-/// Resamples the fit of `chosen`.
-pub fn resample(study: &mut Study, chosen: &Selection) -> Resampled {
+/// Resamples the fit of `selected`.
+pub fn resample(study: &mut Study, selected: &Selection) -> Resampled {
     let mut all: Vec<(usize, Size)> = Vec::new();
     let mut missing: Vec<Term> = Vec::new();
-    for &member in &chosen.set {
+    for &member in &selected.set {
         let terms = study.terms(member);
         for size in sizes(&terms) {
             for term in varied(&terms, size, 1.0 + STEP) {
@@ -138,10 +140,10 @@ pub fn resample(study: &mut Study, chosen: &Selection) -> Resampled {
         }
     }
     study.extend(missing);
-    let columns = chosen.fit.columns.clone();
-    let scaled = scaled(study, chosen);
+    let columns = selected.fit.columns.clone();
+    let scaled = scaled(study, selected);
     let p = columns.len() + all.len();
-    let systems = systems(study, chosen, &columns, &all);
+    let systems = systems(study, selected, &columns, &all);
     let prior = PriorDraws::new(study, p);
     let total = systems
         .iter()
@@ -185,18 +187,18 @@ pub fn resample(study: &mut Study, chosen: &Selection) -> Resampled {
 /// The indices of a column whose torque is measured through a torque scale, and of that scale's column.
 type ScaledBy = (usize, usize);
 
-/// The columns of `chosen` that a torque scale of their joint multiplies. The scale's own column is the rigid torque alone, so
+/// The columns of `selected` that a torque scale of their joint multiplies. The scale's own column is the rigid torque alone, so
 /// that the other effects on the joint are fitted in measured newton metres. Effects carried in the arm are rigid torque
 /// already.
-fn scaled(study: &Study, chosen: &Selection) -> Vec<ScaledBy> {
-    let columns = &chosen.fit.columns;
+fn scaled(study: &Study, selected: &Selection) -> Vec<ScaledBy> {
+    let columns = &selected.fit.columns;
     let term = |k: usize| study.table.terms[columns[k]];
     let is_scale = |&k: &usize| term(k).is(&RIGID) && term(k).onset().is_none();
-    let scales = (chosen.fit.background..columns.len()).filter(is_scale);
+    let scales = (selected.fit.background..columns.len()).filter(is_scale);
     let of = |scale: usize| {
         let is_scaled = move |&k: &usize| {
             let (this, law) = (term(k), term(k).law);
-            (k >= chosen.fit.background || this.is(&OFFSET))
+            (k >= selected.fit.background || this.is(&OFFSET))
                 && this.joint() == term(scale).joint()
                 && !this.always().is(&RIGID)
                 && law.carry.is_none()
@@ -266,13 +268,13 @@ impl PriorDraws {
 /// The weighted normal equations of each block.
 fn systems(
     study: &Study,
-    chosen: &Selection,
+    selected: &Selection,
     columns: &[usize],
     sizes: &[(usize, Size)],
 ) -> Vec<(DMatrix<f64>, DVector<f64>)> {
     let table = &study.table;
     let p = columns.len() + sizes.len();
-    let weights = study.training_products().evidence_weights(&chosen.fit.weights);
+    let weights = study.training_products().evidence_weights(&selected.fit.weights);
     // The columns of each joint, with the derivatives by the sizes last.
     let by_joint: Vec<Vec<Option<Vec<f64>>>> = (0..table.dof())
         .into_par_iter()
@@ -290,7 +292,7 @@ fn systems(
                     let (Some(old), Some(new)) = (find(old), find(&new)) else {
                         continue;
                     };
-                    let coefficient = chosen.fit.coefficient(old);
+                    let coefficient = selected.fit.coefficient(old);
                     let (Some(a), Some(b)) = (table.place[joint][old], table.place[joint][new]) else {
                         continue;
                     };

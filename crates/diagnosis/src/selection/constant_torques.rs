@@ -26,10 +26,10 @@ pub fn names(study: &Study, candidate: usize) -> Option<usize> {
     study.candidates[candidate].joint.filter(|_| is_constant && always)
 }
 
-/// `chosen` without those named constants that are better explained by small constants of all joints.
-pub fn leave_to_background(study: &mut Study, mut chosen: Selection) -> Selection {
+/// `selected` without those named constants that are better explained by small constants of all joints.
+pub fn leave_to_background(study: &mut Study, mut selected: Selection) -> Selection {
     loop {
-        let named: Vec<usize> = chosen
+        let named: Vec<usize> = selected
             .set
             .iter()
             .copied()
@@ -38,7 +38,7 @@ pub fn leave_to_background(study: &mut Study, mut chosen: Selection) -> Selectio
         let mut best: Option<(Strengths, Selection)> = None;
         for &member in &named {
             for offset in OFFSET_STRENGTHS.into_iter().filter(|&offset| offset > 0.0) {
-                let set = chosen.others(member);
+                let set = selected.others(member);
                 let strengths = Strengths {
                     offset,
                     named_offsets: set.iter().filter_map(|&c| names(study, c)).collect(),
@@ -46,26 +46,26 @@ pub fn leave_to_background(study: &mut Study, mut chosen: Selection) -> Selectio
                 };
                 let products = study.products_at(&strengths);
                 let problem = study.problem(&products);
-                let next = problem.reweighted(problem.choose(set, &chosen.fit.weights));
-                let least = best.as_ref().map_or(chosen.score, |(_, best)| best.score);
+                let next = problem.reweighted(problem.choose(set, &selected.fit.weights));
+                let least = best.as_ref().map_or(selected.score, |(_, best)| best.score);
                 if next.score < least - 1e-6 {
                     best = Some((strengths, next));
                 }
             }
         }
-        let Some((strengths, next)) = best else { return chosen };
+        let Some((strengths, next)) = best else { return selected };
         study.strengths = strengths;
-        study.note_strengths("constants of all joints in the place of a named one", &chosen, &next);
-        chosen = next;
+        study.note_strengths("constants of all joints in the place of a named one", &selected, &next);
+        selected = next;
     }
 }
 
-/// The constant torques in the fit `chosen`, by the joints' names.
-pub fn corrections(study: &Study, chosen: &Selection, resampled: &Resampled) -> BTreeMap<String, Parameter> {
+/// The constant torques in the fit `selected`, by the joints' names.
+pub fn corrections(study: &Study, selected: &Selection, resampled: &Resampled) -> BTreeMap<String, Parameter> {
     let of = |(joint, described): (usize, &Joint)| {
         let offset = Term::on(&OFFSET, joint);
         let column = study.table.terms.iter().position(|term| *term == offset)?;
-        if !chosen.fit.columns.contains(&column) {
+        if !selected.fit.columns.contains(&column) {
             return None;
         }
         let at = resampled.column(column)?;

@@ -308,14 +308,14 @@ fn guard(study: &mut Study, judged: &mut Judged) {
     }
 }
 
-/// The fit of `joint` with `chosen`.
-fn fit_of(study: &Study, chosen: &Selection, joint: usize) -> JointFit {
-    errors(study, joint, &augmented(study, chosen, joint))
+/// The fit of `joint` with `selected`.
+fn fit_of(study: &Study, selected: &Selection, joint: usize) -> JointFit {
+    errors(study, joint, &augmented(study, selected, joint))
 }
 
-/// The first joint whose held-out error in motion is larger with `chosen` than with the nominal model, and whether that at rest
+/// The first joint whose held-out error in motion is larger with `selected` than with the nominal model, and whether that at rest
 /// is for any joint.
-fn harmed(study: &Study, chosen: &Selection) -> (Option<usize>, bool) {
+fn harmed(study: &Study, selected: &Selection) -> (Option<usize>, bool) {
     let is_worse = |nominal: Option<f64>, augmented: Option<f64>| {
         nominal
             .zip(augmented)
@@ -323,7 +323,7 @@ fn harmed(study: &Study, chosen: &Selection) -> (Option<usize>, bool) {
     };
     let (mut moving, mut resting) = (None, false);
     for joint in 0..study.motions.dof {
-        let fit = fit_of(study, chosen, joint);
+        let fit = fit_of(study, selected, joint);
         if is_worse(fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented) {
             moving = moving.or(Some(joint));
         }
@@ -334,10 +334,10 @@ fn harmed(study: &Study, chosen: &Selection) -> (Option<usize>, bool) {
 
 /// The smaller background with the smallest held-out errors of all joints together, if they are smaller than now. Errors at rest
 /// are included, because wrong links that explain the motion of some joints change the weight on joints at rest.
-fn better_outside(study: &Study, chosen: &Selection) -> Option<(Strengths, Selection)> {
-    let loss = |chosen: &Selection| {
+fn better_outside(study: &Study, selected: &Selection) -> Option<(Strengths, Selection)> {
+    let loss = |selected: &Selection| {
         let of = |joint: usize| {
-            let fit = fit_of(study, chosen, joint);
+            let fit = fit_of(study, selected, joint);
             let error = fit
                 .held_out_nrmse_augmented?
                 .hypot(fit.held_out_nrmse_resting.unwrap_or(0.0));
@@ -350,9 +350,11 @@ fn better_outside(study: &Study, chosen: &Selection) -> Option<(Strengths, Selec
         .filter(|strengths| study.stated.allows(strengths))
         .map(|strengths| {
             let products = study.products_at(&strengths);
-            let next = study.problem(&products).choose(chosen.set.clone(), &chosen.fit.weights);
+            let next = study
+                .problem(&products)
+                .choose(selected.set.clone(), &selected.fit.weights);
             (loss(&next), strengths, next)
         });
     let (best, strengths, next) = trials.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    (best < loss(chosen)).then_some((strengths, next))
+    (best < loss(selected)).then_some((strengths, next))
 }

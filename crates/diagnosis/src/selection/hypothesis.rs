@@ -41,11 +41,11 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
     let mut waiting = check(study, wanted)?;
     let mut placed: Vec<Place<'_>> = Vec::new();
     let products = study.training_products();
-    let mut chosen = study.problem(&products).choose(Vec::new(), &products.first_weights());
+    let mut selected = study.problem(&products).choose(Vec::new(), &products.first_weights());
     // The time of an onset or a contact and the period of a ripple follow from the residual of the other effects.
     for suggest in [false, true] {
         if suggest {
-            study.suggest(&chosen);
+            study.suggest(&selected);
         }
         let products = study.training_products();
         let problem = study.problem(&products);
@@ -53,16 +53,16 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
             if !suggest && place.wanted.sets_in == Some(true) {
                 return true;
             }
-            match best(&problem, &chosen, None, place) {
+            match best(&problem, &selected, None, place) {
                 Some(next) => {
-                    chosen = next;
+                    selected = next;
                     placed.push(place);
                     false
                 }
                 None => true,
             }
         });
-        chosen = swept(&problem, chosen, &placed);
+        selected = swept(&problem, selected, &placed);
     }
     for Place { wanted: one, .. } in waiting {
         let place = one.joint.as_deref().unwrap_or("the whole arm");
@@ -73,20 +73,20 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
         study.motions.remarks.push(remark);
     }
     for round in 0..ROUNDS {
-        chosen = resize(study, chosen, round > 0);
-        let formed_anew = study.relinearise(&chosen.fit, &chosen.set);
+        selected = resize(study, selected, round > 0);
+        let formed_anew = study.relinearise(&selected.fit, &selected.set);
         let is_done = formed_anew.is_none();
-        let set = formed_anew.unwrap_or_else(|| chosen.set.clone());
+        let set = formed_anew.unwrap_or_else(|| selected.set.clone());
         let products = study.training_products();
-        chosen = study.problem(&products).choose(set, &chosen.fit.weights);
+        selected = study.problem(&products).choose(set, &selected.fit.weights);
         if is_done {
             break;
         }
     }
     let products = study.training_products();
-    let members = judge::describe(study, &study.problem(&products), &chosen);
+    let members = judge::describe(study, &study.problem(&products), &selected);
     Ok(Judged {
-        named: chosen,
+        named: selected,
         members,
         unmodelled: Vec::new(),
     })
@@ -166,14 +166,14 @@ fn no_joint(name: &str, study: &Study) -> String {
     )
 }
 
-/// `chosen` with the best form of an effect in the place of the member at `instead`, or added.
+/// `selected` with the best form of an effect in the place of the member at `instead`, or added.
 fn best(
     problem: &Problem<'_>,
-    chosen: &Selection,
+    selected: &Selection,
     instead: Option<usize>,
     Place { wanted, joint, other }: Place<'_>,
 ) -> Option<Selection> {
-    let mut others = chosen.set.clone();
+    let mut others = selected.set.clone();
     if let Some(at) = instead {
         others.remove(at);
     }
@@ -201,7 +201,7 @@ fn best(
     let with = |c: usize| {
         let mut set = others.clone();
         set.insert(instead.unwrap_or(set.len()), c);
-        let next = problem.choose(set, &chosen.fit.weights);
+        let next = problem.choose(set, &selected.fit.weights);
         (!problem.is_possible(c, &next.fit), next)
     };
     // Physically possible forms are preferred, if there are any.
@@ -212,18 +212,18 @@ fn best(
     best.map(|(_, next)| next)
 }
 
-/// `chosen` with each effect in the form that is best with the others' forms.
-fn swept(problem: &Problem<'_>, mut chosen: Selection, placed: &[Place<'_>]) -> Selection {
+/// `selected` with each effect in the form that is best with the others' forms.
+fn swept(problem: &Problem<'_>, mut selected: Selection, placed: &[Place<'_>]) -> Selection {
     for _ in 0..SWEEPS {
-        let before = chosen.set.clone();
+        let before = selected.set.clone();
         for (at, &place) in placed.iter().enumerate() {
-            if let Some(next) = best(problem, &chosen, Some(at), place) {
-                chosen = next;
+            if let Some(next) = best(problem, &selected, Some(at), place) {
+                selected = next;
             }
         }
-        if chosen.set == before {
+        if selected.set == before {
             break;
         }
     }
-    chosen
+    selected
 }

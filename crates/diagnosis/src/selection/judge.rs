@@ -16,7 +16,7 @@ mod held_out;
 
 use held_out::{out_of_sample, predicting};
 
-/// A chosen candidate with its contribution.
+/// A selected candidate with its contribution.
 #[derive(Clone, Debug)]
 pub struct Member {
     /// The index of the candidate.
@@ -56,42 +56,42 @@ impl Judged {
     }
 }
 
-/// Judges `chosen`; `held` are the products of the held-out recordings, if there are any.
-pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut chosen: Selection) -> Judged {
+/// Judges `selected`; `held` are the products of the held-out recordings, if there are any.
+pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut selected: Selection) -> Judged {
     let problem = study.problem(products);
-    let off = |chosen: &Selection| -> Option<usize> {
-        let is_off = |&c: &usize| !is_at_its_size(&study.candidates[c], &chosen.fit);
-        chosen.set.iter().copied().find(is_off)
+    let off = |selected: &Selection| -> Option<usize> {
+        let is_off = |&c: &usize| !is_at_its_size(&study.candidates[c], &selected.fit);
+        selected.set.iter().copied().find(is_off)
     };
-    while let Some(off) = off(&chosen) {
-        let next = problem.without(&chosen, off);
+    while let Some(off) = off(&selected) {
+        let next = problem.without(&selected, off);
         study.note(
             "its coefficient differs from one, for which it was simulated",
-            &chosen,
+            &selected,
             &next,
         );
-        chosen = next;
+        selected = next;
     }
-    while let Some(long) = lasting(study, &chosen) {
-        chosen = problem.without(&chosen, long);
+    while let Some(long) = lasting(study, &selected) {
+        selected = problem.without(&selected, long);
     }
     let mut members;
     if let Some(held) = held {
-        let next = predicting(study, &problem, held, chosen.clone());
-        study.note("does not predict held-out recordings", &chosen, &next);
-        chosen = next;
+        let next = predicting(study, &problem, held, selected.clone());
+        study.note("does not predict held-out recordings", &selected, &next);
+        selected = next;
     }
     loop {
-        members = describe(study, &problem, &chosen);
+        members = describe(study, &problem, &selected);
         let Some(weak) = weakest(study, &members) else { break };
-        let next = problem.without(&chosen, members[weak].candidate);
-        study.note("too small, or too little evidence, for a name", &chosen, &next);
-        chosen = next;
+        let next = problem.without(&selected, members[weak].candidate);
+        study.note("too small, or too little evidence, for a name", &selected, &next);
+        selected = next;
     }
     let (unmodelled, named): (Vec<Member>, Vec<Member>) = members
         .into_iter()
         .partition(|member| study.candidates[member.candidate].hypothesis.name().is_none());
-    let mut kept = problem.choose(named.iter().map(|m| m.candidate).collect(), &chosen.fit.weights);
+    let mut kept = problem.choose(named.iter().map(|m| m.candidate).collect(), &selected.fit.weights);
     if !unmodelled.is_empty() {
         // Unmodelled forms may have replaced simple effects. A constant is allowed if no other form remains on its joint, or if it
         // is much larger than the residual of the named effects there, because unmodelled forms also represent constants.
@@ -137,9 +137,9 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut ch
 }
 
 /// The longest contact in a recording of which contacts cover too much: together they replace another effect.
-fn lasting(study: &Study, chosen: &Selection) -> Option<usize> {
+fn lasting(study: &Study, selected: &Selection) -> Option<usize> {
     let window = |&c: &usize| Some((c, study.window(c)?));
-    let windows: Vec<(usize, [f64; 2])> = chosen.set.iter().filter_map(window).collect();
+    let windows: Vec<(usize, [f64; 2])> = selected.set.iter().filter_map(window).collect();
     let (recording, share) = study.contact_share(&windows.iter().map(|(_, window)| *window).collect::<Vec<_>>())?;
     if share <= MOST_OF_A_RECORDING {
         return None;
@@ -181,21 +181,21 @@ fn beside(study: &Study, problem: &Problem<'_>, kept: &Selection, unmodelled: &[
     }
 }
 
-/// Shares and evidence of all chosen candidates.
-pub fn describe(study: &Study, problem: &Problem<'_>, chosen: &Selection) -> Vec<Member> {
-    (0..chosen.set.len())
+/// Shares and evidence of all selected candidates.
+pub fn describe(study: &Study, problem: &Problem<'_>, selected: &Selection) -> Vec<Member> {
+    (0..selected.set.len())
         .into_par_iter()
         .map(|k| {
-            let candidate = chosen.set[k];
-            let without = problem.without(chosen, candidate);
+            let candidate = selected.set[k];
+            let without = problem.without(selected, candidate);
             let beyond = |joint: usize| {
-                let gained = (without.fit.rss[joint] - chosen.fit.rss[joint]).max(0.0);
+                let gained = (without.fit.rss[joint] - selected.fit.rss[joint]).max(0.0);
                 (gained / problem.products.count[joint].max(1.0)).sqrt() / study.scales.torque[joint].max(1e-300)
             };
             Member {
                 candidate,
-                shares: shares(study, chosen, candidate),
-                evidence: without.score - chosen.score,
+                shares: shares(study, selected, candidate),
+                evidence: without.score - selected.score,
                 beyond: (0..study.motions.dof).map(beyond).fold(0.0, f64::max),
             }
         })
@@ -204,9 +204,9 @@ pub fn describe(study: &Study, problem: &Problem<'_>, chosen: &Selection) -> Vec
 
 /// The standard deviation of a candidate's torque over the measured one's, on moving training rows, one per joint. For a nearly
 /// constant torque, the root mean square is used instead.
-fn shares(study: &Study, chosen: &Selection, candidate: usize) -> Vec<f64> {
+fn shares(study: &Study, selected: &Selection, candidate: usize) -> Vec<f64> {
     let columns = &study.candidates[candidate].columns;
-    let values = chosen.fit.values(columns);
+    let values = selected.fit.values(columns);
     (0..study.motions.dof)
         .map(|joint| {
             let torque = study.table.torque(joint, columns, &values);
@@ -223,9 +223,9 @@ fn shares(study: &Study, chosen: &Selection, candidate: usize) -> Vec<f64> {
 }
 
 /// Whether a candidate has no torque in the held-out recordings, so that they do not test it.
-pub fn is_idle(study: &Study, chosen: &Selection, candidate: usize) -> bool {
+pub fn is_idle(study: &Study, selected: &Selection, candidate: usize) -> bool {
     let columns = &study.candidates[candidate].columns;
-    let values = chosen.fit.values(columns);
+    let values = selected.fit.values(columns);
     let rows = crate::selection::predict::rows_of(study, |recording| !study.fitted[recording]);
     (0..study.motions.dof).all(|joint| {
         let torque = study.table.torque(joint, columns, &values);

@@ -77,14 +77,14 @@ pub fn deviation(signal: &[f64], rows: &[usize]) -> f64 {
     statistics::deviation(rows.iter().map(|&row| signal[row]))
 }
 
-/// The rows of the recordings that `chosen` selects.
-pub fn rows_of(study: &Study, chosen: impl Fn(usize) -> bool) -> Vec<usize> {
+/// The rows of the recordings that `selected` selects.
+pub fn rows_of(study: &Study, selected: impl Fn(usize) -> bool) -> Vec<usize> {
     let ranges: Vec<Range<usize>> = study
         .table
         .rows
         .iter()
         .enumerate()
-        .filter(|(r, _)| chosen(*r))
+        .filter(|(r, _)| selected(*r))
         .map(|(_, r)| r.clone())
         .collect();
     ranges.into_iter().flatten().collect()

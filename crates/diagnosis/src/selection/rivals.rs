@@ -57,9 +57,9 @@ pub fn allowance(explained: f64) -> f64 {
 }
 
 /// The set beside which alternatives of `member` are tried: all other members, and the effect that `member` generalises.
-pub fn beside(study: &Study, chosen: &Selection, member: usize) -> Vec<usize> {
+pub fn beside(study: &Study, selected: &Selection, member: usize) -> Vec<usize> {
     let finding = &study.candidates[member];
-    let mut set: Vec<usize> = chosen.others(member);
+    let mut set: Vec<usize> = selected.others(member);
     // An effect that generalises a simpler one competes with that simpler effect plus another effect.
     let plain = (0..study.candidates.len()).find(|&c| {
         let plain = &study.candidates[c];
@@ -78,7 +78,7 @@ pub fn beside(study: &Study, chosen: &Selection, member: usize) -> Vec<usize> {
 
 /// The equivalent name of `member`, if there is one: a constant torque beside larger dry friction equals friction that depends on
 /// the direction. No motion distinguishes the two. `set` is the set [`beside`] the finding.
-pub fn alias(study: &Study, chosen: &Selection, member: usize, set: &[usize]) -> Option<Named> {
+pub fn alias(study: &Study, selected: &Selection, member: usize, set: &[usize]) -> Option<Named> {
     let finding = &study.candidates[member];
     if finding.hypothesis.is(&FrictionAsymmetry) {
         return Some((Hypothesis::of(&TorqueOffset), finding.joint));
@@ -88,17 +88,17 @@ pub fn alias(study: &Study, chosen: &Selection, member: usize, set: &[usize]) ->
         let other = &study.candidates[c];
         other.hypothesis.is(&CoulombFriction)
             && other.joint == finding.joint
-            && chosen.fit.coefficient(other.columns[0]) > chosen.fit.coefficient(constant).abs()
+            && selected.fit.coefficient(other.columns[0]) > selected.fit.coefficient(constant).abs()
     };
     let has_alias = finding.hypothesis.is(&TorqueOffset) && set.iter().any(is_larger_friction);
     has_alias.then_some((Hypothesis::of(&FrictionAsymmetry), finding.joint))
 }
 
 /// Tries every other hypothesis in the place of `member`.
-pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member: usize) -> Standing {
+pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, member: usize) -> Standing {
     let finding = &study.candidates[member];
-    let set = beside(study, chosen, member);
-    let without = problem.choose(set.clone(), &chosen.fit.weights);
+    let set = beside(study, selected, member);
+    let without = problem.choose(set.clone(), &selected.fit.weights);
     // The gains of rivals are computed with the weights of the fit without the finding. With the weights of the finding's
     // own fit, every effect on its joint would seem to explain everything.
     let ground = problem.reweighted(without.clone());
@@ -138,14 +138,14 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
     // Every hypothesis alone in the finding's place.
     let alone: Vec<(usize, Selection)> = tried
         .into_par_iter()
-        .map(|c| (c, problem.choose([&set[..], &[c]].concat(), &chosen.fit.weights)))
+        .map(|c| (c, problem.choose([&set[..], &[c]].concat(), &selected.fit.weights)))
         .filter(|(c, next)| problem.is_possible(*c, &next.fit))
         .collect();
-    let explained = without.fit.loss - chosen.fit.loss;
+    let explained = without.fit.loss - selected.fit.loss;
     let allowance = allowance(explained);
     let result = |c: usize, next: &Selection| -> (f64, f64, Hypothesis, Option<usize>) {
         let Candidate { hypothesis, joint, .. } = study.candidates[c];
-        let (loss, score) = in_place(problem, chosen, member, &[c], next, allowance);
+        let (loss, score) = in_place(problem, selected, member, &[c], next, allowance);
         (loss, score, hypothesis, joint)
     };
     let mut results: Vec<_> = alone.par_iter().map(|(c, next)| result(*c, next)).collect();
@@ -155,12 +155,12 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
         let factors: Vec<usize> = (0..study.candidates.len())
             .filter(|&c| study.candidates[c].hypothesis.name() == Some(same))
             .collect();
-        let next = problem.choose([&set[..], &factors].concat(), &chosen.fit.weights);
+        let next = problem.choose([&set[..], &factors].concat(), &selected.fit.weights);
         if factors.iter().all(|&c| problem.is_possible(c, &next.fit)) {
             on_all_joints.extend(factors.iter().map(|&c| result(c, &next)));
         }
     }
-    let alias = alias(study, chosen, member, &set);
+    let alias = alias(study, selected, member, &set);
     // If an offset is constant from the beginning, its size relative to the friction is that of few asymmetries. What has changed
     // while the friction was the same may be either, and so may an asymmetry: it has the size of both.
     let sets_in = || study.terms(member).iter().any(|term| term.onset().is_some());
@@ -169,11 +169,11 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
     let mut as_likely = None;
     if finding.hypothesis.spec().may_be_inertial {
         let hypothesis = Hypothesis::of(&InertialParameters);
-        let trials = study.in_the_background(problem.products, &set, chosen);
+        let trials = study.in_the_background(problem.products, &set, selected);
         let results_of = |(link, next): (Option<usize>, Selection)| {
             (
-                next.fit.loss - chosen.fit.loss,
-                next.score - chosen.score,
+                next.fit.loss - selected.fit.loss,
+                next.score - selected.score,
                 hypothesis,
                 link,
             )
@@ -196,7 +196,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
     let found = Paired {
         study,
         problem,
-        chosen,
+        selected,
         member,
         set: &set,
         allowance,
@@ -221,27 +221,27 @@ pub fn standing(study: &Study, problem: &Problem<'_>, chosen: &Selection, member
     }
 }
 
-/// The loss and the score of `next` (nats), in which `alternatives` stand in the place of `member`, beyond those of `chosen`; or, if
+/// The loss and the score of `next` (nats), in which `alternatives` stand in the place of `member`, beyond those of `selected`; or, if
 /// the alternatives improve the fit beside `member` too, beyond those of the fit with all of them. What explains something else of
 /// its own would otherwise seem to explain what `member` does. Only alternatives that may be `within` an allowance (nats) are fitted
 /// beside `member`.
 fn in_place(
     problem: &Problem<'_>,
-    chosen: &Selection,
+    selected: &Selection,
     member: usize,
     alternatives: &[usize],
     next: &Selection,
     within: f64,
 ) -> (f64, f64) {
     let beyond = |reference: &Selection| (next.fit.loss - reference.fit.loss, next.score - reference.score);
-    let (loss, score) = beyond(chosen);
-    let excludes = |&c: &usize| chosen.set.iter().any(|&known| problem.exclude(c, known));
+    let (loss, score) = beyond(selected);
+    let excludes = |&c: &usize| selected.set.iter().any(|&known| problem.exclude(c, known));
     if loss > within && probability(score) >= SUREST || alternatives.iter().any(excludes) {
         return (loss, score);
     }
-    let all = problem.choose([&chosen.set[..], alternatives].concat(), &chosen.fit.weights);
+    let all = problem.choose([&selected.set[..], alternatives].concat(), &selected.fit.weights);
     let is_possible = |&c: &usize| problem.is_possible(c, &all.fit);
-    if all.score < chosen.score && alternatives.iter().chain([&member]).all(is_possible) {
+    if all.score < selected.score && alternatives.iter().chain([&member]).all(is_possible) {
         beyond(&all)
     } else {
         (loss, score)
@@ -252,7 +252,7 @@ fn in_place(
 struct Paired<'a> {
     study: &'a Study,
     problem: &'a Problem<'a>,
-    chosen: &'a Selection,
+    selected: &'a Selection,
     /// The finding.
     member: usize,
     /// The set beside which alternatives are tried.
@@ -286,7 +286,7 @@ impl Paired<'_> {
             }
             for other in partners {
                 let set = [self.set, &[one, other]].concat();
-                let both = self.problem.choose(set, &self.chosen.fit.weights);
+                let both = self.problem.choose(set, &self.selected.fit.weights);
                 let mut names = [self.named(one), self.named(other)];
                 names.sort();
                 let are_possible = [one, other].iter().all(|&c| self.problem.is_possible(c, &both.fit));
@@ -295,7 +295,7 @@ impl Paired<'_> {
                 }
                 let (loss, score) = in_place(
                     self.problem,
-                    self.chosen,
+                    self.selected,
                     self.member,
                     &[one, other],
                     &both,

@@ -63,10 +63,10 @@ pub fn name_those_beyond_tolerance(study: &mut Study, judged: &mut Judged, tried
 
 /// A note on the torque constants that the background corrects by more than such constants usually deviate and that no finding names,
 /// because other effects explain the same. Without it, the model would seem to explain these torques as it is.
-pub fn note_on_unnamed(study: &Study, chosen: &Selection) -> Option<String> {
+pub fn note_on_unnamed(study: &Study, selected: &Selection) -> Option<String> {
     let least = MOST_USUAL * study.stated.torque_accuracy();
     let factor = |joint: usize| {
-        let deviation = chosen.fit.coefficient(study.torque_constant(joint)?);
+        let deviation = selected.fit.coefficient(study.torque_constant(joint)?);
         let name = &study.arm.joints()[joint].name;
         (deviation.abs() > least).then(|| format!("{name} × {:.2}", 1.0 + deviation))
     };
@@ -122,10 +122,10 @@ fn are_alike(deviations: &[f64], least: f64) -> bool {
     most > 1 && 2 * most > deviations.len()
 }
 
-/// Whether the interval of a torque scale of `chosen` excludes one.
-fn is_clear(study: &mut Study, chosen: &Selection, scale: usize) -> bool {
+/// Whether the interval of a torque scale of `selected` excludes one.
+fn is_clear(study: &mut Study, selected: &Selection, scale: usize) -> bool {
     let column = study.candidates[scale].columns[0];
-    let resampled = resample(study, chosen);
+    let resampled = resample(study, selected);
     resampled.column(column).is_some_and(|at| {
         let (_, [low, high]) = resampled.interval_within(SYSTEMATIC, |draw| draw[at]);
         low > 0.0 || high < 0.0

@@ -54,14 +54,14 @@ pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
     Some(resampled)
 }
 
-/// `chosen` with a missing `body` and a smaller background, if the body explains nearly as much as that background and both
+/// `selected` with a missing `body` and a smaller background, if the body explains nearly as much as that background and both
 /// predict held-out recordings nearly as well.
-fn instead(study: &Study, chosen: &Selection, body: usize) -> Option<(Strengths, Selection)> {
-    let with = [chosen.set.as_slice(), &[body]].concat();
+fn instead(study: &Study, selected: &Selection, body: usize) -> Option<(Strengths, Selection)> {
+    let with = [selected.set.as_slice(), &[body]].concat();
     let fit = |strengths: &Strengths, set: &[usize]| {
         let products = study.products_at(strengths);
         let problem = study.problem(&products);
-        let next = problem.reweighted(problem.choose(set.to_vec(), &chosen.fit.weights));
+        let next = problem.reweighted(problem.choose(set.to_vec(), &selected.fit.weights));
         let is_possible = !set.contains(&body) || problem.is_possible(body, &next.fit);
         (next, is_possible)
     };
@@ -69,9 +69,9 @@ fn instead(study: &Study, chosen: &Selection, body: usize) -> Option<(Strengths,
         links: vec![0.0; study.arm.dof()],
         ..study.strengths.clone()
     };
-    let (bare, _) = fit(&exact, &chosen.set);
+    let (bare, _) = fit(&exact, &selected.set);
     let (alone, _) = fit(&exact, &with);
-    let explained = bare.score - chosen.score;
+    let explained = bare.score - selected.score;
     if bare.score - alone.score < NEARLY_ALL * explained {
         return None;
     }
@@ -84,13 +84,14 @@ fn instead(study: &Study, chosen: &Selection, body: usize) -> Option<(Strengths,
             *is_possible && next.fit.coefficient(study.candidates[body].columns[0]) < 0.0
         })
         .min_by(|a, b| a.0.0.score.total_cmp(&b.0.0.score))?;
-    if next.score - chosen.score > allowance(explained) {
+    if next.score - selected.score > allowance(explained) {
         return None;
     }
     if let Some(held) = study.held_products() {
-        let loss =
-            |chosen: &Selection| held.loss(&held.rss(&study.table, &chosen.fit.columns, &chosen.fit.coefficients));
-        if loss(&next) - loss(chosen) > allowance(loss(&bare) - loss(chosen)) {
+        let loss = |selected: &Selection| {
+            held.loss(&held.rss(&study.table, &selected.fit.columns, &selected.fit.coefficients))
+        };
+        if loss(&next) - loss(selected) > allowance(loss(&bare) - loss(selected)) {
             return None;
         }
     }

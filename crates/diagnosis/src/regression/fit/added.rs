@@ -26,8 +26,8 @@ impl Products {
     /// The columns `added` for [`Self::drop`].
     pub fn reduced(&self, table: &Table, fit: &Fit, added: &[usize]) -> Reduced {
         if let Some(eliminated) = &fit.eliminated {
-            eliminated.store(fit.chosen());
-            self.eliminate(table, eliminated, fit.chosen());
+            eliminated.store(fit.selected());
+            self.eliminate(table, eliminated, fit.selected());
         }
         let groups = added.par_chunks(LANES);
         let columns: Vec<Vec<(usize, Column)>> = groups.map(|group| self.reduced_group(table, fit, group)).collect();
@@ -35,13 +35,13 @@ impl Products {
     }
 
     fn reduced_group(&self, table: &Table, fit: &Fit, group: &[usize]) -> Vec<(usize, Column)> {
-        let (chosen, eliminated) = (fit.chosen(), fit.eliminated.as_deref());
+        let (selected, eliminated) = (fit.selected(), fit.eliminated.as_deref());
         let inner = |a: usize, b: Option<usize>| self.inner(table, &fit.weights, eliminated, a, b);
         let mut cross: Vec<Lanes> = match eliminated {
-            Some(eliminated) => self.inner_in_lanes(table, eliminated, group, chosen),
+            Some(eliminated) => self.inner_in_lanes(table, eliminated, group, selected),
             None => {
                 let of = |&b: &usize| std::array::from_fn(|k| group.get(k).map_or(0.0, |&a| inner(a, Some(b))));
-                chosen.iter().map(of).collect()
+                selected.iter().map(of).collect()
             }
         };
         let size_of = |&column: &usize| {
@@ -69,7 +69,7 @@ impl Products {
 
     /// The reduction of the weighted sum of squares of `fit` by `added` columns, at its weights.
     pub fn drop(&self, table: &Table, fit: &Fit, added: &[usize], reduced: &Reduced) -> f64 {
-        let (p, c) = (fit.chosen().len(), added.len());
+        let (p, c) = (fit.selected().len(), added.len());
         let columns: Vec<&Column> = added.iter().map(|column| &reduced.0[column]).collect();
         let mut own = DMatrix::zeros(c, c);
         let mut row = vec![0.0; c];
@@ -105,7 +105,7 @@ impl Products {
     pub fn drop_of(&self, table: &Table, fit: &Fit, column: usize) -> f64 {
         let inner = |b: usize| self.inner(table, &fit.weights, fit.eliminated.as_deref(), column, Some(b));
         let own = inner(column);
-        let mut cross = DVector::from_fn(fit.chosen().len(), |i, _| inner(fit.chosen()[i]) / fit.scale[i]);
+        let mut cross = DVector::from_fn(fit.selected().len(), |i, _| inner(fit.selected()[i]) / fit.scale[i]);
         fit.factor.solve_lower_triangular_mut(&mut cross);
         let drop = (own - cross.norm_squared()).max(0.0);
         match &fit.eliminated {

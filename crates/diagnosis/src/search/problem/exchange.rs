@@ -6,19 +6,19 @@ use super::{Growth, Problem, Selection};
 use crate::thresholds::SWAP_GAIN;
 
 impl Problem<'_> {
-    /// `chosen` with one hypothesis that acts on the whole arm, and without the members that it then explains. Several
+    /// `selected` with one hypothesis that acts on the whole arm, and without the members that it then explains. Several
     /// hypotheses on several joints may imitate it, none of which can be exchanged alone.
-    fn arm_wide(&self, chosen: &Selection, allowed: &[usize]) -> Vec<Selection> {
+    fn arm_wide(&self, selected: &Selection, allowed: &[usize]) -> Vec<Selection> {
         let is_free = |c: &usize| {
             let candidate = &self.candidates[*c];
             candidate.joint.is_none()
                 && !candidate.hypothesis.is_passing()
-                && !chosen.set.iter().any(|&other| other == *c || self.exclude(*c, other))
+                && !selected.set.iter().any(|&other| other == *c || self.exclude(*c, other))
         };
         let free: Vec<usize> = allowed.iter().copied().filter(is_free).collect();
         free.par_iter()
             .filter_map(|&candidate| {
-                let with = self.choose(self.with(&chosen.set, candidate), &chosen.fit.weights);
+                let with = self.choose(self.with(&selected.set, candidate), &selected.fit.weights);
                 if !self.is_possible(candidate, &with.fit) {
                     return None;
                 }
@@ -28,13 +28,13 @@ impl Problem<'_> {
             .collect()
     }
 
-    /// `chosen` with one or two other wrong masses in place of its own. Masses are coupled along the arm, so that two wrong
+    /// `selected` with one or two other wrong masses in place of its own. Masses are coupled along the arm, so that two wrong
     /// masses may resemble a third one, and one may resemble two others. No exchange of one mass for one other leads to the
     /// true masses then.
-    fn other_masses(&self, chosen: &Selection, allowed: &[usize]) -> Vec<Selection> {
+    fn other_masses(&self, selected: &Selection, allowed: &[usize]) -> Vec<Selection> {
         let is_mass = |c: &usize| self.candidates[*c].hypothesis.is_wrong_mass();
-        let rest: Vec<usize> = chosen.set.iter().copied().filter(|c| !is_mass(c)).collect();
-        if rest.len() == chosen.set.len() {
+        let rest: Vec<usize> = selected.set.iter().copied().filter(|c| !is_mass(c)).collect();
+        if rest.len() == selected.set.len() {
             return Vec::new();
         }
         let masses: Vec<usize> = allowed.iter().copied().filter(is_mass).collect();
@@ -46,47 +46,50 @@ impl Problem<'_> {
         let sets: Vec<Vec<usize>> = alone.chain(pairs).collect();
         sets.into_par_iter()
             .filter_map(|new| {
-                let next = self.choose([rest.clone(), new.clone()].concat(), &chosen.fit.weights);
+                let next = self.choose([rest.clone(), new.clone()].concat(), &selected.fit.weights);
                 new.iter().all(|&c| self.is_possible(c, &next.fit)).then_some(next)
             })
             .collect()
     }
 
-    /// `chosen` without a factor of all masses and without the torque constants that it has, and with those of the other joints: all
+    /// `selected` without a factor of all masses and without the torque constants that it has, and with those of the other joints: all
     /// torque constants but one that have the inverse of a factor of all masses resemble the factor of the one.
-    fn other_constants(&self, chosen: &Selection, allowed: &[usize]) -> Option<Selection> {
+    fn other_constants(&self, selected: &Selection, allowed: &[usize]) -> Option<Selection> {
         let spec = |c: usize| self.candidates[c].hypothesis.spec();
-        let common = chosen.set.iter().find_map(|&c| Some((c, spec(c).same_on_all_joints?)));
+        let common = selected
+            .set
+            .iter()
+            .find_map(|&c| Some((c, spec(c).same_on_all_joints?)));
         let (factor, constant) = common?;
         let is_constant = |c: &usize| spec(*c).name == constant && self.onset(&self.candidates[*c]).is_none();
-        let named: Vec<Option<usize>> = chosen
+        let named: Vec<Option<usize>> = selected
             .set
             .iter()
             .copied()
             .filter(is_constant)
             .map(|c| self.candidates[c].joint)
             .collect();
-        let rest = chosen.others(factor).into_iter().filter(|c| !is_constant(c));
+        let rest = selected.others(factor).into_iter().filter(|c| !is_constant(c));
         let others = allowed
             .iter()
             .copied()
             .filter(|c| is_constant(c) && !named.contains(&self.candidates[*c].joint));
         let set = rest.chain(others).collect();
-        Some(self.prune(self.choose(set, &chosen.fit.weights)))
+        Some(self.prune(self.choose(set, &selected.fit.weights)))
     }
 
     /// Replaces single members by better ones, until none is better.
-    pub fn swap(&self, mut chosen: Selection, allowed: &[usize], rounds: usize) -> Selection {
+    pub fn swap(&self, mut selected: Selection, allowed: &[usize], rounds: usize) -> Selection {
         for _ in 0..rounds {
-            let trials: Vec<Selection> = (0..chosen.set.len())
+            let trials: Vec<Selection> = (0..selected.set.len())
                 .into_par_iter()
                 .filter_map(|k| {
-                    let removed = chosen.set[k];
+                    let removed = selected.set[k];
                     let out = &self.candidates[removed];
                     if out.hypothesis.is_friction() {
                         return None;
                     }
-                    let without = self.without(&chosen, removed);
+                    let without = self.without(&selected, removed);
                     // The replacement acts where the member did.
                     let others: Vec<usize> = allowed
                         .iter()
@@ -102,14 +105,14 @@ impl Problem<'_> {
                 .collect();
             let trials = trials
                 .into_iter()
-                .chain(self.arm_wide(&chosen, allowed))
-                .chain(self.other_masses(&chosen, allowed))
-                .chain(self.other_constants(&chosen, allowed));
+                .chain(self.arm_wide(&selected, allowed))
+                .chain(self.other_masses(&selected, allowed))
+                .chain(self.other_constants(&selected, allowed));
             match trials.min_by(|a, b| a.score.total_cmp(&b.score)) {
-                Some(next) if next.score < chosen.score - SWAP_GAIN => chosen = self.prune(self.reweighted(next)),
+                Some(next) if next.score < selected.score - SWAP_GAIN => selected = self.prune(self.reweighted(next)),
                 _ => break,
             }
         }
-        chosen
+        selected
     }
 }

@@ -6,32 +6,32 @@ use super::{Problem, Selection};
 use crate::regression::fit::Reduced;
 
 impl Problem<'_> {
-    /// The first-order gain of each of the candidates `free` in addition to `chosen` (nats, minus the costs), with its index.
-    pub fn promises(&self, chosen: &Selection, free: &[usize]) -> Vec<(f64, usize)> {
-        let mut columns: Vec<usize> = free.iter().flat_map(|&c| self.new_columns(chosen, c)).collect();
+    /// The first-order gain of each of the candidates `free` in addition to `selected` (nats, minus the costs), with its index.
+    pub fn promises(&self, selected: &Selection, free: &[usize]) -> Vec<(f64, usize)> {
+        let mut columns: Vec<usize> = free.iter().flat_map(|&c| self.new_columns(selected, c)).collect();
         columns.sort_unstable();
         columns.dedup();
-        let reduced = self.products.reduced(self.table, &chosen.fit, &columns);
+        let reduced = self.products.reduced(self.table, &selected.fit, &columns);
         free.par_iter()
-            .map(|&candidate| (self.promise(chosen, candidate, &reduced), candidate))
+            .map(|&candidate| (self.promise(selected, candidate, &reduced), candidate))
             .collect()
     }
 
-    /// The columns of `candidate` that `chosen` does not have.
-    fn new_columns(&self, chosen: &Selection, candidate: usize) -> Vec<usize> {
-        let have = &chosen.fit.columns;
+    /// The columns of `candidate` that `selected` does not have.
+    fn new_columns(&self, selected: &Selection, candidate: usize) -> Vec<usize> {
+        let have = &selected.fit.columns;
         let columns = self.candidates[candidate].columns.iter().copied();
         columns.filter(|c| have.binary_search(c).is_err()).collect()
     }
 
-    /// The first-order gain of `candidate` in addition to `chosen` (nats, minus the costs). Its columns are among those that are
+    /// The first-order gain of `candidate` in addition to `selected` (nats, minus the costs). Its columns are among those that are
     /// `reduced`.
-    fn promise(&self, chosen: &Selection, candidate: usize, reduced: &Reduced) -> f64 {
-        let new = self.new_columns(chosen, candidate);
+    fn promise(&self, selected: &Selection, candidate: usize, reduced: &Reduced) -> f64 {
+        let new = self.new_columns(selected, candidate);
         if new.is_empty() {
             return f64::NEG_INFINITY;
         }
-        let drop = self.products.drop(self.table, &chosen.fit, &new, reduced);
+        let drop = self.products.drop(self.table, &selected.fit, &new, reduced);
         let cost = self.candidates[candidate].cost
             - self.thresholds.per_coefficient * (self.candidates[candidate].columns.len() - new.len()) as f64;
         let log = |drop: f64, joint: usize| {

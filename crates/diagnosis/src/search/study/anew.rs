@@ -33,15 +33,15 @@ impl Study {
         self.prior.set_bodies(&changes);
     }
 
-    /// `chosen` with the prior about its own bodies, and with the strengths of the background that the evidence then prefers.
-    pub fn about_own_bodies(&mut self, mut chosen: Selection) -> Selection {
+    /// `selected` with the prior about its own bodies, and with the strengths of the background that the evidence then prefers.
+    pub fn about_own_bodies(&mut self, mut selected: Selection) -> Selection {
         for _ in 0..MOST_BODIES {
-            self.set_bodies(&chosen.fit);
+            self.set_bodies(&selected.fit);
             let products = self.training_products();
-            let next = self.problem(&products).choose(chosen.set, &chosen.fit.weights);
-            chosen = self.with_best_strengths(next);
+            let next = self.problem(&products).choose(selected.set, &selected.fit.weights);
+            selected = self.with_best_strengths(next);
         }
-        chosen
+        selected
     }
 
     fn about(&mut self, fit: &Fit, kept: &[usize], anyway: bool) -> Option<Vec<usize>> {

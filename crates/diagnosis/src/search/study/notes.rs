@@ -31,11 +31,11 @@ impl Study {
         }
     }
 
-    /// Records candidates that were fitted in addition to `chosen` and not taken, each with the score that it would have given.
-    pub fn note_tried(&self, chosen: &Selection, tried: &[(usize, f64, &'static str)]) {
+    /// Records candidates that were fitted in addition to `selected` and not taken, each with the score that it would have given.
+    pub fn note_tried(&self, selected: &Selection, tried: &[(usize, f64, &'static str)]) {
         let rows = tried.iter().map(|&(candidate, score, rule)| {
             let (effect, joint) = self.described(candidate);
-            (Action::Tried, effect, joint, rule, chosen.score - score)
+            (Action::Tried, effect, joint, rule, selected.score - score)
         });
         if !tried.is_empty() {
             self.trace.step(rows);

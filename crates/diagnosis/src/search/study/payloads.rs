@@ -12,61 +12,61 @@ use crate::thresholds::{FELT, PER_LINK_APART};
 const LAST_JOINTS: usize = 2;
 
 impl Study {
-    /// `chosen` with a payload in the place of another body of the last link, if that is better. A search that takes the link
+    /// `selected` with a payload in the place of another body of the last link, if that is better. A search that takes the link
     /// first does not find the payload, because both explain the same torque.
-    pub fn with_payload_for_last_link(&mut self, chosen: Selection) -> Selection {
+    pub fn with_payload_for_last_link(&mut self, selected: Selection) -> Selection {
         let common = self.strengths.common();
         let is_payload = |&c: &usize| self.candidates[c].hypothesis.is(&Payload);
         let Some(last) = self.arm.dof().checked_sub(1) else {
-            return chosen;
+            return selected;
         };
-        if self.strengths.links[last] <= common || chosen.set.iter().any(is_payload) {
-            return chosen;
+        if self.strengths.links[last] <= common || selected.set.iter().any(is_payload) {
+            return selected;
         }
         let mut strengths = self.strengths.clone();
         strengths.links[last] = common;
         let products = self.products_at(&strengths);
         let problem = self.problem(&products);
         let trials = self.allowed().into_iter().filter(is_payload).filter_map(|payload| {
-            let mut set = chosen.set.clone();
+            let mut set = selected.set.clone();
             set.push(payload);
-            let next = problem.choose(set, &chosen.fit.weights);
+            let next = problem.choose(set, &selected.fit.weights);
             problem.is_possible(payload, &next.fit).then_some(next)
         });
         let best = trials.min_by(|a, b| a.score.total_cmp(&b.score));
         match best {
-            Some(next) if next.score < chosen.score => {
+            Some(next) if next.score < selected.score => {
                 self.strengths = strengths;
-                self.note_strengths("a payload in the place of the last link", &chosen, &next);
+                self.note_strengths("a payload in the place of the last link", &selected, &next);
                 next
             }
-            _ => chosen,
+            _ => selected,
         }
     }
 
-    /// `chosen` without a payload that has hardly any torque on the last joints, if the URDF's links are wrong as well. The
+    /// `selected` without a payload that has hardly any torque on the last joints, if the URDF's links are wrong as well. The
     /// centre of mass of such a payload lies where these axes meet, and a heavier link before them explains the same
     /// torque. It is kept if the links explain clearly less, and if it has an onset, because a link cannot have one.
-    pub fn without_payload_of_a_link(&mut self, chosen: Selection) -> Selection {
+    pub fn without_payload_of_a_link(&mut self, selected: Selection) -> Selection {
         let is_unfelt = |&c: &usize| {
             let sets_in = || self.terms(c).iter().any(|term| term.onset().is_some());
-            self.candidates[c].hypothesis.is(&Payload) && !sets_in() && !self.is_felt_at_the_end(&chosen, c)
+            self.candidates[c].hypothesis.is(&Payload) && !sets_in() && !self.is_felt_at_the_end(&selected, c)
         };
-        let unfelt: Vec<usize> = chosen.set.iter().copied().filter(is_unfelt).collect();
+        let unfelt: Vec<usize> = selected.set.iter().copied().filter(is_unfelt).collect();
         let (Some(&payload), true) = (unfelt.first(), self.strengths.common() > 0.0) else {
-            return chosen;
+            return selected;
         };
         let before = (self.strengths.clone(), self.prior.clone(), self.refused.clone());
         // Each of the two is compared with the prior about its own bodies.
-        let with_payload = self.about_own_bodies(chosen.clone());
+        let with_payload = self.about_own_bodies(selected.clone());
         (self.strengths, self.prior) = (before.0.clone(), before.1.clone());
         self.refuse(payload);
-        let rest = chosen.set.iter().copied().filter(|c| !unfelt.contains(c)).collect();
+        let rest = selected.set.iter().copied().filter(|c| !unfelt.contains(c)).collect();
         let products = self.training_products();
-        let next = self.problem(&products).choose(rest, &chosen.fit.weights);
+        let next = self.problem(&products).choose(rest, &selected.fit.weights);
         self.note(
             "the last joints hardly feel it, so that a link may carry it",
-            &chosen,
+            &selected,
             &next,
         );
         let next = self.with_best_strengths(next);
@@ -77,15 +77,15 @@ impl Study {
             return next;
         }
         (self.strengths, self.prior, self.refused) = before;
-        self.note("no link explains as much as the payload", &next, &chosen);
-        chosen
+        self.note("no link explains as much as the payload", &next, &selected);
+        selected
     }
 
     /// Whether the share of `candidate` in the torque of one of the last joints is comparable to its largest share in any
     /// joint.
-    fn is_felt_at_the_end(&self, chosen: &Selection, candidate: usize) -> bool {
+    fn is_felt_at_the_end(&self, selected: &Selection, candidate: usize) -> bool {
         let columns = &self.candidates[candidate].columns;
-        let values = chosen.fit.values(columns);
+        let values = selected.fit.values(columns);
         let share = |joint: usize| {
             let torque = self.table.torque(joint, columns, &values);
             let rows = self.training_rows(joint);

@@ -48,35 +48,35 @@ impl Study {
         self.prior.variances(link, self.strengths.links[link])
     }
 
-    /// The loss of the score of `chosen`, and of the likelihood of the held-out recordings, if all links have the URDF's
+    /// The loss of the score of `selected`, and of the likelihood of the held-out recordings, if all links have the URDF's
     /// inertial parameters (nats).
     pub fn evidence_of_inertials(
         &self,
         products: &Products,
         held: Option<&Products>,
-        chosen: &Selection,
+        selected: &Selection,
     ) -> (f64, Option<f64>) {
         let links = vec![0.0; self.arm.dof()];
-        let (products, without) = self.with_links(products, chosen, links);
+        let (products, without) = self.with_links(products, selected, links);
         let without = self.problem(&products).reweighted(without);
         let outside = held.map(|held| {
             let loss = |fit: &Fit| held.loss(&held.rss(&self.table, &fit.columns, &fit.coefficients));
-            loss(&without.fit) - loss(&chosen.fit)
+            loss(&without.fit) - loss(&selected.fit)
         });
-        (without.score - chosen.score, outside)
+        (without.score - selected.score, outside)
     }
 
-    /// The loss of score and likelihood of `chosen` (nats) if `link` differs from the URDF no more than most links.
-    pub fn evidence_of_link(&self, products: &Products, chosen: &Selection, link: usize) -> [f64; 2] {
+    /// The loss of score and likelihood of `selected` (nats) if `link` differs from the URDF no more than most links.
+    pub fn evidence_of_link(&self, products: &Products, selected: &Selection, link: usize) -> [f64; 2] {
         let mut links = self.strengths.links.clone();
         links[link] = self.strengths.common();
-        let (_, without) = self.with_links(products, chosen, links);
-        [without.score - chosen.score, without.fit.loss - chosen.fit.loss]
+        let (_, without) = self.with_links(products, selected, links);
+        [without.score - selected.score, without.fit.loss - selected.fit.loss]
     }
 
-    /// The links that may differ from the URDF in the place of `link`, each with the loss of score and likelihood of `chosen`
+    /// The links that may differ from the URDF in the place of `link`, each with the loss of score and likelihood of `selected`
     /// (nats).
-    pub fn in_other_links(&self, products: &Products, chosen: &Selection, link: usize) -> Vec<(usize, [f64; 2])> {
+    pub fn in_other_links(&self, products: &Products, selected: &Selection, link: usize) -> Vec<(usize, [f64; 2])> {
         let common = self.strengths.common();
         let as_most = |&other: &usize| self.strengths.links[other] == common;
         let others: Vec<usize> = (0..self.arm.dof()).filter(as_most).collect();
@@ -85,23 +85,25 @@ impl Study {
             .map(|other| {
                 let mut links = self.strengths.links.clone();
                 links.swap(link, other);
-                let (_, instead) = self.with_links(products, chosen, links);
+                let (_, instead) = self.with_links(products, selected, links);
                 (
                     other,
-                    [instead.score - chosen.score, instead.fit.loss - chosen.fit.loss],
+                    [instead.score - selected.score, instead.fit.loss - selected.fit.loss],
                 )
             })
             .collect()
     }
 
-    /// The products and the fit of `chosen` with other strengths of the links' inertial parameters.
-    fn with_links(&self, products: &Products, chosen: &Selection, links: Vec<f64>) -> (Products, Selection) {
+    /// The products and the fit of `selected` with other strengths of the links' inertial parameters.
+    fn with_links(&self, products: &Products, selected: &Selection, links: Vec<f64>) -> (Products, Selection) {
         let strengths = Strengths {
             links,
             ..self.strengths.clone()
         };
         let products = products.with_background(self.prior.at(&strengths));
-        let next = self.problem(&products).choose(chosen.set.clone(), &chosen.fit.weights);
+        let next = self
+            .problem(&products)
+            .choose(selected.set.clone(), &selected.fit.weights);
         (products, next)
     }
 
@@ -140,9 +142,9 @@ impl Study {
     }
 
     /// The strongest background in which all links differ from the URDF and whose score is less than `margin` above that of
-    /// `chosen` (nats), and `chosen` fitted again beside it. `None` if there is none, if none or all of the links differ already,
+    /// `selected` (nats), and `selected` fitted again beside it. `None` if there is none, if none or all of the links differ already,
     /// or if the user states the strengths.
-    pub fn with_all_links(&self, chosen: &Selection, margin: f64) -> Option<(Strengths, Selection)> {
+    pub fn with_all_links(&self, selected: &Selection, margin: f64) -> Option<(Strengths, Selection)> {
         let links = &self.strengths.links;
         if self.strengths.common() > 0.0 || links.iter().all(|&rho| rho == 0.0) || self.stated.links.is_some() {
             return None;
@@ -150,7 +152,7 @@ impl Study {
         let bare = self.bare_products(|r| self.fitted[r]);
         let at_least = |least: f64| {
             let links: Vec<f64> = links.iter().map(|&rho| rho.max(least)).collect();
-            let (_, next) = self.with_links(&bare, chosen, links.clone());
+            let (_, next) = self.with_links(&bare, selected, links.clone());
             let strengths = Strengths {
                 links,
                 ..self.strengths.clone()
@@ -160,7 +162,7 @@ impl Study {
         let strongest_first = LINK_STRENGTHS.into_iter().rev().filter(|&rho| rho > 0.0);
         strongest_first
             .map(at_least)
-            .find(|(_, next)| next.score < chosen.score + margin)
+            .find(|(_, next)| next.score < selected.score + margin)
     }
 
     /// Inner products over the training recordings, with a background of other strengths.
@@ -169,22 +171,22 @@ impl Study {
         bare.with_background(self.prior.at(strengths))
     }
 
-    /// `chosen` with more of the candidates `allowed`, and with the strengths of the background that the evidence prefers.
+    /// `selected` with more of the candidates `allowed`, and with the strengths of the background that the evidence prefers.
     /// Each step takes the candidate or the change of strengths that gains more. Members that no longer pay are removed.
-    pub fn grown(&mut self, mut chosen: Selection, allowed: &[usize]) -> Selection {
+    pub fn grown(&mut self, mut selected: Selection, allowed: &[usize]) -> Selection {
         let bare = self.bare_products(|r| self.fitted[r]);
         let mut products = bare.with_background(self.background());
         let mut growth = Growth::default();
         let mut moves = 0;
         while moves < MOST_MOVES {
             let problem = self.problem(&products);
-            let grown = problem.grow(&chosen, allowed, &mut growth);
-            self.note_tried(&chosen, &std::mem::take(&mut growth.tried));
-            let mut stronger = self.strengthened(&bare, &chosen, self.strengths.neighbours());
+            let grown = problem.grow(&selected, allowed, &mut growth);
+            self.note_tried(&selected, &std::mem::take(&mut growth.tried));
+            let mut stronger = self.strengthened(&bare, &selected, self.strengths.neighbours());
             if grown.is_none() && stronger.is_none() {
                 let others = self.strengths.with_other_links().into_iter();
                 let others = others.chain(self.strengths.in_one_link()).collect();
-                stronger = self.strengthened(&bare, &chosen, others);
+                stronger = self.strengthened(&bare, &selected, others);
             }
             let (rule, strengths, next) = match (grown, stronger) {
                 (Some(next), None) => ("largest gain", None, problem.reweighted(next)),
@@ -194,7 +196,7 @@ impl Study {
                 (_, Some((strengths, other))) => ("more evidence for this background", Some(strengths), other),
                 // An effect that is a part of the background does not pay in addition to it, but may do so with a smaller
                 // background.
-                (None, None) => match self.exchanged(&bare, &chosen, allowed) {
+                (None, None) => match self.exchanged(&bare, &selected, allowed) {
                     Some((strengths, next)) => {
                         let products = bare.with_background(self.prior.at(&strengths));
                         let next = self.problem(&products).reweighted(next);
@@ -207,45 +209,45 @@ impl Study {
                 moves += 1;
                 products = bare.with_background(self.prior.at(&strengths));
                 self.strengths = strengths;
-                growth.refused.clear();
-                self.note_strengths(rule, &chosen, &next);
-                chosen = next;
+                growth.begin_anew();
+                self.note_strengths(rule, &selected, &next);
+                selected = next;
             } else {
-                self.note(rule, &chosen, &next);
-                chosen = next;
+                self.note(rule, &selected, &next);
+                selected = next;
             }
-            if chosen.set.len() > MOST {
+            if selected.set.len() > MOST {
                 break;
             }
         }
-        let pruned = self.problem(&products).prune(chosen.clone());
-        self.note("costs more evidence than it brings", &chosen, &pruned);
+        let pruned = self.problem(&products).prune(selected.clone());
+        self.note("costs more evidence than it brings", &selected, &pruned);
         pruned
     }
 
-    /// `chosen` with a smaller background and a few more of the candidates `allowed`, if that is better.
-    fn exchanged(&self, bare: &Products, chosen: &Selection, allowed: &[usize]) -> Option<(Strengths, Selection)> {
+    /// `selected` with a smaller background and a few more of the candidates `allowed`, if that is better.
+    fn exchanged(&self, bare: &Products, selected: &Selection, allowed: &[usize]) -> Option<(Strengths, Selection)> {
         let weaker = self.strengths.weaker().into_iter();
         let trials = weaker
             .filter(|strengths| self.stated.allows(strengths))
             .filter_map(|strengths| {
                 let products = bare.with_background(self.prior.at(&strengths));
                 let problem = self.problem(&products);
-                let mut next = problem.reweighted(problem.choose(chosen.set.clone(), &chosen.fit.weights));
+                let mut next = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));
                 let mut growth = Growth::default();
                 for _ in 0..IN_PLACE {
-                    if next.score < chosen.score - 1e-6 {
+                    if next.score < selected.score - 1e-6 {
                         return Some((strengths, next));
                     }
                     next = problem.reweighted(problem.grow(&next, allowed, &mut growth)?);
                 }
-                (next.score < chosen.score - 1e-6).then_some((strengths, next))
+                (next.score < selected.score - 1e-6).then_some((strengths, next))
             });
         trials.min_by(|a, b| a.1.score.total_cmp(&b.1.score))
     }
 
-    /// `chosen` with the strengths of the background that the evidence prefers.
-    pub fn with_best_strengths(&mut self, mut chosen: Selection) -> Selection {
+    /// `selected` with the strengths of the background that the evidence prefers.
+    pub fn with_best_strengths(&mut self, mut selected: Selection) -> Selection {
         let bare = self.bare_products(|r| self.fitted[r]);
         for _ in 0..MOST_MOVES {
             let kinds = [
@@ -257,27 +259,27 @@ impl Study {
             ];
             let next = kinds
                 .into_iter()
-                .find_map(|others| self.strengthened(&bare, &chosen, others(&self.strengths)));
+                .find_map(|others| self.strengthened(&bare, &selected, others(&self.strengths)));
             match next {
                 Some((strengths, next)) => {
                     self.strengths = strengths;
-                    self.note_strengths("more evidence for this background", &chosen, &next);
-                    chosen = next;
+                    self.note_strengths("more evidence for this background", &selected, &next);
+                    selected = next;
                 }
                 None => break,
             }
         }
-        chosen
+        selected
     }
 
-    /// The evidence for `member` of `chosen` (nats): the difference of the scores without and with it, each with its own
+    /// The evidence for `member` of `selected` (nats): the difference of the scores without and with it, each with its own
     /// best background. An effect that resembles wrong inertials allows a smaller background, which must not count as
     /// evidence for the effect.
-    pub fn evidence_beside_best_background(&mut self, chosen: &Selection, member: usize) -> f64 {
+    pub fn evidence_beside_best_background(&mut self, selected: &Selection, member: usize) -> f64 {
         let bare = self.bare_products(|r| self.fitted[r]);
         let kept = self.strengths.clone();
         let products = bare.with_background(self.background());
-        let without = self.problem(&products).without(chosen, member);
+        let without = self.problem(&products).without(selected, member);
         // The present background may be smaller than the evidence prefers, because of the held-out recordings.
         let mut best = |mut fit: Selection| {
             for _ in 0..MOST_MOVES {
@@ -293,19 +295,19 @@ impl Study {
             self.strengths = kept.clone();
             fit.score
         };
-        best(without) - best(chosen.clone())
+        best(without) - best(selected.clone())
     }
 
-    /// `chosen` with another body of a link in the place of the effects on its joint that may together imitate it: a scale
+    /// `selected` with another body of a link in the place of the effects on its joint that may together imitate it: a scale
     /// of the link and a spring on a lever resemble a shifted centre of mass. Effects that are clearly better are kept.
-    pub fn without_imitations(&mut self, mut chosen: Selection) -> Selection {
+    pub fn without_imitations(&mut self, mut selected: Selection) -> Selection {
         let bare = self.bare_products(|r| self.fitted[r]);
         for link in 0..self.arm.dof() {
             let imitates = |&c: &usize| {
                 let candidate = &self.candidates[c];
                 candidate.joint == Some(link) && candidate.hypothesis.spec().may_be_inertial
             };
-            let (imitations, rest): (Vec<usize>, Vec<usize>) = chosen.set.iter().copied().partition(imitates);
+            let (imitations, rest): (Vec<usize>, Vec<usize>) = selected.set.iter().copied().partition(imitates);
             if imitations.len() < 2 {
                 continue;
             }
@@ -318,26 +320,26 @@ impl Study {
             let trials = trials.filter(|strengths| self.stated.allows(strengths));
             let bodies = trials.map(|strengths| {
                 let products = bare.with_background(self.prior.at(&strengths));
-                let next = self.problem(&products).choose(rest.clone(), &chosen.fit.weights);
+                let next = self.problem(&products).choose(rest.clone(), &selected.fit.weights);
                 (strengths, next)
             });
             let best = bodies.min_by(|a, b| a.1.score.total_cmp(&b.1.score));
             if let Some((strengths, next)) = best
-                && next.score < chosen.score + PER_IMITATION
+                && next.score < selected.score + PER_IMITATION
             {
                 self.strengths = strengths;
-                self.note_strengths("one link in the place of effects that imitate it", &chosen, &next);
-                chosen = next;
+                self.note_strengths("one link in the place of effects that imitate it", &selected, &next);
+                selected = next;
             }
         }
-        chosen
+        selected
     }
 
-    /// The best of the strengths `others`, with `chosen` fitted again, if they are better.
+    /// The best of the strengths `others`, with `selected` fitted again, if they are better.
     fn strengthened(
         &self,
         bare: &Products,
-        chosen: &Selection,
+        selected: &Selection,
         others: Vec<Strengths>,
     ) -> Option<(Strengths, Selection)> {
         let trials: Vec<(Strengths, Selection)> = others
@@ -346,7 +348,7 @@ impl Study {
             .map(|strengths| {
                 let products = bare.with_background(self.prior.at(&strengths));
                 let problem = self.problem(&products);
-                let next = problem.choose(chosen.set.clone(), &chosen.fit.weights);
+                let next = problem.choose(selected.set.clone(), &selected.fit.weights);
                 // Without a background, the weights may be far from the final ones.
                 let next = if self.strengths.is_none() {
                     problem.reweighted(next)
@@ -357,40 +359,42 @@ impl Study {
             })
             .collect();
         let (strengths, next) = trials.into_iter().min_by(|a, b| a.1.score.total_cmp(&b.1.score))?;
-        if next.score >= chosen.score - 1e-6 {
+        if next.score >= selected.score - 1e-6 {
             return None;
         }
         let before = strengths.impossible_constants.len();
         let (strengths, next) = self.with_possible_constants(bare, strengths, next);
-        let pays = strengths.impossible_constants.len() == before || next.score < chosen.score - 1e-6;
+        let pays = strengths.impossible_constants.len() == before || next.score < selected.score - 1e-6;
         pays.then_some((strengths, next))
     }
 
-    /// The fit of `chosen` beside a background of these strengths, from which those torque constants are left out, the farthest one
+    /// The fit of `selected` beside a background of these strengths, from which those torque constants are left out, the farthest one
     /// first, that would be wrong by more than any is.
     fn with_possible_constants(
         &self,
         bare: &Products,
         mut strengths: Strengths,
-        mut chosen: Selection,
+        mut selected: Selection,
     ) -> (Strengths, Selection) {
         let most = MOST_CONSTANT.max(MOST_DEVIATIONS * self.stated.torque_accuracy());
         loop {
             let products = bare.with_background(self.prior.at(&strengths));
-            chosen = self.problem(&products).reweighted(chosen);
+            selected = self.problem(&products).reweighted(selected);
             let deviation = |joint: usize| {
                 let column = self.torque_constant(joint)?;
-                Some((chosen.fit.coefficient(column).abs(), joint)).filter(|(deviation, _)| *deviation > most)
+                Some((selected.fit.coefficient(column).abs(), joint)).filter(|(deviation, _)| *deviation > most)
             };
             let farthest = (0..self.motions.dof)
                 .filter_map(deviation)
                 .max_by(|a, b| a.0.total_cmp(&b.0));
             let Some((_, joint)) = farthest else {
-                return (strengths, chosen);
+                return (strengths, selected);
             };
             strengths.impossible_constants.push(joint);
             let products = bare.with_background(self.prior.at(&strengths));
-            chosen = self.problem(&products).choose(chosen.set.clone(), &chosen.fit.weights);
+            selected = self
+                .problem(&products)
+                .choose(selected.set.clone(), &selected.fit.weights);
         }
     }
 }

@@ -7,24 +7,25 @@ use crate::regression::fit::Products;
 use crate::search::problem::{Problem, Selection};
 use crate::search::study::Study;
 
-/// `chosen` without the unmodelled forms that do not predict recordings they were not fitted to. They may have replaced simple
+/// `selected` without the unmodelled forms that do not predict recordings they were not fitted to. They may have replaced simple
 /// effects, which are then searched again.
-pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen: Selection) -> Selection {
+pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut selected: Selection) -> Selection {
     let hypothesis = |c: usize| study.candidates[c].hypothesis;
-    let loss = |chosen: &Selection| held.loss(&held.rss(&study.table, &chosen.fit.columns, &chosen.fit.coefficients));
+    let loss =
+        |selected: &Selection| held.loss(&held.rss(&study.table, &selected.fit.columns, &selected.fit.coefficients));
     let simple: Vec<usize> = (0..study.candidates.len())
         .filter(|&c| hypothesis(c).is_simple())
         .collect();
     loop {
-        let with = loss(&chosen);
-        let worst = chosen
+        let with = loss(&selected);
+        let worst = selected
             .set
             .par_iter()
             .filter(|&&c| hypothesis(c).name().is_none() && !hypothesis(c).is_passing())
             .map(|&c| {
-                let set: Vec<usize> = chosen.others(c);
-                let rest = problem.forward(problem.choose(set, &chosen.fit.weights), &simple);
-                let (outside, inside) = (loss(&rest) - with, rest.fit.loss - chosen.fit.loss);
+                let set: Vec<usize> = selected.others(c);
+                let rest = problem.forward(problem.choose(set, &selected.fit.weights), &simple);
+                let (outside, inside) = (loss(&rest) - with, rest.fit.loss - selected.fit.loss);
                 let joint = study.candidates[c].joint.unwrap_or(0);
                 let length = held.evidence[joint] / problem.products.evidence[joint].max(1e-9);
                 (outside - study.thresholds.held_out * length * inside, rest)
@@ -33,26 +34,26 @@ pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut cho
             .into_iter()
             .min_by(|a, b| a.0.total_cmp(&b.0));
         match worst {
-            Some((gain, rest)) if gain < 0.0 => chosen = rest,
-            _ => return chosen,
+            Some((gain, rest)) if gain < 0.0 => selected = rest,
+            _ => return selected,
         }
     }
 }
 
 /// Removes effects that do not predict recordings they were not fitted to, and effects that make a joint's prediction worse
 /// than the nominal model's.
-pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut chosen: Selection) -> Selection {
+pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut selected: Selection) -> Selection {
     let table = &study.table;
-    let rss = |chosen: &Selection| held.rss(table, &chosen.fit.columns, &chosen.fit.coefficients);
+    let rss = |selected: &Selection| held.rss(table, &selected.fit.columns, &selected.fit.coefficients);
     loop {
-        let with = rss(&chosen);
+        let with = rss(&selected);
         // The increase of the held-out loss without each.
-        let gains: Vec<(usize, f64, Vec<f64>)> = (0..chosen.set.len())
+        let gains: Vec<(usize, f64, Vec<f64>)> = (0..selected.set.len())
             .into_par_iter()
             .map(|k| {
-                let mut set = chosen.set.clone();
+                let mut set = selected.set.clone();
                 let removed = set.remove(k);
-                let rest = problem.choose(set, &chosen.fit.weights);
+                let rest = problem.choose(set, &selected.fit.weights);
                 let without = rss(&rest);
                 // An effect passes if it improves the prediction of all joints together, or of the joints on which it acts. On the other
                 // joints, only the background changes.
@@ -64,12 +65,12 @@ pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut 
                 // The background in its place predicts as well, but costs more evidence. Friction is present in every drive, so that
                 // all recordings decide on it.
                 if problem.is_background_too(this) || this.hypothesis.is_friction() {
-                    gain += rest.score - chosen.score;
+                    gain += rest.score - selected.score;
                 }
                 (removed, gain, without)
             })
             .collect();
-        let exempt = |candidate: usize| study.window(candidate).is_some() || is_idle(study, &chosen, candidate);
+        let exempt = |candidate: usize| study.window(candidate).is_some() || is_idle(study, &selected, candidate);
         let useless = gains
             .iter()
             .filter(|(candidate, gain, _)| !exempt(*candidate) && *gain < 0.0)
@@ -95,10 +96,10 @@ pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut 
         let (rule, bad) = match (useless, harmful()) {
             (Some(&(bad, ..)), _) => ("held-out recordings are more likely without it", bad),
             (None, Some(&(bad, ..))) => (HARMS, bad),
-            (None, None) => return chosen,
+            (None, None) => return selected,
         };
-        let next = problem.choose(chosen.others(bad), &chosen.fit.weights);
-        study.note(rule, &chosen, &next);
-        chosen = next;
+        let next = problem.choose(selected.others(bad), &selected.fit.weights);
+        study.note(rule, &selected, &next);
+        selected = next;
     }
 }

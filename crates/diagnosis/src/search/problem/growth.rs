@@ -1,0 +1,191 @@
+//! The growth of a selection by one candidate at a time.
+
+use std::collections::HashMap;
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
+
+use super::{IMPOSSIBLE, Problem, Selection};
+use crate::regression::fit::LeftOut;
+use crate::search::candidate::Hypothesis;
+
+/// The number of the most promising candidates that are fitted in full each round.
+const TRIED: usize = 8;
+/// The number of forms of one effect on one joint that are fitted in full before other effects.
+const AT_ONCE: usize = 3;
+/// The number of candidates that are looked at in a step of a growth, before all are.
+const PROMISING: usize = 150;
+/// The number of times that the next most promising candidates are tried if the first do not pay.
+const BATCHES: usize = 6;
+
+/// The memory of a stepwise growth.
+#[derive(Clone, Debug, Default)]
+pub struct Growth {
+    /// Candidates that do not improve the prediction of recordings that they were not fitted to.
+    pub refused: Vec<usize>,
+    /// Candidates that were fitted and not taken, with their score and the reason.
+    pub tried: Vec<(usize, f64, &'static str)>,
+    /// What candidates promised when they were last looked at (nats, minus their costs).
+    promises: HashMap<usize, f64>,
+}
+
+impl Growth {
+    /// Forgets what depends on the background.
+    pub fn begin_anew(&mut self) {
+        self.refused.clear();
+        self.promises.clear();
+    }
+
+    /// `candidates` that promised most before, with those never looked at, and the others.
+    fn by_promise(&self, mut candidates: Vec<usize>) -> (Vec<usize>, Vec<usize>) {
+        let promise = |c: &usize| self.promises.get(c).copied().unwrap_or(f64::INFINITY);
+        candidates.sort_by(|a, b| promise(b).total_cmp(&promise(a)).then(a.cmp(b)));
+        let unknown = candidates.partition_point(|c| promise(c) == f64::INFINITY);
+        let rest = candidates.split_off(candidates.len().min(unknown + PROMISING));
+        (candidates, rest)
+    }
+}
+
+impl Problem<'_> {
+    /// The best addition to `selected` among `allowed`, if one pays. Candidates that `growth` refused before are not tried again.
+    /// Those that promised most before are tried first; all are, before none is added.
+    pub fn grow(&self, selected: &Selection, allowed: &[usize], growth: &mut Growth) -> Option<Selection> {
+        let free: Vec<usize> = allowed
+            .iter()
+            .copied()
+            .filter(|&c| {
+                !growth.refused.contains(&c)
+                    && !selected.set.contains(&c)
+                    && !selected.set.iter().any(|&other| self.exclude(c, other))
+            })
+            .collect();
+        let (first, rest) = growth.by_promise(free);
+        let mut promises = self.promises(selected, &first);
+        growth
+            .promises
+            .extend(promises.iter().map(|&(promise, c)| (c, promise)));
+        let mut fitted = Vec::new();
+        if !rest.is_empty() {
+            if let Some(best) = self.best_of(selected, promises.clone(), growth, &mut fitted) {
+                return Some(best);
+            }
+            let others = self.promises(selected, &rest);
+            growth.promises.extend(others.iter().map(|&(promise, c)| (c, promise)));
+            promises.extend(others);
+            promises.retain(|(_, c)| !growth.refused.contains(c));
+        }
+        self.best_of(selected, promises, growth, &mut fitted)
+    }
+
+    /// The best addition to `selected` among the most promising candidates, if one pays. Candidates that were `fitted` before did
+    /// not pay.
+    fn best_of(
+        &self,
+        selected: &Selection,
+        mut promises: Vec<(f64, usize)>,
+        growth: &mut Growth,
+        fitted: &mut Vec<usize>,
+    ) -> Option<Selection> {
+        promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        promises.retain(|(promise, _)| *promise > 0.0);
+        // The most promising candidates of each kind come first, because a candidate that contains a simpler one promises
+        // as much as that one, at all its sizes.
+        let kind = |c: usize| (self.candidates[c].joint, self.candidates[c].hypothesis);
+        let mut of_kind: HashMap<(Option<usize>, Hypothesis), usize> = HashMap::new();
+        let mut turns: Vec<(usize, usize)> = promises
+            .into_iter()
+            .map(|(_, candidate)| {
+                let before = of_kind.entry(kind(candidate)).or_default();
+                *before += 1;
+                ((*before - 1) / AT_ONCE, candidate)
+            })
+            .collect();
+        turns.sort_by_key(|&(turn, _)| turn);
+        let mut waiting = turns.into_iter().map(|(_, candidate)| candidate);
+        // The fit to which the candidates of a joint are added is computed once.
+        let bases: Vec<OnceLock<LeftOut<'_>>> = (0..self.table.dof()).map(|_| OnceLock::new()).collect();
+        for _ in 0..BATCHES {
+            let mut batch = Vec::with_capacity(TRIED);
+            while batch.len() < TRIED {
+                let next: Vec<usize> = waiting.by_ref().take(TRIED - batch.len()).collect();
+                if next.is_empty() {
+                    break;
+                }
+                let predicts = next
+                    .par_iter()
+                    .map(|&candidate| fitted.contains(&candidate) || self.predicts(selected, candidate, &bases));
+                let predicts: Vec<bool> = predicts.collect();
+                for (candidate, predicts) in next.into_iter().zip(predicts) {
+                    if predicts {
+                        batch.push(candidate);
+                    } else {
+                        growth.refused.push(candidate);
+                        growth.tried.push((
+                            candidate,
+                            selected.score,
+                            "does not improve the prediction of recordings it was not fitted to",
+                        ));
+                    }
+                }
+            }
+            if batch.is_empty() {
+                break;
+            }
+            batch.retain(|candidate| !fitted.contains(candidate));
+            let tried: Vec<Selection> = batch
+                .par_iter()
+                .map(|&candidate| self.choose(self.with(&selected.set, candidate), &selected.fit.weights))
+                .collect();
+            fitted.extend(batch);
+            let best = tried
+                .into_iter()
+                .filter(|next| {
+                    let added = next.set[next.set.len() - 1];
+                    let (possible, pays) = (self.is_possible(added, &next.fit), next.score < selected.score);
+                    let rule = match (possible, pays) {
+                        (false, _) => IMPOSSIBLE,
+                        (true, false) => "costs more evidence than it brings",
+                        (true, true) => "another gains more",
+                    };
+                    growth.tried.push((added, next.score, rule));
+                    possible && pays
+                })
+                .min_by(|a, b| a.score.total_cmp(&b.score));
+            if let Some(best) = best {
+                let taken = best.set.last();
+                growth.tried.retain(|(candidate, ..)| Some(candidate) != taken);
+                return Some(best);
+            }
+        }
+        None
+    }
+
+    /// Whether `candidate` improves the prediction of recordings that it was not fitted to. `bases` are the fits of `selected` on
+    /// the joints.
+    fn predicts<'a>(&'a self, selected: &'a Selection, candidate: usize, bases: &[OnceLock<LeftOut<'a>>]) -> bool {
+        let candidate = &self.candidates[candidate];
+        if candidate.hypothesis.is_passing() || candidate.hypothesis.is_baseline() || self.is_background_too(candidate)
+        {
+            return true;
+        }
+        let columns = &selected.fit.columns;
+        let Some(joint) = candidate.joint else {
+            return self
+                .products
+                .arm_gain(self.table, columns, &candidate.columns, &selected.fit.weights)
+                > 0.0;
+        };
+        let fit = || {
+            self.products
+                .left_out(self.table, joint, columns, &selected.fit.weights)
+        };
+        let base = bases[joint].get_or_init(fit);
+        let (inside, outside) = self.products.gains(self.table, base, &candidate.columns);
+        outside
+            > if candidate.hypothesis.name().is_none() {
+                self.thresholds.predicted * inside
+            } else {
+                0.0
+            }
+    }
+}
