@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::inertia::{Inertia, Moments};
 use crate::pose::Pose;
+use crate::real::Real;
 
 /// How a joint moves its link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,7 +71,7 @@ impl Joint {
     pub fn parent_from_link(&self, q: f64) -> Pose {
         match self.kind {
             JointKind::Revolute => {
-                let (sin, cos) = q.sin_cos();
+                let (sin, cos) = Real::sin_cos(q);
                 let [r0, r1, r2] = &self.rotation_terms;
                 Pose {
                     rotation: r0 + r1 * sin + r2 * (1.0 - cos),

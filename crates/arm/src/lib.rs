@@ -36,6 +36,7 @@ mod pose;
 mod real;
 mod regressor;
 mod scratch;
+mod sine;
 mod small;
 mod urdf;
 mod variants;

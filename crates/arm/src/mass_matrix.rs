@@ -6,7 +6,7 @@ use crate::joint::JointKind;
 use crate::model::Arm;
 use crate::real::Real;
 use crate::scratch::Scratch;
-use crate::small::{Mat3, Vec3, cross, mul, rotate_symmetric, symmetric};
+use crate::small::{Mat3, Vec3, cross, mul, rotate_symmetric, symmetric, tr_mul};
 use crate::workspace::Workspace;
 
 impl Arm {
@@ -42,6 +42,18 @@ impl Arm {
         // The mass matrix does not depend on the pose of the first link in the base, which is therefore not computed.
         self.place(context, scratch, q, 1);
         let places = &scratch.places;
+        let base = &self.joints[0];
+        let base_axis = Vec3::constant(context, &base.axis);
+        // The unit motion of the first joint at link 1, about its origin and in its frame: angular and linear part. The wrenches
+        // need not be carried farther than to link 1.
+        let base_motion = match (places.get(1), base.kind) {
+            (None, _) => (base_axis, base_axis),
+            (Some(place), JointKind::Revolute) => (
+                tr_mul(&place.rotation, &base_axis),
+                tr_mul(&place.rotation, &cross(&base_axis, &place.translation)),
+            ),
+            (Some(place), JointKind::Prismatic) => (Vec3::zeros(context), tr_mul(&place.rotation, &base_axis)),
+        };
         for i in (0..n).rev() {
             let joint = &self.joints[i];
             let joint_mass = joint.inertia.mass + distal_mass;
@@ -55,22 +67,26 @@ impl Arm {
                 JointKind::Revolute => (cross(&axis, &first_moment), mul(&tensor, &axis)),
                 JointKind::Prismatic => (axis * mass, cross(&first_moment, &axis)),
             };
-            let column = &mut mass_matrix[i * n..][..=i];
-            let between = self.joints.iter().zip(places.iter()).zip(column.iter_mut());
-            for ((other, place), element) in between.skip(1).rev() {
+            for (j, (other, place)) in self.joints[..=i].iter().zip(places).enumerate().skip(1).rev() {
                 let axis = Vec3::constant(context, &other.axis);
-                *element = match other.kind {
+                let entry = match other.kind {
                     JointKind::Revolute => axis.dot(&moment),
                     JointKind::Prismatic => axis.dot(&force),
                 };
-                force = mul(&place.rotation, &force);
-                moment = mul(&place.rotation, &moment) + cross(&place.translation, &force);
+                mass_matrix[i * n + j] = entry;
+                mass_matrix[j * n + i] = entry;
+                if j > 1 {
+                    force = mul(&place.rotation, &force);
+                    moment = mul(&place.rotation, &moment) + cross(&place.translation, &force);
+                }
             }
-            let base = Vec3::constant(context, &self.joints[0].axis);
-            column[0] = match self.joints[0].kind {
-                JointKind::Revolute => base.dot(&moment),
-                JointKind::Prismatic => base.dot(&force),
+            let entry = match base.kind {
+                _ if i > 0 => base_motion.0.dot(&moment) + base_motion.1.dot(&force),
+                JointKind::Revolute => base_axis.dot(&moment),
+                JointKind::Prismatic => base_axis.dot(&force),
             };
+            mass_matrix[i * n] = entry;
+            mass_matrix[i] = entry;
             mass_matrix[i * n + i] += T::constant(context, joint.rotor_inertia);
             if i == 0 {
                 break;
@@ -94,11 +110,6 @@ impl Arm {
                 );
             distal_moment = moved;
             distal_mass = joint_mass;
-        }
-        for i in 0..n {
-            for j in 0..i {
-                mass_matrix[j * n + i] = mass_matrix[i * n + j];
-            }
         }
     }
 }

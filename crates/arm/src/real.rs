@@ -9,6 +9,8 @@ use std::slice::from_mut;
 use pulp::Simd;
 use pulp::bytemuck::cast_slice_mut;
 
+use crate::sine;
+
 /// A number, or one of several states that are computed together.
 pub(crate) trait Real:
     Copy
@@ -25,7 +27,7 @@ pub(crate) trait Real:
     /// A number that is the same in every state.
     fn constant(context: Self::Context, value: f64) -> Self;
 
-    /// Sine and cosine; for each state as `f64::sin_cos` gives them.
+    /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
 }
 
@@ -39,7 +41,10 @@ impl Real for f64 {
 
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        f64::sin_cos(self)
+        if self.abs() > sine::LARGEST {
+            return f64::sin_cos(self);
+        }
+        sine::sin_cos((), self)
     }
 }
 
@@ -63,15 +68,26 @@ impl<S: Simd> Real for Lanes<S> {
 
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let (mut sin, mut cos) = (self, self);
-        for (sin, cos) in sin.each_mut().iter_mut().zip(cos.each_mut()) {
-            (*sin, *cos) = sin.sin_cos();
+        let simd = self.simd;
+        let is_large = simd.greater_than_f64s(simd.abs_f64s(self.values), simd.splat_f64s(sine::LARGEST));
+        if simd.first_true_m64s(is_large) < S::F64_LANES {
+            return self.sin_cos_one_by_one();
         }
-        (sin, cos)
+        sine::sin_cos(simd, self)
     }
 }
 
 impl<S: Simd> Lanes<S> {
+    /// Sine and cosine if an angle is too large for the polynomials.
+    #[cold]
+    fn sin_cos_one_by_one(self) -> (Self, Self) {
+        let (mut sin, mut cos) = (self, self);
+        for (sin, cos) in sin.each_mut().iter_mut().zip(cos.each_mut()) {
+            (*sin, *cos) = Real::sin_cos(*sin);
+        }
+        (sin, cos)
+    }
+
     #[inline(always)]
     fn each_mut(&mut self) -> &mut [f64] {
         cast_slice_mut(from_mut(&mut self.values))

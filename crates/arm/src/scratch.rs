@@ -16,8 +16,6 @@ use crate::small::Vec3;
 /// Intermediate results of the recursions, one entry per joint.
 #[derive(Clone, Debug)]
 pub(crate) struct Scratch<T> {
-    /// q and its sine and cosine.
-    pub turns: Vec<(T, T, T)>,
     pub places: Vec<Place<T>>,
     pub motions: Vec<LinkMotion<T>>,
     pub articulated: Vec<Articulated<T>>,
@@ -30,7 +28,6 @@ impl<T: Real> Scratch<T> {
     pub fn new(context: T::Context, dof: usize) -> Self {
         let zero = Vec3::zeros(context);
         Self {
-            turns: vec![(zero.x, zero.x, zero.x); dof],
             places: vec![Place::zeros(context); dof],
             motions: vec![LinkMotion::zeros(context); dof],
             articulated: vec![Articulated::zeros(context); dof],

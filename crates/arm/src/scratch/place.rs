@@ -22,12 +22,13 @@ impl<T: Real> Place<T> {
         }
     }
 
-    /// [`Joint::parent_from_link`] at q, from the sine and cosine of q for a revolute joint.
+    /// [`Joint::parent_from_link`] at q.
     #[inline(always)]
-    fn of(context: T::Context, joint: &Joint, (q, sin, cos): (T, T, T)) -> Self {
+    fn of(context: T::Context, joint: &Joint, q: T) -> Self {
         let at = Vec3::constant(context, &joint.parent_from_joint.translation);
         match joint.kind {
             JointKind::Revolute => {
+                let (sin, cos) = q.sin_cos();
                 let [r0, r1, r2] = &joint.rotation_terms;
                 let (r0, r1) = (Mat3::constant(context, r0), Mat3::constant(context, r1));
                 let r2 = Mat3::constant(context, r2);
@@ -48,19 +49,8 @@ impl Arm {
     /// Writes the pose in its parent of each link from `first` on into `scratch`.
     #[inline(always)]
     pub(crate) fn place<T: Real>(&self, context: T::Context, scratch: &mut Scratch<T>, q: &[T], first: usize) {
-        let Scratch { places, turns, .. } = scratch;
-        // All sines first: lanes are written one by one, and reading them as a vector directly afterwards would stall.
-        for ((joint, turn), &q) in self.joints.iter().zip(turns.iter_mut()).zip(q).skip(first) {
-            *turn = match joint.kind {
-                JointKind::Revolute => {
-                    let (sin, cos) = q.sin_cos();
-                    (q, sin, cos)
-                }
-                JointKind::Prismatic => (q, q, q),
-            };
-        }
-        for ((joint, place), &turn) in self.joints.iter().zip(places).zip(turns.iter()).skip(first) {
-            *place = Place::of(context, joint, turn);
+        for ((joint, place), &q) in self.joints.iter().zip(&mut scratch.places).zip(q).skip(first) {
+            *place = Place::of(context, joint, q);
         }
     }
 }
