@@ -19,6 +19,7 @@ pub mod judge;
 pub mod naming;
 pub mod predict;
 pub mod rivals;
+pub mod special_forms;
 pub mod torque_constants;
 pub mod unmounted;
 

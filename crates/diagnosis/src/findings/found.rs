@@ -120,13 +120,14 @@ fn finding(
     list
 }
 
-/// The last link as an alternative of a payload that was always there, if the links are wrong in any case: the inertial parameters of
+/// The last link as an alternative of a payload that was always there, if a link is wrong in any case: the inertial parameters of
 /// both have the same torque. Without wrong links, a body at the tool is the likelier of the two.
 fn as_last_link(study: &Study, candidate: usize) -> Option<Named> {
     let is_always = study.terms(candidate).iter().all(|term| term.onset().is_none());
     let is_payload = study.candidates[candidate].hypothesis.is(&Payload);
     let links = Hypothesis::of(&InertialParameters);
-    (is_payload && is_always && study.strengths.common() > 0.0).then(|| (links, study.arm.dof().checked_sub(1)))
+    let is_wrong = study.strengths.links.iter().any(|&rho| rho > 0.0);
+    (is_payload && is_always && is_wrong).then(|| (links, study.arm.dof().checked_sub(1)))
 }
 
 /// The share of the drive's inertia that is named with a spring or a gap.

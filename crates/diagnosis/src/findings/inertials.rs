@@ -10,11 +10,13 @@ use effects::{Effect, EffectKind};
 use crate::regression::bodies::{PER_LINK, physical};
 use crate::regression::fit::Products;
 use crate::report::{Confusable, Finding, LinkInertials, Parameter};
+use crate::search::candidate::Hypothesis;
 use crate::search::study::{About, Study};
 use crate::selection::bootstrap::Resampled;
 use crate::selection::judge::Judged;
 use crate::selection::predict::{augmented, deviation, errors};
 use crate::selection::rivals::{allowance, probability};
+use crate::selection::special_forms::special_forms;
 use crate::thresholds::{LEAST_WRONG_EVERYWHERE, LINK_STANDS_OUT, LISTED_SHARE, PARTLY, SYSTEMATIC};
 
 /// The links that differ from the URDF.
@@ -170,6 +172,15 @@ pub fn inertials(
         });
         (margin, rivals.collect())
     };
+    // The alternatives of links that are all wrong: effects beside links that are less wrong.
+    let everywhere = || -> Vec<Confusable> {
+        let forms = special_forms(study, products, &judged.named);
+        let confusable = |(form, joint): (Hypothesis, Option<usize>)| Confusable {
+            effect: form.name().unwrap_or_default(),
+            joint: joint.map(|joint| study.arm.joints()[joint].name.clone()),
+        };
+        forms.into_iter().map(confusable).collect()
+    };
     let mut add = |joint: Option<usize>, shares: &[f64], parameters: BTreeMap<&'static str, Parameter>| {
         // Beside unmodelled structure on a joint, the changes may be a part of that structure.
         let stands_out = |joint: usize| {
@@ -184,7 +195,7 @@ pub fn inertials(
         if !(0..dof).any(stands_out) {
             return;
         }
-        let (margin, confusable_with) = joint.map_or_else(|| (evidence, Vec::new()), instead);
+        let (margin, confusable_with) = joint.map_or_else(|| (evidence, everywhere()), instead);
         list.findings.push(Finding {
             joint: joint.map(|joint| study.arm.joints()[joint].name.clone()),
             parameters,

@@ -78,6 +78,8 @@ pub struct Study {
     pub trace: Trace,
     /// Hypotheses that the final fit refused; they are not searched again.
     refused: Vec<(Hypothesis, Option<usize>)>,
+    /// Names that the final fit gave up, because wrong inertial parameters explain nearly as much.
+    pub given_up: Vec<(Hypothesis, Option<usize>)>,
 }
 
 /// `terms` of a hypothesis that begins at `at` (s). The Coulomb level that a friction generalises was there before, and is not
@@ -220,6 +222,7 @@ impl Study {
             prior,
             trace: Trace::default(),
             refused: Vec::new(),
+            given_up: Vec::new(),
         }
     }
 

@@ -39,7 +39,10 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
         if judged.named.set.len() < before {
             continue;
         }
-        if let Some((undecided, rule)) = undecided(study, judged) {
+        if let Some((undecided, rule, is_inertial)) = undecided(study, judged) {
+            if is_inertial {
+                study.give_up(undecided);
+            }
             drop_name(study, judged, undecided, rule);
             continue;
         }
@@ -207,23 +210,23 @@ fn nothing(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Vec<usi
     list
 }
 
-/// The weakest effect whose name is as likely wrong as right, with the rule that removes it: it is too
-/// small in the final fit; or another effect explains nearly as much in its place; or wrong inertial parameters resemble it, and its
-/// evidence against the background that fits best without it is small.
-fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str)> {
+/// The weakest effect whose name is as likely wrong as right, with the rule that removes it, and whether wrong inertial parameters
+/// are the reason: it is too small in the final fit; or another effect explains nearly as much in its place; or wrong inertial
+/// parameters resemble it, and its evidence against the background that fits best without it is small.
+fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str, bool)> {
     let products = study.training_products();
     let mut members: Vec<&judge::Member> = judged.members.iter().collect();
     members.sort_by(|a, b| a.evidence.total_cmp(&b.evidence));
     let mut rule = |member: &judge::Member| {
         let hypothesis = study.candidates[member.candidate].hypothesis;
         if !hypothesis.is_baseline() && !hypothesis.is_passing() && member.share() < LEAST_FINAL_SHARE {
-            return Some("too small in the final fit");
+            return Some(("too small in the final fit", false));
         }
         // A payload or a factor on the inertial parameters improves the fit whenever the inertial parameters are wrong in any way.
         let is_small = !hypothesis.is_friction() && member.share() < LEAST_UNDECIDED;
         let margin = || standing(study, &study.problem(&products), &judged.named, member.candidate).margin_over_single;
         if (is_small || hypothesis.is_wrong_mass() || hypothesis.is(&TorqueScale)) && margin() < UNDECIDED_NATS {
-            return Some("another effect explains nearly as much in its place");
+            return Some(("another effect explains nearly as much in its place", false));
         }
         // If most links agree with the URDF, one wrong link is an unlikely explanation.
         let preferred = study.preferred.as_ref().map_or(0.0, Strengths::common);
@@ -236,11 +239,12 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str)
             .abs();
         let is_too_far = hypothesis.spec().most_beside_inertials.is_some_and(|most| size > most);
         let is_weak = is_too_far || study.evidence_beside_best_background(&judged.named, member.candidate) < least;
-        is_weak.then_some("wrong inertials explain nearly as much in its place")
+        is_weak.then_some(("wrong inertials explain nearly as much in its place", true))
     };
-    members
-        .into_iter()
-        .find_map(|member| Some((member.candidate, rule(member)?)))
+    members.into_iter().find_map(|member| {
+        let (rule, is_inertial) = rule(member)?;
+        Some((member.candidate, rule, is_inertial))
+    })
 }
 
 /// Whether the effect is hardly larger than the structured residual of its joint, and of a kind that may be a part of that residual;

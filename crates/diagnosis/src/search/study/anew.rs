@@ -115,6 +115,15 @@ impl Study {
         self.refused.push((refused.hypothesis, refused.joint));
     }
 
+    /// Gives up the name of `candidate`, because wrong inertial parameters explain nearly as much.
+    pub fn give_up(&mut self, candidate: usize) {
+        let candidate = &self.candidates[candidate];
+        let name = (candidate.hypothesis, candidate.joint);
+        if !self.given_up.contains(&name) {
+            self.given_up.push(name);
+        }
+    }
+
     /// The number of refused hypotheses.
     pub fn refused(&self) -> usize {
         self.refused.len()

@@ -1,0 +1,78 @@
+//! Special forms of wrong inertial parameters: effects that explain, beside links that differ less from the URDF, nearly as much as
+//! the correction of all links does without them.
+
+use rayon::prelude::*;
+
+use crate::regression::fit::Products;
+use crate::regression::strengths::Strengths;
+use crate::search::problem::Selection;
+use crate::search::study::Study;
+use crate::selection::rivals::Named;
+use crate::thresholds::NEARLY_AS_LIKELY;
+
+/// The number of candidates that are fitted beside each smaller correction.
+const TRIED: usize = 4;
+/// The largest number of special forms.
+const MOST: usize = 3;
+
+/// The special forms that the recordings do not exclude, the best first: those that are as likely beside a smaller correction of
+/// the links, and names that were given up because wrong inertial parameters explain nearly as much. `selected` is the final fit.
+pub fn special_forms(study: &Study, products: &Products, selected: &Selection) -> Vec<Named> {
+    let links = |strengths: &Strengths| strengths.links.clone();
+    let is_smaller =
+        |strengths: &Strengths| links(strengths) != links(&study.strengths) && study.stated.allows(strengths);
+    let smaller: Vec<Strengths> = study.strengths.weaker().into_iter().filter(is_smaller).collect();
+    let mut scores: Vec<(f64, Named)> = smaller
+        .into_par_iter()
+        .flat_map_iter(|strengths| beside(study, products, selected, &strengths))
+        .filter(|(score, _)| *score < selected.score + NEARLY_AS_LIKELY)
+        .collect();
+    scores.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut forms: Vec<Named> = Vec::new();
+    for form in study
+        .given_up
+        .iter()
+        .copied()
+        .chain(scores.into_iter().map(|(_, form)| form))
+    {
+        let is_named = |&c: &usize| (study.candidates[c].hypothesis, study.candidates[c].joint) == form;
+        if !forms.contains(&form) && !selected.set.iter().any(is_named) {
+            forms.push(form);
+        }
+    }
+    forms.truncate(MOST);
+    forms
+}
+
+/// The most promising special forms beside links of these `strengths`, each with its score (nats).
+fn beside(study: &Study, products: &Products, selected: &Selection, strengths: &Strengths) -> Vec<(f64, Named)> {
+    let products = products.with_background(study.background_at(strengths));
+    let problem = study.problem(&products);
+    let base = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));
+    let is_free = |&c: &usize| {
+        let candidate = &study.candidates[c];
+        candidate.hypothesis.name().is_some()
+            && candidate.hypothesis.spec().may_be_inertial
+            && problem.onset(candidate).is_none()
+            && !selected
+                .set
+                .iter()
+                .any(|&other| other == c || problem.exclude(c, other))
+    };
+    let free: Vec<usize> = study.allowed().into_iter().filter(is_free).collect();
+    let mut promises = problem.promises(&base, &free);
+    promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let of = |c: usize| (study.candidates[c].hypothesis, study.candidates[c].joint);
+    let mut tried: Vec<usize> = Vec::new();
+    for &(promise, c) in &promises {
+        if promise > 0.0 && tried.len() < TRIED && !tried.iter().any(|&other| of(other) == of(c)) {
+            tried.push(c);
+        }
+    }
+    let fitted = tried.into_iter().filter_map(|c| {
+        let with = problem.choose([&selected.set[..], &[c]].concat(), &base.fit.weights);
+        let pays = with.score < base.score && problem.is_possible(c, &with.fit);
+        pays.then(|| (problem.reweighted(with).score, of(c)))
+    });
+    fitted.collect()
+}
