@@ -81,7 +81,8 @@ pub struct Score {
     /// The count of the open cases' own script, without any of the distinctions above.
     pub plain: Plain,
     /// Every injected effect that is not a baseline effect, with its outcome.
-    pub concealed: Vec<Outcome>,
+    #[serde(rename = "concealed")]
+    pub injected: Vec<Outcome>,
     /// Every false name that is not a baseline effect.
     pub false_names: Vec<FalseName>,
     /// Every case with an effect outside the catalogue.
@@ -100,7 +101,8 @@ pub struct Score {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Family {
     /// Injected with an expressed share from which an effect is required.
-    pub concealed: usize,
+    #[serde(rename = "concealed")]
+    pub injected: usize,
     /// Required effects that are found, by this name or an equivalent one.
     pub found: usize,
     /// Required effects that are found by an equivalent name.
@@ -126,7 +128,7 @@ pub struct Family {
 impl Family {
     /// The number of required effects that are not declared not testable.
     pub fn asked(&self) -> usize {
-        self.concealed - self.not_observable
+        self.injected - self.not_observable
     }
 }
 

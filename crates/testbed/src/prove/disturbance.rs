@@ -111,7 +111,7 @@ pub fn conceal() -> anyhow::Result<Concealment> {
             case: CASE.to_owned(),
             robot: train.arm.name().to_owned(),
             seed: 0,
-            concealed: vec![Injected {
+            injected: vec![Injected {
                 effect: EFFECT.to_owned(),
                 joint: None,
                 parameters: [("factor".to_owned(), factor.into())].into(),
