@@ -342,7 +342,7 @@ fn described(
             Some(Obstacle::Unexplained)
         } else {
             // A pair that the recordings already distinguish is not a confusion.
-            (before[k][0] >= before[k][1].min(needed)).then_some(Obstacle::NotForetold)
+            (before[k][0] >= before[k][1].min(needed)).then_some(Obstacle::NoPrediction)
         };
         if after >= SURE * needed && barred.is_none() {
             separates.push(Separation {

@@ -65,8 +65,8 @@ pub mod friction {
     pub use coulomb::CoulombFriction;
     pub use drag::QuadraticDrag;
     pub use load_dependent::LoadDependentFriction;
-    pub use stribeck::{StribeckFriction, velocity as stribeck_velocity};
-    pub use thermal::{FASTEST_WARMING, ThermalDrift};
+    pub use stribeck::StribeckFriction;
+    pub use thermal::ThermalDrift;
     pub use viscous::ViscousFriction;
 }
 

@@ -2,11 +2,12 @@
 
 mod applied;
 mod column_map;
+mod correction;
 mod fit;
 mod positions;
+mod proposal;
 mod smooth;
-mod supposed;
-mod supposition;
+mod thresholds;
 mod torque_unit;
 mod wording;
 
@@ -17,27 +18,14 @@ use report::numbers::{percent, rounded};
 use serde::Serialize;
 
 pub use self::column_map::{Change, Layout};
+use self::correction::Correction;
 use self::fit::{Fit, fit};
 use self::positions::Pair;
+pub use self::proposal::{Proposal, proposal};
 use self::smooth::Smooth;
-pub use self::supposed::{Supposed, supposed};
-use self::supposition::Supposition;
-use self::torque_unit::MOTOR_SIDE;
-
-/// A torque that exceeds the model's by more than this factor is in another unit.
-const OTHER_UNIT: f64 = 100.0;
-/// The largest speed of a robot, as a multiple of the URDF's limit; many URDFs have limits of the normal operation.
-const BEYOND: f64 = 5.0;
-
-/// The least number of instants from which the model's torques are judged.
-const LEAST_INSTANTS: usize = 100;
-/// A column map may not increase the sum of the joints' log residuals by more than this. Factors of torques do not change it.
-const WORSE: f64 = 0.5;
-
-/// A joint's torque is not explained if its residual has at least this share of its variance.
-const NOT_EXPLAINED: f64 = 0.5;
-/// The ratios of a torque to the model's that a wrong URDF may have.
-const OF_SIZE: std::ops::Range<f64> = 0.1..10.0;
+use self::thresholds::{
+    EFFORT_SLACK, LEAST_INSTANTS, LIMIT_SLACK, MOST_SPEED, MOTOR_SIDE, NOT_EXPLAINED, OF_SIZE, OTHER_UNIT, WORSE,
+};
 
 /// A contradiction between recording and URDF.
 #[derive(Debug, Serialize)]
@@ -96,7 +84,7 @@ pub fn column_map(arm: &Arm, misfits: &[Misfit], recording: &Recording) -> Optio
 /// The fit of the recording as it is; `None` if it cannot be computed.
 fn as_it_is(arm: &Arm, regular: &RegularRecording) -> Option<Fit> {
     let smooth = Smooth::of(regular, &order(arm, regular)?);
-    (smooth.len() > LEAST_INSTANTS).then(|| fit(arm, &smooth, Supposition::AsItIs))
+    (smooth.len() > LEAST_INSTANTS).then(|| fit(arm, &smooth, Correction::AsItIs))
 }
 
 /// The place of each of the arm's joints in the recording, if all are there.
@@ -152,7 +140,7 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Checke
             continue;
         }
         let mut add = |text: String| checked.misfits.push(Misfit::new(Some(&joint.name), text, Vec::new()));
-        if measured.speed_max > BEYOND * limits.velocity && limits.velocity > 0.0 {
+        if measured.speed_max > MOST_SPEED * limits.velocity && limits.velocity > 0.0 {
             add(format!(
                 "the speed reaches {}, {} times the URDF's velocity limit {} {}; check the units of position and time",
                 rounded(measured.speed_max, 3),
@@ -161,7 +149,7 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Checke
                 Quantity::Speed.unit(joint.kind)
             ));
         }
-        if low < limits.lower - 1e-2 || high > limits.upper + 1e-2 {
+        if low < limits.lower - LIMIT_SLACK || high > limits.upper + LIMIT_SLACK {
             add(format!(
                 "positions {} … {} exceed the URDF's limits {:.3} … {:.3} {}; check unit, zero and sign, or the limits",
                 rounded(low, 4),
@@ -172,7 +160,7 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Checke
             ));
         }
         let torque = measured.tau_range.0.abs().max(measured.tau_range.1.abs());
-        if limits.effort > 0.0 && torque > 1.05 * limits.effort {
+        if limits.effort > 0.0 && torque > EFFORT_SLACK * limits.effort {
             add(format!(
                 "the torque reaches {}, above the URDF's effort limit {} {}; check its unit and side of the gear",
                 rounded(torque, 3),
@@ -240,7 +228,7 @@ fn names(arm: &Arm, regular: &RegularRecording) -> Vec<Misfit> {
 /// Contradictions in units that the torques show.
 fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
     let names: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
-    let as_it_is = fit(arm, smooth, Supposition::AsItIs);
+    let as_it_is = fit(arm, smooth, Correction::AsItIs);
     if let Some((text, changes)) = torque_unit::of(&names, moves, &as_it_is) {
         let prevents_diagnosis = true;
         return vec![Misfit {

@@ -201,7 +201,7 @@ pub fn read(
         memory::bound(&mut list);
     }
     progress("checking signs, zeros and order");
-    suppose(&mut list, arm, known, notes);
+    propose(&mut list, arm, known, notes);
     tell_maps(&list, notes);
     epoch::share(&mut list);
     let training = || list.iter().filter(|recording| recording.role == Role::Train);
@@ -219,22 +219,22 @@ pub fn read(
     Ok(list)
 }
 
-/// Adds what the torques of all recordings tell about their signs, zeros and order.
-fn suppose(list: &mut [Prepared], arm: &Arm, known: &[Effect], notes: &mut Notes) {
+/// Adds the correction of signs, zeros and order that the torques of all recordings show.
+fn propose(list: &mut [Prepared], arm: &Arm, known: &[Effect], notes: &mut Notes) {
     let judged: Vec<usize> = (0..list.len()).filter(|&at| list[at].has_model_units).collect();
     let recordings: Vec<&RegularRecording> = judged.iter().map(|&at| &list[at].regular).collect();
-    let Some(supposed) = check::supposed(arm, known, &recordings) else {
+    let Some(proposed) = check::proposal(arm, known, &recordings) else {
         return;
     };
-    for at in supposed.recordings.iter().map(|&at| judged[at]) {
+    for at in proposed.recordings.iter().map(|&at| judged[at]) {
         let one = &mut list[at];
         let doubt = Doubt {
             recording: one.name.clone(),
-            joint: supposed.joint.clone(),
-            text: supposed.text.clone(),
-            column_map: one.layout.map(&supposed.changes),
+            joint: proposed.joint.clone(),
+            text: proposed.text.clone(),
+            column_map: one.layout.map(&proposed.changes),
         };
-        if supposed.is_certain {
+        if proposed.is_certain {
             one.doubts.push(doubt);
         } else {
             notes.add("warning", &one.name, about(doubt.joint.as_deref(), &doubt.text));

@@ -121,13 +121,13 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
         let in_order = inputs::in_order_of(arm, regular);
         if checked.has_model_units
             && let Some(in_order) = in_order
-            && let Some(supposed) = check::supposed(arm, &[], &[&in_order])
+            && let Some(proposed) = check::proposal(arm, &[], &[&in_order])
         {
-            column_map = check::Layout::of(&recording).map(&supposed.changes).or(column_map);
+            column_map = check::Layout::of(&recording).map(&proposed.changes).or(column_map);
             against_robot.push(check::Misfit::new(
-                supposed.joint.as_deref(),
-                supposed.text,
-                supposed.changes,
+                proposed.joint.as_deref(),
+                proposed.text,
+                proposed.changes,
             ));
         }
     }

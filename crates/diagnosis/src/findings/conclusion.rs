@@ -122,7 +122,7 @@ impl Conclusion {
         let constants = constant_torques::corrections(study, &judged.named, resampled);
         let unnamed = [
             torque_constants::note_on_unnamed(study, &judged.named),
-            sentences::constant_torques(&constant_torques::told(study, &constants)),
+            sentences::constant_torques(&constant_torques::reported(study, &constants)),
         ];
         let unnamed = unnamed.into_iter().flatten().collect();
         Self {
@@ -194,7 +194,7 @@ impl Conclusion {
     }
 }
 
-/// How the report tells of `load`.
+/// `load` as it is reported.
 fn different(load: &OwnLoad, sources: &[SourceRecording]) -> DifferentLoad {
     let names = load.recordings.iter().map(|&recording| sources[recording].name.clone());
     let (value, half) = (load.load[0], NORMAL_95 * load.deviations[0]);

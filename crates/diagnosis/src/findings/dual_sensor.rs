@@ -118,19 +118,19 @@ fn regress(rows: &Rows) -> Option<Regression> {
     // The part of the power about the mean that the regression explains.
     let explained = |held_out: bool| -> Option<(f64, f64)> {
         let mut values = Vec::new();
-        let mut left = 0.0;
+        let mut residual = 0.0;
         for ((x, y), held) in rows.x.iter().zip(&rows.y).zip(&rows.held_out) {
             if *held == held_out {
                 values.push(*y);
-                left += (y - solution.dot(&DVector::from_column_slice(x))).powi(2);
+                residual += (y - solution.dot(&DVector::from_column_slice(x))).powi(2);
             }
         }
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
         let power: f64 = values.iter().map(|y| (y - mean).powi(2)).sum();
-        (values.len() >= SENSOR_ROWS && power > 0.0).then(|| (1.0 - left / power, left))
+        (values.len() >= SENSOR_ROWS && power > 0.0).then(|| (1.0 - residual / power, residual))
     };
-    let (train, left) = explained(false)?;
-    let variance = left / (count - p as f64);
+    let (train, residual) = explained(false)?;
+    let variance = residual / (count - p as f64);
     Some(Regression {
         errors: (0..p)
             .map(|k| SENSOR_ERRORS * (variance * inverse[(k, k)]).sqrt())

@@ -32,7 +32,7 @@ pub fn not_separated(
         Obstacle::Unexplained => {
             "the joint has an unexplained residual, so that the outcome of a motion cannot be predicted".to_owned()
         }
-        Obstacle::NotForetold => {
+        Obstacle::NoPrediction => {
             "the prediction fails on these recordings: it says that they already distinguish the two, which they do not"
                 .to_owned()
         }
@@ -70,7 +70,7 @@ pub fn unpredicted(finding: Confusable, rival: Confusable) -> NotSeparated {
         rival,
         best: 0.0,
         needed: NEARLY_NATS,
-        kind: Obstacle::NotForetold,
+        kind: Obstacle::NoPrediction,
         because,
         instead,
     }

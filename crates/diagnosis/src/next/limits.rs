@@ -36,7 +36,7 @@ pub struct Limits {
     pub speed: Vec<f64>,
     /// The allowed torque (N m or N).
     pub torque: Vec<f64>,
-    /// Whether the torque of each joint is limited.
+    /// The corrected model, whose torques bound what a motion may need.
     pub model: Corrected,
 }
 

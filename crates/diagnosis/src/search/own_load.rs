@@ -203,8 +203,8 @@ impl Part {
         (0..table.rows.len()).map(part).collect()
     }
 
-    /// The sums of squares that `solution` leaves, in motion and at rest.
-    fn left(&self, solution: &Solution) -> [f64; 2] {
+    /// The sums of squares of the residuals of `solution`, in motion and at rest.
+    fn residuals(&self, solution: &Solution) -> [f64; 2] {
         let mut miss: Vec<f64> = self
             .unknowns
             .iter()
@@ -216,8 +216,8 @@ impl Part {
     }
 
     fn misfit(&self, variances: &Variances, solution: &Solution) -> f64 {
-        let left = self.left(solution);
-        (0..2).map(|k| left[k] / variances.0[self.joint][k]).sum()
+        let residuals = self.residuals(solution);
+        (0..2).map(|k| residuals[k] / variances.0[self.joint][k]).sum()
     }
 }
 
@@ -238,7 +238,7 @@ impl Variances {
                 // Its friction is unknown, and its torque says nothing about a load.
                 return [f64::INFINITY; 2];
             }
-            let squares: f64 = of_joint().map(|part| part.left(solution)[0]).sum();
+            let squares: f64 = of_joint().map(|part| part.residuals(solution)[0]).sum();
             let moving = (squares / evidence).max((FLOOR * study.scales.torque[joint]).powi(2));
             let level = solution.common[PER_LINK * study.motions.dof + DRIVE * joint];
             [moving, moving + level * level]

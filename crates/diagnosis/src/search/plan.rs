@@ -18,7 +18,7 @@ const LAST: usize = 3;
 /// Searches the candidates that together explain the training recordings. `progress` receives each step.
 pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
     let baseline: Vec<usize> = (0..study.candidates.len())
-        .filter(|&c| study.candidates[c].hypothesis.is_friction())
+        .filter(|&c| study.candidates[c].hypothesis.spec().is_friction)
         .collect();
     let products = study.training_products();
     let mut selected = study.problem(&products).choose(baseline, &products.first_weights());

@@ -83,7 +83,9 @@ pub struct Study {
 /// `terms` of a hypothesis that begins at `at` (s). The Coulomb level that a friction generalises was there before, and is not
 /// counted a second time.
 fn begun(hypothesis: Hypothesis, terms: &[Term], at: f64) -> Vec<Term> {
-    let generalises_friction = hypothesis.plain().is_some_and(Hypothesis::is_friction);
+    let generalises_friction = hypothesis
+        .generalises()
+        .is_some_and(|simpler| simpler.spec().is_friction);
     let was_there = |term: &Term| generalises_friction && term.is(&SIGN);
     let begun = |term: &Term| if was_there(term) { *term } else { term.since(at) };
     terms.iter().map(begun).collect()
@@ -164,7 +166,7 @@ impl Study {
             inertial: &measure::inertial(&motions, &rigid, &scales.torque),
         });
         if motions.cutoff < LEAST_FOR_DYNAMICS {
-            list.retain(|(hypothesis, ..)| !hypothesis.is_unit());
+            list.retain(|(hypothesis, ..)| !hypothesis.spec().is_simulated);
         }
         list.retain(|(hypothesis, joint, _)| {
             options.may_be(hypothesis.name(), joint.map(|joint| &arm.joints()[joint].name))
@@ -173,7 +175,7 @@ impl Study {
             // Every named effect may have begun after the recordings from before.
             let new: Vec<_> = list
                 .iter()
-                .filter(|(hypothesis, ..)| hypothesis.name().is_some() && !hypothesis.is_unit())
+                .filter(|(hypothesis, ..)| hypothesis.name().is_some() && !hypothesis.spec().is_simulated)
                 .map(|(hypothesis, joint, terms)| (*hypothesis, *joint, begun(*hypothesis, terms, at)))
                 .collect();
             list.extend(new);

@@ -79,12 +79,12 @@ pub fn corrections(study: &Study, selected: &Selection, resampled: &Resampled) -
     study.arm.joints().iter().enumerate().filter_map(of).collect()
 }
 
-/// Those that are large enough to be told.
-pub fn told(study: &Study, corrections: &BTreeMap<String, Parameter>) -> BTreeMap<String, Parameter> {
+/// The `corrections` that are large enough to be reported.
+pub fn reported(study: &Study, corrections: &BTreeMap<String, Parameter>) -> BTreeMap<String, Parameter> {
     let of = |(joint, described): (usize, &Joint)| {
         let offset = corrections.get(&described.name)?;
-        let is_told = offset.value.abs() >= LEAST_FINAL_SHARE * study.scales.torque[joint];
-        is_told.then(|| (described.name.clone(), *offset))
+        let is_reported = offset.value.abs() >= LEAST_FINAL_SHARE * study.scales.torque[joint];
+        is_reported.then(|| (described.name.clone(), *offset))
     };
     study.arm.joints().iter().enumerate().filter_map(of).collect()
 }

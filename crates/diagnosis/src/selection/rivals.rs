@@ -29,7 +29,7 @@ pub struct Standing {
     pub pairs: Vec<[Named; 2]>,
     /// The evidence for the finding against its best alternative (nats).
     pub margin: f64,
-    /// The same without the alternative of one effect on each joint, which is less likely than a common cause.
+    /// The margin without the alternative of one effect on each joint, which is less likely than one effect on the whole arm.
     pub margin_over_single: f64,
     /// The inertial parameters of a link, or of all (`None`), if a stronger background without the finding is as likely by its
     /// score, although it explains less. The probability of the name is then one half.
@@ -63,7 +63,7 @@ pub fn beside(study: &Study, selected: &Selection, member: usize) -> Vec<usize> 
     // An effect that generalises a simpler one competes with that simpler effect plus another effect.
     let plain = (0..study.candidates.len()).find(|&c| {
         let plain = &study.candidates[c];
-        Some(plain.hypothesis) == finding.hypothesis.plain()
+        Some(plain.hypothesis) == finding.hypothesis.generalises()
             && plain.joint == finding.joint
             && finding.columns.len() > 1
             && finding.columns.contains(&plain.columns[0])
@@ -108,7 +108,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
         // A candidate with all of the finding's columns and more is a finer form of it, not another hypothesis.
         let finer = finding.columns.iter().all(|column| other.columns.contains(column));
         // The inertia of a body acts on all joints before it: a wrong mass of one link resembles one of its neighbour.
-        let are_links = finding.hypothesis.kind == other.hypothesis.kind && finding.hypothesis.is_wrong_mass();
+        let are_links = finding.hypothesis.kind == other.hypothesis.kind && finding.hypothesis.spec().is_wrong_mass;
         !same_name
             && !finer
             && other.hypothesis.name().is_some()
@@ -202,7 +202,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
         allowance,
         rivals: &rivals,
     };
-    let pairs = if finding.hypothesis.is_baseline() {
+    let pairs = if finding.hypothesis.spec().is_baseline {
         Vec::new()
     } else {
         found.pairs(alone, &others)

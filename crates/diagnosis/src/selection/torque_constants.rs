@@ -74,7 +74,8 @@ pub fn note_on_unnamed(study: &Study, selected: &Selection) -> Option<String> {
     (!factors.is_empty()).then(|| {
         format!(
             "the errors contain corrections of the torques that no finding names: {}. Wrong torque constants, or wrong masses, \
-             would explain them; these recordings do not tell which. A recording with a known load on the tool would",
+             would explain them; these recordings do not distinguish the two. Record the arm with a known load on the tool to \
+             distinguish them",
             factors.join(", ")
         )
     })

@@ -6,7 +6,8 @@ pub const CUTOFF: f64 = 12.0;
 pub const CUTOFF_PERIODS: f64 = 22.0;
 /// The highest cut-off, for a quick motion (Hz).
 pub const HIGHEST_CUTOFF: f64 = 40.0;
-/// The largest cut-off as a share of the sampling rate. Source: there, the kernel's width is one sample.
+/// The largest cut-off as a share of the sampling rate. Source: at this cut-off, the kernel's width is one
+/// sample.
 pub const LARGEST_CUTOFF: f64 = 0.235;
 /// A recording must be this multiple of the kernel's width long, in one piece. Source: the reach of both filters, and ten rows.
 pub const LEAST_WIDTHS: f64 = 16.0;

@@ -22,11 +22,13 @@ pub const LEAST_TORQUE_ACCURACY: f64 = 0.015;
 /// constants. Source: 96 simulated cases, in which all deviations from 1.5 on were true, and those beyond 2.5 were injected
 /// faults.
 pub const TOLERANCE: f64 = 2.5;
-/// The largest deviation of a torque constant in the background: a larger one is an effect, or stands for one.
+/// The largest deviation of a torque constant in the background: a larger one is reported as an effect of its own, or as a
+/// wrong torque constant.
 pub const MOST_CONSTANT: f64 = 0.2;
-/// The same in standard deviations of the torque constants, where the user states a larger one.
+/// The largest deviation of a torque constant in the background in standard deviations, where the user states an accuracy of
+/// which this is more than [`MOST_CONSTANT`].
 pub const MOST_DEVIATIONS: f64 = 4.0;
-/// The deviation of a torque constant in the background, in standard deviations, beyond which a note tells of it.
+/// The deviation of a torque constant in the background, in standard deviations, beyond which a note reports it.
 pub const MOST_USUAL: f64 = 2.0;
 /// The evidence that a part of the background must bring (nats).
 pub const PER_BACKGROUND_PART: f64 = 4.0;

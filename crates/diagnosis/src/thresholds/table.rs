@@ -15,7 +15,7 @@ const FILES: [(&str, &str); 6] = [
     ("Data", include_str!("data.rs")),
     ("Regression", include_str!("regression.rs")),
     ("Search", include_str!("search.rs")),
-    ("Judged", include_str!("selection.rs")),
+    ("Selection", include_str!("selection.rs")),
     ("Findings", include_str!("findings.rs")),
 ];
 
@@ -50,10 +50,10 @@ fn rows(file: &str, source: &str) -> String {
 fn relations() -> String {
     let row = |spec: &Spec| {
         let mut relations: Vec<String> = Vec::new();
-        if let (Some(plain), true) = (spec.plain, spec.least_beyond_plain > 0.0) {
+        if let (Some(plain), true) = (spec.generalises, spec.least_beyond_simpler > 0.0) {
             relations.push(format!(
                 "explains {} of the torque beyond `{plain}`",
-                spec.least_beyond_plain
+                spec.least_beyond_simpler
             ));
         }
         relations.extend(
@@ -75,6 +75,12 @@ fn relations() -> String {
         format!("| `{}` | {} | {} |\n", spec.name, spec.prior, relations.join("; "))
     };
     CATALOGUE.iter().map(|kind| row(kind.spec())).collect()
+}
+
+/// The thresholds of the checks of recordings, from their file in `study`.
+fn of_the_checks() -> String {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../study/src/check/thresholds.rs");
+    rows("", &std::fs::read_to_string(path).expect("text"))
 }
 
 /// The limits of the effects, from their files.
@@ -104,7 +110,10 @@ fn the_page_lists_every_threshold_with_its_value() {
         .split_once("<!-- begin -->\n")
         .expect("the page says where the tables begin");
     let (_, tail) = rest.split_once("<!-- end -->").expect("the page says where they end");
-    let mut tables = String::new();
+    let mut tables = format!(
+        "\n## Checks of recordings against the URDF\n\n| threshold | value | decides |\n|---|---|---|\n{}",
+        of_the_checks()
+    );
     for (phase, source) in FILES {
         let table = rows("", source);
         assert!(!table.is_empty(), "{phase}");

@@ -15,7 +15,7 @@ static SPEC: Spec = Spec {
     name: "torque_saturation",
     title: "torque saturation",
     meaning: "the drive's torque is limited, whatever is commanded",
-    told_by: "one motion that requires more than the limit, and one that does not",
+    distinguished_by: "one motion that requires more than the limit, and one that does not",
     formula: "applied = commanded, clipped to ± limit",
     sentence: "a torque limit of {limit}",
     parameters: &[Parameter::new("limit", Quantity::Torque).within(Range::Positive)],

@@ -19,7 +19,7 @@ static SPEC: Spec = Spec {
     name: "stribeck_friction",
     title: "Stribeck friction",
     meaning: "Coulomb friction that is larger at very low speed (breakaway) than in fast motion",
-    told_by: "motions at constant speeds, from very slow to fast",
+    distinguished_by: "motions at constant speeds, from very slow to fast",
     formula: "(Fc + (Fs − Fc) e^(−|q̇/v|^δ)) sgn q̇",
     sentence: "friction that falls from {breakaway} at breakaway to {coulomb}, with a Stribeck velocity of {velocity}",
     parameters: &[
@@ -32,7 +32,7 @@ static SPEC: Spec = Spec {
             .remarked(""),
     ],
     main: &["breakaway"],
-    plain: Some("coulomb_friction"),
+    generalises: Some("coulomb_friction"),
     against: Against::Speed,
     ..Spec::EMPTY
 };

@@ -14,7 +14,7 @@ static SPEC: Spec = Spec {
     name: "spring",
     title: "spring",
     meaning: "a torque that depends on the joint's position (counterbalance, gas spring, cable)",
-    told_by: "slow sweeps over the whole range, with and without a payload",
+    distinguished_by: "slow sweeps over the whole range, with and without a payload",
     formula: "K (q − q₀), or a curve over the position where the spring is nonlinear",
     sentence: "a spring torque with a stiffness of {stiffness} and its zero at {rest}",
     parameters: &[
@@ -27,7 +27,7 @@ static SPEC: Spec = Spec {
     main: &["stiffness"],
     may_be_inertial: true,
     may_set_in: true,
-    plain: Some("torque_offset"),
+    generalises: Some("torque_offset"),
     excludes: &["own_position", "torque_offset", "friction_asymmetry"],
     is_beyond_the_drive: true,
     against: Against::Position,
