@@ -40,6 +40,7 @@ pub use compliance::LinkSide;
 pub use effect::{Effect, Value};
 pub use error::EffectError;
 pub use estimate::{Estimate, Systematic};
+pub use files::ReadError;
 pub use fitted::{Fitted, UNIT};
 pub use form::{Form, Grounds, SetsIn, Turn};
 pub use kind::EffectKind;

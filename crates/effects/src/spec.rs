@@ -286,6 +286,8 @@ pub struct Spec {
     pub is_beyond_the_drive: bool,
     /// What a URDF can hold of it.
     pub in_urdf: InUrdf,
+    /// Whether its torque has many periods within the range of a motion, so that a figure needs narrow bins.
+    pub is_periodic: bool,
     /// The state against which figures show it.
     pub against: Against,
     /// What an unattributed residual depends on, for an unmodelled form.
@@ -336,6 +338,7 @@ impl Spec {
         is_wrong_mass: false,
         is_beyond_the_drive: false,
         in_urdf: InUrdf::Nothing,
+        is_periodic: false,
         against: Against::Predicted,
         depends_on: "",
         detectability: Detectability::Never,

@@ -28,7 +28,7 @@ pub struct Wording {
 /// The title of a finding's effect. Friction that only the motor's current shows is between motor and torque sensor.
 pub fn effect(finding: &Finding) -> String {
     let name = wording(finding.effect).name;
-    if !finding.corrects && finding.effect.ends_with("_friction") {
+    if finding.is_motor_side() {
         format!("motor-side {name}")
     } else {
         name.to_owned()
@@ -42,8 +42,7 @@ pub fn is_between_sensors(finding: &Finding) -> bool {
 
 /// A finding's share of the torque; a spring between two encoders has none.
 pub fn share(finding: &Finding) -> Option<f64> {
-    let is_friction = finding.effect.ends_with("_friction");
-    (is_friction || !is_between_sensors(finding)).then_some(finding.share)
+    (finding.is_motor_side() || !is_between_sensors(finding)).then_some(finding.share)
 }
 
 /// A finding's effect with its parameters, as a noun phrase; for a finding between two sensors, with its place.

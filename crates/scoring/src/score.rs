@@ -11,7 +11,7 @@ use crate::intervals::Counted;
 use crate::numbers::ScoredNumber;
 use crate::outcome::{FalseName, Outcome, OutsideOutcome};
 use crate::plain::Plain;
-use crate::strict::{Strict, UrdfGroup};
+use crate::strict::{Strict, UrdfError, UrdfGroup};
 use crate::summary::{Curve, Errors, ParameterScore};
 
 /// The score of all cases. Everything is counted in names: an effect on a joint.
@@ -167,6 +167,9 @@ pub struct Target {
     /// The figure.
     #[serde(skip)]
     pub id: Figure,
+    /// The cases that it counts, by the error of their URDFs; `None` for all cases.
+    #[serde(skip)]
+    pub group: Option<UrdfError>,
     /// The label.
     pub what: String,
     /// The value; `None` if there was nothing to count.

@@ -27,9 +27,41 @@ use self::thresholds::{
     EFFORT_SLACK, LEAST_INSTANTS, LIMIT_SLACK, MOST_SPEED, MOTOR_SIDE, NOT_EXPLAINED, OF_SIZE, OTHER_UNIT, WORSE,
 };
 
+/// What a contradiction between recording and URDF is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MisfitKind {
+    /// A joint of the recording that the URDF does not have.
+    NotInUrdf,
+    /// A joint of the URDF that the recording does not have.
+    NotRecorded,
+    /// No joint of the recording is one of the URDF.
+    OtherRobot,
+    /// The unit of time.
+    Time,
+    /// The unit of the positions.
+    PositionUnit,
+    /// A position that does not change although the torque does.
+    ConstantPosition,
+    /// Positions whole turns beyond the URDF's limits.
+    Turns,
+    /// Positions beyond the URDF's limits.
+    PositionLimits,
+    /// Speeds beyond the URDF's limits.
+    Speed,
+    /// Torques beyond the URDF's limits.
+    EffortLimits,
+    /// The unit of the torques, or the side of the gear.
+    TorqueUnit,
+    /// Signs, order or zeros.
+    Columns,
+}
+
 /// A contradiction between recording and URDF.
 #[derive(Debug, Serialize)]
 pub struct Misfit {
+    /// What it is about.
+    #[serde(skip)]
+    pub kind: MisfitKind,
     /// The joint, if it concerns one.
     pub joint: Option<String>,
     /// A description, with the remedy.
@@ -44,8 +76,9 @@ pub struct Misfit {
 
 impl Misfit {
     /// A contradiction that does not prevent a diagnosis, with the keys of a column map that correct it.
-    pub fn new(joint: Option<&str>, text: impl Into<String>, changes: Vec<Change>) -> Self {
+    pub fn new(kind: MisfitKind, joint: Option<&str>, text: impl Into<String>, changes: Vec<Change>) -> Self {
         Self {
+            kind,
             joint: joint.map(str::to_owned),
             text: text.into(),
             prevents_diagnosis: false,
@@ -139,34 +172,47 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Checke
             in_degrees += 1;
             continue;
         }
-        let mut add = |text: String| checked.misfits.push(Misfit::new(Some(&joint.name), text, Vec::new()));
+        let mut add = |kind: MisfitKind, text: String| {
+            checked
+                .misfits
+                .push(Misfit::new(kind, Some(&joint.name), text, Vec::new()));
+        };
         if measured.speed_max > MOST_SPEED * limits.velocity && limits.velocity > 0.0 {
-            add(format!(
-                "the speed reaches {}, {} times the URDF's velocity limit {} {}; check the units of position and time",
-                rounded(measured.speed_max, 3),
-                rounded(measured.speed_max / limits.velocity, 2),
-                rounded(limits.velocity, 4),
-                Quantity::Speed.unit(joint.kind)
-            ));
+            add(
+                MisfitKind::Speed,
+                format!(
+                    "the speed reaches {}, {} times the URDF's velocity limit {} {}; check the units of position and time",
+                    rounded(measured.speed_max, 3),
+                    rounded(measured.speed_max / limits.velocity, 2),
+                    rounded(limits.velocity, 4),
+                    Quantity::Speed.unit(joint.kind)
+                ),
+            );
         }
         if low < limits.lower - LIMIT_SLACK || high > limits.upper + LIMIT_SLACK {
-            add(format!(
-                "positions {} … {} exceed the URDF's limits {:.3} … {:.3} {}; check unit, zero and sign, or the limits",
-                rounded(low, 4),
-                rounded(high, 4),
-                limits.lower,
-                limits.upper,
-                Quantity::Position.unit(joint.kind)
-            ));
+            add(
+                MisfitKind::PositionLimits,
+                format!(
+                    "positions {} … {} exceed the URDF's limits {:.3} … {:.3} {}; check unit, zero and sign, or the limits",
+                    rounded(low, 4),
+                    rounded(high, 4),
+                    limits.lower,
+                    limits.upper,
+                    Quantity::Position.unit(joint.kind)
+                ),
+            );
         }
         let torque = measured.tau_range.0.abs().max(measured.tau_range.1.abs());
         if limits.effort > 0.0 && torque > EFFORT_SLACK * limits.effort {
-            add(format!(
-                "the torque reaches {}, above the URDF's effort limit {} {}; check its unit and side of the gear",
-                rounded(torque, 3),
-                rounded(limits.effort, 4),
-                Quantity::Torque.unit(joint.kind)
-            ));
+            add(
+                MisfitKind::EffortLimits,
+                format!(
+                    "the torque reaches {}, above the URDF's effort limit {} {}; check its unit and side of the gear",
+                    rounded(torque, 3),
+                    rounded(limits.effort, 4),
+                    Quantity::Torque.unit(joint.kind)
+                ),
+            );
         }
     }
     if let (Some(order), Some(smooth)) = (order, smooth) {
@@ -185,13 +231,13 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Checke
 
 fn names(arm: &Arm, regular: &RegularRecording) -> Vec<Misfit> {
     let of_arm: Vec<String> = arm.joints().iter().map(|joint| joint.name.clone()).collect();
-    let missing = |from: &[String], within: &[String], what: &str| -> Vec<Misfit> {
+    let missing = |kind: MisfitKind, from: &[String], within: &[String], what: &str| -> Vec<Misfit> {
         let lost = from.iter().filter(|name| !within.contains(name));
         lost.map(|name| {
             let free: Vec<String> = within.iter().filter(|other| !from.contains(other)).cloned().collect();
             let hint = nearest(name, &free).map_or(".".to_owned(), |other| format!("; is \"{other}\" meant?"));
             let text = format!("{what}{hint} Name the columns as the URDF does, or give a column map (--map)");
-            Misfit::new(Some(name), text, Vec::new())
+            Misfit::new(kind, Some(name), text, Vec::new())
         })
         .collect()
     };
@@ -210,14 +256,16 @@ fn names(arm: &Arm, regular: &RegularRecording) -> Vec<Misfit> {
             arm.name(),
             of_arm.join(", ")
         );
-        return vec![Misfit::new(None, text, Vec::new())];
+        return vec![Misfit::new(MisfitKind::OtherRobot, None, text, Vec::new())];
     }
     let mut misfits = missing(
+        MisfitKind::NotInUrdf,
         &recorded,
         &of_arm,
         "is in the recording, but the URDF has no such joint",
     );
     misfits.extend(missing(
+        MisfitKind::NotRecorded,
         &of_arm,
         &regular.joints,
         "is in the URDF, but the recording has no such joint",
@@ -233,7 +281,7 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
         let prevents_diagnosis = true;
         return vec![Misfit {
             prevents_diagnosis,
-            ..Misfit::new(None, text, changes)
+            ..Misfit::new(MisfitKind::TorqueUnit, None, text, changes)
         }];
     }
     let mut misfits = Vec::new();
@@ -247,7 +295,7 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
                 rounded(as_it_is.size[joint], 2),
                 percent(1.0 - as_it_is.residual_share[joint])
             );
-            misfits.push(Misfit::new(Some(name), text, Vec::new()));
+            misfits.push(Misfit::new(MisfitKind::ConstantPosition, Some(name), text, Vec::new()));
         }
     }
     for (joint, &factor) in as_it_is.factor.iter().enumerate() {
@@ -264,7 +312,12 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
                 1.0 / size
             );
             let scale = Change::scale(names[joint], 1.0 / size);
-            misfits.push(Misfit::new(Some(names[joint]), text, vec![scale]));
+            misfits.push(Misfit::new(
+                MisfitKind::TorqueUnit,
+                Some(names[joint]),
+                text,
+                vec![scale],
+            ));
         }
     }
     misfits

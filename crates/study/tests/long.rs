@@ -49,7 +49,7 @@ impl Listener for Heard {
         self.0.borrow_mut().push(text.to_owned());
     }
 
-    fn recordings(&self, _: &Notes, _: &[&str]) {}
+    fn recordings(&self, _: &Notes) {}
 }
 
 /// The diagnosis of training and held-out recordings, and the notes.

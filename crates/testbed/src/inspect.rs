@@ -7,6 +7,7 @@ use anyhow::{Context, bail};
 use arm::Arm;
 use recording::{ColumnMap, Quality, Recording, Warning};
 use serde::Serialize;
+use study::check::MisfitKind;
 use study::notes::shortened;
 use study::robot::{self, RobotFile};
 use study::{check, inputs, named, turns};
@@ -116,7 +117,7 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
         column_map = check::column_map(arm, &checked.misfits, &recording);
         let moved = moved
             .into_iter()
-            .map(|(joint, text)| check::Misfit::new(Some(&joint), text, Vec::new()));
+            .map(|(joint, text)| check::Misfit::new(MisfitKind::Turns, Some(&joint), text, Vec::new()));
         against_robot = moved.chain(checked.misfits).collect();
         let in_order = inputs::in_order_of(arm, regular);
         if checked.has_model_units
@@ -125,6 +126,7 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
         {
             column_map = check::Layout::of(&recording).map(&proposed.changes).or(column_map);
             against_robot.push(check::Misfit::new(
+                MisfitKind::Columns,
                 proposed.joint.as_deref(),
                 proposed.text,
                 proposed.changes,

@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::data::input::Input;
 use crate::data::signal::Kernel;
 use crate::data::statistics::{NORMAL_95, deviation};
-use crate::report::{Finding, Parameter, Place};
+use crate::report::{Finding, MOTOR_CURRENT, Parameter, Place, SECOND_ENCODER};
 use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::thresholds::{
@@ -206,13 +206,13 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
         BTreeMap::from([("stiffness", stiffness)]),
         total / range,
         gain,
-        SECOND_ENCODER,
+        BY_SECOND_ENCODER,
     ))
 }
 
 /// The sensors that show what the torque does not, in the JSON and in words.
-const SECOND_ENCODER: (&str, &str) = ("second_encoder", "between the two encoders");
-const MOTOR_CURRENT: (&str, &str) = ("motor_current", "between the motor's current and the torque sensor");
+const BY_SECOND_ENCODER: (&str, &str) = (SECOND_ENCODER, "between the two encoders");
+const BY_MOTOR_CURRENT: (&str, &str) = (MOTOR_CURRENT, "between the motor's current and the torque sensor");
 
 /// Friction between the motor's current and the torque sensor.
 fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Vec<Finding> {
@@ -241,7 +241,7 @@ fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>])
     let name = study.arm.joints()[joint].name.clone();
     let torque = study.scales.torque[joint].max(1e-300);
     let gain = result.held_out.map(|explained| 1.0 - (1.0 - explained).max(0.0).sqrt());
-    let place = MOTOR_CURRENT;
+    let place = BY_MOTOR_CURRENT;
     let mut list = Vec::new();
     if result.coefficients[0] > 0.0 && result.is_clear(0) {
         let level = result.parameter(0, Quantity::Torque.unit(kind));

@@ -77,7 +77,8 @@ fn finding(
         list.push(Finding {
             other: named.other,
             parameters: named.parameters,
-            probability: Some(standing.probability(if may_be_link { 0.0 } else { member.evidence })),
+            // The probability is calibrated for the effects that were searched, not for one that is brought along.
+            probability: (k == 0).then(|| standing.probability(if may_be_link { 0.0 } else { member.evidence })),
             share,
             share_by_joint: if k == 0 {
                 share_by_joint.clone()

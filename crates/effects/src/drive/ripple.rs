@@ -25,6 +25,7 @@ static SPEC: Spec = Spec {
     main: &["amplitude"],
     is_suggested: true,
     may_repeat: true,
+    is_periodic: true,
     against: Against::Position,
     ..Spec::EMPTY
 };

@@ -34,7 +34,7 @@ impl Figures<'_> {
             let around = 2.0 * (last[1] - first[0]).max(0.1);
             points.retain(|point| (first[0] - around..=last[1] + around).contains(&point[0]));
         }
-        let bins = if finding.effect == "torque_ripple" || against == Against::Time {
+        let bins = if finding.as_effect.spec().is_periodic || against == Against::Time {
             300.0
         } else {
             90.0

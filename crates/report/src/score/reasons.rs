@@ -65,7 +65,7 @@ fn tally<'a>(names: impl Iterator<Item = &'a str>) -> String {
 
 /// Effects that were not found with their size, and false names, in the group of cases of the figure.
 fn strict(target: &Target, score: &Score) -> String {
-    let is_meant = |group: &&UrdfGroup| target.what.ends_with(group.urdf.words());
+    let is_meant = |group: &&UrdfGroup| target.group == Some(group.urdf);
     let strict = score
         .by_urdf
         .iter()

@@ -6,7 +6,6 @@ use arm::{Arm, Joint, JointKind};
 use recording::{FindingKind, JointQuality, Quality};
 use report::numbers::{percent, rounded};
 
-use super::Misfit;
 use super::column_map::{Change, Value};
 use super::correction::Correction;
 use super::fit::fit;
@@ -15,6 +14,7 @@ use super::thresholds::{
     BEYOND_RANGE, LIMIT_SLACK, MOST_SPAN, MOST_SPEED, MOTOR_SIDE, ONE_IN_DEGREES, SAME_SLOPE, SAME_UNIT, SLACK,
     SLOWEST_PERIOD, TURN_FACTORS, UNIT_LEAD,
 };
+use super::{Misfit, MisfitKind};
 
 /// Degrees and milliradians: the unit of positions, the unit of velocities, its size in rad.
 const UNITS: [(&str, &str, f64); 2] = [("deg", "deg/s", PI / 180.0), ("mrad", "mrad/s", 1e-3)];
@@ -38,8 +38,8 @@ pub fn of_time(arm: &Arm, quality: &Quality) -> Option<Misfit> {
     // Recorded velocities determine the unit. Without them, it is the largest unit with which the rows are close enough.
     let units = [("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
     let by_velocity = finding.and_then(|finding| {
-        let unit = |name: &str| finding.text.contains(&format!("are in {name};"));
-        units.into_iter().find(|(name, _)| unit(name))
+        let unit = finding.time_unit?;
+        units.into_iter().find(|(name, _)| *name == unit)
     });
     let found = by_velocity.or_else(|| {
         let is_close = |(_, seconds): &(&str, f64)| period * seconds <= SLOWEST_PERIOD;
@@ -59,7 +59,7 @@ pub fn of_time(arm: &Arm, quality: &Quality) -> Option<Misfit> {
         );
         return Some(Misfit {
             prevents_diagnosis: true,
-            ..Misfit::new(None, text, Vec::new())
+            ..Misfit::new(MisfitKind::Time, None, text, Vec::new())
         });
     };
     let text = format!(
@@ -74,7 +74,7 @@ pub fn of_time(arm: &Arm, quality: &Quality) -> Option<Misfit> {
     );
     Some(Misfit {
         prevents_diagnosis: true,
-        ..Misfit::new(None, text, vec![Change::time(unit, seconds)])
+        ..Misfit::new(MisfitKind::Time, None, text, vec![Change::time(unit, seconds)])
     })
 }
 
@@ -152,7 +152,7 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
         );
         return vec![Misfit {
             prevents_diagnosis: true,
-            ..Misfit::new(None, text, Vec::new())
+            ..Misfit::new(MisfitKind::PositionUnit, None, text, Vec::new())
         }];
     };
     let name = name_of(unit);
@@ -209,7 +209,7 @@ fn of_unit(
     }
     Misfit {
         prevents_diagnosis: true,
-        ..Misfit::new(None, text, changes)
+        ..Misfit::new(MisfitKind::PositionUnit, None, text, changes)
     }
 }
 
@@ -285,7 +285,7 @@ pub fn of_one(arm: &Arm, (joint, measured): &Pair<'_>, smooth: Option<&Smooth>) 
     );
     Some(Misfit {
         prevents_diagnosis: is_certain,
-        ..Misfit::new(Some(&joint.name), text, changes)
+        ..Misfit::new(MisfitKind::PositionUnit, Some(&joint.name), text, changes)
     })
 }
 
@@ -325,6 +325,6 @@ pub fn of_speeds(pairs: &[Pair<'_>]) -> Option<Misfit> {
     );
     Some(Misfit {
         prevents_diagnosis: true,
-        ..Misfit::new(None, text, Vec::new())
+        ..Misfit::new(MisfitKind::Speed, None, text, Vec::new())
     })
 }

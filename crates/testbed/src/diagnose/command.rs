@@ -82,11 +82,11 @@ impl Listener for Terminal<'_> {
         }
     }
 
-    fn recordings(&self, notes: &Notes, joints: &[&str]) {
+    fn recordings(&self, notes: &Notes) {
         if self.args.quiet {
             return;
         }
-        for line in notes.lines(joints, !self.args.verbose) {
+        for line in notes.lines(!self.args.verbose) {
             self.progress.suspend(|| eprintln!("{line}"));
         }
     }
