@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use crate::diagnose_made::{Case, arguments};
-use crate::diagnose_refusals::{case, changed, refused, refused_command, refused_with, says};
-use crate::support::words;
+use crate::diagnose_refusals::{case, changed, refused, refused_command, refused_with};
+use crate::support::{says, words};
 
 /// One recording with a column map, by its torques.
 const ALONE: [&str; 7] = [

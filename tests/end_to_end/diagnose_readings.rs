@@ -6,8 +6,8 @@ use arm::Vector3;
 
 use crate::diagnose_made::{ELBOW, SHOULDER, recording, trio};
 use crate::diagnose_mistakes::{inspected, map_in, with_numbers};
-use crate::diagnose_refusals::{case, changed, says};
-use crate::support::{Sandbox, root};
+use crate::diagnose_refusals::{case, changed};
+use crate::support::{Sandbox, root, says};
 
 /// One recording, by its torques.
 const DIAGNOSE: [&str; 8] = [

@@ -1,6 +1,6 @@
 //! `testbed inspect`: what it says of good recordings, of flawed ones, and what it refuses.
 
-use crate::support::{Sandbox, root, words};
+use crate::support::{Sandbox, root, says, words};
 
 /// Two joints at 250 Hz for 12 s, each row as the closures say.
 fn recording(row: impl Fn(usize, f64) -> Option<String>) -> String {
@@ -28,12 +28,6 @@ fn good_row(stamp: f64, t: f64) -> String {
 
 fn good() -> String {
     recording(|_, t| Some(good_row(t, t)))
-}
-
-fn says(text: &str, parts: &[&str]) {
-    for part in parts {
-        assert!(text.contains(part), "\"{part}\" is missing from: {text}");
-    }
 }
 
 #[test]

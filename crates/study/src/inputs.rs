@@ -202,7 +202,7 @@ pub fn read(
     }
     progress("checking signs, zeros and order");
     propose(&mut list, arm, known, notes);
-    tell_maps(&list, notes);
+    note_maps(&list, notes);
     epoch::share(&mut list);
     let training = || list.iter().filter(|recording| recording.role == Role::Train);
     // Stamps in microseconds leave next to no rows of what is worth holding.
@@ -248,8 +248,8 @@ fn propose(list: &mut [Prepared], arm: &Arm, known: &[Effect], notes: &mut Notes
     }
 }
 
-/// Says where the column maps are that correct what does not prevent the diagnosis.
-fn tell_maps(list: &[Prepared], notes: &mut Notes) {
+/// Notes where the column maps are that correct what does not prevent the diagnosis.
+fn note_maps(list: &[Prepared], notes: &mut Notes) {
     for one in list.iter().filter(|one| one.doubts.is_empty()) {
         if one.warnings.iter().any(|warning| warning.column_map.is_some()) {
             let text = "a column map that corrects it is in the report (--json, --markdown or --report); save it as map.toml, and add \

@@ -34,12 +34,12 @@ struct FileReport<'a> {
     against_robot: Vec<check::Misfit>,
     /// The column map (TOML) that corrects them.
     column_map: Option<String>,
-    warnings: Vec<Told>,
+    warnings: Vec<Shown>,
 }
 
 /// A warning with its sentence.
 #[derive(Serialize)]
-struct Told {
+struct Shown {
     text: String,
     #[serde(flatten)]
     warning: Warning,
@@ -140,7 +140,7 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
         against_robot,
         column_map,
         warnings: warnings
-            .map(|warning| Told {
+            .map(|warning| Shown {
                 text: warning.to_string(),
                 warning,
             })
@@ -199,9 +199,9 @@ fn shown(report: &FileReport<'_>) -> String {
         ]);
     }
     let _ = writeln!(text, "{}", report::terminal::fitted(table));
-    let (told, gaps) = shortened(report.warnings.iter(), |told| &told.warning);
-    for told in told {
-        let _ = writeln!(text, "- {}", told.text);
+    let (shown, gaps) = shortened(report.warnings.iter(), |shown| &shown.warning);
+    for shown in shown {
+        let _ = writeln!(text, "- {}", shown.text);
     }
     if gaps > 0 {
         let _ = writeln!(text, "- further gaps: {gaps} (--json lists them)");

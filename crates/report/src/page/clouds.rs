@@ -98,12 +98,7 @@ impl Figures<'_> {
             for tick in ticks {
                 let place = shown.place(tick);
                 svg.line([place, top], [place, bottom], if tick == 0.0 { "zero" } else { "grid" });
-                svg.text(
-                    [place, bottom + 17.0],
-                    "tick",
-                    "middle",
-                    &numbers::fixed(tick, decimals),
-                );
+                svg.tick_below(place, bottom, tick, decimals);
             }
             svg.text(
                 [0.5 * (LEFT + right), height - 6.0],
