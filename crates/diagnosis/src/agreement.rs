@@ -17,14 +17,10 @@ use crate::regression::strengths::Strengths;
 use crate::search::plan;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
-use crate::thresholds::CUTOFF;
+use crate::thresholds::{CUTOFF, FAR_LESS};
 
 /// The effects that nearly every URDF leaves out.
 const PLAIN: [&dyn EffectKind; 4] = [&CoulombFriction, &ViscousFriction, &RotorInertia, &TorqueOffset];
-
-/// A correction of the columns that has less evidence than another one by this much (nats), beside the background of the other one,
-/// is not fitted further.
-const FAR_LESS: f64 = 200.0;
 
 /// How well the model of an arm explains recordings, with plain friction, drive inertia and a constant torque at every joint, and
 /// with a background of inertial parameters and torque constants that differ from the URDF as far as the evidence says.
@@ -77,7 +73,7 @@ pub fn agreement(
     let mut study = Study::new(Data::new(arm, inputs, &options)?, &options);
     // Forms of friction in the background have no sign, and may drive a joint.
     study.stated.is_friction_plain = true;
-    let is_plain = |&candidate: &usize| study.terms(candidate).iter().all(|term| term.onset().is_none());
+    let is_plain = |&candidate: &usize| study.always_acts(candidate);
     let mut set: Vec<usize> = (0..study.candidates.len()).filter(is_plain).collect();
     if let Some(other) = other {
         study.strengths = other.strengths.clone();

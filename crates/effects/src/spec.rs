@@ -4,6 +4,11 @@ use arm::JointKind;
 
 use crate::quantity::Quantity;
 
+/// The evidence that an effect must bring in addition to that of its coefficients (nats), unless its own file states another.
+const PRIOR: f64 = 6.0;
+/// The evidence that an unmodelled form must bring in addition to that of its coefficients (nats).
+const UNNAMED_PRIOR: f64 = 9.0;
+
 /// The scope of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
@@ -320,7 +325,7 @@ impl Spec {
         least_beyond_simpler: 0.0,
         brings: None,
         excludes: &[],
-        prior: 6.0,
+        prior: PRIOR,
         is_baseline: false,
         is_friction: false,
         is_baseline_or_constant: false,
@@ -349,7 +354,7 @@ impl Spec {
 
     /// [`Self::EMPTY`] for an unmodelled form.
     pub const UNNAMED: Self = Self {
-        prior: 9.0,
+        prior: UNNAMED_PRIOR,
         ..Self::EMPTY
     };
 

@@ -15,7 +15,7 @@ use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::thresholds::{
     CLEAR_COMPLIANCE, CLEAR_FRICTION, FOLLOWS, FRICTION_EXPLAINS, LARGEST_CUTOFF, LARGEST_DEFLECTION, LEAST_BEND,
-    SENSOR_ERRORS, SENSOR_ROWS, SENSORS_MOVE,
+    SENSOR_ERRORS, SENSOR_ROWS, SENSOR_SPACING, SENSORS_MOVE,
 };
 
 /// A regression on one joint over the recordings.
@@ -63,7 +63,7 @@ fn gather(
         for segment in &recording.segments {
             let cutoff = study.motions.cutoff.min(LARGEST_CUTOFF / recording.period);
             let kernel = Kernel::new(cutoff, recording.period);
-            let stride = ((0.4 / cutoff / recording.period) as usize).max(1);
+            let stride = ((SENSOR_SPACING / cutoff / recording.period) as usize).max(1);
             if segment.ticks.len() < 2 * kernel.reach() + SENSOR_ROWS * stride {
                 continue;
             }

@@ -1,9 +1,6 @@
 //! The experiment to make where no motion distinguishes two effects.
 use crate::report::{Confusable, NotSeparated, Obstacle};
-use crate::thresholds::NEARLY_NATS;
-
-/// Evidence below this (nats), or below this part of the needed evidence, counts as none: the two effects have the same torque.
-const ALIAS: (f64, f64) = (1.0, 0.1);
+use crate::thresholds::{ALIAS, NEARLY_NATS};
 
 /// The confusion of `finding` with `rival`: the best motion for it brings the evidence `best` (nats), and `needed`
 /// distinguishes them. `sure` is the evidence from which it is promised, unless it is `barred` for a reason.

@@ -7,7 +7,7 @@ use crate::regression::fit::{Fit, Products};
 use crate::regression::table::Table;
 use crate::search::candidate::Candidate;
 use crate::search::physics::is_possible;
-use crate::thresholds::{KNOWN_DRIVE, TELLING_DRIVES, Thresholds};
+use crate::thresholds::{KNOWN_DRIVE, MOST_SELECTED, TELLING_DRIVES, Thresholds};
 
 mod exchange;
 mod exclusion;
@@ -15,9 +15,6 @@ mod growth;
 mod promise;
 
 pub use growth::Growth;
-
-/// The largest number of selected candidates.
-pub const MOST: usize = 60;
 
 /// Selected candidates with their fit.
 #[derive(Clone, Debug)]
@@ -176,7 +173,7 @@ impl Problem<'_> {
     /// Adds candidates of `allowed` that pay, then removes those that no longer do.
     pub fn forward(&self, mut selected: Selection, allowed: &[usize]) -> Selection {
         let mut growth = Growth::default();
-        while selected.set.len() < MOST {
+        while selected.set.len() < MOST_SELECTED {
             match self.grow(&selected, allowed, &mut growth) {
                 Some(next) => selected = self.reweighted(next),
                 None => break,

@@ -92,6 +92,16 @@ fn begun(hypothesis: Hypothesis, terms: &[Term], at: f64) -> Vec<Term> {
 }
 
 impl Study {
+    /// A torque (N m or N) as a share of the typical torque of `joint`.
+    pub fn share(&self, joint: usize, torque: f64) -> f64 {
+        torque / self.scales.torque[joint].max(1e-300)
+    }
+
+    /// Whether a candidate acts at all times, and not from an onset on.
+    pub fn always_acts(&self, candidate: usize) -> bool {
+        self.terms(candidate).iter().all(|term| term.onset().is_none())
+    }
+
     /// The candidates that `options` allow, with their columns along `data`.
     pub fn new(data: Data, options: &Options) -> Self {
         Self::with(data, options, None)

@@ -22,7 +22,7 @@ const NEGLIGIBLE: f64 = 1e-6;
 pub fn names(study: &Study, candidate: usize) -> Option<usize> {
     let hypothesis = study.candidates[candidate].hypothesis;
     let is_constant = hypothesis.is(&TorqueOffset) || hypothesis.is(&FrictionAsymmetry);
-    let always = study.terms(candidate).iter().all(|term| term.onset().is_none());
+    let always = study.always_acts(candidate);
     study.candidates[candidate].joint.filter(|_| is_constant && always)
 }
 

@@ -349,16 +349,13 @@ fn better_outside(study: &Study, selected: &Selection) -> Option<(Strengths, Sel
         };
         (0..study.motions.dof).filter_map(of).sum::<f64>()
     };
-    let weaker = study.strengths.weaker().into_iter();
-    let trials = weaker
-        .filter(|strengths| study.stated.allows(strengths))
-        .map(|strengths| {
-            let products = study.products_at(&strengths);
-            let next = study
-                .problem(&products)
-                .choose(selected.set.clone(), &selected.fit.weights);
-            (loss(&next), strengths, next)
-        });
+    let trials = study.stated.weaker(&study.strengths).map(|strengths| {
+        let products = study.products_at(&strengths);
+        let next = study
+            .problem(&products)
+            .choose(selected.set.clone(), &selected.fit.weights);
+        (loss(&next), strengths, next)
+    });
     let (best, strengths, next) = trials.min_by(|a, b| a.0.total_cmp(&b.0))?;
     (best < loss(selected)).then_some((strengths, next))
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use effects::{CATALOGUE, Spec};
 
 /// The phases in order, with the files of their thresholds.
-const FILES: [(&str, &str); 6] = [
+const FILES: [(&str, &str); 7] = [
     (
         "The most decisive ones, which can be varied",
         include_str!("../thresholds.rs"),
@@ -17,6 +17,7 @@ const FILES: [(&str, &str); 6] = [
     ("Search", include_str!("search.rs")),
     ("Selection", include_str!("selection.rs")),
     ("Findings", include_str!("findings.rs")),
+    ("Next experiment", include_str!("next.rs")),
 ];
 
 /// The rows of a file: each constant or field that has a value, below its doc comment; `file` is put before its name.
@@ -93,7 +94,10 @@ fn limits() -> String {
         files
     };
     let folders = ["friction", "drive", "sensor", "arm", "joint", "unmodelled"];
-    let files = folders.into_iter().flat_map(files).chain([sources.join("fitted.rs")]);
+    let files = folders
+        .into_iter()
+        .flat_map(files)
+        .chain(["fitted.rs", "background.rs", "spec.rs"].map(|file| sources.join(file)));
     let rows = files.map(|path| {
         let file = path.strip_prefix(&sources).expect("it is below").display().to_string();
         rows(&format!("{file}: "), &std::fs::read_to_string(&path).expect("text"))

@@ -125,12 +125,15 @@ fn cuts(fitted: &dyn Fitted) -> bool {
     with <= MOST_REMAINING * without
 }
 
+/// A limit acts on a row if its column exceeds this part of its largest value.
+const ACTS: f64 = 0.02;
+
 /// The part of the moving rows on which the first column differs from zero.
 fn acting(fitted: &dyn Fitted) -> f64 {
     let Some(x) = fitted.column(0) else { return 0.0 };
     let largest = x.iter().fold(0.0_f64, |largest, v| largest.max(v.abs()));
     let moving = || x.iter().zip(fitted.moving()).filter(|(_, moving)| **moving);
-    let acting = moving().filter(|(x, _)| x.abs() > 0.02 * largest).count();
+    let acting = moving().filter(|(x, _)| x.abs() > ACTS * largest).count();
     acting as f64 / moving().count().max(1) as f64
 }
 

@@ -42,6 +42,10 @@ const VISITED: f64 = 0.5;
 const LARGEST_FALL: f64 = 0.05;
 /// The largest part of its total rise by which a spring's curve may fall over all its points together.
 const ALL_FALLS: f64 = 0.1;
+/// The number of parts of the recorded range between which the slope of a curve is evaluated.
+const SLOPES: i32 = 20;
+/// The least number of these slopes that are positive for a spring: a curve that falls elsewhere is no spring.
+const LEAST_RISING: usize = 17;
 /// The points of a curve.
 const POINTS: usize = 12;
 
@@ -186,11 +190,10 @@ fn stiffens(fitted: &dyn Fitted) -> bool {
             })
             .sum()
     };
-    let steps = 20;
-    let rising = (0..=steps)
-        .filter(|&k| slope(low + (high - low) * f64::from(k) / f64::from(steps)) > 0.0)
+    let rising = (0..=SLOPES)
+        .filter(|&k| slope(low + (high - low) * f64::from(k) / f64::from(SLOPES)) > 0.0)
         .count();
-    rising >= 17
+    rising >= LEAST_RISING
 }
 
 /// Whether the joint can reach the angle without torque, by the straight line between the ends of the recorded range.

@@ -11,8 +11,7 @@ use crate::search::study::Study;
 /// effects, which are then searched again.
 pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut selected: Selection) -> Selection {
     let hypothesis = |c: usize| study.candidates[c].hypothesis;
-    let loss =
-        |selected: &Selection| held.loss(&held.rss(&study.table, &selected.fit.columns, &selected.fit.coefficients));
+    let loss = |selected: &Selection| held.loss_of(&study.table, &selected.fit);
     let simple: Vec<usize> = (0..study.candidates.len())
         .filter(|&c| hypothesis(c).spec().is_baseline_or_constant)
         .collect();
