@@ -147,7 +147,7 @@ fn two_runs_give_the_same_bytes_whatever_the_threads() {
 }
 
 #[test]
-fn a_spring_is_told_from_gravity() {
+fn a_spring_is_distinguished_from_gravity() {
     let case = Case::new(&trio(), &|motion, tau| {
         friction(motion, tau);
         tau[ELBOW] += 14.0 * (motion.q[ELBOW] - 0.4) + 0.8 * motion.qd[ELBOW];

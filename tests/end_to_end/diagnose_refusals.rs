@@ -169,7 +169,7 @@ fn time_that_runs_back_and_too_few_rows_are_refused() {
 }
 
 #[test]
-fn no_torque_and_no_motion_are_refused_or_told() {
+fn no_torque_and_no_motion_are_refused_or_reported() {
     let no_torque = changed(|cells| cells[4..].iter_mut().for_each(|cell| *cell = "0".into()));
     says(
         &refused_with(&no_torque),

@@ -58,7 +58,7 @@ fn a_good_recording_has_nothing_to_remark() {
 }
 
 #[test]
-fn flaws_are_told_with_their_place_and_are_no_failure() {
+fn flaws_are_reported_with_their_place_and_are_no_failure() {
     let sandbox = Sandbox::new();
     let flawed = recording(|k, t| match k {
         100 => Some(format!("{}\n{}", good_row(t, t), good_row(t, t))),
@@ -94,7 +94,7 @@ fn flaws_are_told_with_their_place_and_are_no_failure() {
 }
 
 #[test]
-fn no_motion_and_no_torque_are_told() {
+fn no_motion_and_no_torque_are_reported() {
     let sandbox = Sandbox::new();
     sandbox.write("still.csv", &recording(|_, t| Some(format!("{t:.6},0.1,0.2,0,0,0,0"))));
     let text = sandbox.succeed(&["inspect", "still.csv"]);
@@ -186,7 +186,7 @@ fn simulated(sandbox: &Sandbox) -> String {
 }
 
 #[test]
-fn what_does_not_fit_the_robot_is_told() {
+fn what_does_not_fit_the_robot_is_reported() {
     let sandbox = Sandbox::new();
     let text = simulated(&sandbox);
     let inspect = |text: &str| {

@@ -149,7 +149,7 @@ fn shares_merged_are_the_whole() {
 }
 
 #[test]
-fn a_truth_that_cannot_be_read_is_told_before_anything_is_diagnosed() {
+fn a_truth_that_cannot_be_read_is_reported_before_anything_is_diagnosed() {
     let sandbox = cases();
     sandbox.write("given/truth/case_b.json", "{\"case\": \"case_b\"}");
     let refused = sandbox.refuse(&COMMAND);

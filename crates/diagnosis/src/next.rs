@@ -373,16 +373,16 @@ fn described(
             })
         })
         .collect();
-    let tells = !separates.is_empty() || !shows.is_empty();
+    let is_useful = !separates.is_empty() || !shows.is_empty();
     let needed = limits.needed(&selected.motion, DURATION, FINE);
     Next {
-        motion: tells.then(|| selected.motion.clone()),
+        motion: is_useful.then(|| selected.motion.clone()),
         report: NextExperiment {
-            duration: tells.then_some(DURATION),
+            duration: is_useful.then_some(DURATION),
             separates,
             not_separated,
             shows,
-            limits: if tells { needed } else { Vec::new() },
+            limits: if is_useful { needed } else { Vec::new() },
         },
     }
 }

@@ -4,7 +4,7 @@
 mod support;
 
 use arm::{Arm, Vector3};
-use diagnosis::{Diagnosis, Verdict};
+use diagnosis::Verdict;
 use support::{
     ELBOW, Injected, Motion, SHOULDER, baseline_friction, diagnosed, exports_what_it_reports, motion, sentences, trio,
 };

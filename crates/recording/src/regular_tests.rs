@@ -79,7 +79,7 @@ fn rows_without_a_clock_are_resampled() {
 }
 
 #[test]
-fn spikes_are_told_with_joint_and_time() {
+fn spikes_are_reported_with_joint_and_time() {
     let at: Vec<f64> = (0..1000).map(|k| f64::from(k) * 0.004).collect();
     let mut recording = sample(at.clone(), &at);
     recording.q[0][500] += 0.2;

@@ -201,7 +201,7 @@ fn a_duplicated_row_is_left_out() {
 }
 
 #[test]
-fn runs_end_to_end_in_one_file_are_told_apart() {
+fn runs_end_to_end_in_one_file_are_distinguished() {
     let mut text = "t,q_a,tau_a\n".to_owned();
     for _ in 0..2 {
         for k in 0..100 {

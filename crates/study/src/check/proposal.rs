@@ -207,7 +207,7 @@ struct Best<'a> {
     shown_at: usize,
     /// The number of joints whose torques show it.
     supporters: usize,
-    /// Whether it is certain, as far as the model and friction tell.
+    /// Whether it is certain by the model and friction alone.
     is_shown: bool,
 }
 
