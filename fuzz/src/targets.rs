@@ -104,7 +104,7 @@ pub fn model(bytes: &[u8]) {
 pub fn truth(bytes: &[u8]) {
     let arm = Arm::from_urdf_text(ROBOT, "arm.urdf").expect("the robot is good");
     if let Ok(truth) = serde_json::from_slice::<faults::Truth>(bytes) {
-        for injected in &truth.concealed {
+        for injected in &truth.injected {
             let _ = injected.check(&arm);
         }
     }

@@ -19,7 +19,7 @@ com = [0.0, 0.0, 0.1]
 onset = 12.0
 "#;
 
-/// The diagnosis of the first concealed case.
+/// The diagnosis of the first case.
 fn diagnosed(sandbox: &Sandbox) -> serde_json::Value {
     let file = |name: &str| format!("cases/case_000/{name}");
     let (robot, held_out) = (file("robot.urdf"), file("held_out.csv"));
@@ -41,7 +41,7 @@ fn diagnosed(sandbox: &Sandbox) -> serde_json::Value {
 }
 
 #[test]
-fn what_is_concealed_is_found() {
+fn what_is_injected_is_found() {
     let sandbox = Sandbox::new();
     sandbox.write("trio.urdf", crate::diagnose_made::URDF);
     let text = EFFECTS

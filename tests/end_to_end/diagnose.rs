@@ -1,4 +1,4 @@
-//! `testbed diagnose` on recordings that the test makes: what is concealed is found, modelled and proved; what is not
+//! `testbed diagnose` on recordings that the test makes: what is injected is found, modelled and proved; what is not
 //! there, or has no name, is not named.
 
 use crate::diagnose_made::{Case, ELBOW, Motion, SHOULDER, TURN, finding, is_found, names, trio};
@@ -147,7 +147,7 @@ fn two_runs_give_the_same_bytes_whatever_the_threads() {
 }
 
 #[test]
-fn a_spring_is_told_from_gravity() {
+fn a_spring_is_distinguished_from_gravity() {
     let case = Case::new(&trio(), &|motion, tau| {
         friction(motion, tau);
         tau[ELBOW] += 14.0 * (motion.q[ELBOW] - 0.4) + 0.8 * motion.qd[ELBOW];
@@ -192,7 +192,7 @@ fn a_payload_is_weighed() {
 }
 
 #[test]
-fn where_nothing_is_concealed_nothing_is_named() {
+fn where_nothing_is_injected_nothing_is_named() {
     let case = Case::new(&trio(), &|_, _| {});
     let found = case.json(&["--model", "model.toml"]);
     assert_eq!(found["verdict"], "no_mismatch");

@@ -1,4 +1,4 @@
-//! `testbed diagnose` on concealed physics of another engine: what the truth says is found, and nothing else.
+//! `testbed diagnose` on injected physics of another engine: what the truth says is found, and nothing else.
 
 use std::collections::BTreeSet;
 
@@ -46,14 +46,14 @@ fn check(case: &str) {
 /// Checks a diagnosis of `case` against the truth: what was injected is found, and nothing else; what has no name is refused one on
 /// its joint; no joint is worse for it.
 pub fn compare(case: &str, truth: &Value, found: &Value) {
-    let concealed = truth["concealed"].as_array().expect("a list").iter().map(|effect| {
+    let injected = truth["concealed"].as_array().expect("a list").iter().map(|effect| {
         let name = renamed(effect["effect"].as_str().expect("a name"));
         (
             name.to_owned(),
             effect["joint"].as_str().unwrap_or("whole arm").to_owned(),
         )
     });
-    let (unknown, known): (BTreeSet<_>, BTreeSet<_>) = concealed.partition(|(name, _)| name.ends_with("_unknown"));
+    let (unknown, known): (BTreeSet<_>, BTreeSet<_>) = injected.partition(|(name, _)| name.ends_with("_unknown"));
     let is_special = |(name, _): &&(String, String)| !BASELINE.contains(&name.as_str());
     let list = names(found);
     let named: Vec<_> = list.iter().filter(is_special).collect();

@@ -5,8 +5,8 @@ use std::f64::consts::FRAC_PI_2;
 use recording::Recording;
 
 use crate::diagnose_mistakes::{doubted, with_numbers};
-use crate::diagnose_refusals::{case, changed, says};
-use crate::support::{Sandbox, root};
+use crate::diagnose_refusals::{case, changed};
+use crate::support::{Sandbox, root, says};
 
 #[test]
 fn a_map_that_does_not_mend_the_recording_is_not_proposed() {

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use crate::diagnose_made::{Case, arguments};
-use crate::diagnose_refusals::{case, changed, refused, refused_command, refused_with, says};
-use crate::support::words;
+use crate::diagnose_refusals::{case, changed, refused, refused_command, refused_with};
+use crate::support::{says, words};
 
 /// One recording with a column map, by its torques.
 const ALONE: [&str; 7] = [
@@ -48,7 +48,7 @@ fn doubted_with(text: &str) -> String {
 }
 
 #[test]
-fn torques_times_and_positions_in_another_unit_are_told_with_the_remedy() {
+fn torques_times_and_positions_in_another_unit_are_reported_with_the_remedy() {
     let scaled = |columns: std::ops::Range<usize>, factor: f64| {
         changed(|cells| {
             for cell in &mut cells[columns.clone()] {
@@ -94,7 +94,7 @@ fn torques_times_and_positions_in_another_unit_are_told_with_the_remedy() {
 }
 
 #[test]
-fn files_in_each_others_places_are_told() {
+fn files_in_each_others_places_are_reported() {
     let case = case();
     let mut command = arguments(&[]);
     command[2] = "a.csv";
@@ -229,7 +229,7 @@ fn a_model_that_was_not_searched_is_not_written() {
 }
 
 #[test]
-fn numbered_joints_of_another_count_are_told_with_a_map_of_the_first() {
+fn numbered_joints_of_another_count_are_reported_with_a_map_of_the_first() {
     let case = case();
     let text = changed(|cells| {
         cells.insert(4, cells[1].clone());
@@ -286,7 +286,7 @@ fn recordings_of_one_calendar_share_a_clock() {
 }
 
 #[test]
-fn names_numbers_and_files_that_do_not_fit_the_flag_are_told() {
+fn names_numbers_and_files_that_do_not_fit_the_flag_are_reported() {
     let case = case();
     let with = |flags: &[&str]| refused(&case, flags);
     says(

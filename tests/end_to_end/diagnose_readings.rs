@@ -6,8 +6,8 @@ use arm::Vector3;
 
 use crate::diagnose_made::{ELBOW, SHOULDER, recording, trio};
 use crate::diagnose_mistakes::{inspected, map_in, with_numbers};
-use crate::diagnose_refusals::{case, changed, says};
-use crate::support::{Sandbox, root};
+use crate::diagnose_refusals::{case, changed};
+use crate::support::{Sandbox, root, says};
 
 /// One recording, by its torques.
 const DIAGNOSE: [&str; 8] = [
@@ -22,7 +22,7 @@ const DIAGNOSE: [&str; 8] = [
 ];
 
 #[test]
-fn zeros_signs_and_order_are_told_with_the_map_that_mends_them() {
+fn zeros_signs_and_order_are_reported_with_the_map_that_mends_them() {
     let case = case();
     let told = ["zero", "opposite", "swapped", "column map"];
     for (text, parts) in [
@@ -98,7 +98,7 @@ fn whole_turns_change_nothing() {
 }
 
 #[test]
-fn positions_in_each_others_columns_are_told() {
+fn positions_in_each_others_columns_are_reported() {
     let case = case();
     let swapped = changed(|cells| cells.swap(2, 3));
     case.sandbox.write("a.csv", &swapped);
@@ -155,7 +155,7 @@ fn walls_ceilings_and_offsets_of_effects_are_no_mistakes() {
 /// are such that the model of a hanging base explains the torques of most joints.
 #[test]
 #[ignore = "needs ../shared"]
-fn inverted_torques_of_real_robots_are_told_and_the_map_mends_them() {
+fn inverted_torques_of_real_robots_are_reported_and_the_map_mends_them() {
     for (robot, names) in [
         ("lwr4", &["run_2", "run_3", "run_1"][..]),
         ("lbr_med7", &["may12_a", "may12_b"]),

@@ -1,7 +1,7 @@
 //! `testbed diagnose` on bad input: refused with file, place and remedy, or dealt with and told; nothing is left behind.
 
 use crate::diagnose_made::{Case, SHOULDER, arguments, recording, trio};
-use crate::support::Sandbox;
+use crate::support::{Sandbox, says};
 
 /// A robot with a little friction; files as in [`Case`], shorter.
 pub fn case() -> Case {
@@ -19,13 +19,6 @@ pub fn case() -> Case {
 const OUTPUTS: [&str; 8] = [
     "--json", "o.json", "--report", "o.html", "--model", "o.toml", "--urdf", "o.urdf",
 ];
-
-/// Checks that every part stands in the message, which is one line.
-pub fn says(message: &str, parts: &[&str]) {
-    for part in parts {
-        assert!(message.contains(part), "\"{part}\" is missing from: {message}");
-    }
-}
 
 /// The refusal with further arguments; nothing must be written.
 pub fn refused(case: &Case, further: &[&str]) -> String {
@@ -176,7 +169,7 @@ fn time_that_runs_back_and_too_few_rows_are_refused() {
 }
 
 #[test]
-fn no_torque_and_no_motion_are_refused_or_told() {
+fn no_torque_and_no_motion_are_refused_or_reported() {
     let no_torque = changed(|cells| cells[4..].iter_mut().for_each(|cell| *cell = "0".into()));
     says(
         &refused_with(&no_torque),

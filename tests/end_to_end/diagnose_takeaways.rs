@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::diagnose_made::{Case, Motion, SHOULDER, arguments, trio};
-use crate::diagnose_refusals::{case, says};
+use crate::diagnose_refusals::case;
+use crate::support::says;
 
 /// Coulomb and viscous friction on the shoulder.
 fn friction(motion: &Motion, tau: &mut [f64]) {

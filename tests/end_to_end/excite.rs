@@ -6,8 +6,7 @@ use std::collections::BTreeMap;
 use arm::{Arm, Workspace};
 
 use crate::diagnose_made::{URDF, recording, trio};
-use crate::diagnose_refusals::says;
-use crate::support::{Sandbox, words};
+use crate::support::{Sandbox, says, words};
 
 const JOINTS: [&str; 3] = ["turn", "shoulder", "elbow"];
 

@@ -115,7 +115,7 @@ fn the_summary_of_a_run_is_printed_alone() {
 }
 
 #[test]
-fn what_is_replaced_is_told() {
+fn what_is_replaced_is_reported() {
     let sandbox = Sandbox::new();
     let arguments = diagnose("");
     let list: Vec<&str> = arguments.iter().map(String::as_str).collect();
@@ -142,7 +142,7 @@ fn what_is_replaced_is_told() {
 
 /// A folder that cannot be written to is told before the work. Root may write everywhere, and is not stopped.
 #[test]
-fn a_read_only_folder_is_told_before_the_work() {
+fn a_read_only_folder_is_reported_before_the_work() {
     use std::os::unix::fs::PermissionsExt;
     let sandbox = Sandbox::new();
     let folder = sandbox.path("closed");

@@ -1,8 +1,8 @@
 //! Recordings of other formats and systems, in the commands that take recordings.
 
 use crate::diagnose_made::arguments;
-use crate::diagnose_refusals::{case, says};
-use crate::support::{Sandbox, root};
+use crate::diagnose_refusals::case;
+use crate::support::{Sandbox, root, says};
 
 #[test]
 fn inspect_reads_every_format() {

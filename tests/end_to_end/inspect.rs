@@ -1,6 +1,6 @@
 //! `testbed inspect`: what it says of good recordings, of flawed ones, and what it refuses.
 
-use crate::support::{Sandbox, root, words};
+use crate::support::{Sandbox, root, says, words};
 
 /// Two joints at 250 Hz for 12 s, each row as the closures say.
 fn recording(row: impl Fn(usize, f64) -> Option<String>) -> String {
@@ -28,12 +28,6 @@ fn good_row(stamp: f64, t: f64) -> String {
 
 fn good() -> String {
     recording(|_, t| Some(good_row(t, t)))
-}
-
-fn says(text: &str, parts: &[&str]) {
-    for part in parts {
-        assert!(text.contains(part), "\"{part}\" is missing from: {text}");
-    }
 }
 
 #[test]
@@ -64,7 +58,7 @@ fn a_good_recording_has_nothing_to_remark() {
 }
 
 #[test]
-fn flaws_are_told_with_their_place_and_are_no_failure() {
+fn flaws_are_reported_with_their_place_and_are_no_failure() {
     let sandbox = Sandbox::new();
     let flawed = recording(|k, t| match k {
         100 => Some(format!("{}\n{}", good_row(t, t), good_row(t, t))),
@@ -100,7 +94,7 @@ fn flaws_are_told_with_their_place_and_are_no_failure() {
 }
 
 #[test]
-fn no_motion_and_no_torque_are_told() {
+fn no_motion_and_no_torque_are_reported() {
     let sandbox = Sandbox::new();
     sandbox.write("still.csv", &recording(|_, t| Some(format!("{t:.6},0.1,0.2,0,0,0,0"))));
     let text = sandbox.succeed(&["inspect", "still.csv"]);
@@ -192,7 +186,7 @@ fn simulated(sandbox: &Sandbox) -> String {
 }
 
 #[test]
-fn what_does_not_fit_the_robot_is_told() {
+fn what_does_not_fit_the_robot_is_reported() {
     let sandbox = Sandbox::new();
     let text = simulated(&sandbox);
     let inspect = |text: &str| {

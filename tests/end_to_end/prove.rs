@@ -12,13 +12,13 @@ fn cases() -> Sandbox {
         let speed = motion.qd[SHOULDER];
         tau[SHOULDER] += 2.5 * speed.signum() + 4.0 * speed * speed.abs();
     };
-    let concealed = json!([
+    let injected = json!([
         {"effect": "coulomb_friction", "joint": "shoulder", "level": 2.5},
         {"effect": "quadratic_drag", "joint": "shoulder", "coefficient": 4.0, "expressed_share": 0.1},
     ]);
     let nothing = |_: &Motion, _: &mut [f64]| {};
-    for (name, physics, concealed) in [
-        ("case_a", &drag as &dyn Fn(&Motion, &mut [f64]), concealed),
+    for (name, physics, injected) in [
+        ("case_a", &drag as &dyn Fn(&Motion, &mut [f64]), injected),
         ("case_b", &nothing, json!([])),
     ] {
         std::fs::create_dir_all(sandbox.path(&format!("given/{name}"))).expect("a folder");
@@ -28,7 +28,7 @@ fn cases() -> Sandbox {
             let text = recording(&trio(), variant, seconds, physics);
             sandbox.write(&format!("given/{name}/{file}.csv"), &text);
         }
-        let truth = json!({"case": name, "robot": "trio", "seed": 1, "concealed": concealed,
+        let truth = json!({"case": name, "robot": "trio", "seed": 1, "concealed": injected,
             "background_friction": false, "torque_noise": [0.02, 0.02, 0.02]});
         sandbox.write(&format!("given/truth/{name}.json"), &truth.to_string());
     }
@@ -149,7 +149,7 @@ fn shares_merged_are_the_whole() {
 }
 
 #[test]
-fn a_truth_that_cannot_be_read_is_told_before_anything_is_diagnosed() {
+fn a_truth_that_cannot_be_read_is_reported_before_anything_is_diagnosed() {
     let sandbox = cases();
     sandbox.write("given/truth/case_b.json", "{\"case\": \"case_b\"}");
     let refused = sandbox.refuse(&COMMAND);

@@ -150,7 +150,7 @@ fn recordings_are_sealed_diagnosed_and_held_against_what_is_published() {
 }
 
 #[test]
-fn a_robot_that_cannot_be_diagnosed_is_told_and_all_of_it_missed() {
+fn a_robot_that_cannot_be_diagnosed_is_reported_and_all_of_it_missed() {
     let sandbox = published();
     sandbox.write("data/trio/c.csv", "t,q_turn,tau_turn\n0,nothing,0\n");
     sandbox.succeed(&[&COMMAND[..], &["--markdown", "real.md"]].concat());

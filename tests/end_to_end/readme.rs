@@ -158,7 +158,7 @@ fn the_documentation_shows_task_d() {
     }
 }
 
-/// The concealed recordings are made by the command that their page gives.
+/// The recordings with injected faults are made by the command that their page gives.
 #[test]
 fn the_concealed_example_can_be_made_again() {
     let sandbox = clone();

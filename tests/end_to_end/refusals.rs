@@ -1,6 +1,6 @@
 //! Wrong input is refused with its file, its place, what was found and how to mend it, and nothing is left behind.
 
-use crate::support::Sandbox;
+use crate::support::{Sandbox, says};
 
 const GOOD: &str = r#"title = "t"
 robot = "puma560"
@@ -21,13 +21,6 @@ fn refusal(from: &str, to: &str) -> String {
     let message = sandbox.refuse(&["--scenario", "bad.toml", "--model", "true", "--rerun", "off"]);
     assert!(!sandbox.path("runs").exists(), "something was left behind");
     message
-}
-
-/// Checks that every part stands in the message.
-fn says(message: &str, parts: &[&str]) {
-    for part in parts {
-        assert!(message.contains(part), "\"{part}\" is missing from: {message}");
-    }
 }
 
 #[test]

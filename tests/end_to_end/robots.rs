@@ -1,8 +1,7 @@
 //! Robots as their files come: with grippers and branches, and with friction that a diagnosis wrote.
 
 use crate::diagnose_made::{Case, SHOULDER, URDF, arguments, recording, trio};
-use crate::diagnose_refusals::says;
-use crate::support::words;
+use crate::support::{says, words};
 
 /// The robot of [`URDF`] with a hand of two weightless fingers, one of which mimics the other.
 fn with_gripper() -> String {

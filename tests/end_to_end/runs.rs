@@ -192,7 +192,7 @@ fn every_model_runs_on_arms_of_one_and_of_four_joints() {
                 "--scenario r.toml --model {model} --train r.toml --rerun off --json s.json"
             )));
             let error = sandbox.json("s.json")["torque_mse"][0].as_f64().expect("a number");
-            // The twelve inputs do not tell a carriage's acceleration: on a slider they are all zero.
+            // The twelve inputs do not show a carriage's acceleration: on a slider they are all zero.
             let limit = if matches!(model, "rigid-body" | "independent-joint") {
                 1e4
             } else {

@@ -131,11 +131,11 @@ fn rich(motion: &Motion, tau: &mut [f64]) {
 
 #[test]
 fn diagnoses_are_as_the_schema_says() {
-    for (concealed, further) in [
+    for (injected, further) in [
         (&rich as &dyn Fn(&Motion, &mut [f64]), &["--next", "next.toml"][..]),
         (&|_, _| {}, &[]),
     ] {
-        let case = Case::new(&trio(), concealed);
+        let case = Case::new(&trio(), injected);
         let mut found = case.json(further);
         assert_eq!(faults(&found), Vec::<String>::new());
         assert_eq!(found["next_experiment"].is_object(), !further.is_empty());

@@ -82,3 +82,10 @@ pub fn words(line: &str) -> Vec<&str> {
 pub fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
 }
+
+/// Checks that every part stands in the message.
+pub fn says(message: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(message.contains(part), "\"{part}\" is missing from: {message}");
+    }
+}

@@ -1,4 +1,4 @@
-//! How well recordings, as they are read, agree with the model of the arm.
+//! How well recordings agree with the model of the arm.
 
 use arm::Arm;
 use effects::drive::RotorInertia;
@@ -17,22 +17,19 @@ use crate::regression::strengths::Strengths;
 use crate::search::plan;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
-use crate::thresholds::CUTOFF;
+use crate::thresholds::{CUTOFF, FAR_LESS};
 
 /// The effects that nearly every URDF leaves out.
 const PLAIN: [&dyn EffectKind; 4] = [&CoulombFriction, &ViscousFriction, &RotorInertia, &TorqueOffset];
-
-/// A reading that has less evidence than another one by this much (nats), beside the background of the other one, is not fitted further.
-const FAR_LESS: f64 = 200.0;
 
 /// How well the model of an arm explains recordings, with plain friction, drive inertia and a constant torque at every joint, and
 /// with a background of inertial parameters and torque constants that differ from the URDF as far as the evidence says.
 #[derive(Clone, Debug)]
 pub struct Agreement {
     /// Minus the logarithm of the evidence of the torques, each joint's relative to its standard deviation (nats). It is comparable
-    /// between several ways to read the same rows: other signs, zeros and orders of the joints.
+    /// between corrections of the columns of the same rows: other signs, zeros and orders of the joints.
     pub misfit: f64,
-    /// That of each joint's torque alone, without the cost of the background (nats).
+    /// Minus the log-likelihood of each joint's torque alone, without the cost of the background (nats).
     pub misfit_of: Vec<f64>,
     /// The share of the variance of each joint's torque that is not explained.
     pub unexplained: Vec<f64>,
@@ -45,8 +42,8 @@ pub struct Agreement {
 /// The agreement of all `inputs` that are not held out with `arm`, the effects `known` included. Effects that are physically
 /// impossible with their coefficients, such as friction that drives the joint, are left out.
 ///
-/// The same rows that are read in another way are filtered as for `other`, and are not fitted beyond its background if they agree far
-/// less.
+/// If `other` is given, the agreement of the same rows before a correction of their columns, they are filtered with its cut-off. If
+/// they agree much less (200 nats), no other background is tried.
 ///
 /// # Errors
 /// [`DiagnosisError`], if there is nothing to fit or a recording does not fit the arm.
@@ -76,7 +73,7 @@ pub fn agreement(
     let mut study = Study::new(Data::new(arm, inputs, &options)?, &options);
     // Forms of friction in the background have no sign, and may drive a joint.
     study.stated.is_friction_plain = true;
-    let is_plain = |&candidate: &usize| study.terms(candidate).iter().all(|term| term.onset().is_none());
+    let is_plain = |&candidate: &usize| study.always_acts(candidate);
     let mut set: Vec<usize> = (0..study.candidates.len()).filter(is_plain).collect();
     if let Some(other) = other {
         study.strengths = other.strengths.clone();
@@ -100,8 +97,8 @@ pub fn agreement(
     }
 }
 
-/// The misfit of the same recordings as [`Agreement::misfit`] has it, if the whole catalogue of effects is searched (nats), with the
-/// filter of `other`. It is comparable with another one of the same kind only.
+/// The misfit of the recordings as in [`Agreement::misfit`], if the whole catalogue of effects is searched (nats), with the filter of
+/// `other`. It is comparable only with other results of this function.
 ///
 /// # Errors
 /// [`DiagnosisError`], if there is nothing to fit or a recording does not fit the arm.

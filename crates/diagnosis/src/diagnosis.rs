@@ -53,6 +53,7 @@ impl Diagnosis {
             constant_torques: BTreeMap::new(),
             rollout: BTreeMap::new(),
             next_experiment: None,
+            is_requested: false,
         };
         Self {
             report,

@@ -36,7 +36,7 @@ mod trace;
 
 pub use agreement::{Agreement, agreement, searched};
 pub use data::input::Input;
-pub use data::used::{WORTH_HOLDING, worth_using};
+pub use data::used::worth_using;
 pub use diagnose::diagnose;
 pub use diagnosis::Diagnosis;
 pub use error::DiagnosisError;
@@ -46,5 +46,5 @@ pub use excitation::{
 pub use findings::sentences::{described, is_undetermined};
 pub use options::{Options, Step, Wanted};
 pub use report::*;
-pub use thresholds::{LEAST_ROWS, Thresholds};
+pub use thresholds::{LEAST_ROWS, Thresholds, WORTH_HOLDING};
 pub use trace::{Action, Decision};

@@ -19,6 +19,7 @@ use crate::report::{
 use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::selection::rivals;
+use crate::thresholds::{COUNTED, MORE_DETECTABLE, SURELY_RESOLVED, WEIGHT_OF_SIZES};
 
 mod advice;
 pub(crate) mod designs;
@@ -29,14 +30,6 @@ use designs::{DURATION, Design, FINE};
 use limits::Limits;
 use prospect::{Outlook, Pair, Prospect};
 
-/// A confusion counts as resolved if the evidence exceeds what is needed by this factor, because the prediction is not perfect.
-const SURE: f64 = 1.2;
-/// The range of the evidence over the needed one in which more evidence counts as better.
-const COUNTED: (f64, f64) = (0.05, 4.0);
-/// The weight of a smaller detectable size relative to a resolved confusion.
-const SECOND: f64 = 0.1;
-/// The ratio of detectable sizes below which an effect counts as more detectable.
-const BETTER: f64 = 0.8;
 /// The part of speed and room that the other joints use in some of the tried motions.
 const ASIDE: [f64; 2] = [0.2, 0.5];
 
@@ -183,7 +176,7 @@ fn tried(
             (None, Some(_)) => 1.0,
             (None, None) => 0.0,
         });
-    let worth = apart.sum::<f64>() + SECOND * seen.sum::<f64>();
+    let worth = apart.sum::<f64>() + WEIGHT_OF_SIZES * seen.sum::<f64>();
     Tried {
         design,
         parts,
@@ -342,9 +335,9 @@ fn described(
             Some(Obstacle::Unexplained)
         } else {
             // A pair that the recordings already distinguish is not a confusion.
-            (before[k][0] >= before[k][1].min(needed)).then_some(Obstacle::NotForetold)
+            (before[k][0] >= before[k][1].min(needed)).then_some(Obstacle::NoPrediction)
         };
-        if after >= SURE * needed && barred.is_none() {
+        if after >= SURELY_RESOLVED * needed && barred.is_none() {
             separates.push(Separation {
                 finding,
                 rival,
@@ -361,7 +354,7 @@ fn described(
             finding,
             rival,
             furthest,
-            SURE * furthest[1],
+            SURELY_RESOLVED * furthest[1],
             barred,
         ));
     }
@@ -370,7 +363,7 @@ fn described(
         .zip(&selected.shows)
         .filter_map(|(hidden, after)| {
             let after = (*after)?;
-            let is_better = hidden.gain(Some(after)).is_none_or(|gain| gain > -BETTER.ln());
+            let is_better = hidden.gain(Some(after)).is_none_or(|gain| gain > -MORE_DETECTABLE.ln());
             is_better.then(|| Shows {
                 effect: hidden.entry.effect,
                 joint: hidden.entry.joint.clone(),
@@ -380,16 +373,16 @@ fn described(
             })
         })
         .collect();
-    let tells = !separates.is_empty() || !shows.is_empty();
+    let is_useful = !separates.is_empty() || !shows.is_empty();
     let needed = limits.needed(&selected.motion, DURATION, FINE);
     Next {
-        motion: tells.then(|| selected.motion.clone()),
+        motion: is_useful.then(|| selected.motion.clone()),
         report: NextExperiment {
-            duration: tells.then_some(DURATION),
+            duration: is_useful.then_some(DURATION),
             separates,
             not_separated,
             shows,
-            limits: if tells { needed } else { Vec::new() },
+            limits: if is_useful { needed } else { Vec::new() },
         },
     }
 }

@@ -1,4 +1,4 @@
-//! What the user asks of a diagnosis, and what the diagnosis tells while it runs.
+//! What the user asks of a diagnosis, and what the diagnosis reports while it runs.
 
 use effects::Effect;
 

@@ -10,12 +10,18 @@ use serde::Serialize;
 mod different_load;
 mod doubt;
 mod next_experiment;
+mod recording_names;
 mod schema;
 
 pub use different_load::DifferentLoad;
 pub use doubt::Doubt;
 pub use next_experiment::{JointLimits, NextExperiment, NotSeparated, Obstacle, Separation, Shows};
+pub use recording_names::{RecordingNames, UsedPart};
 pub use schema::json_schema;
+
+/// The values of [`Finding::sensor`].
+pub(crate) const MOTOR_CURRENT: &str = "motor_current";
+pub(crate) const SECOND_ENCODER: &str = "second_encoder";
 
 /// The value of [`Report::schema`].
 pub(crate) const SCHEMA: &str = "testbed.diagnosis/1";
@@ -72,29 +78,9 @@ pub struct Report {
     /// The motion that best distinguishes the remaining alternatives, if one was requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next_experiment: Option<NextExperiment>,
-}
-
-/// Paths as given on the command line.
-#[derive(Clone, Debug, Default, Serialize, JsonSchema)]
-pub struct RecordingNames {
-    /// Training recordings, to which the effects are fitted.
-    pub train: Vec<String>,
-    /// Held-out recordings, to which nothing is fitted.
-    pub held_out: Vec<String>,
-    /// Long recordings of which windows are used; absent if all recordings are used whole.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub used_in_part: Vec<UsedPart>,
-}
-
-/// The part of a long recording that is used.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct UsedPart {
-    /// The recording, with the name that the user gave.
-    pub recording: String,
-    /// The time that is used (s), to a millisecond: windows that are spread evenly over the whole.
-    pub used_seconds: f64,
-    /// The time that was recorded (s), to a millisecond, without pauses.
-    pub of_seconds: f64,
+    /// Whether only requested effects were fitted, and no others searched (`--only`).
+    #[serde(skip)]
+    pub is_requested: bool,
 }
 
 /// The names of all effects.
@@ -133,7 +119,8 @@ pub struct Finding {
     pub other: Option<String>,
     /// Its parameters.
     pub parameters: BTreeMap<&'static str, Parameter>,
-    /// The probability that this effect is present on this joint; `None` where it was not calibrated.
+    /// The probability that this effect is present on this joint; `None` where it was not calibrated: for findings of a second sensor or
+    /// of a held-out recording alone, for an effect that another one brings along, and where only requested effects were fitted.
     pub probability: Option<f64>,
     /// Standard deviation of its torque over that of the measured torque, training recordings; the largest of the joints. Of a
     /// spring between two encoders: that of the encoders' difference over the joint's range.
@@ -169,6 +156,11 @@ pub struct Finding {
 }
 
 impl Finding {
+    /// Whether only the motor's current shows it: friction between the motor and a torque sensor.
+    pub fn is_motor_side(&self) -> bool {
+        self.sensor == Some(MOTOR_CURRENT)
+    }
+
     /// A finding of `effect` with only its name and joint.
     pub fn of(effect: Effect) -> Self {
         Self {
@@ -197,7 +189,8 @@ impl Finding {
 pub struct Parameter {
     /// The estimate.
     pub value: f64,
-    /// Its 95 % interval; `null` at an open end.
+    /// Its 95 % interval; `null` at an open end. Of the `relative` error of all links, it is the strengths that were tried next to the
+    /// best one; of a contact's `start` and `duration`, ±0.1 s and ±0.2 s, the resolution of the search.
     #[schemars(with = "[Option<f64>; 2]")]
     pub ci95: [f64; 2],
     /// SI unit at the joint.

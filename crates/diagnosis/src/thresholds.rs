@@ -1,11 +1,12 @@
 //! All thresholds that decide on names, in the order of the phases.
 //!
-//! A threshold without a source was selected on simulated cases with known ground truth. Limits of iterations, guards against
-//! rounding and the design of the filters do not decide on a name; they are beside their code. The physical limits of an effect
+//! A threshold without a source was selected on simulated cases with known ground truth. The number of iterations of a fit, guards
+//! against rounding and the design of the filters do not decide on a name; they are beside their code. The physical limits of an effect
 //! are in its file in `effects`. `docs/thresholds.md` lists all thresholds and is generated from these files.
 
 mod data;
 mod findings;
+mod next;
 mod regression;
 mod search;
 mod selection;
@@ -14,6 +15,7 @@ mod table;
 
 pub use data::*;
 pub use findings::*;
+pub use next::*;
 pub use regression::*;
 pub use search::*;
 pub use selection::*;

@@ -4,8 +4,10 @@
 mod support;
 
 use arm::{Arm, Vector3};
-use diagnosis::{Diagnosis, Verdict};
-use support::{ELBOW, Injected, Motion, SHOULDER, baseline_friction, diagnosed, motion, sentences, trio};
+use diagnosis::Verdict;
+use support::{
+    ELBOW, Injected, Motion, SHOULDER, baseline_friction, diagnosed, exports_what_it_reports, motion, sentences, trio,
+};
 
 /// Checks that `effect` on `joint` is the only finding beside plain friction, with parameters within the relative
 /// `tolerance` of the truth.
@@ -60,32 +62,12 @@ fn check(
             "errors are over the measured torque"
         );
     }
-    exports_what_it_reports(&diagnosis, &again);
+    exports_what_it_reports(&diagnosis, &again, 0.4);
     for (joint, fit) in &report.fit {
         let (nominal, augmented) = (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented);
         assert!(augmented < nominal, "{joint}: {nominal:?} → {augmented:?}");
     }
 }
-
-/// Checks that the error with the exported effects as known effects is the reported one, because exported laws are the
-/// fitted ones. Effects that depend on the past of the motion are simulated instead of subtracted.
-fn exports_what_it_reports(diagnosis: &Diagnosis, again: &Diagnosis) {
-    if diagnosis.effects.iter().any(|effect| effect.spec().is_simulated) {
-        return;
-    }
-    for (joint, fit) in &diagnosis.report.fit {
-        let exported = again.report.fit[joint].held_out_nrmse_nominal.expect("it is moved");
-        let reported = fit.held_out_nrmse_exported.expect("it is moved");
-        assert!(
-            (exported - reported).abs() < SAME_ERROR.max(0.4 * reported),
-            "{joint}: {exported} with the exported effects, {reported} reported"
-        );
-    }
-}
-
-/// Two errors (NRMSE) count as equal if they differ by less, because the fit takes the sign of a velocity near a reversal
-/// from the filtered motion, and the exported law from each sample.
-const SAME_ERROR: f64 = 0.002;
 
 /// Beside a torque scale, friction and the other effects on the joint are stated in true newton metres, which the scale
 /// multiplies.
@@ -110,7 +92,7 @@ fn a_torque_scale_multiplies_the_friction_beside_it() {
     is_near(parameter("coulomb_friction", "level"), 2.1);
     is_near(parameter("viscous_friction", "coefficient"), 1.5);
     let again = diagnosed(&trio(), &trio(), &injected, diagnosis.effects.clone());
-    exports_what_it_reports(&diagnosis, &again);
+    exports_what_it_reports(&diagnosis, &again, 0.4);
 }
 
 /// An effect that adds a torque to one joint.

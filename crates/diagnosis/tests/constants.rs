@@ -47,8 +47,8 @@ fn small_constants_of_all_joints_are_corrected_without_names() {
     let diagnosis = diagnosed([0.026, -0.05, 0.015], &[]);
     assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
     assert_constants(&diagnosis, &[("turn", 0.026), ("shoulder", -0.05), ("elbow", 0.015)]);
-    let is_told = |remark: &String| remark.contains("turn 0.0") && remark.contains("elbow 0.0");
-    assert!(diagnosis.remarks.iter().any(is_told), "{:?}", diagnosis.remarks);
+    let is_reported = |remark: &String| remark.contains("turn 0.0") && remark.contains("elbow 0.0");
+    assert!(diagnosis.remarks.iter().any(is_reported), "{:?}", diagnosis.remarks);
 
     let again = diagnosed([0.026, -0.05, 0.015], &diagnosis.effects);
     assert!(again.report.constant_torques.is_empty() && again.report.findings.is_empty());

@@ -8,7 +8,9 @@ use diagnosis::{Diagnosis, Options, Verdict, diagnose};
 use effects::Effect;
 use effects::drive::RotorInertia;
 use recording::RegularRecording;
-use support::{ELBOW, Injected, Motion, SHOULDER, inputs, recorded, regular, sentences, start, trio};
+use support::{
+    ELBOW, Injected, Motion, SHOULDER, exports_what_it_reports, inputs, recorded, regular, sentences, start, trio,
+};
 
 /// The rotor inertias of the true arm (kg m²).
 const ROTORS: [f64; 3] = [0.0, 0.9, 0.25];
@@ -95,20 +97,9 @@ fn check(injected: Injected<'_>, effect: &str, (parameter, truth): (&str, f64)) 
             "{:?}",
             again.report.unexplained
         );
-        for (joint, fit) in &report.fit {
-            let exported = again.report.fit[joint].held_out_nrmse_nominal.expect("it is moved");
-            let reported = fit.held_out_nrmse_exported.expect("it is moved");
-            assert!(
-                (exported - reported).abs() < SAME_ERROR.max(0.2 * reported),
-                "{effect}, {joint}: {exported} with the exported effects, {reported} reported"
-            );
-        }
+        exports_what_it_reports(&diagnosis, &again, 0.2);
     }
 }
-
-/// Two errors (NRMSE) count as equal if they differ by less, because the fit takes the sign of a velocity near a reversal
-/// from the filtered motion, and the exported law from each sample.
-const SAME_ERROR: f64 = 0.002;
 
 #[test]
 fn coulomb_friction() {

@@ -56,9 +56,9 @@ fn assert_load(diagnosis: &Diagnosis, recordings: &[&str], mass: f64) {
     assert!(low <= mass && mass <= high && high - low < 0.3, "{load:?}");
 }
 
-/// The load is told with its recordings, and is in no name. The load of all recordings is a payload.
+/// The load is reported with its recordings, and is in no name. The load of all recordings is a payload.
 #[test]
-fn recordings_with_another_load_are_told() {
+fn recordings_with_another_load_are_reported() {
     let diagnosis = diagnosed([0.0, 0.8, 0.8, 0.0], |_, _| true, nothing);
     assert_load(&diagnosis, &["b", "c"], 0.8);
     assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
@@ -81,14 +81,14 @@ fn torques_at_rest_show_another_load() {
 
 /// The same load everywhere, one that changes once on a common clock, and a push are not recordings with another load.
 #[test]
-fn what_an_effect_explains_is_not_told_as_another_load() {
-    let is_told = |diagnosis: &Diagnosis| diagnosis.report.different_load.is_some();
+fn what_an_effect_explains_is_not_reported_as_another_load() {
+    let is_reported = |diagnosis: &Diagnosis| diagnosis.report.different_load.is_some();
     let diagnosis = diagnosed([0.8; 4], |_, _| true, nothing);
-    assert!(!is_told(&diagnosis));
+    assert!(!is_reported(&diagnosis));
     assert_eq!(named(&diagnosis), [("payload", None)], "{:?}", sentences(&diagnosis));
 
     let diagnosis = diagnosed([0.0, 0.0, 0.8, 0.8], |_, _| true, nothing);
-    assert!(!is_told(&diagnosis));
+    assert!(!is_reported(&diagnosis));
     let payload = diagnosis
         .report
         .findings
@@ -106,5 +106,5 @@ fn what_an_effect_explains_is_not_told_as_another_load() {
             tau[ELBOW] += 3.0;
         }
     };
-    assert!(!is_told(&diagnosed([0.0; 4], |_, _| true, push)));
+    assert!(!is_reported(&diagnosed([0.0; 4], |_, _| true, push)));
 }

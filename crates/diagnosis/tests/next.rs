@@ -60,12 +60,12 @@ fn a_faster_motion_distinguishes_viscous_friction_from_drag() {
         is_confused(&diagnosis, "viscous_friction", "quadratic_drag"),
         "{next:#?}"
     );
-    let told = next
+    let listed = next
         .separates
         .iter()
         .filter(|pair| pair.rival.effect == "quadratic_drag");
-    assert!(told.clone().count() > 0, "{next:#?}");
-    for pair in told {
+    assert!(listed.clone().count() > 0, "{next:#?}");
+    for pair in listed {
         assert!(pair.after > pair.needed && pair.after > pair.before, "{pair:?}");
     }
     // The prediction is correct.

@@ -198,9 +198,21 @@ fn a_scale_is_not_a_torque_saturation() {
     check(&injected, &[("torque_scale", "shoulder")]);
 }
 
-/// A spring between drive and link gives way without a gap. (A gap needs a simulated drive: `tests/cases/backlash` has one.)
+/// A gap in the elbow's gear: the link lies against one side of it or the other, by the sign of the torque that it needs.
+/// (`tests/cases/backlash` has a simulated drive.)
 #[test]
-fn a_spring_in_the_drive_is_not_backlash() {
+fn backlash() {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        motion.q[ELBOW] += 0.01 * (tau[ELBOW] / 0.05).tanh();
+        baseline_friction(motion, tau);
+    };
+    let diagnosis = check(&injected, &[("backlash", "elbow")]);
+    is_sized(&diagnosis, "backlash", &[("halfgap", 0.01)], 0.1);
+}
+
+/// A spring between drive and link gives way without a gap, and without a delay.
+#[test]
+fn a_spring_in_the_drive_is_neither_backlash_nor_a_delay() {
     let injected = |motion: &mut Motion, tau: &mut [f64]| {
         motion.q[ELBOW] += tau[ELBOW] / 250.0;
         baseline_friction(motion, tau);

@@ -5,9 +5,9 @@ mod support;
 use diagnosis::{Report, Verdict};
 use support::{ELBOW, Motion, SHOULDER, TURN, diagnosed, trio};
 
-/// Torque constants that are wrong on all joints, each by another part, are told although no finding names them.
+/// Torque constants that are wrong on all joints, each by another part, are reported although no finding names them.
 #[test]
-fn torques_that_only_the_background_explains_are_told() {
+fn torques_that_only_the_background_explains_are_reported() {
     let factors = [1.16, 1.2, 1.13];
     let injected = |motion: &mut Motion, tau: &mut [f64]| {
         support::baseline_friction(motion, tau);

@@ -40,6 +40,7 @@ pub use compliance::LinkSide;
 pub use effect::{Effect, Value};
 pub use error::EffectError;
 pub use estimate::{Estimate, Systematic};
+pub use files::ReadError;
 pub use fitted::{Fitted, UNIT};
 pub use form::{Form, Grounds, SetsIn, Turn};
 pub use kind::EffectKind;
@@ -65,8 +66,8 @@ pub mod friction {
     pub use coulomb::CoulombFriction;
     pub use drag::QuadraticDrag;
     pub use load_dependent::LoadDependentFriction;
-    pub use stribeck::{StribeckFriction, velocity as stribeck_velocity};
-    pub use thermal::{FASTEST_WARMING, ThermalDrift};
+    pub use stribeck::StribeckFriction;
+    pub use thermal::ThermalDrift;
     pub use viscous::ViscousFriction;
 }
 

@@ -4,6 +4,11 @@ use arm::JointKind;
 
 use crate::quantity::Quantity;
 
+/// The evidence that an effect must bring in addition to that of its coefficients (nats), unless its own file states another.
+const PRIOR: f64 = 6.0;
+/// The evidence that an unmodelled form must bring in addition to that of its coefficients (nats).
+const UNNAMED_PRIOR: f64 = 9.0;
+
 /// The scope of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
@@ -221,8 +226,8 @@ pub struct Spec {
     pub title: &'static str,
     /// A description for readers who do not know it.
     pub meaning: &'static str,
-    /// The recording that distinguishes it from similar effects.
-    pub told_by: &'static str,
+    /// The recording to make to distinguish it from similar effects.
+    pub distinguished_by: &'static str,
     /// The torque that it adds, or its meaning (for the documentation).
     pub formula: &'static str,
     /// A finding as a noun phrase: `{key}` is a parameter with its unit, `{key%}` the parameter in per cent, `{other}` the
@@ -232,8 +237,6 @@ pub struct Spec {
     pub scope: Scope,
     /// Its parameters, in the order of files.
     pub parameters: &'static [Parameter],
-    /// Numbers that findings give in addition to the parameters.
-    pub derived: &'static [Parameter],
     /// The parameters that measure its size, the best first.
     pub main: &'static [&'static str],
     /// Whether it may begin within the recordings.
@@ -241,9 +244,9 @@ pub struct Spec {
     /// Whether there may be two on one joint, or on the arm.
     pub may_repeat: bool,
     /// The simpler effect that it generalises.
-    pub plain: Option<&'static str>,
+    pub generalises: Option<&'static str>,
     /// The least part of the joint's torque (RMS over standard deviation) that it must explain beyond the simpler effect.
-    pub least_beyond_plain: f64,
+    pub least_beyond_simpler: f64,
     /// The effect that is fitted with it and named in addition.
     pub brings: Option<&'static str>,
     /// Effects that cannot act on the same joint. It is sufficient that one of two effects lists the other.
@@ -255,7 +258,7 @@ pub struct Spec {
     /// Whether it is a friction that every drive has.
     pub is_friction: bool,
     /// Whether it is a baseline effect or a constant.
-    pub is_simple: bool,
+    pub is_baseline_or_constant: bool,
     /// Whether its form is certain, because it follows from rigid-body dynamics.
     pub is_certain_in_form: bool,
     /// The evidence that it must bring beside the correction of all inertial parameters that is best without it (nats),
@@ -266,7 +269,7 @@ pub struct Spec {
     /// Whether wrong masses may hide it, so that it may be larger than the torque to be explained. Baseline effects always may be.
     pub may_be_hidden: bool,
     /// Whether it may be present in one recording only.
-    pub is_passing: bool,
+    pub may_be_in_one_recording: bool,
     /// Whether residuals suggest its forms; they are suggested again when more is known.
     pub is_suggested: bool,
     /// Whether it may be a part of inertial parameters that differ from the URDF's.
@@ -288,6 +291,8 @@ pub struct Spec {
     pub is_beyond_the_drive: bool,
     /// What a URDF can hold of it.
     pub in_urdf: InUrdf,
+    /// Whether its torque has many periods within the range of a motion, so that a figure needs narrow bins.
+    pub is_periodic: bool,
     /// The state against which figures show it.
     pub against: Against,
     /// What an unattributed residual depends on, for an unmodelled form.
@@ -308,28 +313,27 @@ impl Spec {
         name: "",
         title: "",
         meaning: "",
-        told_by: "",
+        distinguished_by: "",
         formula: "",
         sentence: "",
         scope: Scope::Joint,
         parameters: &[],
-        derived: &[],
         main: &[],
         may_set_in: false,
         may_repeat: false,
-        plain: None,
-        least_beyond_plain: 0.0,
+        generalises: None,
+        least_beyond_simpler: 0.0,
         brings: None,
         excludes: &[],
-        prior: 6.0,
+        prior: PRIOR,
         is_baseline: false,
         is_friction: false,
-        is_simple: false,
+        is_baseline_or_constant: false,
         is_certain_in_form: false,
         least_beside_inertials: None,
         most_beside_inertials: None,
         may_be_hidden: false,
-        is_passing: false,
+        may_be_in_one_recording: false,
         is_suggested: false,
         may_be_inertial: false,
         same_on_all_joints: None,
@@ -339,6 +343,7 @@ impl Spec {
         is_wrong_mass: false,
         is_beyond_the_drive: false,
         in_urdf: InUrdf::Nothing,
+        is_periodic: false,
         against: Against::Predicted,
         depends_on: "",
         detectability: Detectability::Never,
@@ -349,19 +354,18 @@ impl Spec {
 
     /// [`Self::EMPTY`] for an unmodelled form.
     pub const UNNAMED: Self = Self {
-        prior: 9.0,
+        prior: UNNAMED_PRIOR,
         ..Self::EMPTY
     };
 
-    /// The parameter `key`, which may be a part of a list, or a number that findings give in addition to the parameters.
+    /// The parameter `key`, which may be a part of a list.
     pub fn parameter(&self, key: &str) -> Option<&'static Parameter> {
         let is_part = |parameter: &&Parameter| match parameter.shape {
             Shape::List(_, parts) => parts.contains(&key),
             _ => false,
         };
-        let mut all = self.parameters.iter().chain(self.derived);
-        all.find(|parameter| parameter.key == key)
-            .or_else(|| self.parameters.iter().find(is_part))
+        let own = self.parameters.iter().find(|parameter| parameter.key == key);
+        own.or_else(|| self.parameters.iter().find(is_part))
             .or_else(|| (key == "onset" && self.may_set_in).then_some(&ONSET))
     }
 

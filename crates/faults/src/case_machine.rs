@@ -39,7 +39,7 @@ impl<'a> CaseMachine<'a> {
             return Err(FaultError::Setting(reason));
         }
         let effects: Vec<&Injected> = truth
-            .concealed
+            .injected
             .iter()
             .filter(|effect| !robot.has_by_itself(effect))
             .collect();
@@ -100,12 +100,12 @@ mod tests {
     use crate::motion::{LEAD_TICKS, excitation};
     use crate::test_robots::{puma, seven_axis};
 
-    fn truth(robot: &Robot, concealed: Vec<Injected>) -> Truth {
+    fn truth(robot: &Robot, injected: Vec<Injected>) -> Truth {
         Truth {
             case: "case_000".into(),
             robot: robot.name().into(),
             seed: 0,
-            concealed,
+            injected,
             background_friction: false,
             torque_noise: vec![0.0; robot.arm().dof()],
             encoder_quantum: 1e-5,
@@ -117,8 +117,8 @@ mod tests {
 
     /// RMS distance of the links from the reference with the feed-forward of the user's model, and with that of the
     /// machine's own laws.
-    fn errors(robot: &Robot, concealed: Vec<Injected>) -> [f64; 2] {
-        let machine = CaseMachine::new(robot, &truth(robot, concealed)).expect("the effects fit");
+    fn errors(robot: &Robot, injected: Vec<Injected>) -> [f64; 2] {
+        let machine = CaseMachine::new(robot, &truth(robot, injected)).expect("the effects fit");
         let reference = excitation(robot, 60.0, &mut ChaCha8Rng::seed_from_u64(5)).first_seconds(4.0);
         let n = robot.arm().dof();
         let start = reference.time(0);

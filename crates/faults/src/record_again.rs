@@ -35,7 +35,7 @@ pub fn record_again(
     // After the training and held-out recordings.
     let reference = Reference::new(robot.arm(), start(TRAINING[usize::from(plan.hard)] + 1), q);
     let effects: Vec<&Injected> = truth
-        .concealed
+        .injected
         .iter()
         .filter(|effect| !robot.has_by_itself(effect))
         .collect();

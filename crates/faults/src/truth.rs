@@ -17,8 +17,9 @@ pub struct Truth {
     /// The seed that the case was drawn from.
     pub seed: u64,
     /// The effects that the machine has and the URDF does not have.
-    pub concealed: Vec<Injected>,
-    /// Whether every joint has baseline Coulomb and viscous friction; `concealed` lists it as well.
+    #[serde(rename = "concealed")]
+    pub injected: Vec<Injected>,
+    /// Whether every joint has baseline Coulomb and viscous friction; [`Self::injected`] lists it as well.
     pub background_friction: bool,
     /// Standard deviation of the noise on each torque (N m or N).
     pub torque_noise: Vec<f64>,
@@ -38,7 +39,7 @@ pub struct Truth {
     pub lifelike: Option<Lifelike>,
 }
 
-/// Properties of real recordings that are not scored; small effects of every joint are in [`Truth::concealed`], marked
+/// Properties of real recordings that are not scored; small effects of every joint are in [`Truth::injected`], marked
 /// as `minor`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Lifelike {

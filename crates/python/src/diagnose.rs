@@ -92,7 +92,7 @@ impl Listener for Channel {
         self.send(Message::Note(in_python(text), false));
     }
 
-    fn recordings(&self, notes: &Notes, _: &[&str]) {
+    fn recordings(&self, notes: &Notes) {
         for note in notes.iter() {
             self.send(Message::Note(
                 in_python(&format!("{}: {}", note.file, note.text)),

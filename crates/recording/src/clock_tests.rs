@@ -125,7 +125,7 @@ fn a_gap_may_end_on_another_phase() {
 }
 
 #[test]
-fn stamps_without_a_clock_are_told() {
+fn stamps_without_a_clock_are_reported() {
     let mut random = Random(5);
     let mut at = 0.0;
     let walk: Vec<f64> = (0..5000)
@@ -199,7 +199,7 @@ fn stamps_that_scatter_over_almost_a_period_do_not_bend_the_clock() {
                 let off = (clock.period / period - 1.0).abs();
                 assert!(clock.regular && off < 1e-4, "{what}: the period is off by {off:e}");
                 assert_eq!(clock.pieces.len(), 2, "{what}");
-                // A piece's own first row may be late: most of its rows tell where it begins.
+                // A piece's own first row may be late: most of its rows show where it begins.
                 let mut wrong = 0;
                 for piece in &clock.pieces {
                     let mut off: Vec<i64> = piece.rows.clone().map(|row| clock.ticks[row] - truth[row]).collect();

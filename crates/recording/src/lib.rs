@@ -65,7 +65,7 @@ pub use quality::{Finding, FindingKind, JointQuality, Quality};
 pub use quantity::Quantity;
 pub use regular::{RegularRecording, Segment};
 pub use table::Column;
-pub use toml_error::{nearest, toml_reason};
+pub use toml_error::{nearest, toml_reason, unknown_key};
 pub use warning::Warning;
 pub use whole_file::write_whole;
 

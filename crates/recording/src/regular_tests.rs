@@ -79,19 +79,19 @@ fn rows_without_a_clock_are_resampled() {
 }
 
 #[test]
-fn spikes_are_told_with_joint_and_time() {
+fn spikes_are_reported_with_joint_and_time() {
     let at: Vec<f64> = (0..1000).map(|k| f64::from(k) * 0.004).collect();
     let mut recording = sample(at.clone(), &at);
     recording.q[0][500] += 0.2;
     recording.tau[0][250] -= 30.0;
     let (regular, warnings) = recording.regular().expect("it has a clock");
     assert!((regular.q[0][500] - (3.0 * at[500]).sin()).abs() < 1e-6);
-    let told: Vec<String> = warnings.iter().map(Warning::to_string).collect();
+    let found: Vec<String> = warnings.iter().map(Warning::to_string).collect();
     assert!(
-        told[0].contains("q_a: 1 single-sample spike") && told[0].contains("2.000"),
-        "{told:?}"
+        found[0].contains("q_a: 1 single-sample spike") && found[0].contains("2.000"),
+        "{found:?}"
     );
-    assert!(told[1].contains("tau_a") && told[1].contains("1.000"), "{told:?}");
+    assert!(found[1].contains("tau_a") && found[1].contains("1.000"), "{found:?}");
 }
 
 #[test]

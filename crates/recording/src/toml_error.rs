@@ -13,21 +13,25 @@ const KINDS: [(&[&str], &str); 3] = [
     (&["effects"], "a model of effects (--known)"),
 ];
 
-/// The error in one line; for an unknown key, with the nearest known one.
+/// The error that the key `unknown` is none of the `known` ones, with the nearest of them.
+pub fn unknown_key(unknown: &str, known: &[String]) -> String {
+    // A file of another kind that was given in its place.
+    let kind = KINDS
+        .iter()
+        .find(|(keys, _)| keys.contains(&unknown) && !known.iter().any(|key| key == unknown));
+    let hint = match (kind, nearest(unknown, known)) {
+        (Some((_, kind)), _) => format!("is this {kind}? "),
+        (None, Some(nearest)) => format!("did you mean `{nearest}`? "),
+        (None, None) => String::new(),
+    };
+    format!("unknown key `{unknown}`; {hint}known here: {}", known.join(", "))
+}
+
+/// The parser's error in one line; for an unknown key, with the nearest known one. The crate `toml` offers no types of errors, so that
+/// this is the one place that reads its messages.
 pub fn toml_reason(message: &str) -> String {
     match unknown_field(message) {
-        Some((unknown, known)) => {
-            // A file of another kind that was given in its place.
-            let kind = KINDS
-                .iter()
-                .find(|(keys, _)| keys.contains(&unknown.as_str()) && !known.contains(&unknown));
-            let hint = match (kind, nearest(&unknown, &known)) {
-                (Some((_, kind)), _) => format!("is this {kind}? "),
-                (None, Some(nearest)) => format!("did you mean `{nearest}`? "),
-                (None, None) => String::new(),
-            };
-            format!("unknown key `{unknown}`; {hint}known here: {}", known.join(", "))
-        }
+        Some((unknown, known)) => unknown_key(&unknown, &known),
         None => {
             let remedy = match message {
                 _ if message.starts_with("missing field") => "; add it",

@@ -142,8 +142,8 @@ fn joint_states_of_bags_are_read_whatever_the_storage() {
     let recording = Recording::read(&cut).expect("what is whole is used");
     assert!((10..60).contains(&recording.len()));
     check(&recording, recording.len(), 0.0);
-    let told = |warning: &Warning| matches!(warning, Warning::CutFile { .. });
-    assert!(recording.warnings.iter().any(told));
+    let found = |warning: &Warning| matches!(warning, Warning::CutFile { .. });
+    assert!(recording.warnings.iter().any(found));
     // A message without a stamp gets the time at which it was logged.
     for name in ["unstamped.mcap", "ros_writer.mcap"] {
         check(&read(name), 60, 0.0);
@@ -165,7 +165,7 @@ fn topics_are_joined_by_time_or_chosen() {
             assert!((joined.tau[joint][row] - tau).abs() < 1e-3);
         }
     }
-    let told = joined.warnings.iter().any(|warning| {
+    let found = joined.warnings.iter().any(|warning| {
         matches!(
             warning,
             Warning::Joined {
@@ -175,7 +175,7 @@ fn topics_are_joined_by_time_or_chosen() {
             }
         )
     });
-    assert!(told, "{:?}", joined.warnings);
+    assert!(found, "{:?}", joined.warnings);
     let ambiguous = refusal("ambiguous.mcap");
     assert!(
         ambiguous.contains("\"shoulder\" is in the topics /a, /b") && ambiguous.contains("topics = [\"/a\"]"),
@@ -227,8 +227,8 @@ fn episodes_of_lerobot_are_runs() {
             assert!((recording.q[joint][row] - q).abs() < 1e-6 && (recording.tau[joint][row] - tau).abs() < 1e-6);
         }
     }
-    let told = |warning: &Warning| matches!(warning, Warning::Runs { runs: 2, .. });
-    assert!(recording.warnings.iter().any(told), "{:?}", recording.warnings);
+    let found = |warning: &Warning| matches!(warning, Warning::Runs { runs: 2, .. });
+    assert!(recording.warnings.iter().any(found), "{:?}", recording.warnings);
     assert_eq!(read("lerobot_one_episode.parquet").len(), 60);
     let lacking = refusal("lerobot_no_torques.parquet");
     assert!(

@@ -157,6 +157,16 @@ impl Svg {
         self.text.push_str("Z\"/>");
     }
 
+    /// The number of a tick at `place` below the horizontal axis at `bottom`.
+    pub fn tick_below(&mut self, place: f64, bottom: f64, tick: f64, decimals: usize) {
+        self.text(
+            [place, bottom + 17.0],
+            "tick",
+            "middle",
+            &numbers::fixed(tick, decimals),
+        );
+    }
+
     /// The horizontal lines of a vertical axis, with their numbers and the unit.
     pub fn vertical_axis(&mut self, scale: &Scale, [left, right]: [f64; 2], factor: f64, title: &str) {
         let shown = Scale::new(scale.range().map(|value| value / factor), [0.0, 1.0]);

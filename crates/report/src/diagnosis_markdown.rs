@@ -142,7 +142,9 @@ fn unexplained(report: &Report, arm: &Arm) -> Vec<Block> {
     }
     let row = |open: &diagnosis::Unexplained| {
         let on: Vec<String> = open.depends_on.iter().map(|code| words::dependence(code)).collect();
-        let on = if on.is_empty() {
+        let on = if on.is_empty() && report.is_requested {
+            "not searched".to_owned()
+        } else if on.is_empty() {
             "nothing that was tried".to_owned()
         } else {
             words::list(&on)

@@ -51,7 +51,7 @@ pub fn opening(score: &Score) -> Vec<Block> {
         text(format!(
             "{} effects were injected in {} cases. The diagnosis ran in processes that had access to the recordings and a rigid URDF only. {reached} of the \
              {asked} targets are reached. {}",
-            score.concealed.len(),
+            score.injected.len(),
             score.cases,
             unanswered(score),
         )),
@@ -136,7 +136,7 @@ fn unanswered(score: &Score) -> String {
 /// The effects that F1 and coverage exclude, because the diagnosis declared them not testable.
 fn exempt(score: &Score) -> String {
     let exempt = || {
-        let counted = score.concealed.iter().filter(|o| o.counts);
+        let counted = score.injected.iter().filter(|o| o.counts);
         counted.filter(|o| o.fate == Fate::NotObservable)
     };
     let mut large: Vec<_> = exempt()
@@ -167,7 +167,7 @@ fn exempt(score: &Score) -> String {
 /// All failures: effects that are missed, false names, and refusals on joints that need none.
 pub fn failures(score: &Score) -> Vec<Block> {
     let mut rows = Vec::new();
-    for outcome in score.concealed.iter().filter(|o| o.counts && !o.fate.is_found()) {
+    for outcome in score.injected.iter().filter(|o| o.counts && !o.fate.is_found()) {
         let fate = match outcome.fate {
             Fate::Covered => "an alternative only",
             Fate::NotObservable => "declared not testable",
@@ -189,10 +189,10 @@ pub fn failures(score: &Score) -> Vec<Block> {
     }
     for wrong in &score.false_names {
         let what = name(&(wrong.effect.clone(), wrong.joint.clone()));
-        let there = if wrong.concealed_there.is_empty() {
+        let there = if wrong.injected_there.is_empty() {
             "nothing injected there".to_owned()
         } else {
-            format!("injected there: {}", wrong.concealed_there.join(", "))
+            format!("injected there: {}", wrong.injected_there.join(", "))
         };
         let admits = if wrong.admits_the_truth {
             "; the ground truth is one of its alternatives"
@@ -203,7 +203,7 @@ pub fn failures(score: &Score) -> Vec<Block> {
         rows.push(vec![wrong.case.clone(), what, said, percent(wrong.share)]);
     }
     for case in score.outside.iter().filter(|case| !case.refused) {
-        let what = case.concealed.iter().map(name).collect::<Vec<_>>().join(", ");
+        let what = case.injected.iter().map(name).collect::<Vec<_>>().join(", ");
         rows.push(vec![
             case.case.clone(),
             what,

@@ -68,7 +68,7 @@ pub fn complete(report: &Report, arm: &Arm) -> String {
         text += &details(finding);
     }
     for open in &report.unexplained {
-        text += &wrapped(&format!("{}: {}", open.joint, unexplained(open)), "- ");
+        text += &wrapped(&format!("{}: {}", open.joint, unexplained(report, open)), "- ");
         if let Some(place) = largest(report, open, Some(arm)) {
             text += &wrapped(&place, "    ");
         }
@@ -129,7 +129,7 @@ pub fn prose(report: &Report) -> String {
             text,
             "- {}: {}. Next experiment: {}.",
             open.joint,
-            unexplained(open),
+            unexplained(report, open),
             open.next
         );
     }
@@ -140,10 +140,12 @@ pub fn prose(report: &Report) -> String {
 }
 
 /// The size of an unexplained residual and what it depends on.
-fn unexplained(open: &Unexplained) -> String {
+fn unexplained(report: &Report, open: &Unexplained) -> String {
     let size = numbers::of_torque_spread(open.share);
     let on: Vec<String> = open.depends_on.iter().map(|code| words::dependence(code)).collect();
-    if on.is_empty() {
+    if on.is_empty() && report.is_requested {
+        format!("unexplained residual {size}; other effects were not searched")
+    } else if on.is_empty() {
         format!("unexplained residual {size}; no regressor that was tried predicts it")
     } else {
         format!("unexplained residual {size}; it depends on {}", words::list(&on))

@@ -19,8 +19,8 @@ pub struct Wording {
     pub name: &'static str,
     /// Its meaning, for readers who do not know it.
     pub meaning: &'static str,
-    /// Which experiment distinguishes it from similar effects.
-    told_by: &'static str,
+    /// The experiment that distinguishes it from similar effects.
+    distinguished_by: &'static str,
     /// The parameters that measure its size, the best first.
     main: &'static [&'static str],
 }
@@ -28,7 +28,7 @@ pub struct Wording {
 /// The title of a finding's effect. Friction that only the motor's current shows is between motor and torque sensor.
 pub fn effect(finding: &Finding) -> String {
     let name = wording(finding.effect).name;
-    if !finding.corrects && finding.effect.ends_with("_friction") {
+    if finding.is_motor_side() {
         format!("motor-side {name}")
     } else {
         name.to_owned()
@@ -42,8 +42,7 @@ pub fn is_between_sensors(finding: &Finding) -> bool {
 
 /// A finding's share of the torque; a spring between two encoders has none.
 pub fn share(finding: &Finding) -> Option<f64> {
-    let is_friction = finding.effect.ends_with("_friction");
-    (is_friction || !is_between_sensors(finding)).then_some(finding.share)
+    (finding.is_motor_side() || !is_between_sensors(finding)).then_some(finding.share)
 }
 
 /// A finding's effect with its parameters, as a noun phrase; for a finding between two sensors, with its place.
@@ -75,13 +74,13 @@ pub fn wording(effect: &'static str) -> Wording {
         Some(spec) => Wording {
             name: spec.title,
             meaning: spec.meaning,
-            told_by: spec.told_by,
+            distinguished_by: spec.distinguished_by,
             main: spec.main,
         },
         None => Wording {
             name: effect,
             meaning: "",
-            told_by: "",
+            distinguished_by: "",
             main: &[],
         },
     }
@@ -90,7 +89,7 @@ pub fn wording(effect: &'static str) -> Wording {
 /// The experiments that distinguish a finding from its alternatives: that for the pair, where there is one, and else that for the
 /// effect.
 pub fn experiments(finding: &Finding) -> String {
-    let for_effect = wording(finding.effect).told_by;
+    let for_effect = wording(finding.effect).distinguished_by;
     let for_pair = |other: &Confusable| effects::experiment_against(finding.effect, other.effect).unwrap_or(for_effect);
     let of_pairs = (!finding.confusable_with_pairs.is_empty()).then_some(for_effect);
     let mut list: Vec<&str> = Vec::new();

@@ -108,7 +108,7 @@ pub fn held_out(truth: &Truth, answer: &Answer, oracle: Option<&Answer>, wrong: 
     HeldOut {
         case: truth.case.clone(),
         outside_the_catalogue: !Key::new(truth).unknown.is_empty(),
-        beside_the_terms: truth.has_a_wrong_urdf() || truth.concealed.iter().any(|injected| injected.minor),
+        beside_the_terms: truth.has_a_wrong_urdf() || truth.injected.iter().any(|injected| injected.minor),
         nominal: over(Some(answer), &|fit| fit.held_out_nrmse_nominal),
         diagnosed: over(Some(answer), &|fit| fit.held_out_nrmse_augmented),
         true_terms: over(oracle, &|fit| fit.held_out_nrmse_augmented),

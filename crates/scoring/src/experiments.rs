@@ -115,9 +115,9 @@ pub fn experiments(cases: &[Tried]) -> Experiments {
         }
         let Some(second) = second else { continue };
         let (before, now) = (found(first), found(second));
-        for concealed in case.truth.of_note() {
-            let name = (concealed.name().to_owned(), concealed.joint.clone());
-            if !before.contains(&name) && is_declared_not_testable(first, concealed) {
+        for injected in case.truth.of_note() {
+            let name = (injected.name().to_owned(), injected.joint.clone());
+            if !before.contains(&name) && is_declared_not_testable(first, injected) {
                 unseen.push(now.contains(&name));
             }
         }
@@ -308,7 +308,7 @@ mod tests {
         };
         // One more confusion, for which no motion is proposed: an offset that the second diagnosis does not name.
         let offset = truth(r#"[{"effect": "torque_offset", "joint": "a", "offset": 1.0}]"#);
-        case.truth.concealed.extend(offset.concealed);
+        case.truth.injected.extend(offset.injected);
         case.answer = Some(of(
             r#", {"effect": "torque_offset", "joint": "a", "confusable_with": [{"effect": "spring", "joint": "a"}]}"#,
         ));

@@ -91,7 +91,8 @@ pub struct FalseName {
     /// Its stated probability.
     pub probability: Option<f64>,
     /// The injected faults on its joint or on the whole arm.
-    pub concealed_there: Vec<String>,
+    #[serde(rename = "concealed_there")]
+    pub injected_there: Vec<String>,
     /// Whether an injected fault is one of its alternatives.
     pub admits_the_truth: bool,
 }
@@ -102,7 +103,8 @@ pub struct OutsideOutcome {
     /// The case.
     pub case: String,
     /// The faults outside the catalogue, with their joints.
-    pub concealed: Vec<Name>,
+    #[serde(rename = "concealed")]
+    pub injected: Vec<Name>,
     /// Its largest expressed share.
     pub share: Option<f64>,
     /// Whether such a joint is unexplained.
@@ -117,7 +119,7 @@ pub struct OutsideOutcome {
 #[derive(Clone, Debug, Default)]
 pub struct CaseOutcome {
     /// The injected faults of the catalogue that are not baseline effects.
-    pub concealed: Vec<Outcome>,
+    pub injected: Vec<Outcome>,
     /// The false names that are not baseline.
     pub false_names: Vec<FalseName>,
     /// Whether each baseline effect that is injected was found.
@@ -213,7 +215,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
         } else {
             Fate::Missed
         };
-        result.concealed.push(Outcome {
+        result.injected.push(Outcome {
             case: truth.case.clone(),
             effect: name.0.clone(),
             joint: name.1.clone(),
@@ -238,15 +240,15 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
             joint: finding.joint.clone(),
             share: finding.share,
             probability: finding.probability,
-            concealed_there: there.map(|c| c.name().to_owned()).collect(),
+            injected_there: there.map(|c| c.name().to_owned()).collect(),
             admits_the_truth: finding.confusable_with.iter().any(admits),
         });
     }
     let verdict = OutsideOutcome {
         case: truth.case.clone(),
-        concealed: key.unknown.iter().cloned().collect(),
+        injected: key.unknown.iter().cloned().collect(),
         share: truth
-            .concealed
+            .injected
             .iter()
             .filter(|c| c.is_outside_the_catalogue())
             .filter_map(|c| c.expressed_share)

@@ -20,7 +20,8 @@ pub struct Plain {
     #[serde(rename = "ordinary")]
     pub baseline: [usize; 3],
     /// Injected effects that are not baseline effects.
-    pub concealed: usize,
+    #[serde(rename = "concealed")]
+    pub injected: usize,
     /// Injected effects that are found.
     pub found: usize,
     /// Injected effects that are found, or are an alternative of a finding.
@@ -73,7 +74,7 @@ pub fn plain(cases: &[Tried]) -> Plain {
             let family = count.families.entry(name.0.clone()).or_default();
             family[0] += is_found;
             family[1] += 1;
-            count.concealed += 1;
+            count.injected += 1;
             count.found += is_found;
             count.covered += usize::from(sets.contains(name));
         }
@@ -107,11 +108,11 @@ pub fn plain(cases: &[Tried]) -> Plain {
     ratios.sort_by(f64::total_cmp);
     count.held_out = ratios.get(ratios.len() / 2).copied();
     let (tp, fp) = (count.found as f64, count.false_in_all() as f64);
-    let (precision, recall) = (tp / f64::max(1.0, tp + fp), tp / (count.concealed as f64).max(1.0));
+    let (precision, recall) = (tp / f64::max(1.0, tp + fp), tp / (count.injected as f64).max(1.0));
     count.micro_f1 = 2.0 * precision * recall / (precision + recall).max(1e-9);
-    let f1 = |(name, &[found, concealed]): (&String, &[usize; 2])| {
+    let f1 = |(name, &[found, injected]): (&String, &[usize; 2])| {
         let wrong = count.false_names.get(name).copied().unwrap_or(0);
-        2.0 * found as f64 / (concealed + found + wrong) as f64
+        2.0 * found as f64 / (injected + found + wrong) as f64
     };
     count.macro_f1 = count.families.iter().map(f1).sum::<f64>() / count.families.len().max(1) as f64;
     count

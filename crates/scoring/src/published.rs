@@ -282,7 +282,7 @@ impl PublishedEffect {
     }
 
     /// The published effect as an injected fault, to test whether it was declared not testable.
-    fn concealed(&self, effect: &str) -> Injected {
+    fn injected(&self, effect: &str) -> Injected {
         let values = self.parameters.iter();
         Injected {
             effect: effect.to_owned(),
@@ -299,7 +299,7 @@ impl PublishedEffect {
     fn is_not_testable(&self, answer: &Answer) -> bool {
         self.effects.iter().all(|effect| {
             if !self.parameters.is_empty() {
-                return is_declared_not_testable(answer, &self.concealed(effect));
+                return is_declared_not_testable(answer, &self.injected(effect));
             }
             let mut listed = answer.not_observable.iter();
             listed.any(|declared| declared.effect == *effect && declared.joint == self.joint)

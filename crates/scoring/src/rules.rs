@@ -81,7 +81,7 @@ impl Key {
             set.insert((injected.name().to_owned(), injected.joint.clone()));
         }
         let small: BTreeSet<Name> = truth
-            .concealed
+            .injected
             .iter()
             .filter(|injected| injected.minor)
             .flat_map(|injected| {

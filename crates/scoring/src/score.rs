@@ -11,7 +11,7 @@ use crate::intervals::Counted;
 use crate::numbers::ScoredNumber;
 use crate::outcome::{FalseName, Outcome, OutsideOutcome};
 use crate::plain::Plain;
-use crate::strict::{Strict, UrdfGroup};
+use crate::strict::{Strict, UrdfError, UrdfGroup};
 use crate::summary::{Curve, Errors, ParameterScore};
 
 /// The score of all cases. Everything is counted in names: an effect on a joint.
@@ -81,7 +81,8 @@ pub struct Score {
     /// The count of the open cases' own script, without any of the distinctions above.
     pub plain: Plain,
     /// Every injected effect that is not a baseline effect, with its outcome.
-    pub concealed: Vec<Outcome>,
+    #[serde(rename = "concealed")]
+    pub injected: Vec<Outcome>,
     /// Every false name that is not a baseline effect.
     pub false_names: Vec<FalseName>,
     /// Every case with an effect outside the catalogue.
@@ -100,7 +101,8 @@ pub struct Score {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Family {
     /// Injected with an expressed share from which an effect is required.
-    pub concealed: usize,
+    #[serde(rename = "concealed")]
+    pub injected: usize,
     /// Required effects that are found, by this name or an equivalent one.
     pub found: usize,
     /// Required effects that are found by an equivalent name.
@@ -126,7 +128,7 @@ pub struct Family {
 impl Family {
     /// The number of required effects that are not declared not testable.
     pub fn asked(&self) -> usize {
-        self.concealed - self.not_observable
+        self.injected - self.not_observable
     }
 }
 
@@ -165,6 +167,9 @@ pub struct Target {
     /// The figure.
     #[serde(skip)]
     pub id: Figure,
+    /// The cases that it counts, by the error of their URDFs; `None` for all cases.
+    #[serde(skip)]
+    pub group: Option<UrdfError>,
     /// The label.
     pub what: String,
     /// The value; `None` if there was nothing to count.

@@ -59,7 +59,7 @@ pub fn strict<'a>(cases: impl Iterator<Item = (&'a CaseOutcome, bool)>) -> Stric
     for (case, answered) in cases {
         baseline_false += case.baseline_false;
         let mut false_names: Vec<&str> = case.false_names.iter().map(|name| name.effect.as_str()).collect();
-        for outcome in &case.concealed {
+        for outcome in &case.injected {
             if let Some((name, _)) = &outcome.found_as
                 && !brings(&outcome.effect).contains(&name.as_str())
             {

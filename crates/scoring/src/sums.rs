@@ -20,14 +20,14 @@ use crate::truth::Injected;
 /// Scores `cases`, which are in the order of their names.
 pub fn score(cases: &[Tried]) -> Score {
     let all: Vec<_> = cases.iter().map(outcomes).collect();
-    let concealed: Vec<Outcome> = all.iter().flat_map(|case| case.concealed.clone()).collect();
+    let injected: Vec<Outcome> = all.iter().flat_map(|case| case.injected.clone()).collect();
     let false_names: Vec<FalseName> = all.iter().flat_map(|case| case.false_names.clone()).collect();
     let outside: Vec<OutsideOutcome> = all.iter().filter_map(|case| case.outside.clone()).collect();
     let refusals: Vec<OutsideOutcome> = all
         .iter()
         .filter_map(|case| case.refused_without_cause.clone())
         .collect();
-    let families = families(&concealed, &false_names);
+    let families = families(&injected, &false_names);
     let sizes: Vec<ScoredNumber> = all.iter().flat_map(|case| case.sizes.clone()).collect();
     let special: Vec<&ScoredNumber> = all
         .iter()
@@ -51,7 +51,7 @@ pub fn score(cases: &[Tried]) -> Score {
             .zip(cases)
             .filter_map(|(outcome, case)| case.answer.is_some().then_some(outcome))
     };
-    let asked: Vec<&Outcome> = concealed.iter().filter(|outcome| outcome.is_asked()).collect();
+    let asked: Vec<&Outcome> = injected.iter().filter(|outcome| outcome.is_asked()).collect();
     let mut score = Score {
         cases: cases.len(),
         unanswered: cases
@@ -90,8 +90,8 @@ pub fn score(cases: &[Tried]) -> Score {
                 .map(|case| case.refused_without_cause.is_some()),
         ),
         covered: Counted::of(asked.iter().map(|o| o.fate.is_covered())),
-        covered_strict: Counted::of(concealed.iter().filter(|o| o.counts).map(|o| o.fate.is_covered())),
-        detection: curves(&concealed),
+        covered_strict: Counted::of(injected.iter().filter(|o| o.counts).map(|o| o.fate.is_covered())),
+        detection: curves(&injected),
         parameters: parameter_scores(&sizes),
         main_parameters: errors(special.iter().filter(|s| s.main).map(|s| s.error)),
         intervals: Counted::of(special.iter().map(|s| s.covered)),
@@ -103,11 +103,11 @@ pub fn score(cases: &[Tried]) -> Score {
         over_true_terms_by_joint: errors(cases.iter().flat_map(by_joint)),
         tracking_over_exact: errors(cases.iter().filter_map(|case| case.tracking_over_exact)),
         tracking_over_exact_without_lag: errors(cases.iter().filter_map(|case| case.tracking_over_exact_without_lag)),
-        confusion: confusion(&concealed, &false_names, &outside),
+        confusion: confusion(&injected, &false_names, &outside),
         calibration: calibration(&all.iter().flat_map(|case| case.said.clone()).collect::<Vec<_>>()),
         calibration_of_all: calibration(&all.iter().flat_map(|case| case.said_of_all.clone()).collect::<Vec<_>>()),
         plain: plain(cases),
-        concealed,
+        injected,
         false_names,
         outside,
         refusals_without_cause: refusals,
@@ -133,28 +133,28 @@ fn by_urdf(cases: &[Tried], all: &[CaseOutcome]) -> Vec<UrdfGroup> {
             .filter(|(_, case)| UrdfError::of(case.truth.urdf_sigma) == urdf)
             .map(|(outcome, case)| (outcome, case.answer.is_some()))
             .collect();
-        let concealed: Vec<Outcome> = mine.iter().flat_map(|(case, _)| case.concealed.clone()).collect();
+        let injected: Vec<Outcome> = mine.iter().flat_map(|(case, _)| case.injected.clone()).collect();
         let false_names: Vec<FalseName> = mine.iter().flat_map(|(case, _)| case.false_names.clone()).collect();
         (!mine.is_empty()).then(|| UrdfGroup {
             urdf,
             cases: mine.len(),
-            macro_f1: mean(&families(&concealed, &false_names), |family| family.f1),
+            macro_f1: mean(&families(&injected, &false_names), |family| family.f1),
             strict: strict(mine.iter().copied()),
         })
     };
     UrdfError::ALL.into_iter().filter_map(group).collect()
 }
 
-fn families(concealed: &[Outcome], false_names: &[FalseName]) -> BTreeMap<String, Family> {
+fn families(injected: &[Outcome], false_names: &[FalseName]) -> BTreeMap<String, Family> {
     let mut families: BTreeMap<String, Family> = BTreeMap::new();
-    for outcome in concealed {
+    for outcome in injected {
         let family = families.entry(outcome.effect.clone()).or_default();
         if !outcome.counts {
             family.too_small += 1;
             family.too_small_found += usize::from(outcome.fate.is_found());
             continue;
         }
-        family.concealed += 1;
+        family.injected += 1;
         family.found += usize::from(outcome.fate.is_found());
         family.same_machine += usize::from(outcome.fate == Fate::SameMachine);
         family.covered += usize::from(outcome.fate.is_covered());
@@ -166,7 +166,7 @@ fn families(concealed: &[Outcome], false_names: &[FalseName]) -> BTreeMap<String
     }
     // How often a family's name was given as an equivalent name, without accompanying the injected effect.
     let mut given: BTreeMap<&str, usize> = BTreeMap::new();
-    for outcome in concealed {
+    for outcome in injected {
         let name = outcome.found_as.as_ref();
         if let Some((name, _)) = name.filter(|(name, _)| !brings(&outcome.effect).contains(&name.as_str())) {
             *given.entry(name).or_default() += 1;
@@ -178,7 +178,7 @@ fn families(concealed: &[Outcome], false_names: &[FalseName]) -> BTreeMap<String
         };
         family.f1 = f1(family.asked(), family.found, family.false_names);
         let strictly_false = family.false_names + given.get(name.as_str()).copied().unwrap_or(0);
-        family.f1_strict = f1(family.concealed, family.found - family.same_machine, strictly_false);
+        family.f1_strict = f1(family.injected, family.found - family.same_machine, strictly_false);
     }
     families
 }
@@ -190,7 +190,7 @@ fn by_joint(case: &Tried) -> Vec<f64> {
         return Vec::new();
     };
     let is_beside = |injected: &Injected| injected.is_outside_the_catalogue() || injected.minor;
-    if case.truth.has_a_wrong_urdf() || case.truth.concealed.iter().any(is_beside) {
+    if case.truth.has_a_wrong_urdf() || case.truth.injected.iter().any(is_beside) {
         return Vec::new();
     }
     let ratio = |(joint, fit): (&String, &crate::answer::JointErrors)| -> Option<f64> {
@@ -203,7 +203,7 @@ fn by_joint(case: &Tried) -> Vec<f64> {
 /// Rows: the injected and required effects, "outside the catalogue", "nothing there". Columns: names, "refused", "not
 /// testable", "not named".
 fn confusion(
-    concealed: &[Outcome],
+    injected: &[Outcome],
     false_names: &[FalseName],
     outside: &[OutsideOutcome],
 ) -> BTreeMap<String, BTreeMap<String, usize>> {
@@ -216,7 +216,7 @@ fn confusion(
             .or_default() += 1;
     };
     let mut explained: BTreeSet<(&str, &str, Option<&str>)> = BTreeSet::new();
-    for outcome in concealed.iter().filter(|outcome| outcome.counts) {
+    for outcome in injected.iter().filter(|outcome| outcome.counts) {
         let instead = outcome.instead.first();
         let column = match (outcome.fate, instead) {
             (Fate::Found | Fate::SameMachine, _) => outcome.effect.as_str(),

@@ -8,6 +8,7 @@ fn target(id: Figure, what: &str, figure: Option<f64>, [at_least, at_most]: [Opt
     let is_within = |figure: f64| at_least.is_none_or(|low| figure >= low) && at_most.is_none_or(|high| figure <= high);
     Target {
         id,
+        group: None,
         what: what.to_owned(),
         figure,
         at_least,
@@ -154,7 +155,7 @@ fn of_group(group: &UrdfGroup) -> [Target; 3] {
         UrdfError::Much => 0.80,
     };
     let (urdf, strict) = (group.urdf.words(), &group.strict);
-    [
+    let targets = [
         target(
             Figure::Strict,
             &format!("strict macro F1, URDF {urdf}"),
@@ -174,5 +175,9 @@ fn of_group(group: &UrdfGroup) -> [Target; 3] {
             strict.intervals,
             [Some(0.90), Some(0.99)],
         ),
-    ]
+    ];
+    targets.map(|target| Target {
+        group: Some(group.urdf),
+        ..target
+    })
 }

@@ -16,7 +16,8 @@ pub struct Truth {
     /// The case's name, that of its folder.
     pub case: String,
     /// All injected faults, including baseline friction.
-    pub concealed: Vec<Injected>,
+    #[serde(rename = "concealed")]
+    pub injected: Vec<Injected>,
     /// Standard deviation of the noise on each torque (N m or N), base to tip.
     pub torque_noise: Vec<f64>,
     /// The relative standard deviation of the errors of all inertials in the case's URDF; `None` if the URDF is exact apart
@@ -57,7 +58,7 @@ impl Truth {
     pub fn baseline(&self) -> &'static [&'static str] {
         let joints = self.torque_noise.len();
         let drives = self
-            .concealed
+            .injected
             .iter()
             .filter(|injected| injected.effect == DRIVE_INERTIA && !injected.minor);
         if joints > 1 && drives.count() == joints {
@@ -74,7 +75,7 @@ impl Truth {
 
     /// The injected faults without the small effects of real joints: those that are required, and baseline effects.
     pub fn of_note(&self) -> impl Iterator<Item = &Injected> {
-        self.concealed.iter().filter(|injected| !injected.minor)
+        self.injected.iter().filter(|injected| !injected.minor)
     }
 
     /// The reported over the true torque of a joint, if the joint has a torque scale as a small effect; one otherwise. True
@@ -84,7 +85,7 @@ impl Truth {
             injected.minor && injected.name() == "torque_scale" && injected.joint.as_deref() == joint
         };
         let factor = |injected: &Injected| injected.parameters.get("factor").and_then(serde_json::Value::as_f64);
-        self.concealed.iter().filter(on_it).filter_map(factor).product()
+        self.injected.iter().filter(on_it).filter_map(factor).product()
     }
 }
 

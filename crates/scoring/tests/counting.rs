@@ -3,8 +3,8 @@
 use scoring::{Answer, Fate, Score, Tried, Truth, score, true_terms, wrong_term};
 use serde_json::{Value, json};
 
-fn truth(concealed: Value) -> Truth {
-    let text = json!({"case": "case_000", "robot": "panda", "seed": 1, "concealed": concealed,
+fn truth(injected: Value) -> Truth {
+    let text = json!({"case": "case_000", "robot": "panda", "seed": 1, "concealed": injected,
         "background_friction": false, "torque_noise": [0.1, 0.2]});
     serde_json::from_value(text).expect("a truth")
 }
@@ -16,9 +16,9 @@ fn answer(findings: Value, unexplained: Value, not_observable: Value) -> Answer 
     .expect("a diagnosis")
 }
 
-fn scored(concealed: Value, answer: Answer) -> Score {
+fn scored(injected: Value, answer: Answer) -> Score {
     score(&[Tried {
-        truth: truth(concealed),
+        truth: truth(injected),
         joints: vec!["b".into(), "a".into()],
         true_terms: Some(answer.clone()),
         wrong_term: None,
@@ -53,10 +53,10 @@ fn an_effect_is_found_covered_declared_unseen_refused_or_missed() {
         (json!([finding("backlash", "b", none())]), none(), none(), Fate::Missed),
     ] {
         let score = scored(backlash(), answer(findings, unexplained, not_observable));
-        assert_eq!(score.concealed.len(), 1);
-        assert_eq!(score.concealed[0].fate, fate);
+        assert_eq!(score.injected.len(), 1);
+        assert_eq!(score.injected[0].fate, fate);
         // The joint's own noise is 0.2 N m of 4 N m, because the joints of the ground truth are in the arm's order.
-        let over = score.concealed[0].over_noise.expect("the noise is known");
+        let over = score.injected[0].over_noise.expect("the noise is known");
         assert!((over - 1.0).abs() < 1e-12, "{over}");
         let family = &score.families["backlash"];
         let asked = if fate == Fate::NotObservable {
@@ -89,7 +89,7 @@ fn an_equivalent_name_is_right() {
         )
     };
     let score = scored(truth(0.5), named(rival.clone()));
-    assert_eq!(score.concealed[0].fate, Fate::SameMachine);
+    assert_eq!(score.injected[0].fate, Fate::SameMachine);
     assert_eq!((score.macro_f1, score.macro_f1_strict), (Some(1.0), Some(0.0)));
     assert!(score.false_names.is_empty());
     let from = |effect: usize, onset: f64| {
@@ -98,7 +98,7 @@ fn an_equivalent_name_is_right() {
         later
     };
     assert_eq!(
-        scored(from(1, 30.0), named(rival.clone())).concealed[0].fate,
+        scored(from(1, 30.0), named(rival.clone())).injected[0].fate,
         Fate::SameMachine
     );
     // Not equivalent: the other is not listed, the offset alone moves the joint, or it acts before the friction.
@@ -107,7 +107,7 @@ fn an_equivalent_name_is_right() {
         scored(truth(1.5), named(rival.clone())),
         scored(from(0, 30.0), named(rival)),
     ] {
-        assert!(score.concealed[0].fate != Fate::SameMachine);
+        assert!(score.injected[0].fate != Fate::SameMachine);
         assert_eq!((score.macro_f1, score.false_names.len()), (Some(0.0), 1));
     }
 }
@@ -133,7 +133,7 @@ fn accompanying_effects_are_neither_right_nor_wrong() {
     let score = scored(stribeck, answer(list, json!([]), json!([])));
     assert_eq!(score.baseline_false, 1);
     assert_eq!(score.false_names.len(), 1);
-    assert_eq!(score.false_names[0].concealed_there, ["stribeck_friction"]);
+    assert_eq!(score.false_names[0].injected_there, ["stribeck_friction"]);
     assert_eq!(score.confusion["stribeck_friction"]["torque_offset"], 1);
     assert!(!score.confusion.contains_key("nothing there"));
     assert_eq!(score.calibration.bins[0].right.of, 1);
@@ -141,14 +141,14 @@ fn accompanying_effects_are_neither_right_nor_wrong() {
 
 #[test]
 fn parameter_errors_are_relative_to_the_truth() {
-    let concealed = json!([{"effect": "torque_scale", "joint": "a", "factor": 1.2, "expressed_share": 0.2},
+    let injected = json!([{"effect": "torque_scale", "joint": "a", "factor": 1.2, "expressed_share": 0.2},
         {"effect": "coulomb_friction", "joint": "b", "level": 2.0}]);
     let number = |value: f64, low: Option<f64>, high: f64| json!({"value": value, "ci95": [low, high]});
     let mut scale = finding("torque_scale", "a", json!([]));
     scale["parameters"] = json!({"factor": number(1.22, None, 1.3)});
     let mut level = finding("coulomb_friction", "b", json!([]));
     level["parameters"] = json!({"level": number(2.2, Some(2.1), 2.3)});
-    let score = scored(concealed, answer(json!([scale, level]), json!([]), json!([])));
+    let score = scored(injected, answer(json!([scale, level]), json!([]), json!([])));
     assert_eq!(score.sizes.len(), 2);
     let of = |effect: &str| {
         score
@@ -162,8 +162,8 @@ fn parameter_errors_are_relative_to_the_truth() {
     // An interval that is open at both ends contains no value.
     let mut open = finding("torque_scale", "a", json!([]));
     open["parameters"] = json!({"factor": {"value": 1.2, "ci95": [null, null]}});
-    let concealed = json!([{"effect": "torque_scale", "joint": "a", "factor": 1.2, "expressed_share": 0.2}]);
-    let wide = scored(concealed, answer(json!([open]), json!([]), json!([])));
+    let injected = json!([{"effect": "torque_scale", "joint": "a", "factor": 1.2, "expressed_share": 0.2}]);
+    let wide = scored(injected, answer(json!([open]), json!([]), json!([])));
     assert_eq!((wide.intervals.hits, wide.intervals.of), (0, 1));
     // Baseline effects are not in the required figures.
     assert_eq!((score.main_parameters.count, score.intervals.of), (1, 1));
@@ -201,8 +201,8 @@ fn outside_the_catalogue_is_refused_on_its_joint_or_not() {
 /// testable is not covered.
 #[test]
 fn no_answer_counts_as_missed() {
-    let tried = |concealed: Value, answer: Option<Answer>| Tried {
-        truth: truth(concealed),
+    let tried = |injected: Value, answer: Option<Answer>| Tried {
+        truth: truth(injected),
         joints: vec!["b".into(), "a".into()],
         answer,
         true_terms: None,
@@ -238,9 +238,9 @@ fn a_wrong_term_is_neither_a_true_one_nor_a_part_of_one() {
 }
 
 /// A case whose URDF is wrong everywhere by `sigma`, with its answer.
-fn tried(name: &str, concealed: Value, sigma: f64, findings: Value) -> Tried {
+fn tried(name: &str, injected: Value, sigma: f64, findings: Value) -> Tried {
     let answer = answer(findings, json!([]), json!([]));
-    let mut truth = truth(concealed);
+    let mut truth = truth(injected);
     (truth.case, truth.urdf_sigma) = (name.to_owned(), Some(sigma));
     Tried {
         truth,
@@ -260,7 +260,7 @@ fn inertials_count_as_a_wrong_link() {
     let link = || json!([{"effect": "link_inertial_error", "joint": "a", "relative": 0.3, "expressed_share": 0.1}]);
     let arm = json!({"effect": "inertial_parameters", "joint": null, "share": 0.2, "probability": 0.9});
     let on = |joint: &str| json!([finding("inertial_parameters", joint, json!([]))]);
-    for (concealed, sigma, findings, found, false_names) in [
+    for (injected, sigma, findings, found, false_names) in [
         (link(), 0.1, on("a"), 1, 0),
         (link(), 0.1, json!([arm]), 1, 0),
         (link(), 0.1, on("b"), 0, 0),
@@ -277,7 +277,7 @@ fn inertials_count_as_a_wrong_link() {
             0,
         ),
     ] {
-        let score = score(&[tried("case_000", concealed, sigma, findings.clone())]);
+        let score = score(&[tried("case_000", injected, sigma, findings.clone())]);
         let counts = |score: &Score| (score.strict.right.hits, score.strict.false_names);
         assert_eq!(counts(&score), (found, false_names), "{sigma} {findings}");
         assert_eq!((score.plain.found, score.plain.false_in_all()), (found, false_names));
@@ -330,7 +330,7 @@ fn minor_effects_are_not_scored() {
     ]);
     let scored = score(&[tried("case_000", small.clone(), 0.0, named)]);
     assert_eq!(
-        (scored.concealed.len(), scored.false_names.len(), scored.baseline_false),
+        (scored.injected.len(), scored.false_names.len(), scored.baseline_false),
         (1, 0, 0)
     );
     assert_eq!((scored.strict.macro_f1, scored.macro_f1), (Some(1.0), Some(1.0)));

@@ -18,16 +18,16 @@ fn made_up(truth: &Truth, number: usize) -> serde_json::Value {
     };
     let mut findings = Vec::new();
     let mut unexplained = Vec::new();
-    for (k, concealed) in truth.concealed.iter().enumerate() {
-        if concealed.is_outside_the_catalogue() {
+    for (k, injected) in truth.injected.iter().enumerate() {
+        if injected.is_outside_the_catalogue() {
             if number.is_multiple_of(2) {
-                unexplained.push(serde_json::json!({"joint": concealed.joint}));
+                unexplained.push(serde_json::json!({"joint": injected.joint}));
             }
         } else if (number + k).is_multiple_of(5) {
             // The effect is missed, but it is an alternative of a false name on the same joint.
-            findings.push(finding("torque_ripple", &concealed.joint, concealed.name()));
+            findings.push(finding("torque_ripple", &injected.joint, injected.name()));
         } else if !(number + k).is_multiple_of(7) {
-            findings.push(finding(concealed.name(), &concealed.joint, "spring"));
+            findings.push(finding(injected.name(), &injected.joint, "spring"));
         }
     }
     if number.is_multiple_of(6) {
@@ -47,9 +47,9 @@ fn folder(name: &str) -> PathBuf {
 fn printed(cases: &[Tried]) -> Vec<String> {
     let plain = score(cases).plain;
     let found = plain.found as f64;
-    let recall = found / (plain.concealed as f64).max(1.0);
+    let recall = found / (plain.injected as f64).max(1.0);
     let precision = found / (found + plain.false_in_all() as f64).max(1.0);
-    let [low, high] = scoring::wilson(plain.found, plain.concealed);
+    let [low, high] = scoring::wilson(plain.found, plain.injected);
     let mut lines: Vec<String> = plain
         .families
         .iter()
@@ -62,12 +62,12 @@ fn printed(cases: &[Tried]) -> Vec<String> {
     lines.push(format!(
         "found {} of {} (recall {recall:.3}, 95% [{low:.2}, {high:.2}]), false {} (precision {precision:.3}), covered by a finding or its confusable set {}",
         plain.found,
-        plain.concealed,
+        plain.injected,
         plain.false_in_all(),
         plain.covered
     ));
     lines.push(format!(
-        "nothing but the ordinary concealed: {} of {} left clean; outside the catalogue: {} of {} refused on the right joint; refused for no reason: {}; no answer: {}",
+        "only baseline effects: {} of {} without a false name; outside the catalogue: {} of {} refused on the right joint; refused for no reason: {}; no answer: {}",
         plain.clean, plain.empty, plain.refused, plain.outside, plain.refused_without_cause, plain.missing
     ));
     if let Some(ratio) = plain.held_out {

@@ -2,11 +2,12 @@
 
 mod applied;
 mod column_map;
+mod correction;
 mod fit;
 mod positions;
+mod proposal;
 mod smooth;
-mod supposed;
-mod supposition;
+mod thresholds;
 mod torque_unit;
 mod wording;
 
@@ -17,31 +18,50 @@ use report::numbers::{percent, rounded};
 use serde::Serialize;
 
 pub use self::column_map::{Change, Layout};
+use self::correction::Correction;
 use self::fit::{Fit, fit};
 use self::positions::Pair;
+pub use self::proposal::{Proposal, proposal};
 use self::smooth::Smooth;
-pub use self::supposed::{Supposed, supposed};
-use self::supposition::Supposition;
-use self::torque_unit::MOTOR_SIDE;
+use self::thresholds::{
+    EFFORT_SLACK, LEAST_INSTANTS, LIMIT_SLACK, MOST_SPEED, MOTOR_SIDE, NOT_EXPLAINED, OF_SIZE, OTHER_UNIT, WORSE,
+};
 
-/// A torque that exceeds the model's by more than this factor is in another unit.
-const OTHER_UNIT: f64 = 100.0;
-/// The largest speed of a robot, as a multiple of the URDF's limit; many URDFs have limits of the normal operation.
-const BEYOND: f64 = 5.0;
-
-/// The least number of instants from which the model's torques are judged.
-const LEAST_INSTANTS: usize = 100;
-/// A column map may not increase the sum of the joints' log residuals by more than this. Factors of torques do not change it.
-const WORSE: f64 = 0.5;
-
-/// A joint's torque is not explained if its residual has at least this share of its variance.
-const NOT_EXPLAINED: f64 = 0.5;
-/// The ratios of a torque to the model's that a wrong URDF may have.
-const OF_SIZE: std::ops::Range<f64> = 0.1..10.0;
+/// What a contradiction between recording and URDF is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MisfitKind {
+    /// A joint of the recording that the URDF does not have.
+    NotInUrdf,
+    /// A joint of the URDF that the recording does not have.
+    NotRecorded,
+    /// No joint of the recording is one of the URDF.
+    OtherRobot,
+    /// The unit of time.
+    Time,
+    /// The unit of the positions.
+    PositionUnit,
+    /// A position that does not change although the torque does.
+    ConstantPosition,
+    /// Positions whole turns beyond the URDF's limits.
+    Turns,
+    /// Positions beyond the URDF's limits.
+    PositionLimits,
+    /// Speeds beyond the URDF's limits.
+    Speed,
+    /// Torques beyond the URDF's limits.
+    EffortLimits,
+    /// The unit of the torques, or the side of the gear.
+    TorqueUnit,
+    /// Signs, order or zeros.
+    Columns,
+}
 
 /// A contradiction between recording and URDF.
 #[derive(Debug, Serialize)]
 pub struct Misfit {
+    /// What it is about.
+    #[serde(skip)]
+    pub kind: MisfitKind,
     /// The joint, if it concerns one.
     pub joint: Option<String>,
     /// A description, with the remedy.
@@ -56,8 +76,9 @@ pub struct Misfit {
 
 impl Misfit {
     /// A contradiction that does not prevent a diagnosis, with the keys of a column map that correct it.
-    pub fn new(joint: Option<&str>, text: impl Into<String>, changes: Vec<Change>) -> Self {
+    pub fn new(kind: MisfitKind, joint: Option<&str>, text: impl Into<String>, changes: Vec<Change>) -> Self {
         Self {
+            kind,
             joint: joint.map(str::to_owned),
             text: text.into(),
             prevents_diagnosis: false,
@@ -96,7 +117,7 @@ pub fn column_map(arm: &Arm, misfits: &[Misfit], recording: &Recording) -> Optio
 /// The fit of the recording as it is; `None` if it cannot be computed.
 fn as_it_is(arm: &Arm, regular: &RegularRecording) -> Option<Fit> {
     let smooth = Smooth::of(regular, &order(arm, regular)?);
-    (smooth.len() > LEAST_INSTANTS).then(|| fit(arm, &smooth, Supposition::AsItIs))
+    (smooth.len() > LEAST_INSTANTS).then(|| fit(arm, &smooth, Correction::AsItIs))
 }
 
 /// The place of each of the arm's joints in the recording, if all are there.
@@ -151,34 +172,47 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Checke
             in_degrees += 1;
             continue;
         }
-        let mut add = |text: String| checked.misfits.push(Misfit::new(Some(&joint.name), text, Vec::new()));
-        if measured.speed_max > BEYOND * limits.velocity && limits.velocity > 0.0 {
-            add(format!(
-                "the speed reaches {}, {} times the URDF's velocity limit {} {}; check the units of position and time",
-                rounded(measured.speed_max, 3),
-                rounded(measured.speed_max / limits.velocity, 2),
-                rounded(limits.velocity, 4),
-                Quantity::Speed.unit(joint.kind)
-            ));
+        let mut add = |kind: MisfitKind, text: String| {
+            checked
+                .misfits
+                .push(Misfit::new(kind, Some(&joint.name), text, Vec::new()));
+        };
+        if measured.speed_max > MOST_SPEED * limits.velocity && limits.velocity > 0.0 {
+            add(
+                MisfitKind::Speed,
+                format!(
+                    "the speed reaches {}, {} times the URDF's velocity limit {} {}; check the units of position and time",
+                    rounded(measured.speed_max, 3),
+                    rounded(measured.speed_max / limits.velocity, 2),
+                    rounded(limits.velocity, 4),
+                    Quantity::Speed.unit(joint.kind)
+                ),
+            );
         }
-        if low < limits.lower - 1e-2 || high > limits.upper + 1e-2 {
-            add(format!(
-                "positions {} … {} exceed the URDF's limits {:.3} … {:.3} {}; check unit, zero and sign, or the limits",
-                rounded(low, 4),
-                rounded(high, 4),
-                limits.lower,
-                limits.upper,
-                Quantity::Position.unit(joint.kind)
-            ));
+        if low < limits.lower - LIMIT_SLACK || high > limits.upper + LIMIT_SLACK {
+            add(
+                MisfitKind::PositionLimits,
+                format!(
+                    "positions {} … {} exceed the URDF's limits {:.3} … {:.3} {}; check unit, zero and sign, or the limits",
+                    rounded(low, 4),
+                    rounded(high, 4),
+                    limits.lower,
+                    limits.upper,
+                    Quantity::Position.unit(joint.kind)
+                ),
+            );
         }
         let torque = measured.tau_range.0.abs().max(measured.tau_range.1.abs());
-        if limits.effort > 0.0 && torque > 1.05 * limits.effort {
-            add(format!(
-                "the torque reaches {}, above the URDF's effort limit {} {}; check its unit and side of the gear",
-                rounded(torque, 3),
-                rounded(limits.effort, 4),
-                Quantity::Torque.unit(joint.kind)
-            ));
+        if limits.effort > 0.0 && torque > EFFORT_SLACK * limits.effort {
+            add(
+                MisfitKind::EffortLimits,
+                format!(
+                    "the torque reaches {}, above the URDF's effort limit {} {}; check its unit and side of the gear",
+                    rounded(torque, 3),
+                    rounded(limits.effort, 4),
+                    Quantity::Torque.unit(joint.kind)
+                ),
+            );
         }
     }
     if let (Some(order), Some(smooth)) = (order, smooth) {
@@ -197,13 +231,13 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Checke
 
 fn names(arm: &Arm, regular: &RegularRecording) -> Vec<Misfit> {
     let of_arm: Vec<String> = arm.joints().iter().map(|joint| joint.name.clone()).collect();
-    let missing = |from: &[String], within: &[String], what: &str| -> Vec<Misfit> {
+    let missing = |kind: MisfitKind, from: &[String], within: &[String], what: &str| -> Vec<Misfit> {
         let lost = from.iter().filter(|name| !within.contains(name));
         lost.map(|name| {
             let free: Vec<String> = within.iter().filter(|other| !from.contains(other)).cloned().collect();
             let hint = nearest(name, &free).map_or(".".to_owned(), |other| format!("; is \"{other}\" meant?"));
             let text = format!("{what}{hint} Name the columns as the URDF does, or give a column map (--map)");
-            Misfit::new(Some(name), text, Vec::new())
+            Misfit::new(kind, Some(name), text, Vec::new())
         })
         .collect()
     };
@@ -222,14 +256,16 @@ fn names(arm: &Arm, regular: &RegularRecording) -> Vec<Misfit> {
             arm.name(),
             of_arm.join(", ")
         );
-        return vec![Misfit::new(None, text, Vec::new())];
+        return vec![Misfit::new(MisfitKind::OtherRobot, None, text, Vec::new())];
     }
     let mut misfits = missing(
+        MisfitKind::NotInUrdf,
         &recorded,
         &of_arm,
         "is in the recording, but the URDF has no such joint",
     );
     misfits.extend(missing(
+        MisfitKind::NotRecorded,
         &of_arm,
         &regular.joints,
         "is in the URDF, but the recording has no such joint",
@@ -240,12 +276,12 @@ fn names(arm: &Arm, regular: &RegularRecording) -> Vec<Misfit> {
 /// Contradictions in units that the torques show.
 fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
     let names: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
-    let as_it_is = fit(arm, smooth, Supposition::AsItIs);
+    let as_it_is = fit(arm, smooth, Correction::AsItIs);
     if let Some((text, changes)) = torque_unit::of(&names, moves, &as_it_is) {
         let prevents_diagnosis = true;
         return vec![Misfit {
             prevents_diagnosis,
-            ..Misfit::new(None, text, changes)
+            ..Misfit::new(MisfitKind::TorqueUnit, None, text, changes)
         }];
     }
     let mut misfits = Vec::new();
@@ -259,7 +295,7 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
                 rounded(as_it_is.size[joint], 2),
                 percent(1.0 - as_it_is.residual_share[joint])
             );
-            misfits.push(Misfit::new(Some(name), text, Vec::new()));
+            misfits.push(Misfit::new(MisfitKind::ConstantPosition, Some(name), text, Vec::new()));
         }
     }
     for (joint, &factor) in as_it_is.factor.iter().enumerate() {
@@ -276,7 +312,12 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
                 1.0 / size
             );
             let scale = Change::scale(names[joint], 1.0 / size);
-            misfits.push(Misfit::new(Some(names[joint]), text, vec![scale]));
+            misfits.push(Misfit::new(
+                MisfitKind::TorqueUnit,
+                Some(names[joint]),
+                text,
+                vec![scale],
+            ));
         }
     }
     misfits

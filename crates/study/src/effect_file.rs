@@ -5,8 +5,8 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow, ensure};
 use arm::{Arm, JointKind};
-use effects::{Effect, EffectError};
-use recording::{nearest, toml_reason};
+use effects::{Effect, EffectError, NAMES, ReadError};
+use recording::{nearest, toml_reason, unknown_key};
 use serde::Deserialize;
 use toml::Spanned;
 use torque::{Corrected, TorqueError};
@@ -31,7 +31,7 @@ pub struct EffectFile {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawFile {
-    schema: Spanned<String>,
+    schema: Option<Spanned<String>>,
     robot: Option<Spanned<String>>,
     #[serde(default)]
     effects: Vec<Spanned<toml::Table>>,
@@ -131,13 +131,17 @@ pub fn tables(source: &Source, arm: &Arm) -> anyhow::Result<(Option<String>, Vec
         return Err(fail(source, 0..0, "is JSON; give the .toml file that --model wrote"));
     }
     let raw: RawFile = toml::from_str(&source.text)
-        .map_err(|error| fail(source, error.span().unwrap_or(0..0), &reason(error.message(), arm)))?;
-    let schema = raw.schema.get_ref();
+        .map_err(|error| fail(source, error.span().unwrap_or(0..0), &toml_reason(error.message())))?;
+    let Some(schema) = &raw.schema else {
+        let reason = format!("the line schema = \"{SCHEMA}\" is missing; add it at the top");
+        return Err(fail(source, 0..0, &reason));
+    };
+    let (schema, at) = (schema.get_ref(), schema.span());
     ensure!(
         schema == SCHEMA,
         fail(
             source,
-            raw.schema.span(),
+            at,
             &format!("the schema is \"{schema}\"; this program reads \"{SCHEMA}\"")
         )
     );
@@ -178,15 +182,18 @@ pub fn effect(source: &Source, span: Range<usize>, table: toml::Table, arm: &Arm
         let reason = format!("{key} is {value:e}, which no arm has; check its unit");
         return Err(fail(source, key_span(&source.text, &span, Some(key)), &reason));
     }
-    let effect = Effect::deserialize(toml::Value::Table(table)).map_err(|error| {
-        let message = error.message();
-        // The key that serde quotes first is the wrong one.
-        let key = if message.starts_with("unknown variant") {
-            Some("effect")
-        } else {
-            message.split('`').nth(1)
-        };
-        fail(source, key_span(&source.text, &span, key), &reason(message, arm))
+    let read = Effect::read(toml::Value::Table(table));
+    // A value of a type that no effect has, such as a date.
+    let read = read.map_err(|error| {
+        fail(
+            source,
+            key_span(&source.text, &span, None),
+            &toml_reason(error.message()),
+        )
+    })?;
+    let effect = read.map_err(|error| {
+        let (key, reason) = reason(&error, arm);
+        fail(source, key_span(&source.text, &span, key), &reason)
     })?;
     if let Err(error) = Corrected::new(arm, std::slice::from_ref(&effect)) {
         let (key, reason) = refusal(&error);
@@ -202,30 +209,29 @@ fn is_twin(a: &Effect, b: &Effect) -> bool {
     same && a.kind().get().is_twin(a, b)
 }
 
-/// The message of TOML or serde, in words for the user.
-fn reason(message: &str, arm: &Arm) -> String {
-    if let Some((unknown, known)) = unknown_effect(message) {
-        let hint = nearest(&unknown, &known).map_or(String::new(), |near| format!("did you mean \"{near}\"? "));
-        return format!("there is no effect \"{unknown}\"; {hint}there are {}", known.join(", "));
+/// The key whose line is wrong in a table, and the reason with the remedy.
+fn reason<'a>(error: &'a ReadError, arm: &Arm) -> (Option<&'a str>, String) {
+    match error {
+        ReadError::UnknownEffect { name } => {
+            let known: Vec<String> = NAMES.iter().map(|&name| name.to_owned()).collect();
+            let hint = nearest(name, &known).map_or(String::new(), |near| format!("did you mean \"{near}\"? "));
+            let reason = format!("there is no effect \"{name}\"; {hint}there are {}", known.join(", "));
+            (Some("effect"), reason)
+        }
+        ReadError::Missing { key: "joint" } => {
+            let joints = joints(arm).join(", ");
+            (
+                None,
+                format!("the line joint = \"…\" is missing; the robot has {joints}"),
+            )
+        }
+        ReadError::Missing { key } => (None, format!("the line {key} = … is missing; add it")),
+        ReadError::UnknownKey { key, known } => {
+            let known: Vec<String> = known.iter().map(|&key| key.to_owned()).collect();
+            (Some(key), unknown_key(key, &known))
+        }
+        ReadError::Twice { key } | ReadError::Type { key, .. } => (Some(key), error.to_string()),
     }
-    match message.strip_prefix("missing field `") {
-        Some("joint`") => format!(
-            "the line joint = \"…\" is missing; the robot has {}",
-            joints(arm).join(", ")
-        ),
-        Some("schema`") => format!("the line schema = \"{SCHEMA}\" is missing; add it at the top"),
-        Some(field) => format!("the line {} = … is missing; add it", field.trim_end_matches('`')),
-        None => toml_reason(message),
-    }
-}
-
-fn unknown_effect(message: &str) -> Option<(String, Vec<String>)> {
-    let rest = message.strip_prefix("unknown variant `")?;
-    let (unknown, rest) = rest.split_once('`')?;
-    Some((
-        unknown.to_owned(),
-        rest.split('`').skip(1).step_by(2).map(str::to_owned).collect(),
-    ))
 }
 
 fn joints(arm: &Arm) -> Vec<String> {

@@ -16,9 +16,9 @@ use recording::{Column, ColumnMap, FindingKind, Quality, Recording, RecordingErr
 use self::independent::Stretches;
 pub use self::joints::in_order_of;
 use self::joints::{order, reordered};
-use crate::check::{self, Layout};
+use crate::check::{self, Layout, MisfitKind};
 use crate::named;
-use crate::notes::{Notes, shortened};
+use crate::notes::{Kind, Notes, shortened};
 use crate::turns;
 
 /// A recording to be read for a diagnosis.
@@ -201,8 +201,8 @@ pub fn read(
         memory::bound(&mut list);
     }
     progress("checking signs, zeros and order");
-    suppose(&mut list, arm, known, notes);
-    tell_maps(&list, notes);
+    propose(&mut list, arm, known, notes);
+    note_maps(&list, notes);
     epoch::share(&mut list);
     let training = || list.iter().filter(|recording| recording.role == Role::Train);
     // Stamps in microseconds leave next to no rows of what is worth holding.
@@ -219,37 +219,42 @@ pub fn read(
     Ok(list)
 }
 
-/// Adds what the torques of all recordings tell about their signs, zeros and order.
-fn suppose(list: &mut [Prepared], arm: &Arm, known: &[Effect], notes: &mut Notes) {
+/// Adds the correction of signs, zeros and order that the torques of all recordings show.
+fn propose(list: &mut [Prepared], arm: &Arm, known: &[Effect], notes: &mut Notes) {
     let judged: Vec<usize> = (0..list.len()).filter(|&at| list[at].has_model_units).collect();
     let recordings: Vec<&RegularRecording> = judged.iter().map(|&at| &list[at].regular).collect();
-    let Some(supposed) = check::supposed(arm, known, &recordings) else {
+    let Some(proposed) = check::proposal(arm, known, &recordings) else {
         return;
     };
-    for at in supposed.recordings.iter().map(|&at| judged[at]) {
+    for at in proposed.recordings.iter().map(|&at| judged[at]) {
         let one = &mut list[at];
         let doubt = Doubt {
             recording: one.name.clone(),
-            joint: supposed.joint.clone(),
-            text: supposed.text.clone(),
-            column_map: one.layout.map(&supposed.changes),
+            joint: proposed.joint.clone(),
+            text: proposed.text.clone(),
+            column_map: one.layout.map(&proposed.changes),
         };
-        if supposed.is_certain {
+        if proposed.is_certain {
             one.doubts.push(doubt);
         } else {
-            notes.add("warning", &one.name, about(doubt.joint.as_deref(), &doubt.text));
+            notes.add(
+                "warning",
+                Kind::Misfit(MisfitKind::Columns),
+                &one.name,
+                about(doubt.joint.as_deref(), &doubt.text),
+            );
             one.warnings.push(doubt);
         }
     }
 }
 
-/// Says where the column maps are that correct what does not prevent the diagnosis.
-fn tell_maps(list: &[Prepared], notes: &mut Notes) {
+/// Notes where the column maps are that correct what does not prevent the diagnosis.
+fn note_maps(list: &[Prepared], notes: &mut Notes) {
     for one in list.iter().filter(|one| one.doubts.is_empty()) {
         if one.warnings.iter().any(|warning| warning.column_map.is_some()) {
             let text = "a column map that corrects it is in the report (--json, --markdown or --report); save it as map.toml, and add \
                         --map map.toml";
-            notes.add("note", &one.name, text.to_owned());
+            notes.add("note", Kind::ColumnMap, &one.name, text.to_owned());
         }
     }
 }
@@ -291,19 +296,25 @@ fn prepare(
     notes: &mut Notes,
 ) -> anyhow::Result<Prepared> {
     for (joint, text) in turns::into_limits(&mut recording, arm) {
-        notes.add("note", &name, about(Some(&joint), &text));
+        notes.add(
+            "note",
+            Kind::Misfit(MisfitKind::Turns),
+            &name,
+            about(Some(&joint), &text),
+        );
     }
     let (regular, warnings) = recording.regular().with_context(|| name.clone())?;
     let quality = Quality::of(&recording, &regular);
     let checked = check::check(arm, &regular, &quality);
     let column_map = check::column_map(arm, &checked.misfits, &recording);
-    let (told, gaps) = shortened(recording.warnings.iter().chain(&warnings), |warning| warning);
-    for warning in told {
-        notes.add("note", &name, warning.to_string());
+    let (shown, gaps) = shortened(recording.warnings.iter().chain(&warnings), |warning| warning);
+    for warning in shown {
+        notes.add("note", warning.into(), &name, warning.to_string());
     }
     if gaps > 0 {
         notes.add(
             "note",
+            Kind::FurtherGaps,
             &name,
             format!("further gaps: {gaps} (testbed inspect --json lists them)"),
         );
@@ -315,7 +326,12 @@ fn prepare(
             FindingKind::Saturation | FindingKind::JointAtRest | FindingKind::CoarseEncoder => "note",
             _ => "warning",
         };
-        notes.add(weight, &name, about(finding.joint.as_deref(), &finding.text));
+        notes.add(
+            weight,
+            Kind::Finding(finding.kind),
+            &name,
+            about(finding.joint.as_deref(), &finding.text),
+        );
     }
     let has_model_units = checked.has_model_units;
     let (mut doubts, mut warnings) = (Vec::new(), Vec::new());
@@ -323,7 +339,12 @@ fn prepare(
         let list = if misfit.prevents_diagnosis {
             &mut doubts
         } else {
-            notes.add("warning", &name, about(misfit.joint.as_deref(), &misfit.text));
+            notes.add(
+                "warning",
+                Kind::Misfit(misfit.kind),
+                &name,
+                about(misfit.joint.as_deref(), &misfit.text),
+            );
             &mut warnings
         };
         list.push(Doubt {

@@ -13,7 +13,7 @@
 //! impl Listener for Quiet {
 //!     fn doing(&self, _: Step<'_>) {}
 //!     fn note(&self, _: &str) {}
-//!     fn recordings(&self, _: &Notes, _: &[&str]) {}
+//!     fn recordings(&self, _: &Notes) {}
 //! }
 //!
 //! let file = |name: &str| Given::File(format!("../../examples/double_pendulum/{name}.csv.gz").into());

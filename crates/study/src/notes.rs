@@ -1,17 +1,43 @@
-//! The notes on the inputs of a diagnosis, grouped by their text, because many recordings often have the same flaw.
+//! The notes on the inputs of a diagnosis, grouped by their kind, because many recordings often have the same flaw.
 
 use std::collections::BTreeSet;
+use std::mem::{Discriminant, discriminant};
 
-use recording::Warning;
+use recording::{FindingKind, Warning};
+
+use crate::check::MisfitKind;
 
 /// The largest number of gaps that are listed one by one.
 const MOST_GAPS: usize = 3;
 
-/// One note: its severity, its subject and its text.
+/// What a note is about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// A property of a recording that was corrected or ignored when it was read.
+    Warning(Discriminant<Warning>),
+    /// Gaps that are not listed one by one.
+    FurtherGaps,
+    /// A doubtful property of a recording.
+    Finding(FindingKind),
+    /// A contradiction between a recording and the URDF.
+    Misfit(MisfitKind),
+    /// The place of a column map.
+    ColumnMap,
+}
+
+impl From<&Warning> for Kind {
+    fn from(warning: &Warning) -> Self {
+        Self::Warning(discriminant(warning))
+    }
+}
+
+/// One note: its severity, its kind, its subject and its text.
 #[derive(Clone, Debug)]
 pub struct Note {
     /// `note` or `warning`.
     pub weight: &'static str,
+    /// What it is about.
+    pub kind: Kind,
     /// The recording.
     pub file: String,
     /// The text.
@@ -26,9 +52,10 @@ pub struct Notes {
 
 impl Notes {
     /// Adds the notes on `file`; `weight` is `note` or `warning`.
-    pub fn add(&mut self, weight: &'static str, file: &str, text: String) {
+    pub fn add(&mut self, weight: &'static str, kind: Kind, file: &str, text: String) {
         self.list.push(Note {
             weight,
+            kind,
             file: file.to_owned(),
             text,
         });
@@ -39,35 +66,35 @@ impl Notes {
         self.list.iter()
     }
 
-    /// One line for each note, or (`is_short`) for all notes that only differ in file, numbers and `joints`: the first of them,
-    /// with the number of the others.
-    pub fn lines(&self, joints: &[&str], is_short: bool) -> Vec<String> {
-        let mut groups: Vec<(String, Vec<&Note>)> = Vec::new();
+    /// One line for each note, or (`is_short`) for all notes of one severity and kind: the first of them, with the number of the
+    /// others.
+    pub fn lines(&self, is_short: bool) -> Vec<String> {
+        let mut groups: Vec<Vec<&Note>> = Vec::new();
         for note in &self.list {
-            let key = format!("{}: {}", note.weight, template(&note.text, joints));
-            match groups.iter_mut().find(|group| is_short && group.0 == key) {
-                Some(group) => group.1.push(note),
-                None => groups.push((key, vec![note])),
+            let is_like = |group: &&mut Vec<&Note>| (group[0].weight, group[0].kind) == (note.weight, note.kind);
+            match groups.iter_mut().filter(|_| is_short).find(is_like) {
+                Some(group) => group.push(note),
+                None => groups.push(vec![note]),
             }
         }
-        groups.iter().map(|(_, group)| line(group)).collect()
+        groups.iter().map(|group| line(group)).collect()
     }
 }
 
 /// The warnings of a list that are shown, and the number of gaps that are not.
 pub fn shortened<T>(list: impl Iterator<Item = T>, warning: impl Fn(&T) -> &Warning) -> (Vec<T>, usize) {
     let mut gaps = 0;
-    let told = list.filter(|item| {
+    let shown = list.filter(|item| {
         let is_gap = matches!(warning(item), Warning::Gap { .. });
         gaps += usize::from(is_gap);
         !is_gap || gaps <= MOST_GAPS
     });
-    let told = told.collect();
-    (told, gaps.saturating_sub(MOST_GAPS))
+    let shown = shown.collect();
+    (shown, gaps.saturating_sub(MOST_GAPS))
 }
 
 fn line(group: &[&Note]) -> String {
-    let Note { weight, file, text } = group[0];
+    let Note { weight, file, text, .. } = group[0];
     if group.len() == 1 {
         return format!("{weight}: {file}: {text}");
     }
@@ -84,44 +111,27 @@ fn line(group: &[&Note]) -> String {
     format!("{weight}: {file}: {text} (and {more} more like it {place}; --verbose lists them)")
 }
 
-/// `text` with `…` in the place of numbers, and of names of `joints`; lists of joints become one.
-fn template(text: &str, joints: &[&str]) -> String {
-    let mut words: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
-        let core = word.trim_matches(|letter: char| ",;:()%".contains(letter));
-        let name = ["q_", "qd_", "tau_"].iter().find_map(|start| core.strip_prefix(start));
-        let is_joint = joints.iter().any(|joint| *joint == core || Some(*joint) == name);
-        if !core.is_empty() && (is_joint || core.parse::<f64>().is_ok()) {
-            if is_joint && words.last().is_some_and(|last| last == "…,") {
-                words.pop();
-            }
-            words.push(word.replacen(core, "…", 1));
-        } else {
-            words.push(word.to_owned());
-        }
-    }
-    words.join(" ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn notes_that_differ_in_file_joints_and_numbers_are_one_line() {
+    fn notes_of_one_kind_are_one_line() {
+        let at_rest = Kind::Finding(FindingKind::JointAtRest);
+        let limits = Kind::Misfit(MisfitKind::PositionLimits);
         let mut notes = Notes::default();
-        notes.add("note", "a.csv", "a, b do not move".to_owned());
-        notes.add("note", "a.csv", "no rows from 2.30 s to 2.34 s".to_owned());
-        notes.add("note", "b.csv", "b do not move".to_owned());
-        notes.add("warning", "b.csv", "b do not move".to_owned());
-        notes.add("note", "a.csv", "no rows from 4.1 s to 4.2 s".to_owned());
+        notes.add("note", at_rest, "a.csv", "a, b do not move".to_owned());
+        notes.add("note", limits, "a.csv", "positions exceed the limits by 2.3".to_owned());
+        notes.add("note", at_rest, "b.csv", "b do not move".to_owned());
+        notes.add("warning", at_rest, "b.csv", "b do not move".to_owned());
+        notes.add("note", limits, "a.csv", "positions exceed the limits by 4.1".to_owned());
         let expected = [
             "note: a.csv: a, b do not move (and 1 more like it in 2 files; --verbose lists them)",
-            "note: a.csv: no rows from 2.30 s to 2.34 s (and 1 more like it in this file; --verbose lists them)",
+            "note: a.csv: positions exceed the limits by 2.3 (and 1 more like it in this file; --verbose lists them)",
             "warning: b.csv: b do not move",
         ];
-        assert_eq!(notes.lines(&["a", "b"], true), expected);
-        let all = notes.lines(&["a", "b"], false);
+        assert_eq!(notes.lines(true), expected);
+        let all = notes.lines(false);
         assert_eq!((all.len(), all[2].as_str()), (5, "note: b.csv: b do not move"));
     }
 }

@@ -59,8 +59,8 @@ pub trait Listener {
     /// A note on the robot or the result.
     fn note(&self, text: &str);
 
-    /// The notes on the recordings of an arm with these joints; also called before an error.
-    fn recordings(&self, notes: &Notes, joints: &[&str]);
+    /// The notes on the recordings; also called before an error.
+    fn recordings(&self, notes: &Notes);
 }
 
 /// A complete diagnosis.
@@ -99,8 +99,7 @@ impl Request {
             &|doing| listener.doing(Step::new(0.0, doing)),
             &mut notes,
         );
-        let joints: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
-        listener.recordings(&notes, &joints);
+        listener.recordings(&notes);
         let recordings = recordings?;
         let warnings = recordings.iter().flat_map(|recording| recording.warnings.clone());
         let mut warnings = with_one_map(warnings.collect());

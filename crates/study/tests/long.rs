@@ -49,7 +49,7 @@ impl Listener for Heard {
         self.0.borrow_mut().push(text.to_owned());
     }
 
-    fn recordings(&self, _: &Notes, _: &[&str]) {}
+    fn recordings(&self, _: &Notes) {}
 }
 
 /// The diagnosis of training and held-out recordings, and the notes.
@@ -87,9 +87,9 @@ fn a_short_recording_beside_a_long_one_is_used_whole() {
     let name = |name: &str| path(name).display().to_string();
     let note = format!("; {} is used whole", name("short.csv"));
     assert!(
-        notes
-            .iter()
-            .any(|told| told.starts_with("of the 2430 s of training recordings, about 270 s") && told.ends_with(&note)),
+        notes.iter().any(
+            |found| found.starts_with("of the 2430 s of training recordings, about 270 s") && found.ends_with(&note)
+        ),
         "{notes:?}"
     );
     let traces = &diagnosed.diagnosis.traces.recordings;

@@ -7,6 +7,7 @@ use anyhow::{Context, bail};
 use arm::Arm;
 use recording::{ColumnMap, Quality, Recording, Warning};
 use serde::Serialize;
+use study::check::MisfitKind;
 use study::notes::shortened;
 use study::robot::{self, RobotFile};
 use study::{check, inputs, named, turns};
@@ -33,12 +34,12 @@ struct FileReport<'a> {
     against_robot: Vec<check::Misfit>,
     /// The column map (TOML) that corrects them.
     column_map: Option<String>,
-    warnings: Vec<Told>,
+    warnings: Vec<Shown>,
 }
 
 /// A warning with its sentence.
 #[derive(Serialize)]
-struct Told {
+struct Shown {
     text: String,
     #[serde(flatten)]
     warning: Warning,
@@ -116,18 +117,19 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
         column_map = check::column_map(arm, &checked.misfits, &recording);
         let moved = moved
             .into_iter()
-            .map(|(joint, text)| check::Misfit::new(Some(&joint), text, Vec::new()));
+            .map(|(joint, text)| check::Misfit::new(MisfitKind::Turns, Some(&joint), text, Vec::new()));
         against_robot = moved.chain(checked.misfits).collect();
         let in_order = inputs::in_order_of(arm, regular);
         if checked.has_model_units
             && let Some(in_order) = in_order
-            && let Some(supposed) = check::supposed(arm, &[], &[&in_order])
+            && let Some(proposed) = check::proposal(arm, &[], &[&in_order])
         {
-            column_map = check::Layout::of(&recording).map(&supposed.changes).or(column_map);
+            column_map = check::Layout::of(&recording).map(&proposed.changes).or(column_map);
             against_robot.push(check::Misfit::new(
-                supposed.joint.as_deref(),
-                supposed.text,
-                supposed.changes,
+                MisfitKind::Columns,
+                proposed.joint.as_deref(),
+                proposed.text,
+                proposed.changes,
             ));
         }
     }
@@ -138,7 +140,7 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
         against_robot,
         column_map,
         warnings: warnings
-            .map(|warning| Told {
+            .map(|warning| Shown {
                 text: warning.to_string(),
                 warning,
             })
@@ -197,9 +199,9 @@ fn shown(report: &FileReport<'_>) -> String {
         ]);
     }
     let _ = writeln!(text, "{}", report::terminal::fitted(table));
-    let (told, gaps) = shortened(report.warnings.iter(), |told| &told.warning);
-    for told in told {
-        let _ = writeln!(text, "- {}", told.text);
+    let (shown, gaps) = shortened(report.warnings.iter(), |shown| &shown.warning);
+    for shown in shown {
+        let _ = writeln!(text, "- {}", shown.text);
     }
     if gaps > 0 {
         let _ = writeln!(text, "- further gaps: {gaps} (--json lists them)");

@@ -115,35 +115,28 @@ impl Corrected {
         qdd: &[f64],
         prediction: &mut Prediction,
     ) {
-        self.evaluate(Some(time), workspace, q, qd, qdd, prediction);
+        self.evaluate(Some(time), workspace, State { q, qd, qdd }, prediction);
     }
 
-    fn evaluate(
-        &self,
-        time: Option<f64>,
-        workspace: &mut Workspace,
-        q: &[f64],
-        qd: &[f64],
-        qdd: &[f64],
-        prediction: &mut Prediction,
-    ) {
+    fn evaluate(&self, time: Option<f64>, workspace: &mut Workspace, state: State<'_>, prediction: &mut Prediction) {
         let Prediction {
             rigid,
             effects,
             learned,
         } = prediction;
-        self.rigid_torque(time, workspace, [q, qd, qdd], rigid);
+        self.rigid_torque(time, workspace, state, rigid);
         effects.fill(0.0);
         learned.fill(0.0);
         for (joint, dry) in &self.machine.dry {
             let at = Circumstance {
                 time,
-                load: self.gear_load(*joint, rigid, qdd),
+                load: self.gear_load(*joint, rigid, state.qdd),
             };
-            let direction = sign(qd[*joint]);
-            effects[*joint] += direction * dry.level(qd[*joint], at) + direction.abs() * dry.bias();
+            let speed = state.qd[*joint];
+            let direction = sign(speed);
+            effects[*joint] += direction * dry.level(speed, at) + direction.abs() * dry.bias();
         }
-        self.add_smooth(time, workspace, q, qd, qdd, effects);
+        self.add_smooth(time, workspace, state, effects);
         for (joint, effect) in effects.iter_mut().enumerate() {
             let limit = self.machine.limits[joint];
             let total = self.torque_factor(joint, time) * (rigid[joint] + *effect);
@@ -158,7 +151,8 @@ impl Corrected {
     }
 
     /// The inverse dynamics of the arm at `time`, at the true positions of the joints.
-    fn rigid_torque(&self, time: Option<f64>, workspace: &mut Workspace, [q, qd, qdd]: [&[f64]; 3], rigid: &mut [f64]) {
+    fn rigid_torque(&self, time: Option<f64>, workspace: &mut Workspace, state: State<'_>, rigid: &mut [f64]) {
+        let State { q, qd, qdd } = state;
         let Workspace {
             arm: scratch, input, ..
         } = workspace;
@@ -173,16 +167,7 @@ impl Corrected {
     }
 
     /// Adds all torques except rigid body and dry friction to `tau`; the workspace contains the true positions.
-    fn add_smooth(
-        &self,
-        time: Option<f64>,
-        workspace: &mut Workspace,
-        q: &[f64],
-        qd: &[f64],
-        qdd: &[f64],
-        tau: &mut [f64],
-    ) {
-        let state = State { q, qd, qdd };
+    fn add_smooth(&self, time: Option<f64>, workspace: &mut Workspace, state: State<'_>, tau: &mut [f64]) {
         for smooth in self.machine.smooth.iter().filter(|smooth| acts(smooth.onset, time)) {
             tau[smooth.joint] += smooth.torque(state);
         }
@@ -196,7 +181,7 @@ impl TorqueModel for Corrected {
     }
 
     fn predict(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64], prediction: &mut Prediction) {
-        self.evaluate(None, workspace, q, qd, qdd, prediction);
+        self.evaluate(None, workspace, State { q, qd, qdd }, prediction);
     }
 
     fn variance<'w>(&self, _: &'w mut Workspace, _: &[f64], _: &[f64], _: &[f64]) -> Option<&'w [f64]> {

@@ -11,15 +11,10 @@ use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
 use crate::data::statistics::{mean, quantile};
 use crate::thresholds::{
-    CHANNEL_MOVES, EXPLAINS_THE_LIMITED, FAR_TOO_SMALL, IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED,
+    CHANNEL_FOLDS, CHANNEL_LIMITS, CHANNEL_LOADS, CHANNEL_MOVES, CHANNEL_STEP, EXPLAINS_THE_LIMITED, FAR_TOO_SMALL,
+    IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED,
 };
 
-/// The number of samples on either side over which positions are compared.
-const STEP: usize = 5;
-/// The number of stretches of the cross-validation.
-const FOLDS: usize = 5;
-/// The quantiles of the magnitudes of a torque channel that are tried as the drive's limit.
-const LIMITS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 /// The ridge of the regression, relative to columns of unit power, against collinear columns.
 const RIDGE: f64 = 1e-4;
 
@@ -83,9 +78,9 @@ pub fn without_torque(inputs: &[Input<'_>], motions: &Motions, rigid: &[Rigid], 
 fn idle(inputs: &[Input<'_>], joint: usize) -> Option<f64> {
     let speed = |input: &Input<'_>, tick: usize| {
         let q = &input.recording.q[joint];
-        (q[tick + STEP] - q[tick - STEP]).abs() / input.recording.period
+        (q[tick + CHANNEL_STEP] - q[tick - CHANNEL_STEP]).abs() / input.recording.period
     };
-    let ticks = |input: &Input<'_>| STEP..input.recording.len().saturating_sub(STEP);
+    let ticks = |input: &Input<'_>| CHANNEL_STEP..input.recording.len().saturating_sub(CHANNEL_STEP);
     let fitted = || inputs.iter().filter(|input| !input.held_out);
     let largest = fitted().flat_map(|input| ticks(input).map(move |tick| speed(input, tick)));
     let least = CHANNEL_MOVES * largest.fold(0.0, f64::max);
@@ -135,7 +130,7 @@ fn of_another_kind(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: u
         // A drive that reports the torque that is commanded reaches its limit: only the part below the limit moves the joint.
         let mut sizes: Vec<f64> = rows.torque.iter().map(|tau| tau.abs()).collect();
         sizes.sort_by(f64::total_cmp);
-        let limits = LIMITS.map(|share| quantile(&sizes, share));
+        let limits = CHANNEL_LIMITS.map(|share| quantile(&sizes, share));
         let clipped = |limit: f64| {
             rows.torque
                 .iter()
@@ -187,7 +182,12 @@ fn rows(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Ro
         ];
         more.extend(rigid.links[joint].iter().skip(joint).map(|column| filtered(column)));
         more.extend(rigid.gravity[joint].iter().map(|column| filtered(column)));
-        more.extend(rigid.payload[joint].iter().take(4).map(|column| filtered(column)));
+        more.extend(
+            rigid.payload[joint]
+                .iter()
+                .take(CHANNEL_LOADS)
+                .map(|column| filtered(column)),
+        );
         rows.more.resize(more.len(), Vec::new());
         rows.more
             .iter_mut()
@@ -197,7 +197,7 @@ fn rows(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Ro
     rows
 }
 
-/// The cross-validated NRMSE of a least-squares fit of `y` by `columns`: each of [`FOLDS`] stretches is predicted by the
+/// The cross-validated NRMSE of a least-squares fit of `y` by `columns`: each of [`CHANNEL_FOLDS`] stretches is predicted by the
 /// fit of the others and their mean.
 fn cross_validated(columns: &[&Vec<f64>], y: &[f64]) -> f64 {
     let n = columns.len();
@@ -206,8 +206,8 @@ fn cross_validated(columns: &[&Vec<f64>], y: &[f64]) -> f64 {
         .map(|column| 1.0 / mean(column.iter().map(|v| v * v)).sqrt().max(1e-12))
         .collect();
     let x = |row: usize| DVector::from_fn(n, |k, _| scaled[k] * columns[k][row]);
-    let length = y.len().div_ceil(FOLDS);
-    let folds: Vec<std::ops::Range<usize>> = (0..FOLDS)
+    let length = y.len().div_ceil(CHANNEL_FOLDS);
+    let folds: Vec<std::ops::Range<usize>> = (0..CHANNEL_FOLDS)
         .map(|fold| (fold * length).min(y.len())..((fold + 1) * length).min(y.len()))
         .collect();
     let sums: Vec<(DMatrix<f64>, DVector<f64>, f64)> = folds
@@ -225,7 +225,7 @@ fn cross_validated(columns: &[&Vec<f64>], y: &[f64]) -> f64 {
         .collect();
     let (mut with, mut without) = (0.0, 0.0);
     for (k, fold) in folds.iter().enumerate() {
-        let rest = (0..FOLDS).filter(|&other| other != k);
+        let rest = (0..CHANNEL_FOLDS).filter(|&other| other != k);
         let rows = (y.len() - fold.len()).max(1) as f64;
         let (mut gram, mut right, mut sum) = (DMatrix::identity(n, n) * (RIDGE * rows), DVector::zeros(n), 0.0);
         for other in rest {

@@ -49,8 +49,8 @@ pub fn filtered(inputs: &[Input<'_>], cutoff: Option<f64>, arm: &Arm) -> Motions
             )
         } else {
             format!(
-                "filtered at {now} and not at {before}, where the noise of the positions alone would be {share:.2} times the torque of \
-                 {joint}"
+                "the filter's cut-off was lowered from {before} to {now}: with {before}, the noise of the positions would be \
+                 {share:.2} times the torque of {joint}"
             )
         });
     }

@@ -8,21 +8,17 @@ use crate::data::input::Input;
 use crate::data::noise::{WhiteNoise, band_noise};
 use crate::data::signal::{Kernel, outputs};
 use crate::data::used::{Section, Used};
-use crate::thresholds::{LARGEST_CUTOFF, STILL};
+use crate::thresholds::{LARGEST_CUTOFF, MOST_ROWS, ROWS_PER_PERIOD, STILL};
 
 /// The ratio of the first filter's cut-off to the second's; nonlinear functions are evaluated between the two.
 const WIDER: f64 = 3.0;
 /// Samples of the fine grid per period of the second cut-off.
 const FINE: f64 = 8.0;
-/// Rows per period of the second cut-off.
-const ROWS: f64 = 2.5;
 /// The golden ratio; the fractional parts of its multiples are spread evenly.
 const GOLDEN: f64 = 0.618_033_988_749_895;
-/// The largest number of rows; if there are more, rows are dropped evenly.
-const MOST_ROWS: f64 = 12_000.0;
 
 /// The pause between recordings without a common clock (s).
-const BETWEEN: f64 = 10.0;
+const PAUSE: f64 = 10.0;
 
 /// A chunk of a recording on the fine grid, all signals after the first filter: `[joint][tick]`.
 #[derive(Clone, Debug)]
@@ -130,7 +126,7 @@ impl Motions {
             .fold(f64::INFINITY, f64::min);
         let cutoff = wanted.min(LARGEST_CUTOFF * slowest);
         let used = Used::of(inputs);
-        let thin = (used.seconds() * ROWS * cutoff / MOST_ROWS).max(1.0);
+        let thin = (used.seconds() * ROWS_PER_PERIOD * cutoff / MOST_ROWS).max(1.0);
         let has_before = inputs.iter().any(|input| input.before);
         // Recordings from before get a clock of their own: the change happened between them and the others.
         let overlap = if has_before { None } else { overlapping(inputs) };
@@ -160,10 +156,10 @@ impl Motions {
                 end - recording.time(0)
             };
             if has_before && !input.before && motions.changed_at.is_none() {
-                motions.changed_at = Some(end - 0.5 * BETWEEN);
+                motions.changed_at = Some(end - 0.5 * PAUSE);
             }
             // Pauses and omitted parts between windows also count as time.
-            end += recording.time(recording.len() - 1) - recording.time(0) + recording.period + BETWEEN;
+            end += recording.time(recording.len() - 1) - recording.time(0) + recording.period + PAUSE;
             motions.begins = motions.begins.min(shift + recording.time(0));
             motions.add(index, (input, &white[index]), &used.sections(index, input), thin, shift);
             motions.sources[index].part = used.part(index, input);
@@ -217,7 +213,7 @@ impl Motions {
         let decimation = (rate / (FINE * self.cutoff)).floor().max(1.0) as usize;
         let period = recording.period * decimation as f64;
         let kernel = Kernel::new(self.cutoff, period);
-        let stride = (thin / (period * ROWS * self.cutoff)).round().max(1.0) as usize;
+        let stride = (thin / (period * ROWS_PER_PERIOD * self.cutoff)).round().max(1.0) as usize;
         let mut windows: Vec<Range<usize>> = Vec::new();
         for section in sections {
             // The position of the window in its section varies (by the golden ratio), because sections may repeat one

@@ -8,14 +8,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use crate::data::statistics::median;
-use crate::thresholds::NOISE_BAND;
-
-/// The least number of bins of a spectrum in a band.
-const LEAST_BINS: usize = 16;
-/// The largest number of samples for which a logger holds a value.
-const LONGEST_HOLD: usize = 20;
-/// The number of changes of a value that show whether it is held.
-const LEAST_CHANGES: usize = 20;
+use crate::thresholds::{LEAST_CHANGES, LEAST_NOISE_BINS, LONGEST_HOLD, NOISE_BAND};
 
 /// The standard deviations of the white noise of a recording's signals, one per joint.
 pub struct WhiteNoise {
@@ -102,7 +95,7 @@ pub fn band_noise(signal: &[f64], recording: &RegularRecording, cutoff: f64) -> 
             (NOISE_BAND.0 * cutoff / bin) as usize,
             (NOISE_BAND.1 * cutoff / bin) as usize,
         );
-        if to >= n / 2 || to < from + LEAST_BINS {
+        if to >= n / 2 || to < from + LEAST_NOISE_BINS {
             continue;
         }
         // With the line from end to end subtracted and a Hann window, the motion does not leak into the band.

@@ -5,28 +5,13 @@ use std::ops::Range;
 use recording::RegularRecording;
 
 use crate::data::input::Input;
+use crate::thresholds::{LONG_SECONDS, MOST_SECONDS, SHORT_BESIDE, SHORTEST_WINDOW, USED_WINDOW};
 
-/// The total duration of the recordings of a role (training, held out) up to which they are used whole (s).
-const MOST_SECONDS: f64 = 900.0;
-/// The total duration that is used of longer recordings (s). More would make the search slower, and the intervals narrower
-/// than justified, because the errors of the catalogue's formulae do not decrease with more samples.
-const LONG_SECONDS: f64 = 240.0;
-/// The length of a window, if the recording allows (s).
-const WINDOW: f64 = 20.0;
-/// The length below which a window gives little after the filters (s).
-const SHORTEST: f64 = 2.0;
 /// The longest chunk where all is used (s); longer ones are cut, so that memory is bounded.
 const LONGEST: f64 = 60.0;
 
 /// The number of recordings that a sentence names.
 const MOST_NAMED: usize = 4;
-
-/// The duration of one recording that is sufficient to hold in memory (s), as evenly spread windows. At least half of it is
-/// held of a longer recording.
-pub const WORTH_HOLDING: f64 = 1000.0;
-
-/// A recording is short beside others that are at least this many times as long.
-const SHORT: f64 = 4.0;
 
 /// The time that is used of each recording of a role (s), which are `recorded` (s) long.
 ///
@@ -44,7 +29,7 @@ pub fn worth_using(recorded: &[f64]) -> Vec<f64> {
     for (count, pair) in (1..).zip(order.windows(2)) {
         let [last, next] = [pair[0], pair[1]].map(|at| recorded[at]);
         together += last;
-        if together <= MOST_SECONDS - LONG_SECONDS && next >= SHORT * last {
+        if together <= MOST_SECONDS - LONG_SECONDS && next >= SHORT_BESIDE * last {
             short = count;
         }
     }
@@ -125,10 +110,10 @@ impl Used {
     /// The sections of a recording, with a window in each. `index` is its place among the inputs.
     pub fn sections(&self, index: usize, input: &Input<'_>) -> Vec<Section> {
         let share = self.shares[index];
-        let longest = if share < 1.0 { WINDOW / share } else { LONGEST };
+        let longest = if share < 1.0 { USED_WINDOW / share } else { LONGEST };
         let RegularRecording { segments, period, .. } = input.recording;
         let most = ((longest / period) as usize).max(1);
-        let least = (SHORTEST / period) as usize;
+        let least = (SHORTEST_WINDOW / period) as usize;
         let mut sections = Vec::new();
         for segment in segments {
             let pieces = segment.ticks.len().div_ceil(most).max(1);
@@ -171,7 +156,7 @@ impl Used {
                     [names @ .., last] => format!("; {} and {last} are used whole", names.join(", ")),
                 };
                 format!(
-                    "of the {:.0} s of {what} recordings, about {:.0} s are used, in windows of at most {WINDOW:.0} s that are spread \
+                    "of the {:.0} s of {what} recordings, about {:.0} s are used, in windows of at most {USED_WINDOW:.0} s that are spread \
                      evenly{whole}",
                     self.recorded[role], self.used[role]
                 )

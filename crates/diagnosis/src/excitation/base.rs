@@ -171,7 +171,7 @@ impl Base {
         let inertial = PARAMETERS_PER_LINK * self.dof;
         let kind = |column: &usize| column.checked_sub(inertial).map(|own| own / self.dof);
         let count = |wanted: &dyn Fn(Option<usize>) -> bool| self.columns.iter().filter(|c| wanted(kind(c))).count();
-        let is_told = |j: &usize| self.columns.contains(&(inertial + 2 * self.dof + j));
+        let is_determined = |j: &usize| self.columns.contains(&(inertial + 2 * self.dof + j));
         let names = arm.joints().iter().map(|joint| joint.name.clone());
         Determined {
             inertial: count(&|kind| kind.is_none()),
@@ -180,7 +180,7 @@ impl Base {
             drive: count(&|kind| kind == Some(2)),
             drive_with_link: names
                 .enumerate()
-                .filter(|(j, _)| !is_told(j))
+                .filter(|(j, _)| !is_determined(j))
                 .map(|(_, name)| name)
                 .collect(),
         }

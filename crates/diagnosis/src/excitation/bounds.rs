@@ -5,11 +5,8 @@ use rand::Rng;
 use torque::{Motion, Reference};
 
 use super::ExcitationError;
+use crate::thresholds::{LIMIT_MARGIN, WITHIN_LIMITS};
 
-/// The part of a joint's range that is kept free at either end.
-const MARGIN: f64 = 0.05;
-/// The part of a velocity, acceleration and effort limit that a motion may use: the controller needs the rest.
-const WITHIN: f64 = 0.8;
 /// The part of the allowed torque that may be needed for holding the arm where the search starts, and the number of places that
 /// are tried.
 const HELD: f64 = 0.8;
@@ -142,10 +139,10 @@ impl Allowed {
                 }
             }
             allowed.middle.push(0.5 * (lower + upper));
-            allowed.room.push((0.5 - MARGIN) * (upper - lower));
-            allowed.velocity.push(WITHIN * limits.velocity);
-            allowed.acceleration.push(WITHIN * limits.acceleration);
-            allowed.torque.push(WITHIN * limits.effort);
+            allowed.room.push((0.5 - LIMIT_MARGIN) * (upper - lower));
+            allowed.velocity.push(WITHIN_LIMITS * limits.velocity);
+            allowed.acceleration.push(WITHIN_LIMITS * limits.acceleration);
+            allowed.torque.push(WITHIN_LIMITS * limits.effort);
         }
         Ok(allowed)
     }

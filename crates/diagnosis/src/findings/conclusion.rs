@@ -48,6 +48,8 @@ pub struct Conclusion {
     traces: Traces,
     /// Notes on torques that only the background explains.
     unnamed: Vec<String>,
+    /// Whether only the requested effects were fitted.
+    is_requested: bool,
 }
 
 impl Conclusion {
@@ -80,6 +82,12 @@ impl Conclusion {
             others.extend(transients.contact.clone());
         }
         findings.extend(others.into_iter().map(|finding| (finding, None)));
+        if options.only.is_some() {
+            // Nothing else was searched, so that the probability of a name is not calibrated.
+            for (finding, _) in &mut findings {
+                finding.probability = None;
+            }
+        }
         let not_enough_data = not_enough(study, products);
         if !not_enough_data.is_empty() {
             // With too few data, no finding is supported.
@@ -122,13 +130,14 @@ impl Conclusion {
         let constants = constant_torques::corrections(study, &judged.named, resampled);
         let unnamed = [
             torque_constants::note_on_unnamed(study, &judged.named),
-            sentences::constant_torques(&constant_torques::told(study, &constants)),
+            sentences::constant_torques(&constant_torques::reported(study, &constants)),
         ];
         let unnamed = unnamed.into_iter().flatten().collect();
         Self {
             located,
             constant_torques: constants,
             unnamed,
+            is_requested: options.only.is_some(),
             traces: traces(study, judged, &findings, [residual, &by_exported]),
             not_observable: not_named(not_testable(study, products, &judged.named), &findings),
             findings,
@@ -181,6 +190,7 @@ impl Conclusion {
             constant_torques: self.constant_torques,
             rollout: BTreeMap::new(),
             next_experiment: None,
+            is_requested: self.is_requested,
             findings,
         };
         Diagnosis {
@@ -194,7 +204,7 @@ impl Conclusion {
     }
 }
 
-/// How the report tells of `load`.
+/// `load` as it is reported.
 fn different(load: &OwnLoad, sources: &[SourceRecording]) -> DifferentLoad {
     let names = load.recordings.iter().map(|&recording| sources[recording].name.clone());
     let (value, half) = (load.load[0], NORMAL_95 * load.deviations[0]);

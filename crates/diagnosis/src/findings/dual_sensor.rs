@@ -10,12 +10,12 @@ use nalgebra::{DMatrix, DVector};
 use crate::data::input::Input;
 use crate::data::signal::Kernel;
 use crate::data::statistics::{NORMAL_95, deviation};
-use crate::report::{Finding, Parameter, Place};
+use crate::report::{Finding, MOTOR_CURRENT, Parameter, Place, SECOND_ENCODER};
 use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::thresholds::{
     CLEAR_COMPLIANCE, CLEAR_FRICTION, FOLLOWS, FRICTION_EXPLAINS, LARGEST_CUTOFF, LARGEST_DEFLECTION, LEAST_BEND,
-    SENSOR_ERRORS, SENSOR_ROWS, SENSORS_MOVE,
+    SENSOR_ERRORS, SENSOR_ROWS, SENSOR_SPACING, SENSORS_MOVE,
 };
 
 /// A regression on one joint over the recordings.
@@ -63,7 +63,7 @@ fn gather(
         for segment in &recording.segments {
             let cutoff = study.motions.cutoff.min(LARGEST_CUTOFF / recording.period);
             let kernel = Kernel::new(cutoff, recording.period);
-            let stride = ((0.4 / cutoff / recording.period) as usize).max(1);
+            let stride = ((SENSOR_SPACING / cutoff / recording.period) as usize).max(1);
             if segment.ticks.len() < 2 * kernel.reach() + SENSOR_ROWS * stride {
                 continue;
             }
@@ -118,19 +118,19 @@ fn regress(rows: &Rows) -> Option<Regression> {
     // The part of the power about the mean that the regression explains.
     let explained = |held_out: bool| -> Option<(f64, f64)> {
         let mut values = Vec::new();
-        let mut left = 0.0;
+        let mut residual = 0.0;
         for ((x, y), held) in rows.x.iter().zip(&rows.y).zip(&rows.held_out) {
             if *held == held_out {
                 values.push(*y);
-                left += (y - solution.dot(&DVector::from_column_slice(x))).powi(2);
+                residual += (y - solution.dot(&DVector::from_column_slice(x))).powi(2);
             }
         }
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
         let power: f64 = values.iter().map(|y| (y - mean).powi(2)).sum();
-        (values.len() >= SENSOR_ROWS && power > 0.0).then(|| (1.0 - left / power, left))
+        (values.len() >= SENSOR_ROWS && power > 0.0).then(|| (1.0 - residual / power, residual))
     };
-    let (train, left) = explained(false)?;
-    let variance = left / (count - p as f64);
+    let (train, residual) = explained(false)?;
+    let variance = residual / (count - p as f64);
     Some(Regression {
         errors: (0..p)
             .map(|k| SENSOR_ERRORS * (variance * inverse[(k, k)]).sqrt())
@@ -206,13 +206,13 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
         BTreeMap::from([("stiffness", stiffness)]),
         total / range,
         gain,
-        SECOND_ENCODER,
+        BY_SECOND_ENCODER,
     ))
 }
 
 /// The sensors that show what the torque does not, in the JSON and in words.
-const SECOND_ENCODER: (&str, &str) = ("second_encoder", "between the two encoders");
-const MOTOR_CURRENT: (&str, &str) = ("motor_current", "between the motor's current and the torque sensor");
+const BY_SECOND_ENCODER: (&str, &str) = (SECOND_ENCODER, "between the two encoders");
+const BY_MOTOR_CURRENT: (&str, &str) = (MOTOR_CURRENT, "between the motor's current and the torque sensor");
 
 /// Friction between the motor's current and the torque sensor.
 fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Vec<Finding> {
@@ -241,7 +241,7 @@ fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>])
     let name = study.arm.joints()[joint].name.clone();
     let torque = study.scales.torque[joint].max(1e-300);
     let gain = result.held_out.map(|explained| 1.0 - (1.0 - explained).max(0.0).sqrt());
-    let place = MOTOR_CURRENT;
+    let place = BY_MOTOR_CURRENT;
     let mut list = Vec::new();
     if result.coefficients[0] > 0.0 && result.is_clear(0) {
         let level = result.parameter(0, Quantity::Torque.unit(kind));

@@ -77,7 +77,8 @@ fn finding(
         list.push(Finding {
             other: named.other,
             parameters: named.parameters,
-            probability: Some(standing.probability(if may_be_link { 0.0 } else { member.evidence })),
+            // The probability is calibrated for the effects that were searched, not for one that is brought along.
+            probability: (k == 0).then(|| standing.probability(if may_be_link { 0.0 } else { member.evidence })),
             share,
             share_by_joint: if k == 0 {
                 share_by_joint.clone()
@@ -111,8 +112,7 @@ fn finding(
                 Vec::new()
             },
             place: place.clone(),
-            since_before: study.motions.changed_at.is_some()
-                && study.terms(member.candidate).iter().any(|term| term.onset().is_some()),
+            since_before: study.motions.changed_at.is_some() && !study.always_acts(member.candidate),
             corrects: true,
             ..Finding::of(named.effect)
         });
@@ -123,11 +123,10 @@ fn finding(
 /// The last link as an alternative of a payload that was always there, if a link is wrong in any case: the inertial parameters of
 /// both have the same torque. Without wrong links, a body at the tool is the likelier of the two.
 fn as_last_link(study: &Study, candidate: usize) -> Option<Named> {
-    let is_always = study.terms(candidate).iter().all(|term| term.onset().is_none());
     let is_payload = study.candidates[candidate].hypothesis.is(&Payload);
     let links = Hypothesis::of(&InertialParameters);
     let is_wrong = study.strengths.links.iter().any(|&rho| rho > 0.0);
-    (is_payload && is_always && is_wrong).then(|| (links, study.arm.dof().checked_sub(1)))
+    (is_payload && study.always_acts(candidate) && is_wrong).then(|| (links, study.arm.dof().checked_sub(1)))
 }
 
 /// The share of the drive's inertia that is named with a spring or a gap.
@@ -142,7 +141,7 @@ fn rotor_share(study: &Study, judged: &Judged, candidate: usize) -> f64 {
         .filter(|&column| study.table.terms[column].is(&ACCELERATION))
         .collect();
     let torque = study.table.torque(joint, &rotor, &judged.named.fit.values(&rotor));
-    deviation(&torque, &study.training_rows(joint)) / study.scales.torque[joint].max(1e-300)
+    study.share(joint, deviation(&torque, &study.training_rows(joint)))
 }
 
 fn place(study: &Study, hypothesis: Hypothesis, candidate: usize) -> Place {

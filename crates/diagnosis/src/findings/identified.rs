@@ -23,7 +23,7 @@ pub fn identified(study: &Study) -> Vec<Option<f64>> {
     let problem = study.problem(&products);
     let is_part = |&candidate: &usize| {
         let hypothesis = study.candidates[candidate].hypothesis;
-        let always = study.terms(candidate).iter().all(|term| term.onset().is_none());
+        let always = study.always_acts(candidate);
         let is = |kind: &'static dyn effects::EffectKind| hypothesis.is(kind);
         always && (is(&ViscousFriction) || is(&CoulombFriction) || is(&RotorInertia) || is(&TorqueOffset))
     };

@@ -96,7 +96,7 @@ pub fn inertials(
             .collect();
         for (joint, share) in shares[link].iter_mut().enumerate() {
             let torque = study.table.torque(joint, &columns, &values);
-            *share = deviation(&torque, &study.training_rows(joint)) / study.scales.torque[joint].max(1e-300);
+            *share = study.share(joint, deviation(&torque, &study.training_rows(joint)));
         }
         let prior = study.prior_variances(link);
         let determined = std::array::from_fn(|parameter| {
@@ -144,7 +144,7 @@ pub fn inertials(
                 })
                 .unzip();
             let torque = study.table.torque(joint, &columns, &values);
-            deviation(&torque, &study.training_rows(joint)) / study.scales.torque[joint].max(1e-300)
+            study.share(joint, deviation(&torque, &study.training_rows(joint)))
         })
         .collect();
     let by_joint = |shares: &[f64]| -> BTreeMap<String, f64> {

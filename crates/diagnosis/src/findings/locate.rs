@@ -5,10 +5,10 @@ use rayon::prelude::*;
 use crate::data::statistics::rms;
 use crate::report::{Located, Region, TimeWindow};
 use crate::search::study::Study;
-use crate::thresholds::{OVER_NOISE, REGION_STANDS_OUT, SAME_MOTION, WINDOW, WINDOW_STANDS_OUT};
-
-/// The number of bins of an axis of state.
-const BINS: usize = 6;
+use crate::thresholds::{
+    LEAST_PAIRS, LEAST_WINDOW_ROWS, MOST_WINDOWS, OVER_NOISE, REGION_BINS, REGION_STANDS_OUT, SAME_LOAD, SAME_MOTION,
+    WINDOW, WINDOW_STANDS_OUT,
+};
 
 /// Locates the residual of `nominal` (`[joint][row]`), and compares it with that of `augmented`.
 pub fn locate(study: &Study, augmented: &[Vec<f64>]) -> Vec<Located> {
@@ -88,9 +88,9 @@ fn on_joint(study: &Study, state: &State, joint: usize, nominal: &[f64], augment
         let mut sorted: Vec<usize> = rows.clone();
         sorted.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
         // The region near a reversal is the slowest bin; the others are tried in turn.
-        let bins = if axis == "near_reversal" { 0..1 } else { 0..BINS };
+        let bins = if axis == "near_reversal" { 0..1 } else { 0..REGION_BINS };
         let best = bins
-            .map(|bin| &sorted[sorted.len() * bin / BINS..sorted.len() * (bin + 1) / BINS])
+            .map(|bin| &sorted[sorted.len() * bin / REGION_BINS..sorted.len() * (bin + 1) / REGION_BINS])
             .filter(|bin| !bin.is_empty())
             .map(|bin| (root_mean_square(bin.iter().map(|&row| nominal[row])), bin))
             .max_by(|a, b| a.0.total_cmp(&b.0));
@@ -127,7 +127,7 @@ fn windows(study: &Study, state: &State, rows: &[usize], nominal: &[f64], all: f
         let residual = root_mean_square(rows[from..from + length].iter().map(|&row| nominal[row]));
         // A stretch ends with its last row, because the recording may end before the window.
         let end = state.time[rows[from + length - 1]];
-        if length >= 5 {
+        if length >= LEAST_WINDOW_ROWS {
             stretches.push((residual, recording, [start, end]));
         }
         from += length;
@@ -136,7 +136,7 @@ fn windows(study: &Study, state: &State, rows: &[usize], nominal: &[f64], all: f
     let mut list: Vec<TimeWindow> = stretches
         .into_iter()
         .take_while(|(residual, ..)| *residual > WINDOW_STANDS_OUT * all)
-        .take(3)
+        .take(MOST_WINDOWS)
         .map(|(_, recording, [start, end])| TimeWindow {
             recording: study.motions.sources[recording].name.clone(),
             start: study.motions.own_time(recording, start),
@@ -156,8 +156,8 @@ fn repeatable(study: &Study, state: &State, joint: usize, rows: &[usize], nomina
         (
             part(state.q[row], study.scales.range[joint]),
             part(state.qd[row], study.scales.speed[joint]),
-            part(state.load[row], 4.0 * torque),
-            part(state.qdd[row], 4.0 * acceleration),
+            part(state.load[row], SAME_LOAD * torque),
+            part(state.qdd[row], SAME_LOAD * acceleration),
         )
     };
     let mut cells: std::collections::BTreeMap<_, Vec<usize>> = std::collections::BTreeMap::new();
@@ -176,5 +176,5 @@ fn repeatable(study: &Study, state: &State, joint: usize, rows: &[usize], nomina
             }
         }
     }
-    (pairs >= 30 && power > 0.0).then(|| (product / power).clamp(0.0, 1.0))
+    (pairs >= LEAST_PAIRS && power > 0.0).then(|| (product / power).clamp(0.0, 1.0))
 }

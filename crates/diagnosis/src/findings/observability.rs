@@ -206,7 +206,7 @@ fn is_seen(study: &Study, products: &Products, selected: &Selection, candidate: 
     let column = candidate.columns[0];
     let drop = products.drop_of(&study.table, &selected.fit, column);
     let nats = 0.5 * products.evidence[joint] * (1.0 + drop / products.count[joint].max(1.0)).ln();
-    let share = spread(study, joint, column) / study.scales.torque[joint].max(1e-300);
+    let share = study.share(joint, spread(study, joint, column));
     nats > needed(study, candidate) && share > study.thresholds.least_share
 }
 

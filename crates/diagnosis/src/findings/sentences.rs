@@ -32,7 +32,8 @@ pub fn constant_torques(constants: &BTreeMap<String, Parameter>) -> Option<Strin
         .collect();
     Some(format!(
         "the corrected model adds constant torques that no finding names, because most joints have one: {}. Their torque sensors may \
-         have offsets, or the joints more friction in one direction. The torques at rest in several postures would tell",
+         have offsets, or the joints more friction in one direction. Record the arm at rest in several postures to \
+         distinguish the two",
         list.join(", ")
     ))
 }
@@ -79,7 +80,7 @@ pub fn is_undetermined(finding: &Finding) -> bool {
 
 /// Whether an effect states a level of dry friction that was there before it changed.
 fn had_other_form(effect: &Effect) -> bool {
-    let generalises = effect.spec().plain.is_some();
+    let generalises = effect.spec().generalises.is_some();
     generalises
         && effect
             .kind()

@@ -13,12 +13,9 @@ use crate::search::scan;
 use crate::search::study::Study;
 use crate::selection::judge::Judged;
 use crate::thresholds::{
-    ABOVE_USUAL, LEAST_MOVING, LEAST_PUSHED, LEAST_STRETCHES, LEAST_TRANSIENT_ROWS, MOST_TRANSIENTS, ONE_FORCE,
-    TRANSIENT_PIECE, TRANSIENT_STRETCH,
+    ABOVE_USUAL, CONTACT_DURATION, CONTACT_START, LEAST_MOVING, LEAST_PUSHED, LEAST_STRETCHES, LEAST_TRANSIENT_ROWS,
+    MOST_TRANSIENTS, ONE_FORCE, SEARCHED_TRANSIENTS, STRETCH_ROWS, TRANSIENT_PIECE, TRANSIENT_STRETCH,
 };
-
-/// The largest number of transients that are searched.
-const MOST: usize = 12;
 
 /// The transients that were found.
 #[derive(Clone, Debug, Default)]
@@ -62,7 +59,15 @@ pub fn search(study: &Study, judged: &Judged, residual: &[Vec<f64>]) -> Transien
                 .max(1e-300)
         })
         .collect();
-    let windows = scan::contacts(&study.table, &times, residual, &weights, study.force(), &held, MOST);
+    let windows = scan::contacts(
+        &study.table,
+        &times,
+        residual,
+        &weights,
+        study.force(),
+        &held,
+        SEARCHED_TRANSIENTS,
+    );
     let already = judged.named.set.iter().any(|&c| study.window(c).is_some());
     let mut pushes: Vec<Push> = Vec::new();
     for (from, to) in windows {
@@ -89,7 +94,7 @@ pub fn search(study: &Study, judged: &Judged, residual: &[Vec<f64>]) -> Transien
                 .map(|joint| (powers[joint], joint))
                 .max_by(|a, b| a.0.total_cmp(&b.0));
             if let Some((_, joint)) = at {
-                let rms = joint_rms(study, &times, residual, joint, window) / study.scales.torque[joint].max(1e-300);
+                let rms = study.share(joint, joint_rms(study, &times, residual, joint, window));
                 let entry = transients.unexplained.entry(joint).or_default();
                 entry.0 = entry.0.max(rms);
                 entry.1.push(TimeWindow {
@@ -126,7 +131,7 @@ fn usual(study: &Study, joint: usize, residual: &[Vec<f64>]) -> f64 {
     let mut all = Vec::new();
     let mut largest = 0.0_f64;
     for (recording, rows) in study.table.rows.iter().enumerate() {
-        let length = ((TRANSIENT_STRETCH / study.seconds[recording]) as usize).max(3);
+        let length = ((TRANSIENT_STRETCH / study.seconds[recording]) as usize).max(STRETCH_ROWS);
         let mut stretches = Vec::new();
         let mut from = rows.start;
         while from < rows.end {
@@ -248,10 +253,7 @@ fn contact(study: &Study, residual: &[Vec<f64>], pushes: &[Push]) -> Option<Find
     let share_by_joint: BTreeMap<String, f64> = (0..study.motions.dof)
         .map(|joint| {
             let rms = joint_rms(study, &times, residual, joint, (from, to));
-            (
-                study.arm.joints()[joint].name.clone(),
-                rms / study.scales.torque[joint].max(1e-300),
-            )
+            (study.arm.joints()[joint].name.clone(), study.share(joint, rms))
         })
         .collect();
     let effect = Effect::of(&ExternalContact)
@@ -261,8 +263,8 @@ fn contact(study: &Study, residual: &[Vec<f64>], pushes: &[Push]) -> Option<Find
     Some(Finding {
         parameters: BTreeMap::from([
             ("force", exactly(force.norm(), spread, "N")),
-            ("start", exactly(from, 0.1, "s")),
-            ("duration", exactly(to - from, 0.2, "s")),
+            ("start", exactly(from, CONTACT_START, "s")),
+            ("duration", exactly(to - from, CONTACT_DURATION, "s")),
         ]),
         share: share_by_joint.values().copied().fold(0.0, f64::max),
         share_by_joint,

@@ -1,9 +1,6 @@
 //! The experiment to make where no motion distinguishes two effects.
 use crate::report::{Confusable, NotSeparated, Obstacle};
-use crate::thresholds::NEARLY_NATS;
-
-/// Evidence below this (nats), or below this part of the needed evidence, counts as none: the two effects have the same torque.
-const ALIAS: (f64, f64) = (1.0, 0.1);
+use crate::thresholds::{ALIAS, NEARLY_NATS};
 
 /// The confusion of `finding` with `rival`: the best motion for it brings the evidence `best` (nats), and `needed`
 /// distinguishes them. `sure` is the evidence from which it is promised, unless it is `barred` for a reason.
@@ -32,7 +29,7 @@ pub fn not_separated(
         Obstacle::Unexplained => {
             "the joint has an unexplained residual, so that the outcome of a motion cannot be predicted".to_owned()
         }
-        Obstacle::NotForetold => {
+        Obstacle::NoPrediction => {
             "the prediction fails on these recordings: it says that they already distinguish the two, which they do not"
                 .to_owned()
         }
@@ -70,7 +67,7 @@ pub fn unpredicted(finding: Confusable, rival: Confusable) -> NotSeparated {
         rival,
         best: 0.0,
         needed: NEARLY_NATS,
-        kind: Obstacle::NotForetold,
+        kind: Obstacle::NoPrediction,
         because,
         instead,
     }

@@ -8,21 +8,9 @@ use torque::{Corrected, Motion, Prediction, Reference, TorqueError, Workspace};
 use crate::data::statistics::median;
 use crate::report::JointLimits;
 use crate::search::study::Study;
-
-/// The part of a joint's range that is kept free at either end.
-const MARGIN: f64 = 0.05;
-/// The part of a velocity and an effort limit that a motion may take.
-const WITHIN: f64 = 0.8;
-/// The largest distance from the middle of the recorded range, as a multiple of the recorded distance, and the largest speed as
-/// a multiple of the recorded one. The environment beyond is unknown.
-const BEYOND: (f64, f64) = (1.5, 3.0);
-/// These two multiples if the findings do not explain the recordings, because the torque beyond the recorded range is unknown
-/// then.
-const BEYOND_UNEXPLAINED: (f64, f64) = (1.0, 1.5);
-/// Without a velocity limit in the URDF: the largest speed as a multiple of the recorded one.
-const FASTER_UNLIMITED: f64 = 2.0;
-/// Without an effort limit in the URDF: the largest torque as a multiple of the recorded one.
-const STRONGER_UNLIMITED: f64 = 1.5;
+use crate::thresholds::{
+    BEYOND_RECORDED, BEYOND_UNEXPLAINED, FASTER_UNLIMITED, LIMIT_MARGIN, STRONGER_UNLIMITED, WITHIN_LIMITS,
+};
 
 /// The allowed motion of each joint.
 pub struct Limits {
@@ -36,7 +24,7 @@ pub struct Limits {
     pub speed: Vec<f64>,
     /// The allowed torque (N m or N).
     pub torque: Vec<f64>,
-    /// Whether the torque of each joint is limited.
+    /// The corrected model, whose torques bound what a motion may need.
     pub model: Corrected,
 }
 
@@ -51,7 +39,7 @@ impl Limits {
         let (found, others): (Vec<&Effect>, Vec<&Effect>) = effects.iter().partition(is_limit);
         let with = |effects: Vec<&Effect>| Corrected::new(arm, &effects.into_iter().cloned().collect::<Vec<_>>());
         let (found, model) = (with(found)?, with(others)?);
-        let (wider, faster) = if explain { BEYOND } else { BEYOND_UNEXPLAINED };
+        let (wider, faster) = if explain { BEYOND_RECORDED } else { BEYOND_UNEXPLAINED };
         let joints = study.arm.joints();
         let scales = &study.scales;
         let typical = {
@@ -70,7 +58,7 @@ impl Limits {
         for (j, joint) in joints.iter().enumerate() {
             let (lower, upper) = (joint.limits.lower, joint.limits.upper);
             let free = if (upper - lower).is_finite() {
-                MARGIN * (upper - lower)
+                LIMIT_MARGIN * (upper - lower)
             } else {
                 0.0
             };
@@ -89,14 +77,14 @@ impl Limits {
             };
             limits.room.push(half.min(to_a_limit));
             limits.speed.push(if joint.limits.velocity.is_finite() {
-                (WITHIN * joint.limits.velocity).min(faster * speed)
+                (WITHIN_LIMITS * joint.limits.velocity).min(faster * speed)
             } else {
                 FASTER_UNLIMITED.min(faster) * speed
             });
             let torque = study.measured[j].iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
             let allowed = if joint.limits.effort.is_finite() {
                 // A drive that gave this torque in the recordings can give it again.
-                (WITHIN * joint.limits.effort).max(torque.min(joint.limits.effort))
+                (WITHIN_LIMITS * joint.limits.effort).max(torque.min(joint.limits.effort))
             } else {
                 STRONGER_UNLIMITED * torque
             };

@@ -17,7 +17,7 @@ use crate::search::study::{About, Study};
 use crate::selection::rivals;
 
 /// The pause between the last recording and the motion (s).
-const BETWEEN: f64 = 10.0;
+const PAUSE: f64 = 10.0;
 /// The ratio of a proposed motion's ticks to those of the recordings.
 const COARSER: usize = 2;
 /// The number of iterations for a torque that depends on itself (a delay).
@@ -104,7 +104,7 @@ impl<'a> Prospect<'a> {
             old: products.picked(&study.table, &columns),
             columns,
             template: template.recording,
-            start: end.fold(0.0, f64::max) + BETWEEN,
+            start: end.fold(0.0, f64::max) + PAUSE,
             torque,
             speed,
         })

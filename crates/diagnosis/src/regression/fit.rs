@@ -160,6 +160,11 @@ impl Products {
             .sum()
     }
 
+    /// The loss of `fit`, which may be one to other recordings.
+    pub fn loss_of(&self, table: &Table, fit: &Fit) -> f64 {
+        self.loss(&self.rss(table, &fit.columns, &fit.coefficients))
+    }
+
     /// One joint's part of [`Self::loss`].
     pub fn joint_loss(&self, joint: usize, rss: f64) -> f64 {
         0.5 * self.evidence[joint] * self.variance(joint, rss).ln()

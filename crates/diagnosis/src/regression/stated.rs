@@ -39,6 +39,12 @@ impl Stated {
         self.gain.unwrap_or(GAIN_PRIOR)
     }
 
+    /// `strengths` with less of one part each, as far as they agree with those stated.
+    pub fn weaker(self, strengths: &Strengths) -> impl Iterator<Item = Strengths> {
+        let weaker = strengths.weaker().into_iter();
+        weaker.filter(move |strengths| self.allows(strengths))
+    }
+
     /// Whether strengths agree with those stated.
     pub fn allows(self, strengths: &Strengths) -> bool {
         let first = self.first(strengths.links.len());

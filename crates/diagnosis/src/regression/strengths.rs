@@ -3,8 +3,8 @@
 use std::fmt;
 
 use crate::thresholds::{
-    FINER_STRENGTH, FRICTION_STRENGTHS, GAIN_STRENGTHS, LINK_STRENGTHS, OFFSET_STRENGTHS, OWN_STRENGTHS,
-    PER_BACKGROUND_PART, PER_LINK_APART, USUAL_STRENGTH,
+    BEYOND_STRONGEST, FINER_STRENGTH, FRICTION_STRENGTHS, GAIN_STRENGTHS, LINK_STRENGTHS, OFFSET_STRENGTHS,
+    OWN_STRENGTHS, PER_BACKGROUND_PART, PER_LINK_APART, USUAL_STRENGTH,
 };
 
 /// The strengths of the parts of the background, as standard deviations; zero switches a part off.
@@ -82,7 +82,14 @@ impl Strengths {
             .into_iter()
             .filter(|&rho| rho > common)
             .fold(f64::INFINITY, f64::min);
-        (below, if above.is_finite() { above } else { 2.0 * common })
+        (
+            below,
+            if above.is_finite() {
+                above
+            } else {
+                BEYOND_STRONGEST * common
+            },
+        )
     }
 
     /// ρ of most links.

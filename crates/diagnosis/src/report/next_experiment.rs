@@ -69,7 +69,8 @@ pub enum Obstacle {
     Unexplained,
     /// No outcome is predicted: the alternative is a correction of all inertial parameters together, or the prediction fails on the
     /// present recordings, because it states that they already distinguish the two.
-    NotForetold,
+    #[serde(rename = "not_foretold")]
+    NoPrediction,
 }
 
 /// An effect that the motion makes detectable at a smaller size than the recordings do.

@@ -37,50 +37,15 @@ impl Hypothesis {
         self.kind.name()
     }
 
-    /// Whether its coefficient must be one: it is simulated at its size, not scaled.
-    pub fn is_unit(self) -> bool {
-        self.spec().is_simulated
-    }
-
-    /// Whether it is a friction that every drive has.
-    pub fn is_friction(self) -> bool {
-        self.spec().is_friction
-    }
-
     /// Whether it is the inertia of the drive's rotor.
     pub fn is_drive_inertia(self) -> bool {
-        self.is_baseline() && !self.is_friction()
-    }
-
-    /// Whether it is a baseline effect: most URDFs omit friction and rotor inertia, so that they need less evidence.
-    pub fn is_baseline(self) -> bool {
-        self.spec().is_baseline
-    }
-
-    /// Whether it is a baseline effect or a constant.
-    pub fn is_simple(self) -> bool {
-        self.spec().is_simple
-    }
-
-    /// Whether it means that masses differ from the model's.
-    pub fn is_wrong_mass(self) -> bool {
-        self.spec().is_wrong_mass
+        self.spec().is_baseline && !self.spec().is_friction
     }
 
     /// The simpler hypothesis that it generalises.
-    pub fn plain(self) -> Option<Self> {
-        let kind = Kind::named(self.spec().plain?)?;
+    pub fn generalises(self) -> Option<Self> {
+        let kind = Kind::named(self.spec().generalises?)?;
         Some(Self { kind, other: None })
-    }
-
-    /// Whether its form is certain, because it follows from rigid-body dynamics.
-    pub fn is_certain_in_form(self) -> bool {
-        self.spec().is_certain_in_form
-    }
-
-    /// Whether it may be present in one recording only.
-    pub fn is_passing(self) -> bool {
-        self.spec().is_passing
     }
 }
 

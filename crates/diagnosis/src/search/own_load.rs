@@ -16,7 +16,9 @@ use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::evidence_rate;
 use crate::regression::strengths::Strengths;
 use crate::search::study::Study;
-use crate::thresholds::{LEAST_LOAD, LEAST_OF_RECORDING, LEAST_OF_RESIDUAL};
+use crate::thresholds::{
+    LEAST_LOAD, LEAST_LOAD_ROWS, LEAST_OF_RECORDING, LEAST_OF_RESIDUAL, LOAD_FLOOR, LOAD_PRECISION, LOAD_SIZE,
+};
 
 /// The mass and the three first moments of a load, in the frame of the last link.
 const LOAD: usize = 4;
@@ -24,14 +26,6 @@ const LOAD: usize = 4;
 const DRIVE: usize = 3;
 /// The number of times that the variances of the joints are computed anew.
 const REWEIGHTINGS: usize = 4;
-/// The least standard deviation of a residual, as a part of that of the joint's torque.
-const FLOOR: f64 = 0.01;
-/// The least effective number of rows from which a variance is estimated.
-const LEAST_EVIDENCE: f64 = 5.0;
-/// The largest distance of a load's mass from the last link's frame that its moments of inertia suggest (m).
-const LOAD_SIZE: f64 = 0.2;
-/// The precision of a load's parameters before the recordings are read: 10 kg and 10 kg m.
-const WIDE: f64 = 0.01;
 
 /// A load at the tip that only some of the recordings have.
 pub struct OwnLoad {
@@ -61,10 +55,10 @@ impl OwnLoad {
             .collect();
         let mut variances = Variances::first(study);
         for _ in 0..REWEIGHTINGS {
-            let same = Normal::new(&parts, &variances, &background, (dof, recordings))?;
+            let same = LoadEquations::new(&parts, &variances, &background, (dof, recordings))?;
             variances = Variances::of(study, &parts, &same.alone());
         }
-        let normal = Normal::new(&parts, &variances, &background, (dof, recordings))?;
+        let normal = LoadEquations::new(&parts, &variances, &background, (dof, recordings))?;
         let found = grown(&normal, &parts, &variances, recordings);
         if found.recordings.is_empty() || found.load[0].abs() < LEAST_LOAD.max(NORMAL_95 * found.deviations[0]) {
             return None;
@@ -117,7 +111,7 @@ impl OwnLoad {
 }
 
 /// The solution in which as many of the `recordings` have a load of their own as it explains.
-fn grown(normal: &Normal, parts: &[Part], variances: &Variances, recordings: usize) -> Solution {
+fn grown(normal: &LoadEquations, parts: &[Part], variances: &Variances, recordings: usize) -> Solution {
     let mut now = normal.alone();
     while now.recordings.len() + 1 < recordings {
         let with = |recording: usize| [now.recordings.as_slice(), &[recording]].concat();
@@ -203,8 +197,8 @@ impl Part {
         (0..table.rows.len()).map(part).collect()
     }
 
-    /// The sums of squares that `solution` leaves, in motion and at rest.
-    fn left(&self, solution: &Solution) -> [f64; 2] {
+    /// The sums of squares of the residuals of `solution`, in motion and at rest.
+    fn residuals(&self, solution: &Solution) -> [f64; 2] {
         let mut miss: Vec<f64> = self
             .unknowns
             .iter()
@@ -216,8 +210,8 @@ impl Part {
     }
 
     fn misfit(&self, variances: &Variances, solution: &Solution) -> f64 {
-        let left = self.left(solution);
-        (0..2).map(|k| left[k] / variances.0[self.joint][k]).sum()
+        let residuals = self.residuals(solution);
+        (0..2).map(|k| residuals[k] / variances.0[self.joint][k]).sum()
     }
 }
 
@@ -234,12 +228,12 @@ impl Variances {
         let of = |joint: usize| {
             let of_joint = || parts.iter().filter(|part| part.joint == joint);
             let evidence: f64 = of_joint().map(|part| part.evidence[0]).sum();
-            if evidence < LEAST_EVIDENCE || study.scales.torque[joint] <= 0.0 {
+            if evidence < LEAST_LOAD_ROWS || study.scales.torque[joint] <= 0.0 {
                 // Its friction is unknown, and its torque says nothing about a load.
                 return [f64::INFINITY; 2];
             }
-            let squares: f64 = of_joint().map(|part| part.left(solution)[0]).sum();
-            let moving = (squares / evidence).max((FLOOR * study.scales.torque[joint]).powi(2));
+            let squares: f64 = of_joint().map(|part| part.residuals(solution)[0]).sum();
+            let moving = (squares / evidence).max((LOAD_FLOOR * study.scales.torque[joint]).powi(2));
             let level = solution.common[PER_LINK * study.motions.dof + DRIVE * joint];
             [moving, moving + level * level]
         };
@@ -248,7 +242,7 @@ impl Variances {
 }
 
 /// The normal equations of one arm for all recordings, and what a load in each recording adds to them.
-struct Normal {
+struct LoadEquations {
     right: DVector<f64>,
     /// The unknowns without a load.
     common: DVector<f64>,
@@ -280,7 +274,7 @@ impl Solution {
     }
 }
 
-impl Normal {
+impl LoadEquations {
     /// The equations for an arm of `dof` joints; `None` if they have no solution.
     fn new(
         parts: &[Part],
@@ -358,7 +352,7 @@ impl Normal {
 
     /// The solution in which `recordings` have an additional load.
     fn with_load(&self, recordings: &[usize]) -> Option<Solution> {
-        let mut own = DMatrix::identity(LOAD, LOAD) * WIDE;
+        let mut own = DMatrix::identity(LOAD, LOAD) * LOAD_PRECISION;
         let mut right = DVector::zeros(LOAD);
         let mut solved = DMatrix::zeros(self.right.len(), LOAD);
         let mut cross = DMatrix::zeros(self.right.len(), LOAD);

@@ -69,7 +69,7 @@ impl Fitted for InFit<'_> {
 pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bool {
     // Masses with the opposite error may hide an effect that every drive has.
     let cancels = |joint| torque_share(candidate, table, fit, joint) >= LARGEST_TORQUE_SHARE;
-    let may_be_hidden = candidate.hypothesis.is_baseline() || candidate.hypothesis.spec().may_be_hidden;
+    let may_be_hidden = candidate.hypothesis.spec().is_baseline || candidate.hypothesis.spec().may_be_hidden;
     if !may_be_hidden && candidate.joint.is_some_and(cancels) {
         return false;
     }
@@ -113,7 +113,7 @@ fn is_too_large(size: f64, is_possible: impl Fn(f64) -> bool) -> bool {
 
 /// Whether the coefficient of a simulated effect is near one.
 pub fn is_at_its_size(candidate: &Candidate, fit: &Fit) -> bool {
-    !candidate.hypothesis.is_unit() || UNIT.contains(&fit.coefficient(candidate.columns[0]))
+    !candidate.hypothesis.spec().is_simulated || UNIT.contains(&fit.coefficient(candidate.columns[0]))
 }
 
 /// The root mean square of a candidate's torque over that of the torque to be explained, on moving rows.

@@ -4,25 +4,16 @@ use crate::options::Step;
 use crate::search::problem::Selection;
 use crate::search::refine::refine;
 use crate::search::study::Study;
-
-/// The largest number of rounds of suggestion.
-const SUGGESTIONS: usize = 3;
-/// The largest number of rounds of refinement.
-const REFINEMENTS: usize = 2;
-/// The largest number of consecutive swaps.
-const SWAPS: usize = 4;
-
-/// The largest number of last additions.
-const LAST: usize = 3;
+use crate::thresholds::{MOST_LAST, MOST_REFINEMENTS, MOST_SUGGESTIONS, MOST_SWAPS};
 
 /// Searches the candidates that together explain the training recordings. `progress` receives each step.
 pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
     let baseline: Vec<usize> = (0..study.candidates.len())
-        .filter(|&c| study.candidates[c].hypothesis.is_friction())
+        .filter(|&c| study.candidates[c].hypothesis.spec().is_friction)
         .collect();
     let products = study.training_products();
     let mut selected = study.problem(&products).choose(baseline, &products.first_weights());
-    for round in 1..=SUGGESTIONS {
+    for round in 1..=MOST_SUGGESTIONS {
         progress(Step::new(
             0.12 + 0.08 * round as f64,
             &format!("searching effects, round {round}"),
@@ -36,7 +27,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
             .copied()
             .filter(|&c| {
                 let hypothesis = study.candidates[c].hypothesis;
-                let sets_in = study.terms(c).iter().any(|term| term.onset().is_some());
+                let sets_in = !study.always_acts(c);
                 hypothesis.name().is_some() && !sets_in && !hypothesis.spec().is_suggested
             })
             .collect();
@@ -55,7 +46,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
             break;
         }
     }
-    for round in 1..=REFINEMENTS {
+    for round in 1..=MOST_REFINEMENTS {
         progress(Step::new(
             0.32 + 0.1 * round as f64,
             &format!("refining sizes, round {round}"),
@@ -73,7 +64,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
         study.note("costs more evidence than it brings", &selected, &pruned);
         selected = study.grown(pruned, &allowed);
         let products = study.training_products();
-        let swapped = study.problem(&products).swap(selected.clone(), &allowed, SWAPS);
+        let swapped = study.problem(&products).swap(selected.clone(), &allowed, MOST_SWAPS);
         study.note("explains more in its place", &selected, &swapped);
         selected = swapped;
         if selected.set != before {
@@ -83,7 +74,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
         }
     }
     // With all sizes found, candidates that did not pay or were impossible before may do so.
-    for _ in 0..LAST {
+    for _ in 0..MOST_LAST {
         let products = study.training_products();
         let allowed = study.allowed();
         let before = selected.set.clone();

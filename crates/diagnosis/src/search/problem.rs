@@ -7,7 +7,7 @@ use crate::regression::fit::{Fit, Products};
 use crate::regression::table::Table;
 use crate::search::candidate::Candidate;
 use crate::search::physics::is_possible;
-use crate::thresholds::{KNOWN_DRIVE, TELLING_DRIVES, Thresholds};
+use crate::thresholds::{KNOWN_DRIVE, MOST_SELECTED, TELLING_DRIVES, Thresholds};
 
 mod exchange;
 mod exclusion;
@@ -15,9 +15,6 @@ mod growth;
 mod promise;
 
 pub use growth::Growth;
-
-/// The largest number of selected candidates.
-pub const MOST: usize = 60;
 
 /// Selected candidates with their fit.
 #[derive(Clone, Debug)]
@@ -97,7 +94,7 @@ impl Problem<'_> {
     fn misfit(&self, set: &[usize], fit: &Fit) -> f64 {
         set.iter()
             .map(|&c| &self.candidates[c])
-            .filter(|candidate| candidate.hypothesis.is_unit())
+            .filter(|candidate| candidate.hypothesis.spec().is_simulated)
             .map(|candidate| {
                 let coefficient = fit.coefficient(candidate.columns[0]).max(1e-3);
                 0.5 * (coefficient.ln() / self.thresholds.unit_spread).powi(2)
@@ -117,7 +114,7 @@ impl Problem<'_> {
         if self.is_unmodelled(candidate) {
             let is_friction = |c: &usize| {
                 let other = &self.candidates[*c];
-                other.joint == self.candidates[candidate].joint && other.hypothesis.is_friction()
+                other.joint == self.candidates[candidate].joint && other.hypothesis.spec().is_friction
             };
             for friction in (0..self.candidates.len()).filter(is_friction) {
                 if !set
@@ -139,7 +136,7 @@ impl Problem<'_> {
     /// Whether a member of `set` may be removed for its cost. Baseline friction may not be removed beside unmodelled forms.
     fn may_go(&self, set: &[usize], member: usize) -> bool {
         let this = &self.candidates[member];
-        !this.hypothesis.is_friction()
+        !this.hypothesis.spec().is_friction
             || !set
                 .iter()
                 .any(|&c| self.is_unmodelled(c) && self.candidates[c].joint == this.joint)
@@ -148,7 +145,7 @@ impl Problem<'_> {
     /// Whether an effect may be a part of the background. It then need not predict better than the background, but it costs
     /// less evidence.
     pub fn is_background_too(&self, candidate: &Candidate) -> bool {
-        self.products.has_background() && candidate.hypothesis.is_certain_in_form()
+        self.products.has_background() && candidate.hypothesis.spec().is_certain_in_form
     }
 
     /// Removes members that do not pay, or that are impossible, one by one.
@@ -176,7 +173,7 @@ impl Problem<'_> {
     /// Adds candidates of `allowed` that pay, then removes those that no longer do.
     pub fn forward(&self, mut selected: Selection, allowed: &[usize]) -> Selection {
         let mut growth = Growth::default();
-        while selected.set.len() < MOST {
+        while selected.set.len() < MOST_SELECTED {
             match self.grow(&selected, allowed, &mut growth) {
                 Some(next) => selected = self.reweighted(next),
                 None => break,
@@ -194,7 +191,7 @@ impl Problem<'_> {
         let is_contained = |plain: &Candidate| plain.columns.iter().all(|column| candidate.columns.contains(column));
         let is_plain = |&c: &usize| {
             let plain = &self.candidates[c];
-            Some(plain.hypothesis) == candidate.hypothesis.plain()
+            Some(plain.hypothesis) == candidate.hypothesis.generalises()
                 && plain.joint == candidate.joint
                 && (is_contained(plain) || onset(plain).is_some() == onset(candidate).is_some())
         };

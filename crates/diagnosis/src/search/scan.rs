@@ -168,27 +168,27 @@ fn samples(table: &Table, motions: &Motions, joint: usize, residual: &[f64], fit
 
 /// The number of successive entries of a [`spectrum`] that are computed by multiplication before sines and exponentials are
 /// evaluated again.
-const BETWEEN: usize = 32;
+const MULTIPLIED: usize = 32;
 
 /// The powers that ripples explain at `count` numbers of periods from `least` on, in steps of `step`, after a filter of a
 /// `width` (s). The gain e^(−a p²) at p = p₀ + j s follows from that at p₀ by the factors e^(−2 a p₀ s)ʲ and e^(−a s² j²),
 /// and the sine by a rotation.
 fn spectrum(samples: &[Sample], width: f64, least: f64, step: f64, count: usize) -> Vec<f64> {
-    let mut sums = vec![[[0.0; BETWEEN]; 5]; count.div_ceil(BETWEEN)];
-    let lanes = std::array::from_fn::<f64, BETWEEN, _>(|j| j as f64);
+    let mut sums = vec![[[0.0; MULTIPLIED]; 5]; count.div_ceil(MULTIPLIED)];
+    let lanes = std::array::from_fn::<f64, MULTIPLIED, _>(|j| j as f64);
     for sample in samples {
         let a = 0.5 * (width * sample.qd).powi(2);
         let turns = lanes.map(|j| (j * step * sample.q).sin_cos());
         let bend = lanes.map(|j| (-a * (step * j).powi(2)).exp());
         for (block, [ss, sc, cc, sr, cr]) in sums.iter_mut().enumerate() {
-            let from = least + step * (block * BETWEEN) as f64;
+            let from = least + step * (block * MULTIPLIED) as f64;
             let first = (-a * from * from).exp();
             if first < NOTHING {
                 break;
             }
             let (sine, cosine) = (from * sample.q).sin_cos();
             let slope = powers((-2.0 * a * from * step).exp());
-            for j in 0..BETWEEN {
+            for j in 0..MULTIPLIED {
                 let periods = from + step * lanes[j];
                 // The gain of the filter.
                 let gain = (1.0 + a * periods * periods) * (first * slope[j] * bend[j]);
@@ -204,7 +204,7 @@ fn spectrum(samples: &[Sample], width: f64, least: f64, step: f64, count: usize)
         }
     }
     let at = |k: usize| {
-        let [ss, sc, cc, sr, cr] = sums[k / BETWEEN].map(|sums| sums[k % BETWEEN]);
+        let [ss, sc, cc, sr, cr] = sums[k / MULTIPLIED].map(|sums| sums[k % MULTIPLIED]);
         explained_by_two(ss, sc, cc, sr, cr)
     };
     (0..count).map(at).collect()
@@ -214,13 +214,13 @@ fn spectrum(samples: &[Sample], width: f64, least: f64, step: f64, count: usize)
 const NOTHING: f64 = 1e-30;
 
 /// The powers of a number, from one on.
-fn powers(base: f64) -> [f64; BETWEEN] {
-    let mut powers = [1.0; BETWEEN];
+fn powers(base: f64) -> [f64; MULTIPLIED] {
+    let mut powers = [1.0; MULTIPLIED];
     for j in 1..4 {
         powers[j] = powers[j - 1] * base;
     }
     let fourth = powers[3] * base;
-    for j in 4..BETWEEN {
+    for j in 4..MULTIPLIED {
         powers[j] = powers[j - 4] * fourth;
     }
     powers

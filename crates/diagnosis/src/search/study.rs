@@ -85,13 +85,25 @@ pub struct Study {
 /// `terms` of a hypothesis that begins at `at` (s). The Coulomb level that a friction generalises was there before, and is not
 /// counted a second time.
 fn begun(hypothesis: Hypothesis, terms: &[Term], at: f64) -> Vec<Term> {
-    let generalises_friction = hypothesis.plain().is_some_and(Hypothesis::is_friction);
+    let generalises_friction = hypothesis
+        .generalises()
+        .is_some_and(|simpler| simpler.spec().is_friction);
     let was_there = |term: &Term| generalises_friction && term.is(&SIGN);
     let begun = |term: &Term| if was_there(term) { *term } else { term.since(at) };
     terms.iter().map(begun).collect()
 }
 
 impl Study {
+    /// A torque (N m or N) as a share of the typical torque of `joint`.
+    pub fn share(&self, joint: usize, torque: f64) -> f64 {
+        torque / self.scales.torque[joint].max(1e-300)
+    }
+
+    /// Whether a candidate acts at all times, and not from an onset on.
+    pub fn always_acts(&self, candidate: usize) -> bool {
+        self.terms(candidate).iter().all(|term| term.onset().is_none())
+    }
+
     /// The candidates that `options` allow, with their columns along `data`.
     pub fn new(data: Data, options: &Options) -> Self {
         Self::with(data, options, None)
@@ -166,7 +178,7 @@ impl Study {
             inertial: &measure::inertial(&motions, &rigid, &scales.torque),
         });
         if motions.cutoff < LEAST_FOR_DYNAMICS {
-            list.retain(|(hypothesis, ..)| !hypothesis.is_unit());
+            list.retain(|(hypothesis, ..)| !hypothesis.spec().is_simulated);
         }
         list.retain(|(hypothesis, joint, _)| {
             options.may_be(hypothesis.name(), joint.map(|joint| &arm.joints()[joint].name))
@@ -175,7 +187,7 @@ impl Study {
             // Every named effect may have begun after the recordings from before.
             let new: Vec<_> = list
                 .iter()
-                .filter(|(hypothesis, ..)| hypothesis.name().is_some() && !hypothesis.is_unit())
+                .filter(|(hypothesis, ..)| hypothesis.name().is_some() && !hypothesis.spec().is_simulated)
                 .map(|(hypothesis, joint, terms)| (*hypothesis, *joint, begun(*hypothesis, terms, at)))
                 .collect();
             list.extend(new);

@@ -11,12 +11,8 @@ use crate::data::statistics::{NORMAL_95, quantile};
 use crate::search::problem::Selection;
 use crate::search::refine::{sizes, varied};
 use crate::search::study::Study;
-use crate::thresholds::{BLOCK, INFLATION, INFLATION_IN_DRIVES, NEARLY_AS_LIKELY, UNEVEN};
+use crate::thresholds::{BLOCK, DRAWS, INFLATION, INFLATION_IN_DRIVES, MOST_BLOCKS, NEARLY_AS_LIKELY, UNEVEN};
 
-/// The number of resamplings.
-const DRAWS: usize = 120;
-/// The largest number of blocks.
-const MOST_BLOCKS: usize = 80;
 /// The relative step of a derivative by a size.
 const STEP: f64 = 0.02;
 

@@ -22,7 +22,7 @@ const NEGLIGIBLE: f64 = 1e-6;
 pub fn names(study: &Study, candidate: usize) -> Option<usize> {
     let hypothesis = study.candidates[candidate].hypothesis;
     let is_constant = hypothesis.is(&TorqueOffset) || hypothesis.is(&FrictionAsymmetry);
-    let always = study.terms(candidate).iter().all(|term| term.onset().is_none());
+    let always = study.always_acts(candidate);
     study.candidates[candidate].joint.filter(|_| is_constant && always)
 }
 
@@ -79,12 +79,12 @@ pub fn corrections(study: &Study, selected: &Selection, resampled: &Resampled) -
     study.arm.joints().iter().enumerate().filter_map(of).collect()
 }
 
-/// Those that are large enough to be told.
-pub fn told(study: &Study, corrections: &BTreeMap<String, Parameter>) -> BTreeMap<String, Parameter> {
+/// The `corrections` that are large enough to be reported.
+pub fn reported(study: &Study, corrections: &BTreeMap<String, Parameter>) -> BTreeMap<String, Parameter> {
     let of = |(joint, described): (usize, &Joint)| {
         let offset = corrections.get(&described.name)?;
-        let is_told = offset.value.abs() >= LEAST_FINAL_SHARE * study.scales.torque[joint];
-        is_told.then(|| (described.name.clone(), *offset))
+        let is_reported = offset.value.abs() >= LEAST_FINAL_SHARE * study.scales.torque[joint];
+        is_reported.then(|| (described.name.clone(), *offset))
     };
     study.arm.joints().iter().enumerate().filter_map(of).collect()
 }

@@ -139,17 +139,18 @@ fn prove(study: &mut Study, judged: &mut Judged) {
 
 /// Removes the effects on joints whose torque is predicted worse than by a constant: such a channel measures something else.
 fn give_up(study: &Study, judged: &mut Judged) {
-    let left: Vec<JointFit> = (0..study.motions.dof)
+    let fits: Vec<JointFit> = (0..study.motions.dof)
         .map(|joint| errors(study, joint, &augmented(study, &judged.named, joint)))
         .collect();
     let is_hopeless = |joint: usize| {
-        let fit = &left[joint];
+        let fit = &fits[joint];
         fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented) > HOPELESS
     };
     // Friction that explains a part of the training recordings is present in any case.
     let stays = |&candidate: &usize| {
         let candidate = &study.candidates[candidate];
-        let explains = |joint: usize| candidate.hypothesis.is_friction() && left[joint].train_nrmse_augmented < PARTLY;
+        let explains =
+            |joint: usize| candidate.hypothesis.spec().is_friction && fits[joint].train_nrmse_augmented < PARTLY;
         !candidate
             .joint
             .is_some_and(|joint| is_hopeless(joint) && !explains(joint))
@@ -219,13 +220,16 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
     members.sort_by(|a, b| a.evidence.total_cmp(&b.evidence));
     let mut rule = |member: &judge::Member| {
         let hypothesis = study.candidates[member.candidate].hypothesis;
-        if !hypothesis.is_baseline() && !hypothesis.is_passing() && member.share() < LEAST_FINAL_SHARE {
+        if !hypothesis.spec().is_baseline
+            && !hypothesis.spec().may_be_in_one_recording
+            && member.share() < LEAST_FINAL_SHARE
+        {
             return Some(("too small in the final fit", false));
         }
         // A payload or a factor on the inertial parameters improves the fit whenever the inertial parameters are wrong in any way.
-        let is_small = !hypothesis.is_friction() && member.share() < LEAST_UNDECIDED;
+        let is_small = !hypothesis.spec().is_friction && member.share() < LEAST_UNDECIDED;
         let margin = || standing(study, &study.problem(&products), &judged.named, member.candidate).margin_over_single;
-        if (is_small || hypothesis.is_wrong_mass() || hypothesis.is(&TorqueScale)) && margin() < UNDECIDED_NATS {
+        if (is_small || hypothesis.spec().is_wrong_mass || hypothesis.is(&TorqueScale)) && margin() < UNDECIDED_NATS {
             return Some(("another effect explains nearly as much in its place", false));
         }
         // If most links agree with the URDF, one wrong link is an unlikely explanation.
@@ -258,10 +262,10 @@ fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Membe
         let fit = errors(study, joint, &augmented(study, &judged.named, joint));
         // Unmodelled forms may represent parts of named effects. Therefore the residual of the named effects alone is compared.
         let has_forms = judged.unmodelled.iter().any(|member| member.shares[joint] > 0.0);
-        let left = structured(&fit)
+        let residuals = structured(&fit)
             .into_iter()
             .chain(has_forms.then_some(fit.train_nrmse_augmented));
-        factor * left.fold(0.0, f64::max) > member.shares[joint]
+        factor * residuals.fold(0.0, f64::max) > member.shares[joint]
     };
     match candidate.joint {
         Some(joint) => is_part(joint),
@@ -349,16 +353,13 @@ fn better_outside(study: &Study, selected: &Selection) -> Option<(Strengths, Sel
         };
         (0..study.motions.dof).filter_map(of).sum::<f64>()
     };
-    let weaker = study.strengths.weaker().into_iter();
-    let trials = weaker
-        .filter(|strengths| study.stated.allows(strengths))
-        .map(|strengths| {
-            let products = study.products_at(&strengths);
-            let next = study
-                .problem(&products)
-                .choose(selected.set.clone(), &selected.fit.weights);
-            (loss(&next), strengths, next)
-        });
+    let trials = study.stated.weaker(&study.strengths).map(|strengths| {
+        let products = study.products_at(&strengths);
+        let next = study
+            .problem(&products)
+            .choose(selected.set.clone(), &selected.fit.weights);
+        (loss(&next), strengths, next)
+    });
     let (best, strengths, next) = trials.min_by(|a, b| a.0.total_cmp(&b.0))?;
     (best < loss(selected)).then_some((strengths, next))
 }

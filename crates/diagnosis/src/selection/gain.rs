@@ -65,7 +65,7 @@ pub fn held_out_gain(
     // worse without them. In a refit, the inertial parameters may change by more than the friction of a joint with a large
     // load.
     let hypothesis = study.candidates[member.candidate].hypothesis;
-    if hypothesis.is_friction() || hypothesis.is_drive_inertia() && member.evidence >= CLEAR_DRIVE {
+    if hypothesis.spec().is_friction || hypothesis.is_drive_inertia() && member.evidence >= CLEAR_DRIVE {
         let of_others = |column: &usize| !study.candidates[member.candidate].columns.contains(column);
         let (columns, values): (Vec<usize>, Vec<f64>) = fit
             .columns

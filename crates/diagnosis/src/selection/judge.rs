@@ -97,10 +97,10 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
         // is much larger than the residual of the named effects there, because unmodelled forms also represent constants.
         let candidates = &study.candidates;
         let simple: Vec<usize> = (0..candidates.len())
-            .filter(|&c| candidates[c].hypothesis.is_simple())
+            .filter(|&c| candidates[c].hypothesis.spec().is_baseline_or_constant)
             .collect();
         let with_all = problem.forward(kept.clone(), &simple);
-        let left: Vec<Option<usize>> = beside(study, &problem, &with_all, &unmodelled)
+        let with_forms: Vec<Option<usize>> = beside(study, &problem, &with_all, &unmodelled)
             .iter()
             .map(|member| candidates[member.candidate].joint)
             .collect();
@@ -112,7 +112,9 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
         };
         let mut allowed = simple;
         allowed.retain(|&c| {
-            candidates[c].hypothesis.is_baseline() || !left.contains(&candidates[c].joint) || exceeds_the_rest(c)
+            candidates[c].hypothesis.spec().is_baseline
+                || !with_forms.contains(&candidates[c].joint)
+                || exceeds_the_rest(c)
         });
         let next = problem.forward(kept.clone(), &allowed);
         study.note("replaces unmodelled forms", &kept, &next);
@@ -254,17 +256,17 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             .max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b]))
             .unwrap_or(0);
         if !is_named(member) {
-            let named = largest(&|m| is_named(m) && !hypothesis(m).is_baseline(), at);
+            let named = largest(&|m| is_named(m) && !hypothesis(m).spec().is_baseline, at);
             return share < study.thresholds.least_unmodelled_share
                 || member.evidence < study.thresholds.least_unmodelled_evidence
                 || share < study.thresholds.beside_a_larger * named;
         }
         let unmodelled = largest(&|m| !is_named(m), at);
-        if hypothesis(member).is_baseline() {
+        if hypothesis(member).spec().is_baseline {
             // If the unmodelled forms on the joint are larger, a rotor inertia may be a part of what they represent.
             return hypothesis(member).is_drive_inertia() && share < unmodelled.max(LEAST_DRIVE);
         }
-        let needed = match hypothesis(member).plain() {
+        let needed = match hypothesis(member).generalises() {
             Some(_) if study.strengths.friction == 0.0 => OF_BEYOND * study.thresholds.least_beyond,
             Some(_) => study.thresholds.least_beyond,
             None => study.thresholds.least_evidence,
@@ -274,8 +276,9 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             let others = |certain: bool| {
                 let is_other = |m: &Member| {
                     let hypothesis = hypothesis(m);
-                    let is_known =
-                        is_named(m) && !hypothesis.is_baseline() && hypothesis.is_certain_in_form() == certain;
+                    let is_known = is_named(m)
+                        && !hypothesis.spec().is_baseline
+                        && hypothesis.spec().is_certain_in_form == certain;
                     m.candidate != member.candidate && is_known
                 };
                 largest(&is_other, joint)
@@ -295,7 +298,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
                 && share >= study.thresholds.beside_unmodelled * largest(&|m| !is_named(m), joint)
         };
         member.evidence < needed
-            || member.beyond < hypothesis(member).spec().least_beyond_plain
+            || member.beyond < hypothesis(member).spec().least_beyond_simpler
             || !(0..dof).any(stands_out)
     };
     (0..members.len())

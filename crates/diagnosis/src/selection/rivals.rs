@@ -8,14 +8,7 @@ use rayon::prelude::*;
 use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::problem::{Problem, Selection};
 use crate::search::study::Study;
-use crate::thresholds::{MARGIN_SCALE, NEARLY, NEARLY_NATS, SUREST};
-
-/// The number of the most promising alternatives that are fitted in full.
-const TRIED: usize = 8;
-
-/// The number of effects that explain too little alone and are tried in pairs, and the number of partners of each.
-const PAIRED: usize = 3;
-const PARTNERS: usize = 2;
+use crate::thresholds::{MARGIN_SCALE, NEARLY, NEARLY_NATS, PAIRED_RIVALS, PARTNERS, SUREST, TRIED_RIVALS};
 
 /// An effect and its joint; `None` is the whole arm.
 pub type Named = (Hypothesis, Option<usize>);
@@ -29,7 +22,7 @@ pub struct Standing {
     pub pairs: Vec<[Named; 2]>,
     /// The evidence for the finding against its best alternative (nats).
     pub margin: f64,
-    /// The same without the alternative of one effect on each joint, which is less likely than a common cause.
+    /// The margin without the alternative of one effect on each joint, which is less likely than one effect on the whole arm.
     pub margin_over_single: f64,
     /// The inertial parameters of a link, or of all (`None`), if a stronger background without the finding is as likely by its
     /// score, although it explains less. The probability of the name is then one half.
@@ -63,7 +56,7 @@ pub fn beside(study: &Study, selected: &Selection, member: usize) -> Vec<usize> 
     // An effect that generalises a simpler one competes with that simpler effect plus another effect.
     let plain = (0..study.candidates.len()).find(|&c| {
         let plain = &study.candidates[c];
-        Some(plain.hypothesis) == finding.hypothesis.plain()
+        Some(plain.hypothesis) == finding.hypothesis.generalises()
             && plain.joint == finding.joint
             && finding.columns.len() > 1
             && finding.columns.contains(&plain.columns[0])
@@ -108,7 +101,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
         // A candidate with all of the finding's columns and more is a finer form of it, not another hypothesis.
         let finer = finding.columns.iter().all(|column| other.columns.contains(column));
         // The inertia of a body acts on all joints before it: a wrong mass of one link resembles one of its neighbour.
-        let are_links = finding.hypothesis.kind == other.hypothesis.kind && finding.hypothesis.is_wrong_mass();
+        let are_links = finding.hypothesis.kind == other.hypothesis.kind && finding.hypothesis.spec().is_wrong_mass;
         !same_name
             && !finer
             && other.hypothesis.name().is_some()
@@ -131,7 +124,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
         if tried.iter().find(same).is_none() {
             tried.push(c);
         }
-        if tried.len() == TRIED {
+        if tried.len() == TRIED_RIVALS {
             break;
         }
     }
@@ -163,7 +156,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
     let alias = alias(study, selected, member, &set);
     // If an offset is constant from the beginning, its size relative to the friction is that of few asymmetries. What has changed
     // while the friction was the same may be either, and so may an asymmetry: it has the size of both.
-    let sets_in = || study.terms(member).iter().any(|term| term.onset().is_some());
+    let sets_in = || !study.always_acts(member);
     let equally_likely = alias.filter(|_| finding.hypothesis.is(&FrictionAsymmetry) || sets_in());
     results.extend(equally_likely.map(|(hypothesis, joint)| (0.0, 0.0, hypothesis, joint)));
     let mut as_likely = None;
@@ -202,7 +195,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
         allowance,
         rivals: &rivals,
     };
-    let pairs = if finding.hypothesis.is_baseline() {
+    let pairs = if finding.hypothesis.spec().is_baseline {
         Vec::new()
     } else {
         found.pairs(alone, &others)
@@ -270,7 +263,7 @@ impl Paired<'_> {
         alone.retain(|(c, _)| !self.rivals.contains(&self.named(*c)));
         alone.sort_by(|a, b| a.1.fit.loss.total_cmp(&b.1.fit.loss).then(a.0.cmp(&b.0)));
         let mut pairs: Vec<(f64, f64, [Named; 2])> = Vec::new();
-        for (one, next) in alone.into_iter().take(PAIRED) {
+        for (one, next) in alone.into_iter().take(PAIRED_RIVALS) {
             let is_partner = |c: &usize| {
                 let named = self.named(*c);
                 named != self.named(one) && !self.rivals.contains(&named) && !self.problem.exclude(one, *c)

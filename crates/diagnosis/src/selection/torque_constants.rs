@@ -7,7 +7,7 @@ use crate::search::study::Study;
 use crate::selection::bootstrap::resample;
 use crate::selection::constant_torques;
 use crate::selection::judge::{self, Judged};
-use crate::thresholds::{LEAST_TORQUE_ACCURACY, MOST_USUAL, SYSTEMATIC, TOLERANCE};
+use crate::thresholds::{CONSTANT_TOLERANCE, LEAST_ALIKE, LEAST_TORQUE_ACCURACY, MOST_USUAL, SYSTEMATIC};
 
 /// The relative standard deviation of the torque constants: the stated one, or the one that the recordings require beside the effects of
 /// `set`.
@@ -25,7 +25,7 @@ pub fn accuracy(study: &Study, set: &[usize]) -> f64 {
 /// The joint whose torque constant a candidate names, for all times.
 fn names(study: &Study, candidate: usize) -> Option<usize> {
     let is_scale = study.candidates[candidate].hypothesis.is(&TorqueScale);
-    let always = study.terms(candidate).iter().all(|term| term.onset().is_none());
+    let always = study.always_acts(candidate);
     study.candidates[candidate].joint.filter(|_| is_scale && always)
 }
 
@@ -74,7 +74,8 @@ pub fn note_on_unnamed(study: &Study, selected: &Selection) -> Option<String> {
     (!factors.is_empty()).then(|| {
         format!(
             "the errors contain corrections of the torques that no finding names: {}. Wrong torque constants, or wrong masses, \
-             would explain them; these recordings do not tell which. A recording with a known load on the tool would",
+             would explain them; these recordings do not distinguish the two. Record the arm with a known load on the tool to \
+             distinguish them",
             factors.join(", ")
         )
     })
@@ -87,7 +88,7 @@ fn farthest(study: &Study, judged: &Judged, tried: &[usize]) -> Option<(usize, u
     if study.strengths.gain == 0.0 {
         return None;
     }
-    let least = TOLERANCE * accuracy(study, &judged.named.set);
+    let least = CONSTANT_TOLERANCE * accuracy(study, &judged.named.set);
     let allowed = study.allowed();
     let deviation = |joint: usize| {
         if study.strengths.impossible_constants.contains(&joint) {
@@ -119,7 +120,7 @@ fn are_alike(deviations: &[f64], least: f64) -> bool {
             .count()
     };
     let most = count(1.0).max(count(-1.0));
-    most > 1 && 2 * most > deviations.len()
+    most >= LEAST_ALIKE && 2 * most > deviations.len()
 }
 
 /// Whether the interval of a torque scale of `selected` excludes one.

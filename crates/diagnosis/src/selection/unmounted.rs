@@ -24,7 +24,7 @@ pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
         return None;
     }
     let whole = |&c: &usize| is_payload(c) && study.candidates[c].columns.len() == PER_LINK;
-    let always = |&c: &usize| study.terms(c).iter().all(|term| term.onset().is_none());
+    let always = |&c: &usize| study.always_acts(c);
     let body = (0..study.candidates.len()).filter(whole).find(always)?;
     let (strengths, next) = instead(study, &judged.named, body)?;
     let before = std::mem::replace(&mut study.strengths, strengths);
@@ -75,9 +75,9 @@ fn instead(study: &Study, selected: &Selection, body: usize) -> Option<(Strength
     if bare.score - alone.score < NEARLY_ALL * explained {
         return None;
     }
-    let weaker = study.strengths.weaker().into_iter();
-    let fitted = weaker
-        .filter(|strengths| study.stated.allows(strengths))
+    let fitted = study
+        .stated
+        .weaker(&study.strengths)
         .map(|strengths| (fit(&strengths, &with), strengths));
     let ((next, _), strengths) = fitted
         .filter(|((next, is_possible), _)| {
@@ -88,9 +88,7 @@ fn instead(study: &Study, selected: &Selection, body: usize) -> Option<(Strength
         return None;
     }
     if let Some(held) = study.held_products() {
-        let loss = |selected: &Selection| {
-            held.loss(&held.rss(&study.table, &selected.fit.columns, &selected.fit.coefficients))
-        };
+        let loss = |selected: &Selection| held.loss_of(&study.table, &selected.fit);
         if loss(&next) - loss(selected) > allowance(loss(&bare) - loss(selected)) {
             return None;
         }

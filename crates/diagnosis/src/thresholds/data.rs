@@ -6,7 +6,8 @@ pub const CUTOFF: f64 = 12.0;
 pub const CUTOFF_PERIODS: f64 = 22.0;
 /// The highest cut-off, for a quick motion (Hz).
 pub const HIGHEST_CUTOFF: f64 = 40.0;
-/// The largest cut-off as a share of the sampling rate. Source: there, the kernel's width is one sample.
+/// The largest cut-off as a share of the sampling rate. Source: at this cut-off, the kernel's width is one
+/// sample.
 pub const LARGEST_CUTOFF: f64 = 0.235;
 /// A recording must be this multiple of the kernel's width long, in one piece. Source: the reach of both filters, and ten rows.
 pub const LEAST_WIDTHS: f64 = 16.0;
@@ -62,3 +63,35 @@ pub const RESTING_REACH: f64 = 3.0;
 pub const RESTING: f64 = 0.7;
 /// A recording moves a joint that exceeds this multiple of the velocity deadband in it.
 pub const MOVED: f64 = 4.0;
+/// The total duration of the recordings of a role (training, held out) up to which they are used whole (s).
+pub const MOST_SECONDS: f64 = 900.0;
+/// The total duration that is used of longer recordings (s). More would make the search slower, and the intervals narrower
+/// than justified, because the errors of the catalogue's formulae do not decrease with more samples.
+pub const LONG_SECONDS: f64 = 240.0;
+/// The length of a window, if the recording allows (s).
+pub const USED_WINDOW: f64 = 20.0;
+/// The length below which a window gives little after the filters (s).
+pub const SHORTEST_WINDOW: f64 = 2.0;
+/// The duration of one recording that is sufficient to hold in memory (s), as evenly spread windows. At least half of it is
+/// held of a longer recording.
+pub const WORTH_HOLDING: f64 = 1000.0;
+/// A recording is short beside others that are at least this many times as long.
+pub const SHORT_BESIDE: f64 = 4.0;
+/// Rows per period of the cut-off.
+pub const ROWS_PER_PERIOD: f64 = 2.5;
+/// The largest number of rows; if there are more, rows are dropped evenly.
+pub const MOST_ROWS: f64 = 12_000.0;
+/// The least number of bins of a spectrum in the band of the noise; a stretch with fewer does not show the noise.
+pub const LEAST_NOISE_BINS: usize = 16;
+/// The largest number of samples for which a logger holds a value.
+pub const LONGEST_HOLD: usize = 20;
+/// The number of changes of a value that show whether it is held.
+pub const LEAST_CHANGES: usize = 20;
+/// For the test of channels, positions are compared over this many samples on either side.
+pub const CHANNEL_STEP: usize = 5;
+/// The number of stretches of the cross-validation in the test of channels.
+pub const CHANNEL_FOLDS: usize = 5;
+/// The quantiles of the magnitudes of a torque channel that are tried as the drive's limit.
+pub const CHANNEL_LIMITS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
+/// In the test of channels, the number of columns of a load on the tool: its mass and first moments.
+pub const CHANNEL_LOADS: usize = 4;

@@ -89,3 +89,23 @@ pub const LEAST_OF_RECORDING: f64 = 0.5;
 pub const LEAST_OF_RESIDUAL: f64 = 0.1;
 /// The least difference of two loads (kg).
 pub const LEAST_LOAD: f64 = 0.02;
+/// The rows of a regression between two sensors are this part of a period of the cut-off apart.
+pub const SENSOR_SPACING: f64 = 0.4;
+/// The number of bins of an axis of state.
+pub const REGION_BINS: usize = 6;
+/// A stretch of time with fewer rows is not reported.
+pub const LEAST_WINDOW_ROWS: usize = 5;
+/// The largest number of stretches of time that are reported on a joint.
+pub const MOST_WINDOWS: usize = 3;
+/// Loads and accelerations are the same within [`SAME_MOTION`] times this multiple of their typical values.
+pub const SAME_LOAD: f64 = 4.0;
+/// The part of the residual that repeats is known from this many pairs of rows with the same motion in two recordings.
+pub const LEAST_PAIRS: usize = 30;
+/// The largest number of transients that are searched.
+pub const SEARCHED_TRANSIENTS: usize = 12;
+/// The least length of the stretches whose residuals are compared with a transient (rows). A joint must move on half of them.
+pub const STRETCH_ROWS: usize = 3;
+/// The resolution at which the start of a contact is found (s), given as its interval.
+pub const CONTACT_START: f64 = 0.1;
+/// The resolution at which the duration of a contact is found (s), given as its interval.
+pub const CONTACT_DURATION: f64 = 0.2;

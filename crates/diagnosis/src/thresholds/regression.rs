@@ -21,12 +21,14 @@ pub const LEAST_TORQUE_ACCURACY: f64 = 0.015;
 /// The deviation of a torque constant in the background from which it is an effect, in standard deviations of such
 /// constants. Source: 96 simulated cases, in which all deviations from 1.5 on were true, and those beyond 2.5 were injected
 /// faults.
-pub const TOLERANCE: f64 = 2.5;
-/// The largest deviation of a torque constant in the background: a larger one is an effect, or stands for one.
+pub const CONSTANT_TOLERANCE: f64 = 2.5;
+/// The largest deviation of a torque constant in the background: a larger one is reported as an effect of its own, or as a
+/// wrong torque constant.
 pub const MOST_CONSTANT: f64 = 0.2;
-/// The same in standard deviations of the torque constants, where the user states a larger one.
+/// The largest deviation of a torque constant in the background in standard deviations, where the user states an accuracy of
+/// which this is more than [`MOST_CONSTANT`].
 pub const MOST_DEVIATIONS: f64 = 4.0;
-/// The deviation of a torque constant in the background, in standard deviations, beyond which a note tells of it.
+/// The deviation of a torque constant in the background, in standard deviations, beyond which a note reports it.
 pub const MOST_USUAL: f64 = 2.0;
 /// The evidence that a part of the background must bring (nats).
 pub const PER_BACKGROUND_PART: f64 = 4.0;
@@ -82,3 +84,8 @@ pub const OF_ARM: f64 = 0.3;
 /// this above (nats); intervals then hold those of both backgrounds. Source: a simulated arm whose links are all wrong by 3 %, where
 /// the difference is 13.
 pub const NEARLY_AS_LIKELY: f64 = 15.0;
+/// A correction of the columns that has less evidence than another one by this much (nats), beside the background of the other one,
+/// is not fitted further.
+pub const FAR_LESS: f64 = 200.0;
+/// Above the largest strength that is tried for the links, the interval of their error ends at this multiple of it.
+pub const BEYOND_STRONGEST: f64 = 2.0;

@@ -38,3 +38,28 @@ pub const TELLING_DRIVES: usize = 2;
 pub const KNOWN_DRIVE: f64 = 3.0;
 /// The gain that an exchange of a candidate for another must bring (nats).
 pub const SWAP_GAIN: f64 = 0.5;
+/// In the search for another load of some recordings, the least standard deviation of a residual, as a part of that of the
+/// joint's torque.
+pub const LOAD_FLOOR: f64 = 0.01;
+/// In the search for another load, the least effective number of rows from which a variance is estimated; with fewer, the joint
+/// says nothing about a load.
+pub const LEAST_LOAD_ROWS: f64 = 5.0;
+/// The largest distance of a load's mass from the last link's frame that its moments of inertia suggest (m).
+pub const LOAD_SIZE: f64 = 0.2;
+/// The precision of such a load's parameters before the recordings are read: 10 kg and 10 kg m.
+pub const LOAD_PRECISION: f64 = 0.01;
+/// The largest number of selected candidates.
+pub const MOST_SELECTED: usize = 60;
+/// The largest number of rounds of suggestion.
+pub const MOST_SUGGESTIONS: usize = 3;
+/// The largest number of rounds of refinement.
+pub const MOST_REFINEMENTS: usize = 2;
+/// The largest number of consecutive swaps.
+pub const MOST_SWAPS: usize = 4;
+/// The largest number of last additions.
+pub const MOST_LAST: usize = 3;
+/// The number of last joints on which the torque of a payload must show. There are two, because the axis of one may go
+/// through its centre of mass.
+pub const PAYLOAD_JOINTS: usize = 2;
+/// The number of times that the prior of the links is expanded about the fitted bodies.
+pub const MOST_BODIES: usize = 2;

@@ -64,3 +64,17 @@ pub const NEARLY_ALL: f64 = 0.7;
 /// The least mass of a missing tool, as a part of the last link's mass in the URDF with its tool. A URDF may be wrong by
 /// less without a missing tool.
 pub const LEAST_OF_THE_LINK: f64 = 0.3;
+/// The number of the most promising alternatives that are fitted in full.
+pub const TRIED_RIVALS: usize = 8;
+/// The number of effects that explain too little alone and are tried in pairs.
+pub const PAIRED_RIVALS: usize = 3;
+/// The number of partners with which each of them is tried. Source: on 15 hard and 8 lifelike cases, pairs cost 3 % of the time, and
+/// four are listed.
+pub const PARTNERS: usize = 2;
+/// The number of resamplings of an interval.
+pub const DRAWS: usize = 120;
+/// The largest number of blocks of a resampling.
+pub const MOST_BLOCKS: usize = 80;
+/// The least number of torque constants, more than half of all, that deviate alike if they have one common cause and are not named
+/// one by one.
+pub const LEAST_ALIKE: usize = 2;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use effects::{CATALOGUE, Spec};
 
 /// The phases in order, with the files of their thresholds.
-const FILES: [(&str, &str); 6] = [
+const FILES: [(&str, &str); 7] = [
     (
         "The most decisive ones, which can be varied",
         include_str!("../thresholds.rs"),
@@ -15,8 +15,9 @@ const FILES: [(&str, &str); 6] = [
     ("Data", include_str!("data.rs")),
     ("Regression", include_str!("regression.rs")),
     ("Search", include_str!("search.rs")),
-    ("Judged", include_str!("selection.rs")),
+    ("Selection", include_str!("selection.rs")),
     ("Findings", include_str!("findings.rs")),
+    ("Next experiment", include_str!("next.rs")),
 ];
 
 /// The rows of a file: each constant or field that has a value, below its doc comment; `file` is put before its name.
@@ -50,10 +51,10 @@ fn rows(file: &str, source: &str) -> String {
 fn relations() -> String {
     let row = |spec: &Spec| {
         let mut relations: Vec<String> = Vec::new();
-        if let (Some(plain), true) = (spec.plain, spec.least_beyond_plain > 0.0) {
+        if let (Some(plain), true) = (spec.generalises, spec.least_beyond_simpler > 0.0) {
             relations.push(format!(
                 "explains {} of the torque beyond `{plain}`",
-                spec.least_beyond_plain
+                spec.least_beyond_simpler
             ));
         }
         relations.extend(
@@ -77,6 +78,12 @@ fn relations() -> String {
     CATALOGUE.iter().map(|kind| row(kind.spec())).collect()
 }
 
+/// The thresholds of the checks of recordings, from their file in `study`.
+fn of_the_checks() -> String {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../study/src/check/thresholds.rs");
+    rows("", &std::fs::read_to_string(path).expect("text"))
+}
+
 /// The limits of the effects, from their files.
 fn limits() -> String {
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("../effects/src");
@@ -87,7 +94,10 @@ fn limits() -> String {
         files
     };
     let folders = ["friction", "drive", "sensor", "arm", "joint", "unmodelled"];
-    let files = folders.into_iter().flat_map(files).chain([sources.join("fitted.rs")]);
+    let files = folders
+        .into_iter()
+        .flat_map(files)
+        .chain(["fitted.rs", "background.rs", "spec.rs"].map(|file| sources.join(file)));
     let rows = files.map(|path| {
         let file = path.strip_prefix(&sources).expect("it is below").display().to_string();
         rows(&format!("{file}: "), &std::fs::read_to_string(&path).expect("text"))
@@ -104,7 +114,10 @@ fn the_page_lists_every_threshold_with_its_value() {
         .split_once("<!-- begin -->\n")
         .expect("the page says where the tables begin");
     let (_, tail) = rest.split_once("<!-- end -->").expect("the page says where they end");
-    let mut tables = String::new();
+    let mut tables = format!(
+        "\n## Checks of recordings against the URDF\n\n| threshold | value | decides |\n|---|---|---|\n{}",
+        of_the_checks()
+    );
     for (phase, source) in FILES {
         let table = rows("", source);
         assert!(!table.is_empty(), "{phase}");

@@ -180,3 +180,23 @@ pub fn sentences(diagnosis: &Diagnosis) -> Vec<&str> {
         .map(|finding| finding.sentence.as_str())
         .collect()
 }
+
+/// Two errors (NRMSE) count as equal if they differ by less, because the fit takes the sign of a velocity near a reversal
+/// from the filtered motion, and the exported law from each sample.
+const SAME_ERROR: f64 = 0.002;
+
+/// Checks that the error with the exported effects as known effects (`again`) is the reported one to within a `part` of it, because
+/// exported laws are the fitted ones. Effects that depend on the past of the motion are simulated instead of subtracted.
+pub fn exports_what_it_reports(diagnosis: &Diagnosis, again: &Diagnosis, part: f64) {
+    if diagnosis.effects.iter().any(|effect| effect.spec().is_simulated) {
+        return;
+    }
+    for (joint, fit) in &diagnosis.report.fit {
+        let exported = again.report.fit[joint].held_out_nrmse_nominal.expect("it is moved");
+        let reported = fit.held_out_nrmse_exported.expect("it is moved");
+        assert!(
+            (exported - reported).abs() < SAME_ERROR.max(part * reported),
+            "{joint}: {exported} with the exported effects, {reported} reported"
+        );
+    }
+}

@@ -17,7 +17,7 @@ static SPEC: Spec = Spec {
     name: "external_contact",
     title: "external contact",
     meaning: "a temporary external force on the arm (contact with a person or an object, a collision)",
-    told_by: "the same motion repeated without contact",
+    distinguished_by: "the same motion repeated without contact",
     formula: "a force on the tool for a limited time",
     sentence: "a force of {force} on the tool for {duration}, from {start} on",
     scope: Scope::Arm,
@@ -31,7 +31,7 @@ static SPEC: Spec = Spec {
     main: &["force"],
     may_repeat: true,
     prior: 8.0,
-    is_passing: true,
+    may_be_in_one_recording: true,
     is_suggested: true,
     against: Against::Time,
     experiment: Some(Experiment {

@@ -12,7 +12,7 @@ static SPEC: Spec = Spec {
     name: "inertial_parameters",
     title: "inertial parameters",
     meaning: "masses, centres of mass and moments of inertia that differ from the URDF's in no particular way",
-    told_by: "a link weighed and balanced on an edge, or a motion that loads it in other poses",
+    distinguished_by: "a link weighed and balanced on an edge, or a motion that loads it in other poses",
     formula: "another mass, centre of mass and tensor of the link behind the joint",
     sentence: "link mass of {mass} with its centre of mass at ({com_x}, {com_y}, {com_z})",
     parameters: &[

@@ -13,7 +13,7 @@ static SPEC: Spec = Spec {
     name: "inertial_scale",
     title: "inertial scale",
     meaning: "all masses and inertias are a constant multiple of the model's",
-    told_by: "a known payload: a torque scale changes its apparent mass, an inertial scale does not",
+    distinguished_by: "a known payload: a torque scale changes its apparent mass, an inertial scale does not",
     formula: "all masses and inertias × k",
     sentence: "masses and inertias of {factor} times the model's",
     scope: Scope::Arm,

@@ -13,7 +13,7 @@ static SPEC: Spec = Spec {
     name: "link_inertial_error",
     title: "link inertia error",
     meaning: "a link's mass or inertia differs from the model's",
-    told_by: "more postures, and faster motions of the neighbouring joints",
+    distinguished_by: "more postures, and faster motions of the neighbouring joints",
     formula: "mass and inertia of the link behind the joint × (1 + relative)",
     sentence: "a link whose mass and inertia differ from the model's by {relative%} %",
     parameters: &[Parameter::new("relative", Quantity::Ratio)

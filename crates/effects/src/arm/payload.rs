@@ -16,7 +16,7 @@ static SPEC: Spec = Spec {
     name: "payload",
     title: "payload",
     meaning: "a body at the tool that the model does not contain",
-    told_by: "the same motion with and without the load on the tool",
+    distinguished_by: "the same motion with and without the load on the tool",
     formula: "a body on the tool",
     sentence: "a payload of {mass} at the tool",
     scope: Scope::Arm,

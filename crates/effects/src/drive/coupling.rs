@@ -18,7 +18,7 @@ static SPEC: Spec = Spec {
     name: "transmission_coupling",
     title: "transmission coupling",
     meaning: "the motion of another joint turns the drive of this joint (geared wrist)",
-    told_by: "motions of each of the two joints alone",
+    distinguished_by: "motions of each of the two joints alone",
     formula: "the drive of each of two joints also turns with the other joint, so that the effect acts on both; tested for \
               joints that are neighbours or have one joint between them",
     sentence: "a drive that also turns with {other}, with a viscous friction of {viscous} and an inertia of {inertia}",

@@ -19,7 +19,7 @@ static SPEC: Spec = Spec {
     name: "actuation_delay",
     title: "actuation delay",
     meaning: "the torque is applied later than it is commanded",
-    told_by: "sinusoidal motions at several frequencies",
+    distinguished_by: "sinusoidal motions at several frequencies",
     formula: "applied(t) = commanded(t − T)",
     sentence: "a delay of {delay} between commanded and applied torque",
     parameters: &[Parameter::new("delay", Quantity::Time).within(Range::NotNegative)],

@@ -17,7 +17,7 @@ static SPEC: Spec = Spec {
     name: "joint_elasticity",
     title: "joint elasticity",
     meaning: "the drive moves the link through an elastic transmission (belt, harmonic drive)",
-    told_by: "a second encoder on the link, or a resonance that changes with the load",
+    distinguished_by: "a second encoder on the link, or a resonance that changes with the load",
     formula: "a spring and damper between drive and link",
     sentence: "a transmission stiffness of {stiffness} between drive and link",
     parameters: &[
@@ -25,7 +25,7 @@ static SPEC: Spec = Spec {
         Parameter::new("damping", Quantity::Damping).within(Range::NotNegative),
     ],
     main: &["stiffness"],
-    plain: Some("rotor_inertia"),
+    generalises: Some("rotor_inertia"),
     brings: Some("rotor_inertia"),
     prior: 8.0,
     is_simulated: true,

@@ -14,7 +14,7 @@ static SPEC: Spec = Spec {
     name: "torque_ripple",
     title: "torque ripple",
     meaning: "a torque that repeats with the joint's angle (cogging, gear teeth)",
-    told_by: "the same sweep at two speeds: a ripple has a constant period in angle, a resonance in time",
+    distinguished_by: "the same sweep at two speeds: a ripple has a constant period in angle, a resonance in time",
     formula: "A sin(N q + φ)",
     sentence: "a torque ripple of {amplitude} with {periods} periods per revolution",
     parameters: &[
@@ -25,6 +25,7 @@ static SPEC: Spec = Spec {
     main: &["amplitude"],
     is_suggested: true,
     may_repeat: true,
+    is_periodic: true,
     against: Against::Position,
     ..Spec::EMPTY
 };

@@ -14,14 +14,14 @@ static SPEC: Spec = Spec {
     name: "rotor_inertia",
     title: "rotor inertia",
     meaning: "the inertia of the drive's rotor, reflected to the joint by the gear",
-    told_by: "the same accelerations in other postures, with and without a payload",
+    distinguished_by: "the same accelerations in other postures, with and without a payload",
     formula: "Ia q̈",
     sentence: "a reflected rotor inertia of {inertia}",
     parameters: &[Parameter::new("inertia", Quantity::Inertia).within(Range::NotNegative)],
     main: &["inertia"],
     prior: 4.0,
     is_baseline: true,
-    is_simple: true,
+    is_baseline_or_constant: true,
     least_beside_residual: Some(1.25),
     against: Against::Acceleration,
     experiment: Some(Experiment {
@@ -48,7 +48,7 @@ impl EffectKind for RotorInertia {
         fitted.value(0) > 0.0
     }
 
-    // LinkSide a spring or a gap, the column of the rotor is not the only one.
+    // With a spring or a gap in the drive, the rotor's column is not the only one that depends on the acceleration.
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let at = estimate.at(&ACCELERATION)?;
         let inertia = estimate.coefficient("inertia", Some(at), 1.0);

@@ -15,7 +15,7 @@ static SPEC: Spec = Spec {
     name: "torque_saturation",
     title: "torque saturation",
     meaning: "the drive's torque is limited, whatever is commanded",
-    told_by: "one motion that requires more than the limit, and one that does not",
+    distinguished_by: "one motion that requires more than the limit, and one that does not",
     formula: "applied = commanded, clipped to ± limit",
     sentence: "a torque limit of {limit}",
     parameters: &[Parameter::new("limit", Quantity::Torque).within(Range::Positive)],
@@ -126,12 +126,15 @@ fn cuts(fitted: &dyn Fitted) -> bool {
     with <= MOST_REMAINING * without
 }
 
+/// A limit acts on a row if its column exceeds this part of its largest value.
+const ACTS: f64 = 0.02;
+
 /// The part of the moving rows on which the first column differs from zero.
 fn acting(fitted: &dyn Fitted) -> f64 {
     let Some(x) = fitted.column(0) else { return 0.0 };
     let largest = x.iter().fold(0.0_f64, |largest, v| largest.max(v.abs()));
     let moving = || x.iter().zip(fitted.moving()).filter(|(_, moving)| **moving);
-    let acting = moving().filter(|(x, _)| x.abs() > 0.02 * largest).count();
+    let acting = moving().filter(|(x, _)| x.abs() > ACTS * largest).count();
     acting as f64 / moving().count().max(1) as f64
 }
 

@@ -18,7 +18,7 @@ static SPEC: Spec = Spec {
     name: "friction_asymmetry",
     title: "asymmetric friction",
     meaning: "Coulomb friction that differs between the two directions of motion",
-    told_by: BRAKE,
+    distinguished_by: BRAKE,
     formula: "F₊ forwards, −F₋ backwards",
     sentence: "Coulomb friction that depends on the direction, {positive} forwards and {negative} backwards",
     parameters: &[
@@ -26,13 +26,13 @@ static SPEC: Spec = Spec {
         Parameter::new("negative", Quantity::Torque),
     ],
     main: &["positive"],
-    plain: Some("coulomb_friction"),
+    generalises: Some("coulomb_friction"),
     excludes: &["torque_offset", "spring"],
     // Every drive has a small asymmetry. In simulated cases with small effects on every joint (below 1.5 % of its torque),
     // it explains 0.3 % to 2 % beyond Coulomb friction; injected asymmetry explains 0.8 % and more, because the background
     // of the fit may explain a part of it.
-    least_beyond_plain: 0.007,
-    is_simple: true,
+    least_beyond_simpler: 0.007,
+    is_baseline_or_constant: true,
     against: Against::Speed,
     experiments_against: &[("torque_offset", BRAKE), ("spring", BRAKE)],
     ..Spec::EMPTY

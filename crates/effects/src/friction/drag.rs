@@ -13,7 +13,7 @@ static SPEC: Spec = Spec {
     name: "quadratic_drag",
     title: "quadratic drag",
     meaning: "a torque against the motion that grows with the square of its speed",
-    told_by: "a wider range of speeds",
+    distinguished_by: "a wider range of speeds",
     formula: "c |q̇|ᵖ sgn q̇; the exponent p is about 2 and is fitted between 1.4 and 3.2",
     sentence: "quadratic drag of {coefficient}",
     parameters: &[

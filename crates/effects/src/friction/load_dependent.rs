@@ -15,7 +15,7 @@ static SPEC: Spec = Spec {
     name: "load_dependent_friction",
     title: "load-dependent friction",
     meaning: "gear friction that grows with the torque transmitted by the gear",
-    told_by: "the same speed under several loads or postures",
+    distinguished_by: "the same speed under several loads or postures",
     formula: "(F₀ + μ |τ rigid|) sgn q̇",
     sentence: "Coulomb friction of {coulomb}, plus {gain} times the load torque",
     parameters: &[
@@ -25,10 +25,10 @@ static SPEC: Spec = Spec {
             .remarked("N m per N m of load"),
     ],
     main: &["gain"],
-    plain: Some("coulomb_friction"),
+    generalises: Some("coulomb_friction"),
     // Every gear has some load dependence. In simulated cases with small effects on every joint (below 1.5 % of its torque), it
     // explains up to 1 % beyond Coulomb friction; injected load dependence explains 6.6 % and more.
-    least_beyond_plain: 0.012,
+    least_beyond_simpler: 0.012,
     against: Against::LoadAlong,
     detectability: Detectability::LINEAR,
     not_testable_turn: 9,

@@ -19,7 +19,7 @@ static SPEC: Spec = Spec {
     name: "stribeck_friction",
     title: "Stribeck friction",
     meaning: "Coulomb friction that is larger at very low speed (breakaway) than in fast motion",
-    told_by: "motions at constant speeds, from very slow to fast",
+    distinguished_by: "motions at constant speeds, from very slow to fast",
     formula: "(Fc + (Fs − Fc) e^(−|q̇/v|^δ)) sgn q̇",
     sentence: "friction that falls from {breakaway} at breakaway to {coulomb}, with a Stribeck velocity of {velocity}",
     parameters: &[
@@ -32,7 +32,7 @@ static SPEC: Spec = Spec {
             .remarked(""),
     ],
     main: &["breakaway"],
-    plain: Some("coulomb_friction"),
+    generalises: Some("coulomb_friction"),
     against: Against::Speed,
     ..Spec::EMPTY
 };
@@ -81,6 +81,10 @@ const MOST_TAKEN_BACK: f64 = 0.5;
 /// Stribeck friction shows 0.68 and more. False one shows 0.5 and less: it lies among the rows near reversals on which the filter
 /// blurs the change of the sign.
 const LEAST_SHOWN: f64 = 0.6;
+/// A row is slow if more than this part of the additional breakaway friction remains there.
+const FADED: f64 = 0.5;
+/// The part of the moving rows that may be slow: otherwise the effect is no friction at low speed.
+const MOST_SLOW: f64 = 0.5;
 
 impl EffectKind for StribeckFriction {
     fn spec(&self) -> &'static Spec {
@@ -158,13 +162,13 @@ fn falls(fitted: &dyn Fitted) -> bool {
 /// friction at low speed.
 fn fades(fitted: &dyn Fitted) -> bool {
     let Some(x) = fitted.column(1) else { return false };
-    let (mut moving, mut slow, mut most) = (0, 0, 0.0_f64);
+    let (mut moving, mut slow, mut most) = (0_usize, 0_usize, 0.0_f64);
     for (x, _) in x.iter().zip(fitted.moving()).filter(|(_, moving)| **moving) {
         moving += 1;
-        slow += usize::from(x.abs() > 0.5);
+        slow += usize::from(x.abs() > FADED);
         most = most.max(x.abs());
     }
-    2 * slow < moving && most > LEAST_SHOWN
+    (slow as f64) < MOST_SLOW * moving as f64 && most > LEAST_SHOWN
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ static SPEC: Spec = Spec {
     name: "thermal_drift",
     title: "warming friction",
     meaning: "Coulomb friction that falls as the drive warms up",
-    told_by: "a longer recording of one repeated motion that starts with a cold drive",
+    distinguished_by: "a longer recording of one repeated motion that starts with a cold drive",
     formula: "Coulomb friction × (1 + a e^(−(t − t₀)/T))",
     sentence: "Coulomb friction of {coulomb} on the warm drive, larger by {amplitude%} % at first, with a time constant of {time_constant}",
     parameters: &[
@@ -33,9 +33,9 @@ static SPEC: Spec = Spec {
             .remarked("s, t₀; 0 where the clock begins with the recordings"),
     ],
     main: &["amplitude"],
-    plain: Some("coulomb_friction"),
+    generalises: Some("coulomb_friction"),
     prior: 8.0,
-    is_passing: true,
+    may_be_in_one_recording: true,
     against: Against::TimeAlong,
     experiment: Some(Experiment {
         rank: 3,

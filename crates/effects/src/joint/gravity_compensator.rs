@@ -24,7 +24,7 @@ static SPEC: Spec = Spec {
     name: "gravity_compensator",
     title: "gravity compensator",
     meaning: "a spring on a lever that carries a part of the arm's weight (counterbalance)",
-    told_by: "slow sweeps over a large range, with the joints beyond it stretched and folded",
+    distinguished_by: "slow sweeps over a large range, with the joints beyond it stretched and folded",
     formula: "A sin(q − q₀), A = K · anchor · lever",
     sentence: "a spring on a lever with up to {amplitude}, in line at {angle}",
     parameters: &[

@@ -14,7 +14,7 @@ static SPEC: Spec = Spec {
     name: "spring",
     title: "spring",
     meaning: "a torque that depends on the joint's position (counterbalance, gas spring, cable)",
-    told_by: "slow sweeps over the whole range, with and without a payload",
+    distinguished_by: "slow sweeps over the whole range, with and without a payload",
     formula: "K (q − q₀), or a curve over the position where the spring is nonlinear",
     sentence: "a spring torque with a stiffness of {stiffness} and its zero at {rest}",
     parameters: &[
@@ -27,7 +27,7 @@ static SPEC: Spec = Spec {
     main: &["stiffness"],
     may_be_inertial: true,
     may_set_in: true,
-    plain: Some("torque_offset"),
+    generalises: Some("torque_offset"),
     excludes: &["own_position", "torque_offset", "friction_asymmetry"],
     is_beyond_the_drive: true,
     against: Against::Position,
@@ -42,6 +42,10 @@ const VISITED: f64 = 0.5;
 const LARGEST_FALL: f64 = 0.05;
 /// The largest part of its total rise by which a spring's curve may fall over all its points together.
 const ALL_FALLS: f64 = 0.1;
+/// The number of parts of the recorded range between which the slope of a curve is evaluated.
+const SLOPES: i32 = 20;
+/// The least number of these slopes that are positive for a spring: a curve that falls elsewhere is no spring.
+const LEAST_RISING: usize = 17;
 /// The points of a curve.
 const POINTS: usize = 12;
 
@@ -186,11 +190,10 @@ fn stiffens(fitted: &dyn Fitted) -> bool {
             })
             .sum()
     };
-    let steps = 20;
-    let rising = (0..=steps)
-        .filter(|&k| slope(low + (high - low) * f64::from(k) / f64::from(steps)) > 0.0)
+    let rising = (0..=SLOPES)
+        .filter(|&k| slope(low + (high - low) * f64::from(k) / f64::from(SLOPES)) > 0.0)
         .count();
-    rising >= 17
+    rising >= LEAST_RISING
 }
 
 /// Whether the joint can reach the angle without torque, by the straight line between the ends of the recorded range.

@@ -13,7 +13,7 @@ static SPEC: Spec = Spec {
     name: "encoder_offset",
     title: "encoder offset",
     meaning: "the zero of the joint's encoder differs from the model's",
-    told_by: "a mechanical reference for the zero, or static poses in many postures",
+    distinguished_by: "a mechanical reference for the zero, or static poses in many postures",
     formula: "measured position = true position + offset",
     sentence: "an encoder offset of {offset}",
     parameters: &[Parameter::new("offset", Quantity::Position)],

@@ -20,7 +20,7 @@ static SPEC: Spec = Spec {
     name: "torque_offset",
     title: "torque offset",
     meaning: "a constant added to the measured torque",
-    told_by: "static poses in several postures",
+    distinguished_by: "static poses in several postures",
     formula: "constant",
     sentence: "a constant torque of {offset}",
     parameters: &[Parameter::new("offset", Quantity::Torque)],
@@ -28,7 +28,7 @@ static SPEC: Spec = Spec {
     may_set_in: true,
     excludes: &["friction_asymmetry", "spring"],
     prior: 10.0,
-    is_simple: true,
+    is_baseline_or_constant: true,
     is_certain_in_form: true,
     may_be_inertial: true,
     // A false one had 12 nats in simulated cases with URDFs wrong by 30 %, the smallest injected ones 29.

@@ -15,7 +15,7 @@ static SPEC: Spec = Spec {
     name: "torque_scale",
     title: "torque scale",
     meaning: "the measured torque is a constant multiple of the true torque (wrong gain or torque constant)",
-    told_by: "a known payload",
+    distinguished_by: "a known payload",
     formula: "measured = k × true",
     sentence: "a measured torque of {factor} times the true torque",
     parameters: &[Parameter::new("factor", Quantity::Ratio)

@@ -9,7 +9,7 @@ pub struct Periodic;
 
 static SPEC: Spec = Spec {
     name: "periodic",
-    is_passing: true,
+    may_be_in_one_recording: true,
     is_suggested: true,
     depends_on: "time",
     ..Spec::UNNAMED

@@ -9,7 +9,7 @@ pub struct Time;
 
 static SPEC: Spec = Spec {
     name: "time",
-    is_passing: true,
+    may_be_in_one_recording: true,
     depends_on: "time",
     ..Spec::UNNAMED
 };

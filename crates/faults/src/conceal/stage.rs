@@ -260,18 +260,18 @@ impl<'a> Stage<'a> {
             .collect();
         let held_out = train.pop().unwrap_or_default();
         let joints = self.robot.arm().joints().iter().zip(self.robot.rotor_inertias());
-        let mut concealed: Vec<Injected> = joints
+        let mut injected: Vec<Injected> = joints
             .filter(|(_, rotor)| **rotor > 0.0)
             .map(|(joint, rotor)| Injected::new("rotor_inertia", Some(&joint.name)).with("inertia", *rotor))
             .collect();
-        concealed.extend(self.background(&effects));
-        concealed.extend(effects);
+        injected.extend(self.background(&effects));
+        injected.extend(effects);
         Ok(Concealment {
             truth: Truth {
                 case: name.to_owned(),
                 robot: self.robot.name().to_owned(),
                 seed,
-                concealed,
+                injected,
                 background_friction: self.friction.is_some(),
                 torque_noise: self.sensors.noise.clone(),
                 encoder_quantum: self.sensors.quantum,

@@ -31,13 +31,13 @@ fn a_case_is_the_same_every_time() {
     // Baseline friction is on every joint, without a share; the drawn effects are present, with shares within bounds.
     let baseline = first
         .truth
-        .concealed
+        .injected
         .iter()
         .filter(|effect| effect.expressed_share.is_none());
     assert_eq!(baseline.count(), 14);
     let effect = first
         .truth
-        .concealed
+        .injected
         .iter()
         .find(|effect| effect.effect == "torque_offset");
     let share = effect.and_then(|effect| effect.expressed_share).expect("it is there");
@@ -64,7 +64,7 @@ fn the_truth_contains_the_given_effects() {
         ..Settings::default()
     };
     let made = conceal_effects(&puma(), "one", &[payload.clone()], &settings).expect("it can be");
-    let (drives, given) = made.truth.concealed.split_at(6);
+    let (drives, given) = made.truth.injected.split_at(6);
     assert!(
         drives
             .iter()
@@ -177,13 +177,13 @@ fn the_truth_of_a_lifelike_case_is_complete() {
         "torque_scale",
     ] {
         let small = truth
-            .concealed
+            .injected
             .iter()
             .filter(|effect| effect.minor && effect.effect == name);
         assert_eq!(small.count(), n, "{name}");
     }
     let asked: Vec<&Injected> = truth
-        .concealed
+        .injected
         .iter()
         .filter(|effect| effect.expressed_share.is_some())
         .collect();
@@ -197,7 +197,7 @@ fn the_truth_of_a_lifelike_case_is_complete() {
     for (is, was) in believed.joints().iter().zip(robot.arm().joints()) {
         assert!(is.inertia.mass != was.inertia.mass && is.inertia.mass > 0.0);
     }
-    let all: Vec<&Injected> = truth.concealed.iter().collect();
+    let all: Vec<&Injected> = truth.injected.iter().collect();
     assert!(Machine::new(&robot, &all, None).is_ok());
     // The machine is the true one, whatever errors the URDF has.
     let exact = CasePlan {
@@ -265,7 +265,7 @@ fn a_tool_that_is_not_mounted_is_only_in_the_urdf() {
         arm.joints().iter().map(|joint| joint.inertia.mass).sum::<f64>()
     };
     assert!((mass(&with.urdf) - mass(&without.urdf) - 0.7).abs() < 1e-9);
-    let share = with.truth.concealed.last().and_then(|effect| effect.expressed_share);
+    let share = with.truth.injected.last().and_then(|effect| effect.expressed_share);
     assert!(share.is_some_and(|share| share > 0.02), "{share:?}");
     let mut later = tool;
     later.onset = Some(3.0);

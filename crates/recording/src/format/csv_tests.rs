@@ -201,7 +201,7 @@ fn a_duplicated_row_is_left_out() {
 }
 
 #[test]
-fn runs_end_to_end_in_one_file_are_told_apart() {
+fn runs_end_to_end_in_one_file_are_distinguished() {
     let mut text = "t,q_a,tau_a\n".to_owned();
     for _ in 0..2 {
         for k in 0..100 {
@@ -211,7 +211,7 @@ fn runs_end_to_end_in_one_file_are_told_apart() {
     let read = read(&text).expect("two runs");
     assert_eq!((read.len(), read.breaks.as_slice()), (200, &[100][..]));
     assert!(read.time.windows(2).all(|pair| pair[1] > pair[0]));
-    let told = |warning: &Warning| {
+    let found = |warning: &Warning| {
         matches!(
             warning,
             Warning::ClockRestart {
@@ -220,7 +220,7 @@ fn runs_end_to_end_in_one_file_are_told_apart() {
             }
         )
     };
-    assert!(read.warnings.iter().any(told), "{:?}", read.warnings);
+    assert!(read.warnings.iter().any(found), "{:?}", read.warnings);
 }
 
 #[test]
@@ -288,12 +288,12 @@ fn a_value_that_is_not_needed_may_be_missing() {
     for cell in ["nan", "", "NaN", "x"] {
         let read = with(cell);
         assert_eq!((read.len(), &read.qd, read.temperature.len()), (3, &None, 0));
-        let told = |column: &str| {
+        let found = |column: &str| {
             let line = Place::Line(3);
             let (column, found) = (column.to_owned(), cell.to_owned());
             read.warnings.contains(&Warning::ColumnLeftOut { column, line, found })
         };
-        assert!(told("qd_a") && told("temperature_a"), "{:?}", read.warnings);
+        assert!(found("qd_a") && found("temperature_a"), "{:?}", read.warnings);
     }
 }
 
@@ -301,8 +301,8 @@ fn a_value_that_is_not_needed_may_be_missing() {
 fn a_joint_without_any_torque_is_left_out() {
     let read = read("t,q_a,q_hand,tau_a,tau_hand\n0,1,2,5,nan\n1,1,2,5,\n2,1,2,5,NaN\n").expect("it reads");
     assert_eq!((&read.joints[..], read.q.len()), (&["a".to_owned()][..], 1));
-    let told = |warning: &Warning| matches!(warning, Warning::JointLeftOut { joint, .. } if joint == "hand");
-    assert!(read.warnings.iter().any(told), "{:?}", read.warnings);
+    let found = |warning: &Warning| matches!(warning, Warning::JointLeftOut { joint, .. } if joint == "hand");
+    assert!(read.warnings.iter().any(found), "{:?}", read.warnings);
     // Neither makes equal rows differ.
     let twice =
         "t,q_a,q_hand,qd_a,qd_hand,tau_a,tau_hand\n0,1,2,,0,5,nan\n1,1,2,3,0,5,nan\n1,1,2,3,0,5,nan\n2,1,2,3,0,5,nan\n";

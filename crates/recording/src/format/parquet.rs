@@ -97,7 +97,7 @@ enum Values {
     Numbers(Vec<f64>),
     /// Integers, as long as no value is missing.
     Integers(Vec<i64>),
-    /// Times (ns since 1970), in units of so many ns.
+    /// Times (ns since 1970), in units of this many ns.
     Nanos(Vec<i64>, i64),
 }
 

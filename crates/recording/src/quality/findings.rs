@@ -51,24 +51,29 @@ pub struct Finding {
     pub joint: Option<String>,
     /// What was found, and the remedy.
     pub text: String,
+    /// The unit of the stamps, for a [`FindingKind::TimeUnit`].
+    #[serde(skip)]
+    pub time_unit: Option<&'static str>,
 }
 
 /// The findings on `joints`; `swapped` are pairs of joints (position, velocity) whose velocities are exchanged.
 pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize, usize)]) -> Vec<Finding> {
+    let time_unit = time_unit(regular.period, joints);
+    let unit = time_unit.as_ref().map(|(unit, _)| *unit);
     let mut findings = Vec::new();
     let mut add = |kind, joint: Option<&JointQuality>, text: String| {
         findings.push(Finding {
             kind,
             joint: joint.map(|joint| joint.joint.clone()),
             text,
+            time_unit: unit.filter(|_| kind == FindingKind::TimeUnit),
         });
     };
     if joints.iter().all(|joint| !joint.moves) {
         let text = "no joint moves, so that only gravity and offsets can be identified; record a motion".into();
         add(FindingKind::NoMotion, None, text);
     }
-    let time_unit = time_unit(regular.period, joints);
-    if let Some(text) = &time_unit {
+    if let Some((_, text)) = &time_unit {
         add(FindingKind::TimeUnit, None, text.clone());
     }
     for joint in joints.iter().filter(|joint| joint.tau_range.0 == joint.tau_range.1) {
@@ -167,7 +172,7 @@ fn lateness(least: f64, most: f64) -> String {
 
 /// The unit of the stamps if it is not s: rows are too far apart for a drive, and the recorded velocities of all
 /// joints exceed the slopes of their positions by the number of units per second.
-fn time_unit(period: f64, joints: &[JointQuality]) -> Option<String> {
+fn time_unit(period: f64, joints: &[JointQuality]) -> Option<(&'static str, String)> {
     if period < SLOWEST_PERIOD {
         return None;
     }
@@ -177,10 +182,11 @@ fn time_unit(period: f64, joints: &[JointQuality]) -> Option<String> {
         fits > 0 && fits == ratios.len()
     });
     let (unit, units) = unit?;
-    Some(format!(
+    let text = format!(
         "rows are {period:.4} s apart, and all recorded velocities are {units} times their positions' slopes: the stamps are \
          in {unit}; give unit = \"{unit}\" under [time] in a column map (--map)"
-    ))
+    );
+    Some((unit, text))
 }
 
 fn near(value: f64, expected: f64) -> bool {

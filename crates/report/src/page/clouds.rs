@@ -34,7 +34,7 @@ impl Figures<'_> {
             let around = 2.0 * (last[1] - first[0]).max(0.1);
             points.retain(|point| (first[0] - around..=last[1] + around).contains(&point[0]));
         }
-        let bins = if finding.effect == "torque_ripple" || against == Against::Time {
+        let bins = if finding.as_effect.spec().is_periodic || against == Against::Time {
             300.0
         } else {
             90.0
@@ -98,12 +98,7 @@ impl Figures<'_> {
             for tick in ticks {
                 let place = shown.place(tick);
                 svg.line([place, top], [place, bottom], if tick == 0.0 { "zero" } else { "grid" });
-                svg.text(
-                    [place, bottom + 17.0],
-                    "tick",
-                    "middle",
-                    &numbers::fixed(tick, decimals),
-                );
+                svg.tick_below(place, bottom, tick, decimals);
             }
             svg.text(
                 [0.5 * (LEFT + right), height - 6.0],

@@ -88,12 +88,7 @@ impl Figures<'_> {
                     let place = scale.place(tick);
                     svg.line([place, bottom], [place, bottom + 4.0], "mark");
                     if place > x + 8.0 && place < x + panel - 8.0 {
-                        svg.text(
-                            [place, bottom + 17.0],
-                            "tick",
-                            "middle",
-                            &numbers::fixed(tick, decimals),
-                        );
+                        svg.tick_below(place, bottom, tick, decimals);
                     }
                 }
             }

@@ -74,7 +74,9 @@ impl Page<'_> {
                 div.finding.open {
                     h4 { "Unexplained residual" span.size { (numbers::of_torque_spread(open.share)) } }
                     p.sentence {
-                        @if open.depends_on.is_empty() {
+                        @if open.depends_on.is_empty() && self.report.is_requested {
+                            "The residual has structure. Other effects were not searched."
+                        } @else if open.depends_on.is_empty() {
                             "The residual has structure, but no regressor that was tried predicts it."
                         } @else {
                             @let on: Vec<String> = open.depends_on.iter().map(|code| words::dependence(code)).collect();

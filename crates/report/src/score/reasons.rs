@@ -14,7 +14,7 @@ pub fn reason(target: &Target, score: &Score) -> String {
         Figure::FalseCases => "the section about failures lists every false name.".to_owned(),
         Figure::MacroF1 => families(score),
         Figure::EmptyCases => {
-            let empty = score.false_names.iter().filter(|name| name.concealed_there.is_empty());
+            let empty = score.false_names.iter().filter(|name| name.injected_there.is_empty());
             format!(
                 "named where nothing is injected: {}.",
                 tally(empty.map(|name| name.effect.as_str()))
@@ -24,7 +24,7 @@ pub fn reason(target: &Target, score: &Score) -> String {
             let missed = score.outside.iter().filter(|case| !case.refused);
             format!(
                 "not refused: {}.",
-                tally(missed.flat_map(|case| case.concealed.iter().map(|(effect, _)| effect.as_str())))
+                tally(missed.flat_map(|case| case.injected.iter().map(|(effect, _)| effect.as_str())))
             )
         }
         Figure::OutsideNamed => {
@@ -34,7 +34,7 @@ pub fn reason(target: &Target, score: &Score) -> String {
         Figure::ParameterErrors => parameters(score, false),
         Figure::Intervals => parameters(score, true),
         Figure::Covered => {
-            let missed = score.concealed.iter().filter(|o| o.is_asked());
+            let missed = score.injected.iter().filter(|o| o.is_asked());
             let missed = missed.filter(|o| !o.fate.is_covered());
             format!(
                 "neither a finding nor an alternative: {}.",
@@ -65,7 +65,7 @@ fn tally<'a>(names: impl Iterator<Item = &'a str>) -> String {
 
 /// Effects that were not found with their size, and false names, in the group of cases of the figure.
 fn strict(target: &Target, score: &Score) -> String {
-    let is_meant = |group: &&UrdfGroup| target.what.ends_with(group.urdf.words());
+    let is_meant = |group: &&UrdfGroup| target.group == Some(group.urdf);
     let strict = score
         .by_urdf
         .iter()
@@ -106,13 +106,13 @@ fn families(score: &Score) -> String {
         })
         .collect();
     let large = score
-        .concealed
+        .injected
         .iter()
         .filter(|o| o.is_asked() && o.share.is_some_and(|share| share >= 0.06));
     let (found, all) = large.fold((0, 0), |(found, all), o| {
         (found + usize::from(o.fate.is_found()), all + 1)
     });
-    let small = score.concealed.iter().filter(|o| o.is_asked() && !o.fate.is_found());
+    let small = score.injected.iter().filter(|o| o.is_asked() && !o.fate.is_found());
     let small: Vec<_> = small.collect();
     let below = small
         .iter()

@@ -14,13 +14,13 @@ pub fn found(score: &Score) -> Vec<Block> {
     let line = |(name, f): (&String, &Family)| {
         vec![
             format!("`{name}`"),
-            f.concealed.to_string(),
+            f.injected.to_string(),
             f.found.to_string(),
             f.same_machine.to_string(),
             (f.covered - f.found).to_string(),
             f.refused.to_string(),
             f.not_observable.to_string(),
-            (f.concealed - f.covered - f.refused - f.not_observable).to_string(),
+            (f.injected - f.covered - f.refused - f.not_observable).to_string(),
             f.false_names.to_string(),
             number(f.f1),
             format!("{} of {}", f.too_small_found, f.too_small),

@@ -41,7 +41,7 @@ fn residuals(report: &Report) -> Vec<String> {
             [one] => {
                 let place = largest(report, one, None).filter(|_| report.findings.is_empty());
                 let place = place.map_or_else(String::new, |place| format!("; {place}"));
-                format!("{}: {}{place}", one.joint, unexplained(one))
+                format!("{}: {}{place}", one.joint, unexplained(report, one))
             }
             several => {
                 let joints: Vec<String> = several.iter().map(|open| open.joint.clone()).collect();

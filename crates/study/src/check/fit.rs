@@ -1,12 +1,10 @@
-//! The fit of a recording's torques by the URDF's model under a supposition.
+//! The fit of a recording's torques by the URDF's model with corrected columns.
 
 use arm::{Arm, Workspace};
 
+use super::correction::Correction;
 use super::smooth::Smooth;
-use super::supposition::Supposition;
-
-/// A joint's torque is explained if its residual has at most this share of its variance.
-pub const EXPLAINED: f64 = 0.2;
+use super::thresholds::{EXPLAINED_BY_MODEL, LEAST_RESIDUAL, NEEDS_MODEL};
 
 /// The fit of measured torques by the model's, with dry and viscous friction and an offset.
 pub struct Fit {
@@ -23,14 +21,15 @@ pub struct Fit {
 impl Fit {
     /// Whether the model's torque is needed to explain the joint's.
     pub fn needs_model(&self, joint: usize) -> bool {
-        self.residual_share[joint] < EXPLAINED && self.without[joint] > 3.0 * self.residual_share[joint]
+        self.residual_share[joint] < EXPLAINED_BY_MODEL
+            && self.without[joint] > NEEDS_MODEL * self.residual_share[joint]
     }
 
     /// The sum of the logarithms of the joints' residuals.
     pub fn score(&self) -> f64 {
         self.residual_share
             .iter()
-            .map(|residual_share| residual_share.max(0.01).ln())
+            .map(|residual_share| residual_share.max(LEAST_RESIDUAL).ln())
             .sum()
     }
 }
@@ -42,10 +41,10 @@ fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
-/// The fit of the torques by the model of `arm` under a `supposition`.
-pub fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
+/// The fit of the torques by the model of `arm` with a `correction` of the columns.
+pub fn fit(arm: &Arm, smooth: &Smooth, correction: Correction) -> Fit {
     let turned;
-    let arm = if let Supposition::Gravity(gravity) = supposition {
+    let arm = if let Correction::Gravity(gravity) = correction {
         turned = arm.clone().with_gravity(gravity);
         &turned
     } else {
@@ -53,8 +52,8 @@ pub fn fit(arm: &Arm, smooth: &Smooth, supposition: Supposition) -> Fit {
     };
     let dof = arm.dof();
     let count = smooth.len();
-    let reading = supposition.reading(arm);
-    // The model along the supposed motion.
+    let reading = correction.reading(arm);
+    // The model along the corrected motion.
     let mut workspace = Workspace::new(arm);
     let mut model = vec![vec![0.0; count]; dof];
     let mut tau = vec![0.0; dof];

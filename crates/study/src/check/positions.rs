@@ -7,22 +7,19 @@ use recording::{FindingKind, JointQuality, Quality};
 use report::numbers::{percent, rounded};
 
 use super::column_map::{Change, Value};
+use super::correction::Correction;
 use super::fit::fit;
 use super::smooth::Smooth;
-use super::supposition::Supposition;
-use super::torque_unit::MOTOR_SIDE;
-use super::{BEYOND, Misfit};
+use super::thresholds::{
+    BEYOND_RANGE, LIMIT_SLACK, MOST_SPAN, MOST_SPEED, MOTOR_SIDE, ONE_IN_DEGREES, SAME_SLOPE, SAME_UNIT, SLACK,
+    SLOWEST_PERIOD, TURN_FACTORS, UNIT_LEAD,
+};
+use super::{Misfit, MisfitKind};
 
-/// The largest time between rows of a recording that shows a drive's motion (s).
-const SLOWEST_PERIOD: f64 = 0.1;
-/// One joint's positions are in degrees if that reduces the sum of the joints' log residuals by at least this much.
-const GAIN: f64 = 2.0;
 /// Degrees and milliradians: the unit of positions, the unit of velocities, its size in rad.
 const UNITS: [(&str, &str, f64); 2] = [("deg", "deg/s", PI / 180.0), ("mrad", "mrad/s", 1e-3)];
 /// Turns of a joint, which make positions too small.
 const TURN: (&str, &str, f64) = ("turn", "turn/s", TAU);
-/// A unit must be better than the other by at least this reduction of the mean log residual.
-const LEAD: f64 = 0.5;
 
 /// A joint of the arm and the statistics of its recorded signals.
 pub type Pair<'a> = (&'a Joint, &'a JointQuality);
@@ -41,8 +38,8 @@ pub fn of_time(arm: &Arm, quality: &Quality) -> Option<Misfit> {
     // Recorded velocities determine the unit. Without them, it is the largest unit with which the rows are close enough.
     let units = [("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
     let by_velocity = finding.and_then(|finding| {
-        let unit = |name: &str| finding.text.contains(&format!("are in {name};"));
-        units.into_iter().find(|(name, _)| unit(name))
+        let unit = finding.time_unit?;
+        units.into_iter().find(|(name, _)| *name == unit)
     });
     let found = by_velocity.or_else(|| {
         let is_close = |(_, seconds): &(&str, f64)| period * seconds <= SLOWEST_PERIOD;
@@ -50,7 +47,7 @@ pub fn of_time(arm: &Arm, quality: &Quality) -> Option<Misfit> {
             let is_possible = |joint: &Joint| {
                 let measured = quality.joints.iter().find(|measured| measured.joint == joint.name);
                 let speed = measured.map_or(0.0, |measured| measured.speed_max / seconds);
-                joint.limits.velocity <= 0.0 || speed <= BEYOND * joint.limits.velocity
+                joint.limits.velocity <= 0.0 || speed <= MOST_SPEED * joint.limits.velocity
             };
             arm.joints().iter().all(is_possible)
         })
@@ -62,7 +59,7 @@ pub fn of_time(arm: &Arm, quality: &Quality) -> Option<Misfit> {
         );
         return Some(Misfit {
             prevents_diagnosis: true,
-            ..Misfit::new(None, text, Vec::new())
+            ..Misfit::new(MisfitKind::Time, None, text, Vec::new())
         });
     };
     let text = format!(
@@ -77,7 +74,7 @@ pub fn of_time(arm: &Arm, quality: &Quality) -> Option<Misfit> {
     );
     Some(Misfit {
         prevents_diagnosis: true,
-        ..Misfit::new(None, text, vec![Change::time(unit, seconds)])
+        ..Misfit::new(MisfitKind::Time, None, text, vec![Change::time(unit, seconds)])
     })
 }
 
@@ -94,7 +91,7 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
         !moving.is_empty()
             && moving
                 .iter()
-                .all(|pair| ratio(pair).is_some_and(|ratio| (ratio.abs() / factor - 1.0).abs() < 0.04))
+                .all(|pair| ratio(pair).is_some_and(|ratio| (ratio.abs() / factor - 1.0).abs() < SAME_SLOPE))
     };
     let by_velocity = UNITS.into_iter().chain([TURN]).find(|(_, _, factor)| slow(*factor));
     // Positions in turns are inside all limits. Their slopes, or the model's torques, show the unit.
@@ -113,7 +110,7 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
     let fits = |(_, _, factor): &(&str, &str, f64)| {
         moving.iter().all(|(joint, measured)| {
             let limits = joint.limits;
-            let slack = 0.1 * (limits.upper - limits.lower) + 1e-2;
+            let slack = SLACK * (limits.upper - limits.lower) + LIMIT_SLACK;
             limits.upper <= limits.lower
                 || (measured.q_range.0 * factor > limits.lower - slack
                     && measured.q_range.1 * factor < limits.upper + slack)
@@ -121,10 +118,10 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
     };
     let mut possible: Vec<(&str, &str, f64)> = UNITS.into_iter().filter(fits).collect();
     if let Some(smooth) = smooth.filter(|_| !possible.is_empty()) {
-        let score = |unit: &(&str, &str, f64)| fit(arm, smooth, Supposition::Unit(unit.2)).score();
+        let score = |unit: &(&str, &str, f64)| fit(arm, smooth, Correction::Unit(unit.2)).score();
         // Limits that a motion exceeds are wrong more often than torques that agree.
         let best = UNITS.into_iter().min_by(|a, b| score(a).total_cmp(&score(b)));
-        if let Some(best) = best.filter(|best| score(&possible[0]) - score(best) > LEAD) {
+        if let Some(best) = best.filter(|best| score(&possible[0]) - score(best) > UNIT_LEAD) {
             possible[0] = best;
         }
     }
@@ -140,7 +137,7 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
     );
     // Positions of the motors with the torques of the joints, or of the motors: in degrees, the torques would be far too small.
     let is_geared = |unit: &(&str, &str, f64)| {
-        let fitted = smooth.map(|smooth| fit(arm, smooth, Supposition::Unit(unit.2)));
+        let fitted = smooth.map(|smooth| fit(arm, smooth, Correction::Unit(unit.2)));
         by_velocity.is_none() && fitted.is_some_and(|fit| fit.size.iter().all(|size| *size < MOTOR_SIDE))
     };
     let found = by_velocity
@@ -155,7 +152,7 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
         );
         return vec![Misfit {
             prevents_diagnosis: true,
-            ..Misfit::new(None, text, Vec::new())
+            ..Misfit::new(MisfitKind::PositionUnit, None, text, Vec::new())
         }];
     };
     let name = name_of(unit);
@@ -200,7 +197,7 @@ fn of_unit(
     let slopes = moving.iter().filter(|(_, measured)| {
         measured
             .velocity_ratio
-            .is_some_and(|ratio| (0.5..2.0).contains(&ratio.abs()))
+            .is_some_and(|ratio| SAME_UNIT.contains(&ratio.abs()))
     });
     let velocities_too = 2 * slopes.count() >= moving.len();
     for (joint, _) in pairs.iter().filter(|(joint, _)| joint.kind == JointKind::Revolute) {
@@ -212,7 +209,7 @@ fn of_unit(
     }
     Misfit {
         prevents_diagnosis: true,
-        ..Misfit::new(None, text, changes)
+        ..Misfit::new(MisfitKind::PositionUnit, None, text, changes)
     }
 }
 
@@ -220,23 +217,23 @@ fn of_unit(
 fn explained_in_turns(arm: &Arm, moving: &[&Pair<'_>], smooth: &Smooth) -> Option<String> {
     let within = moving.iter().all(|(joint, measured)| {
         let limits = joint.limits;
-        let slack = 0.1 * (limits.upper - limits.lower) + 1e-2;
+        let slack = SLACK * (limits.upper - limits.lower) + LIMIT_SLACK;
         let (low, high) = measured.q_range;
         limits.upper <= limits.lower || (low * TAU > limits.lower - slack && high * TAU < limits.upper + slack)
     });
     if moving.is_empty() || !within {
         return None;
     }
-    let [now, turned] = [Supposition::AsItIs, Supposition::Unit(TAU)].map(|supposition| fit(arm, smooth, supposition));
-    let has_size = |&joint: &usize| (0.3..3.0).contains(&turned.factor[joint]);
+    let [now, turned] = [Correction::AsItIs, Correction::Unit(TAU)].map(|correction| fit(arm, smooth, correction));
+    let has_size = |&joint: &usize| TURN_FACTORS.contains(&turned.factor[joint]);
     let judged: Vec<usize> = (0..arm.dof()).filter(|&joint| turned.needs_model(joint)).collect();
     let is_right = 2 * judged.len() >= moving.len() && judged.iter().all(has_size);
-    if !is_right || now.score() - turned.score() < LEAD * moving.len() as f64 {
+    if !is_right || now.score() - turned.score() < UNIT_LEAD * moving.len() as f64 {
         return None;
     }
     let share = |residuals: &[f64]| {
-        let left: f64 = judged.iter().map(|&joint| residuals[joint]).sum();
-        percent(1.0 - left / judged.len() as f64)
+        let residual: f64 = judged.iter().map(|&joint| residuals[joint]).sum();
+        percent(1.0 - residual / judged.len() as f64)
     };
     Some(format!(
         "explain {} of the torques; without it, {}",
@@ -250,7 +247,7 @@ fn explained_in_turns(arm: &Arm, moving: &[&Pair<'_>], smooth: &Smooth) -> Optio
 fn is_beyond((joint, measured): &Pair<'_>) -> bool {
     let (low, high) = measured.q_range;
     let limits = joint.limits;
-    limits.upper > limits.lower && high - low > (2.0 * TAU).max(1.5 * (limits.upper - limits.lower))
+    limits.upper > limits.lower && high - low > MOST_SPAN.max(BEYOND_RANGE * (limits.upper - limits.lower))
 }
 
 /// The contradiction if the positions of one joint fit into its limits only in degrees. It prevents a diagnosis if the recorded
@@ -258,7 +255,7 @@ fn is_beyond((joint, measured): &Pair<'_>) -> bool {
 pub fn of_one(arm: &Arm, (joint, measured): &Pair<'_>, smooth: Option<&Smooth>) -> Option<Misfit> {
     let (low, high) = measured.q_range;
     let limits = joint.limits;
-    let fits = low.to_radians() > limits.lower - 1e-2 && high.to_radians() < limits.upper + 1e-2;
+    let fits = low.to_radians() > limits.lower - LIMIT_SLACK && high.to_radians() < limits.upper + LIMIT_SLACK;
     if joint.kind != JointKind::Revolute || !is_beyond(&(joint, measured)) || !fits {
         return None;
     }
@@ -266,15 +263,15 @@ pub fn of_one(arm: &Arm, (joint, measured): &Pair<'_>, smooth: Option<&Smooth>) 
     let mut changes = vec![Change::new(&joint.name, "q_unit", Value::Unit(unit, factor))];
     if measured
         .velocity_ratio
-        .is_some_and(|ratio| (0.5..2.0).contains(&ratio.abs()))
+        .is_some_and(|ratio| SAME_UNIT.contains(&ratio.abs()))
     {
         changes.push(Change::new(&joint.name, "qd_unit", Value::Unit(of_velocity, factor)));
     }
-    let is_slope = |ratio: f64| (ratio.abs() * factor - 1.0).abs() < 0.04;
+    let is_slope = |ratio: f64| (ratio.abs() * factor - 1.0).abs() < SAME_SLOPE;
     let agrees = |smooth: &Smooth| {
         let at = arm.joints().iter().position(|other| other.name == joint.name);
-        let explains = |supposition| fit(arm, smooth, supposition).score();
-        at.is_some_and(|at| explains(Supposition::AsItIs) - explains(Supposition::UnitOf(at, factor)) > GAIN)
+        let explains = |correction| fit(arm, smooth, correction).score();
+        at.is_some_and(|at| explains(Correction::AsItIs) - explains(Correction::UnitOf(at, factor)) > ONE_IN_DEGREES)
     };
     let is_certain = measured.velocity_ratio.is_some_and(is_slope) || smooth.is_some_and(agrees);
     let text = format!(
@@ -288,7 +285,7 @@ pub fn of_one(arm: &Arm, (joint, measured): &Pair<'_>, smooth: Option<&Smooth>) 
     );
     Some(Misfit {
         prevents_diagnosis: is_certain,
-        ..Misfit::new(Some(&joint.name), text, changes)
+        ..Misfit::new(MisfitKind::PositionUnit, Some(&joint.name), text, changes)
     })
 }
 
@@ -302,7 +299,7 @@ pub fn of_speeds(pairs: &[Pair<'_>]) -> Option<Misfit> {
     times.sort_by(f64::total_cmp);
     let (least, most) = (*times.first()?, *times.last()?);
     let has_limits = moving.iter().all(|(joint, _)| joint.limits.velocity > 0.0);
-    if !has_limits || least <= BEYOND || moving.len() < 2 {
+    if !has_limits || least <= MOST_SPEED || moving.len() < 2 {
         return None;
     }
     let ratios: Vec<f64> = moving
@@ -310,7 +307,7 @@ pub fn of_speeds(pairs: &[Pair<'_>]) -> Option<Misfit> {
         .filter_map(|(_, measured)| measured.velocity_ratio)
         .collect();
     let mean = ratios.iter().sum::<f64>() / ratios.len().max(1) as f64;
-    let same = ratios.len() == moving.len() && ratios.iter().all(|ratio| (ratio / mean - 1.0).abs() < 0.04);
+    let same = ratios.len() == moving.len() && ratios.iter().all(|ratio| (ratio / mean - 1.0).abs() < SAME_SLOPE);
     let hint = if same && !(0.8..1.25).contains(&mean) {
         format!(
             "; the recorded velocities are {} times the positions' slopes on all of them, so that the time stamps are probably \
@@ -328,6 +325,6 @@ pub fn of_speeds(pairs: &[Pair<'_>]) -> Option<Misfit> {
     );
     Some(Misfit {
         prevents_diagnosis: true,
-        ..Misfit::new(None, text, Vec::new())
+        ..Misfit::new(MisfitKind::Speed, None, text, Vec::new())
     })
 }

@@ -2,12 +2,11 @@
 
 use recording::RegularRecording;
 
+use super::thresholds::MOVES;
 use crate::turns::range;
 
 /// Half the span of a parabola (s).
 const HALF_SPAN: f64 = 0.04;
-/// A joint moves if its position changes by more than this (rad or m).
-const MOVES: f64 = 0.01;
 /// The number of instants.
 const INSTANTS: usize = 800;
 

@@ -2,17 +2,8 @@
 
 use super::column_map::{Change, Value};
 use super::fit::Fit;
+use super::thresholds::{LARGE_EVERYWHERE, MOTOR_SIDE, NEAR_UNIT, SMALL_BESIDE, SMALL_EVERYWHERE};
 use report::numbers::rounded;
-
-/// The least ratio of a torque to the model's on the joint's side; a payload only makes it larger.
-pub const MOTOR_SIDE: f64 = 0.05;
-/// With this ratio on all joints, the torques are in another unit; no payload is so heavy.
-const LARGE_EVERYWHERE: f64 = 30.0;
-/// With less than this ratio on all joints, the torques are motor currents or in another unit.
-const SMALL_EVERYWHERE: f64 = 0.2;
-/// The torques are also motor currents or in another unit if half of the joints have a ratio below [`SMALL_EVERYWHERE`] and all others
-/// a ratio below this one: torque constants differ from drive to drive, and a payload and friction make the ratio larger.
-const SMALL_BESIDE: f64 = 0.7;
 
 /// A unit of torque that is a power of ten of N m.
 struct Unit {
@@ -96,9 +87,9 @@ pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Chan
     }
     let (least, most) = (factors[0], largest);
     let middle = factors[factors.len() / 2];
-    // The masses of a URDF are accurate to about a third, and all joints have the same unit.
+    // All joints have the same unit.
     let decimal = UNITS.into_iter().find(|unit| {
-        let near = |found: f64| (0.5..2.0).contains(&(found / unit.factor));
+        let near = |found: f64| NEAR_UNIT.contains(&(found / unit.factor));
         near(middle) && near((least * most).sqrt())
     });
     let said = format!(
@@ -140,7 +131,7 @@ pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Chan
 mod tests {
     use super::*;
 
-    /// What is said of joints whose torques are so many times the model's.
+    /// What is said of joints whose torques are `factors` times the model's.
     fn said(factors: &[f64]) -> Option<String> {
         let count = factors.len();
         let fit = Fit {
@@ -153,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn currents_of_drives_with_different_constants_are_told() {
+    fn currents_of_drives_with_different_constants_are_reported() {
         // Of 12 to 4 N m per A, and with a payload that the URDF does not have.
         for currents in [&[0.08, 0.07, 0.15, 0.3, 0.55][..], &[0.1, 0.12, 0.22], &[0.1, 0.15]] {
             let said = said(currents);

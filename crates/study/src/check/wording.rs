@@ -1,12 +1,12 @@
-//! Suppositions in words, and as keys of a column map.
+//! Corrections in words, and as keys of a column map.
 
 use std::ops::Range;
 
 use super::column_map::{Change, Value};
-use super::supposition::Supposition;
+use super::correction::Correction;
 
-impl Supposition {
-    /// What is wrong, in a few words; `None` for a supposition that is never mentioned beside another one.
+impl Correction {
+    /// What is wrong, in a few words; `None` for a correction that is never mentioned beside another one.
     pub fn words(self, names: &[&str]) -> Option<String> {
         Some(match self {
             Self::AsItIs | Self::Unit(_) | Self::UnitOf(..) | Self::Gravity(_) => return None,
@@ -25,7 +25,7 @@ impl Supposition {
         })
     }
 
-    /// The supposition on the sign of the torque in the place of that of the position.
+    /// The correction of the sign of the torque in the place of that of the position.
     pub fn as_sign_of_the_torque(self) -> Option<Self> {
         match self {
             Self::AllPositionsFlipped => Some(Self::AllTorquesFlipped),

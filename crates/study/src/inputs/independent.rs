@@ -5,7 +5,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use recording::RegularRecording;
 
-/// The length of a stretch in samples. That so many samples of a moving arm, torques included, are equal is not a
+/// The length of a stretch in samples. That this many samples of a moving arm, torques included, are equal is not a
 /// coincidence.
 const STRETCH: usize = 50;
 

@@ -7,7 +7,7 @@ use clap::Args;
 
 /// Which joints of the robot are the arm.
 #[derive(Clone, Debug, Default, Args)]
-#[command(next_help_heading = "The arm among the robot's joints")]
+#[command(next_help_heading = "Which of the robot's joints are the arm")]
 pub struct ChainArgs {
     /// The link on which the arm stands still [default: the root link]
     #[arg(long, value_name = "LINK")]

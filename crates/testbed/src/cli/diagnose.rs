@@ -11,11 +11,23 @@ use super::numbers::{parse_accuracy, parse_frequency};
 use super::rerun::{Rerun, parse_rerun};
 use crate::output::{self, OutputFile};
 
-/// The catalogue's effects, one per line.
+/// The catalogue's effects with their meanings, each wrapped beside its name.
 fn effects_help() -> String {
-    let line = |kind: &&dyn effects::EffectKind| format!("\n  {:<24} {}", kind.spec().name, kind.spec().meaning);
-    let lines: String = effects::CATALOGUE.iter().map(line).collect();
-    format!("Effects:{lines}")
+    const NAME: usize = 24;
+    const WIDTH: usize = 100;
+    let mut help = String::from("Effects:");
+    for spec in effects::CATALOGUE.iter().map(|kind| kind.spec()) {
+        let mut line = format!("  {:<NAME$}", spec.name);
+        for word in spec.meaning.split_whitespace() {
+            if line.chars().count() + 1 + word.chars().count() > WIDTH {
+                help += &format!("\n{line}");
+                line = " ".repeat(2 + NAME);
+            }
+            line += &format!(" {word}");
+        }
+        help += &format!("\n{line}");
+    }
+    help
 }
 
 #[derive(Debug, Args)]
@@ -101,8 +113,8 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "OUT")]
     pub mjcf: Option<PathBuf>,
 
-    /// Whether friction in the URDF (its "dynamics" tags) is known friction, which the recordings are not to explain again. In most URDFs
-    /// it is a placeholder
+    /// Which friction in the URDF (its "dynamics" tags) is known friction, that is already part of the model. In most URDFs it is a
+    /// placeholder
     #[arg(long, value_enum, default_value = "diagnosed")]
     pub urdf_friction: UrdfFriction,
 
@@ -204,11 +216,11 @@ impl DiagnoseArgs {
 /// Which friction in a URDF is known friction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum UrdfFriction {
-    /// That which testbed diagnose wrote (--urdf)
+    /// Only friction that testbed diagnose wrote into the URDF with --urdf
     Diagnosed,
-    /// All
+    /// All friction in the URDF
     Known,
-    /// None
+    /// None of it
     Ignored,
 }
 

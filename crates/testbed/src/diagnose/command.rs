@@ -55,7 +55,7 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     let deferred = interrupt::Deferred::start();
     let written = write(args, &arm, &robot, &diagnosis, effects);
     drop(deferred);
-    tell(args, &arm, &diagnosis, &written)?;
+    print(args, &arm, &diagnosis, &written)?;
     written.files.finish()?;
     let explains = diagnosis.report.verdict == Verdict::NoMismatch && diagnosis.report.findings.is_empty();
     Ok(if args.fail_on_mismatch && !explains {
@@ -82,18 +82,18 @@ impl Listener for Terminal<'_> {
         }
     }
 
-    fn recordings(&self, notes: &Notes, joints: &[&str]) {
+    fn recordings(&self, notes: &Notes) {
         if self.args.quiet {
             return;
         }
-        for line in notes.lines(joints, !self.args.verbose) {
+        for line in notes.lines(!self.args.verbose) {
             self.progress.suspend(|| eprintln!("{line}"));
         }
     }
 }
 
 /// Prints the result and the files written. If JSON is printed on standard output, nothing else is.
-fn tell(args: &DiagnoseArgs, arm: &Arm, diagnosis: &Diagnosis, written: &Files<'_>) -> anyhow::Result<()> {
+fn print(args: &DiagnoseArgs, arm: &Arm, diagnosis: &Diagnosis, written: &Files<'_>) -> anyhow::Result<()> {
     let report = &diagnosis.report;
     if args.prints_json() {
         output::print(&(serde_json::to_string_pretty(report)? + "\n"))?;

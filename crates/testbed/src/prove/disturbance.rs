@@ -111,7 +111,7 @@ pub fn conceal() -> anyhow::Result<Concealment> {
             case: CASE.to_owned(),
             robot: train.arm.name().to_owned(),
             seed: 0,
-            concealed: vec![Injected {
+            injected: vec![Injected {
                 effect: EFFECT.to_owned(),
                 joint: None,
                 parameters: [("factor".to_owned(), factor.into())].into(),
@@ -257,7 +257,7 @@ mod tests {
     fn the_heavy_urdf_is_the_papers_controller() {
         let scenario = Scenario::built_in(TRAIN).expect("it comes with the program");
         let urdf = heavy_urdf(&scenario).expect("it can be written");
-        assert!(!urdf.contains("Corrected"), "the URDF tells what was done to it");
+        assert!(!urdf.contains("Corrected"), "the URDF says what was done to it");
         let arm = Arm::from_urdf_text(&urdf, "heavy.urdf").expect("it is an arm");
         let samples = training::own_samples(&scenario).expect("the reference fits");
         let [read, meant, exact] = [arm, scenario.nominal_arm(), scenario.arm.clone()]

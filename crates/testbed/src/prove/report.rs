@@ -57,7 +57,7 @@ fn injected(proof: &Proof) -> Vec<Block> {
              part of a joint's torque (in standard deviations) that vanishes when the arm is simulated without the effect; effects below {} are not required to be found.",
             proof.seal.source,
             &proof.seal.whole[..12],
-            score.concealed.len(),
+            score.injected.len(),
             percent(scoring::LEAST_SHARE),
         )),
         text(

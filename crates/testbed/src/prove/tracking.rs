@@ -64,7 +64,7 @@ impl Model {
 
 /// An injected fault of the machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ConcealedEffect {
+pub struct InjectedEffect {
     /// Its name in the ground truth.
     pub effect: String,
     /// The joint; `None` for the whole arm.
@@ -103,7 +103,8 @@ pub struct CaseTracking {
     /// The joints' names, base to tip.
     pub joints: Vec<String>,
     /// The injected faults.
-    pub concealed: Vec<ConcealedEffect>,
+    #[serde(rename = "concealed")]
+    pub injected: Vec<InjectedEffect>,
     /// The effects of the diagnosed model.
     pub named: Vec<Name>,
     /// The errors of the models, in the order of [`Model::ALL`].
@@ -202,14 +203,14 @@ impl Case<'_> {
             .zip(pairs)
             .map(|(&model, (run, other))| run.tracked(model, other, &course));
         let baseline = |effect: &faults::Injected| effect.expressed_share.is_none();
-        let concealed = self.truth.concealed.iter().filter(|effect| !baseline(effect));
+        let injected = self.truth.injected.iter().filter(|effect| !baseline(effect));
         Ok(CaseTracking {
             case: case.clone(),
             made_of,
             start,
             joints: arm.joints().iter().map(|joint| joint.name.clone()).collect(),
-            concealed: concealed
-                .map(|effect| ConcealedEffect {
+            injected: injected
+                .map(|effect| InjectedEffect {
                     effect: effect.effect.clone(),
                     joint: effect.joint.clone(),
                     onset: effect.onset,

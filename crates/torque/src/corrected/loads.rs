@@ -43,7 +43,7 @@ impl Corrected {
             !self.machine.contacts.is_empty() || self.machine.dry.iter().any(|(_, dry)| dry.depends_on_load());
         if needs_rigid {
             // `dry` contains the rigid torque until it is no longer needed.
-            self.rigid_torque(Some(time), workspace, [q, qd, qdd], dry);
+            self.rigid_torque(Some(time), workspace, State { q, qd, qdd }, dry);
             workspace.rigid.copy_from_slice(dry);
         }
         dry.fill(0.0);

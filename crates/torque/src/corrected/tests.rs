@@ -130,7 +130,7 @@ fn position_makes_springs_and_ripple() {
 }
 
 #[test]
-fn drift_is_warm_unless_the_time_is_told() {
+fn drift_is_warm_unless_the_time_is_given() {
     let drift = Effect::of(&ThermalDrift)
         .on(a())
         .with("coulomb", 2.0)

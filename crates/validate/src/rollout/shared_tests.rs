@@ -11,7 +11,7 @@ fn blind() -> PathBuf {
 }
 
 /// The injected effect in the terms of the catalogue; `None` if it is not in the catalogue.
-fn concealed(truth: &Path) -> Option<Vec<Effect>> {
+fn injected(truth: &Path) -> Option<Vec<Effect>> {
     let text = std::fs::read_to_string(truth).expect("the truth can be read");
     let truth: serde_json::Value = serde_json::from_str(&text).expect("the truth is JSON");
     let mut effects = Vec::new();
@@ -45,7 +45,7 @@ fn concealed(truth: &Path) -> Option<Vec<Effect>> {
 fn the_plant_with_the_injected_faults_moves_as_the_other_engine() {
     let folder = blind();
     for case in [2, 3, 9, 13, 17, 26] {
-        let effects = concealed(&folder.join(format!("truth/case_{case:03}.json"))).expect("it is in the catalogue");
+        let effects = injected(&folder.join(format!("truth/case_{case:03}.json"))).expect("it is in the catalogue");
         let files = folder.join(format!("case_{case:03}"));
         let arm = Arm::from_urdf(files.join("robot.urdf")).expect("it is an arm");
         let recording = Recording::read(&files.join("held_out.csv")).expect("it is read");
@@ -66,7 +66,7 @@ fn the_plant_with_the_injected_faults_moves_as_the_other_engine() {
 #[ignore = "needs ../shared"]
 fn a_delay_shows_on_its_joint() {
     let folder = blind();
-    let effects = concealed(&folder.join("truth/case_001.json")).expect("it is in the catalogue");
+    let effects = injected(&folder.join("truth/case_001.json")).expect("it is in the catalogue");
     let files = folder.join("case_001");
     let arm = Arm::from_urdf(files.join("robot.urdf")).expect("it is an arm");
     let recording = Recording::read(&files.join("train_1.csv")).expect("it is read");

@@ -17,7 +17,7 @@ pub struct LeftOut<'a> {
     groups: Vec<Vec<&'a Stretch>>,
     folds: Vec<DMatrix<f64>>,
     /// The prior of the background's columns.
-    prior: Prior,
+    prior: ColumnPrior,
     /// The fit of all groups, then of all but one.
     fits: Vec<Normal>,
     /// The residual sums of squares where it was fitted, and on the groups left out.
@@ -25,7 +25,7 @@ pub struct LeftOut<'a> {
 }
 
 /// The prior of the background's columns, which are the first ones: their precision K and K m, with m its centre.
-struct Prior {
+struct ColumnPrior {
     precision: DMatrix<f64>,
     pull: DVector<f64>,
 }
@@ -129,9 +129,9 @@ impl Products {
     }
 
     /// The prior of the background's columns that `acts` selects, where sums of squares are weighted by `scale`.
-    fn prior(&self, acts: impl Fn(usize) -> bool, scale: f64) -> Prior {
+    fn prior(&self, acts: impl Fn(usize) -> bool, scale: f64) -> ColumnPrior {
         let Some(background) = &self.background else {
-            return Prior {
+            return ColumnPrior {
                 precision: DMatrix::zeros(0, 0),
                 pull: DVector::zeros(0),
             };
@@ -142,7 +142,7 @@ impl Products {
         let entry = |i: usize, k: usize| background.precision[(mine[i], mine[k])] / scale;
         let precision = DMatrix::from_fn(mine.len(), mine.len(), entry);
         let centre = DVector::from_fn(mine.len(), |i, _| background.centre[mine[i]]);
-        Prior {
+        ColumnPrior {
             pull: &precision * centre,
             precision,
         }
@@ -207,7 +207,7 @@ fn extended(group: &[&Stretch], known: &DMatrix<f64>, places: &[usize]) -> DMatr
 /// where they were fitted and on the groups left out.
 fn fitted(
     folds: &[DMatrix<f64>],
-    prior: &Prior,
+    prior: &ColumnPrior,
     fit: impl Fn(&DMatrix<f64>, usize) -> Normal,
 ) -> (Vec<Normal>, [f64; 2]) {
     let all = folds.iter().skip(1).fold(folds[0].clone(), |sum, fold| sum + fold);
@@ -231,7 +231,7 @@ struct Normal {
 }
 
 /// An inner product, with the precision of `prior`.
-fn entry(gram: &DMatrix<f64>, prior: &Prior, i: usize, k: usize) -> f64 {
+fn entry(gram: &DMatrix<f64>, prior: &ColumnPrior, i: usize, k: usize) -> f64 {
     let known = prior.precision.nrows();
     let own = if i < known && k < known {
         prior.precision[(i, k)]
@@ -247,7 +247,7 @@ fn scale(entry: f64) -> f64 {
 
 impl Normal {
     /// The fit of the first `p` columns.
-    fn new(gram: &DMatrix<f64>, p: usize, prior: &Prior) -> Self {
+    fn new(gram: &DMatrix<f64>, p: usize, prior: &ColumnPrior) -> Self {
         let scale: Vec<f64> = (0..p).map(|i| scale(entry(gram, prior, i, i))).collect();
         let matrix = DMatrix::from_fn(p, p, |i, k| entry(gram, prior, i, k) / (scale[i] * scale[k]));
         Self {
@@ -258,7 +258,7 @@ impl Normal {
 
     /// The fit of the first `p` columns, of which this fit has the first ones: its factor is extended by rows. The result
     /// has the bits of [`Self::new`].
-    fn with(&self, gram: &DMatrix<f64>, p: usize, prior: &Prior) -> Self {
+    fn with(&self, gram: &DMatrix<f64>, p: usize, prior: &ColumnPrior) -> Self {
         let known = self.scale.len();
         let new = p - known;
         let mut scale = self.scale.clone();
@@ -288,7 +288,7 @@ impl Normal {
     }
 
     /// The coefficients, for the right side in the last column of `gram`.
-    fn solution(&self, gram: &DMatrix<f64>, prior: &Prior) -> DVector<f64> {
+    fn solution(&self, gram: &DMatrix<f64>, prior: &ColumnPrior) -> DVector<f64> {
         let (p, last) = (self.scale.len(), gram.nrows() - 1);
         let pull = |i: usize| prior.pull.get(i).copied().unwrap_or(0.0);
         let right = DVector::from_fn(p, |i, _| (gram[(i, last)] + pull(i)) / self.scale[i]);

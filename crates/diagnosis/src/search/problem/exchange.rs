@@ -12,7 +12,7 @@ impl Problem<'_> {
         let is_free = |c: &usize| {
             let candidate = &self.candidates[*c];
             candidate.joint.is_none()
-                && !candidate.hypothesis.is_passing()
+                && !candidate.hypothesis.spec().may_be_in_one_recording
                 && !selected.set.iter().any(|&other| other == *c || self.exclude(*c, other))
         };
         let free: Vec<usize> = allowed.iter().copied().filter(is_free).collect();
@@ -32,7 +32,7 @@ impl Problem<'_> {
     /// masses may resemble a third one, and one may resemble two others. No exchange of one mass for one other leads to the
     /// true masses then.
     fn other_masses(&self, selected: &Selection, allowed: &[usize]) -> Vec<Selection> {
-        let is_mass = |c: &usize| self.candidates[*c].hypothesis.is_wrong_mass();
+        let is_mass = |c: &usize| self.candidates[*c].hypothesis.spec().is_wrong_mass;
         let rest: Vec<usize> = selected.set.iter().copied().filter(|c| !is_mass(c)).collect();
         if rest.len() == selected.set.len() {
             return Vec::new();
@@ -86,7 +86,7 @@ impl Problem<'_> {
                 .filter_map(|k| {
                     let removed = selected.set[k];
                     let out = &self.candidates[removed];
-                    if out.hypothesis.is_friction() {
+                    if out.hypothesis.spec().is_friction {
                         return None;
                     }
                     let without = self.without(&selected, removed);

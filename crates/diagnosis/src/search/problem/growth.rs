@@ -164,7 +164,9 @@ impl Problem<'_> {
     /// the joints.
     fn predicts<'a>(&'a self, selected: &'a Selection, candidate: usize, bases: &[OnceLock<LeftOut<'a>>]) -> bool {
         let candidate = &self.candidates[candidate];
-        if candidate.hypothesis.is_passing() || candidate.hypothesis.is_baseline() || self.is_background_too(candidate)
+        if candidate.hypothesis.spec().may_be_in_one_recording
+            || candidate.hypothesis.spec().is_baseline
+            || self.is_background_too(candidate)
         {
             return true;
         }

@@ -9,9 +9,7 @@ use crate::data::rigid::Rigid;
 use crate::regression::fit::Fit;
 use crate::regression::table::Moving;
 use crate::search::problem::Selection;
-
-/// The number of times that the prior of the links is expanded about the fitted bodies.
-const MOST_BODIES: usize = 2;
+use crate::thresholds::MOST_BODIES;
 
 impl Study {
     /// Evaluates everything about the arm of `fit`, so that the remaining tilts, encoder offsets and payloads are small.

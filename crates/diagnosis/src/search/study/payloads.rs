@@ -5,11 +5,7 @@ use effects::arm::Payload;
 use super::Study;
 use crate::data::statistics;
 use crate::search::problem::Selection;
-use crate::thresholds::{FELT, PER_LINK_APART};
-
-/// The number of last joints on which the torque of a payload must show. There are two, because the axis of one may go
-/// through its centre of mass.
-const LAST_JOINTS: usize = 2;
+use crate::thresholds::{FELT, PAYLOAD_JOINTS, PER_LINK_APART};
 
 impl Study {
     /// `selected` with a payload in the place of another body of the last link, if that is better. A search that takes the link
@@ -49,7 +45,7 @@ impl Study {
     /// torque. It is kept if the links explain clearly less, and if it has an onset, because a link cannot have one.
     pub fn without_payload_of_a_link(&mut self, selected: Selection) -> Selection {
         let is_unfelt = |&c: &usize| {
-            let sets_in = || self.terms(c).iter().any(|term| term.onset().is_some());
+            let sets_in = || !self.always_acts(c);
             self.candidates[c].hypothesis.is(&Payload) && !sets_in() && !self.is_felt_at_the_end(&selected, c)
         };
         let unfelt: Vec<usize> = selected.set.iter().copied().filter(is_unfelt).collect();
@@ -89,10 +85,10 @@ impl Study {
         let share = |joint: usize| {
             let torque = self.table.torque(joint, columns, &values);
             let rows = self.training_rows(joint);
-            statistics::deviation(rows.iter().map(|&row| torque[row])) / self.scales.torque[joint].max(1e-300)
+            self.share(joint, statistics::deviation(rows.iter().map(|&row| torque[row])))
         };
         let shares: Vec<f64> = (0..self.arm.dof()).map(share).collect();
         let most = |shares: &[f64]| shares.iter().fold(0.0, |most: f64, &share| most.max(share));
-        most(&shares[shares.len().saturating_sub(LAST_JOINTS)..]) >= FELT * most(&shares)
+        most(&shares[shares.len().saturating_sub(PAYLOAD_JOINTS)..]) >= FELT * most(&shares)
     }
 }

@@ -6,10 +6,12 @@ use rayon::prelude::*;
 use super::Study;
 use crate::data::motion::{Chunk, Motions};
 use crate::regression::bodies::PER_LINK;
-use crate::regression::fit::{Fit, Products};
+use crate::regression::fit::Products;
 use crate::regression::strengths::Strengths;
-use crate::search::problem::{Growth, MOST, Selection};
-use crate::thresholds::{LINK_STRENGTHS, MOST_CONSTANT, MOST_DEVIATIONS, MOVED, OWN_STRENGTHS, PER_IMITATION};
+use crate::search::problem::{Growth, Selection};
+use crate::thresholds::{
+    LINK_STRENGTHS, MOST_CONSTANT, MOST_DEVIATIONS, MOST_SELECTED, MOVED, OWN_STRENGTHS, PER_IMITATION,
+};
 
 /// The largest number of effects that may together replace a part of the background.
 const IN_PLACE: usize = 3;
@@ -59,10 +61,8 @@ impl Study {
         let links = vec![0.0; self.arm.dof()];
         let (products, without) = self.with_links(products, selected, links);
         let without = self.problem(&products).reweighted(without);
-        let outside = held.map(|held| {
-            let loss = |fit: &Fit| held.loss(&held.rss(&self.table, &fit.columns, &fit.coefficients));
-            loss(&without.fit) - loss(&selected.fit)
-        });
+        let outside =
+            held.map(|held| held.loss_of(&self.table, &without.fit) - held.loss_of(&self.table, &selected.fit));
         (without.score - selected.score, outside)
     }
 
@@ -216,7 +216,7 @@ impl Study {
                 self.note(rule, &selected, &next);
                 selected = next;
             }
-            if selected.set.len() > MOST {
+            if selected.set.len() > MOST_SELECTED {
                 break;
             }
         }
@@ -227,22 +227,19 @@ impl Study {
 
     /// `selected` with a smaller background and a few more of the candidates `allowed`, if that is better.
     fn exchanged(&self, bare: &Products, selected: &Selection, allowed: &[usize]) -> Option<(Strengths, Selection)> {
-        let weaker = self.strengths.weaker().into_iter();
-        let trials = weaker
-            .filter(|strengths| self.stated.allows(strengths))
-            .filter_map(|strengths| {
-                let products = bare.with_background(self.prior.at(&strengths));
-                let problem = self.problem(&products);
-                let mut next = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));
-                let mut growth = Growth::default();
-                for _ in 0..IN_PLACE {
-                    if next.score < selected.score - 1e-6 {
-                        return Some((strengths, next));
-                    }
-                    next = problem.reweighted(problem.grow(&next, allowed, &mut growth)?);
+        let trials = self.stated.weaker(&self.strengths).filter_map(|strengths| {
+            let products = bare.with_background(self.prior.at(&strengths));
+            let problem = self.problem(&products);
+            let mut next = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));
+            let mut growth = Growth::default();
+            for _ in 0..IN_PLACE {
+                if next.score < selected.score - 1e-6 {
+                    return Some((strengths, next));
                 }
-                (next.score < selected.score - 1e-6).then_some((strengths, next))
-            });
+                next = problem.reweighted(problem.grow(&next, allowed, &mut growth)?);
+            }
+            (next.score < selected.score - 1e-6).then_some((strengths, next))
+        });
         trials.min_by(|a, b| a.1.score.total_cmp(&b.1.score))
     }
 

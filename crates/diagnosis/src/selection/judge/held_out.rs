@@ -11,17 +11,16 @@ use crate::search::study::Study;
 /// effects, which are then searched again.
 pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut selected: Selection) -> Selection {
     let hypothesis = |c: usize| study.candidates[c].hypothesis;
-    let loss =
-        |selected: &Selection| held.loss(&held.rss(&study.table, &selected.fit.columns, &selected.fit.coefficients));
+    let loss = |selected: &Selection| held.loss_of(&study.table, &selected.fit);
     let simple: Vec<usize> = (0..study.candidates.len())
-        .filter(|&c| hypothesis(c).is_simple())
+        .filter(|&c| hypothesis(c).spec().is_baseline_or_constant)
         .collect();
     loop {
         let with = loss(&selected);
         let worst = selected
             .set
             .par_iter()
-            .filter(|&&c| hypothesis(c).name().is_none() && !hypothesis(c).is_passing())
+            .filter(|&&c| hypothesis(c).name().is_none() && !hypothesis(c).spec().may_be_in_one_recording)
             .map(|&c| {
                 let set: Vec<usize> = selected.others(c);
                 let rest = problem.forward(problem.choose(set, &selected.fit.weights), &simple);
@@ -64,7 +63,7 @@ pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut 
                 let mut gain = there.max(held.loss(&without) - held.loss(&with));
                 // The background in its place predicts as well, but costs more evidence. Friction is present in every drive, so that
                 // all recordings decide on it.
-                if problem.is_background_too(this) || this.hypothesis.is_friction() {
+                if problem.is_background_too(this) || this.hypothesis.spec().is_friction {
                     gain += rest.score - selected.score;
                 }
                 (removed, gain, without)

@@ -51,19 +51,19 @@ impl Reader<'_> {
         let joints: Vec<(usize, Vec<f64>, Vec<f64>, f64)> = (0..table.dof())
             .filter(|&joint| fitted.count[joint] > 0.0)
             .map(|joint| {
-                let left = table.residual(joint, all, model);
+                let residual = table.residual(joint, all, model);
                 let rows = study.training_rows(joint);
-                let power = rows.iter().map(|&row| left[row].powi(2)).sum::<f64>() / rows.len().max(1) as f64;
+                let power = rows.iter().map(|&row| residual[row].powi(2)).sum::<f64>() / rows.len().max(1) as f64;
                 let evidence = fitted.evidence[joint] / fitted.count[joint];
                 let weight = 0.5 * evidence / power.max(fitted.floor[joint]).max(1e-300);
-                (joint, table.torque(joint, &always, &sizes), left, weight)
+                (joint, table.torque(joint, &always, &sizes), residual, weight)
             })
             .collect();
         // The increase of a row's misfit (nats) if the effect also acts on it (−1), or does not (1).
         let growth = |row: usize, sign: f64| -> f64 {
             let acting = joints.iter().filter(|(joint, ..)| table.joints[*joint].moving[row]);
             acting
-                .map(|(_, torque, left, weight)| weight * torque[row] * (2.0 * sign * left[row] + torque[row]))
+                .map(|(_, torque, residual, weight)| weight * torque[row] * (2.0 * sign * residual[row] + torque[row]))
                 .sum()
         };
         let times = study.motions.row_times();

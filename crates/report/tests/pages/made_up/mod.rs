@@ -127,6 +127,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
             used_in_part: Vec::new(),
         },
         next_experiment: None,
+        is_requested: false,
         verdict: match plot {
             Plot::Clean => Verdict::NoMismatch,
             Plot::Rich => Verdict::PartlyExplained,

@@ -93,7 +93,7 @@ fn factor(ratio: Option<f64>) -> String {
 }
 
 fn row(case: &CaseTracking) -> Vec<String> {
-    let concealed = case.concealed.iter().map(|effect| {
+    let injected = case.injected.iter().map(|effect| {
         let onset = effect
             .onset
             .map_or_else(String::new, |onset| format!(" from {onset:.0} s"));
@@ -110,7 +110,7 @@ fn row(case: &CaseTracking) -> Vec<String> {
     let named: BTreeSet<String> = named.map(name).collect();
     let mut cells = vec![
         case.case.clone(),
-        or_nothing(concealed.collect()),
+        or_nothing(injected.collect()),
         or_nothing(named.into_iter().collect()),
     ];
     cells.extend(Model::ALL.map(|model| figure(case.error(model))));
@@ -140,9 +140,9 @@ fn why(case: &CaseTracking) -> String {
             ))
         });
     let place = place.unwrap_or_else(|| "unstable".to_owned());
-    let has = |effect: &&super::ConcealedEffect| case.named.contains(&(effect.effect.clone(), effect.joint.clone()));
+    let has = |effect: &&super::InjectedEffect| case.named.contains(&(effect.effect.clone(), effect.joint.clone()));
     let missing: Vec<String> = case
-        .concealed
+        .injected
         .iter()
         .filter(|effect| !has(effect))
         .map(|effect| name(&(effect.effect.clone(), effect.joint.clone())))
@@ -150,7 +150,7 @@ fn why(case: &CaseTracking) -> String {
     let is_there = |named: &&Name| {
         BASELINE.contains(&named.0.as_str())
             || case
-                .concealed
+                .injected
                 .iter()
                 .any(|effect| (&effect.effect, &effect.joint) == (&named.0, &named.1))
     };

@@ -1,4 +1,4 @@
-//! Weighs suppositions on signs, order and zeros of the recordings by the evidence of all their torques.
+//! Weighs corrections of the columns (signs, order and zeros) by the evidence of all torques, and proposes the best.
 
 use arm::Arm;
 use diagnosis::{Agreement, Input, agreement, searched};
@@ -8,53 +8,25 @@ use recording::RegularRecording;
 use report::numbers::rounded;
 
 use super::column_map::Change;
+use super::correction::Correction;
 use super::fit::fit;
+use super::order;
 use super::smooth::Smooth;
-use super::supposition::Supposition;
-use super::{LEAST_INSTANTS, order};
+use super::thresholds::{
+    BEYOND_LIMITS, CERTAIN, CERTAIN_WHERE_EXPLAINED, CONTRADICTS, LEAD, LEAST_INSTANTS, MAY_REMAIN, NOT_CONTRADICTED,
+    ONE_CONTRADICTS_IN, OVERWHELMING, REDUCED, REPORTED, REPORTED_WHERE_EXPLAINED, SUPPORTS, UNEXPLAINED, WEIGHED,
+    WORTH_WEIGHING,
+};
 use crate::turns;
 
-/// The number of suppositions that are weighed.
-const WEIGHED: usize = 8;
-/// A supposition is weighed if it reduces the sum of the joints' log residuals in a recording by this much: the model is that of the
-/// URDF, so that other inertial parameters may hide most of the reduction.
-const WORTH_WEIGHING: f64 = 0.05;
-/// A supposition on a joint whose torque is hardly explained, or on the joint before it, is also weighed if it increases the sum by less
-/// than this: the model's part of such a torque may be small.
-const NOT_CONTRADICTED: f64 = 0.5;
-/// Recordings contradict each other on a supposition if it changes the sum by more than this, up in one and down in another.
-const CONTRADICTS: f64 = 2.0;
-/// The evidence from which a supposition is told (nats), and from which it is certain. Source: of 184 simulated cases with URDFs exact or
-/// wrong by 3 to 30 %, whose recordings are as they should be, one has a supposition of more than 20 nats: 67, for the zero of a last joint
-/// whose torque is explained without it. Of 430 perturbed recordings of 16 robots, nine in ten have more than 100.
-const TOLD: f64 = 20.0;
-const CERTAIN: f64 = 40.0;
-/// The same for a torque that is nearly explained without the supposition.
-const TOLD_WHERE_EXPLAINED: f64 = 100.0;
-const CERTAIN_WHERE_EXPLAINED: f64 = 200.0;
-/// The evidence that an effect outside the catalogue on one of the joints does not put into doubt (nats).
-const OVERWHELMING: f64 = 500.0;
-/// The least share of the variance of a joint's torque that is unexplained without a supposition, and by how many times a supposition
-/// reduces it.
-const UNEXPLAINED: f64 = 0.02;
-const REDUCED: f64 = 3.0;
-/// The evidence of one joint's torque with which the joint supports a supposition (nats).
-const SUPPORTS: f64 = 15.0;
-/// A supposition is the only one if the next one has less evidence by this much (nats).
-const LEAD: f64 = 10.0;
-/// A supposition that moves positions beyond the URDF's limits by this much more than they are is not certain (rad or m).
-const BEYOND_LIMITS: f64 = 0.3;
-/// The share of the variance of a joint's torque that may remain with a correct reading of the joint.
-const EXPLAINED: f64 = 0.3;
-
-/// What is supposed of recordings.
+/// A correction of the recordings' columns that is proposed.
 #[derive(Clone, Debug)]
-pub struct Supposed {
+pub struct Proposal {
     /// The joint, if it concerns one.
     pub joint: Option<String>,
     /// A description, with the remedy.
     pub text: String,
-    /// The keys of a column map that correct it; empty if several suppositions are as likely.
+    /// The keys of a column map that correct it; empty if several corrections are as likely.
     pub changes: Vec<Change>,
     /// Whether the recordings cannot be diagnosed as they were read.
     pub is_certain: bool,
@@ -62,9 +34,9 @@ pub struct Supposed {
     pub recordings: Vec<usize>,
 }
 
-/// A supposition with its evidence.
+/// A correction with its evidence.
 struct Weighed {
-    supposition: Supposition,
+    correction: Correction,
     recordings: Vec<usize>,
     /// The evidence for it, in nats.
     nats: f64,
@@ -73,49 +45,49 @@ struct Weighed {
     with: Agreement,
 }
 
-/// What the torques of `recordings` tell about their signs, zeros and order; `None` if they are best explained as they are.
+/// The correction of signs, zeros and order that the torques of `recordings` show; `None` if they are best explained as they are.
 ///
-/// A supposition is found with the URDF's own model, and weighed with inertial parameters, friction and torque constants that differ
+/// A correction is found with the URDF's own model, and weighed with inertial parameters, friction and torque constants that differ
 /// from the URDF as far as the evidence says. It is certain if it concerns a sign that friction shows, because friction never drives a
 /// joint, or if several joints' torques show it, and if no effect of the catalogue explains the recordings as they are.
-pub fn supposed(arm: &Arm, known: &[Effect], recordings: &[&RegularRecording]) -> Option<Supposed> {
+pub fn proposal(arm: &Arm, known: &[Effect], recordings: &[&RegularRecording]) -> Option<Proposal> {
     let mut scanned = scanned(arm, recordings);
     let is_worth = |one: &Scanned| one.gains.iter().any(|gain| *gain > WORTH_WEIGHING);
     if !scanned.iter().any(is_worth) {
         return None;
     }
-    let weigh = |supposition: Supposition, of: &[usize], other: Option<&Agreement>| {
+    let weigh = |correction: Correction, of: &[usize], other: Option<&Agreement>| {
         let read: Vec<RegularRecording> = recordings
             .iter()
             .enumerate()
             .map(|(at, recording)| match of.contains(&at) {
-                true => supposition.applied(arm, recording),
+                true => correction.applied(arm, recording),
                 false => (*recording).clone(),
             })
             .collect();
         // Recordings that are too short to be diagnosed are refused later.
-        agreement(&supposition.arm(arm), &inputs(&read), known, other).ok()
+        agreement(&correction.arm(arm), &inputs(&read), known, other).ok()
     };
-    let as_it_is = weigh(Supposition::AsItIs, &[], None)?;
+    let as_it_is = weigh(Correction::AsItIs, &[], None)?;
     let (mut first, rest): (Vec<Scanned>, Vec<Scanned>) = scanned.drain(..).partition(is_worth);
     first.truncate(WEIGHED);
-    let is_hardly_explained = |joint: usize| as_it_is.unexplained.get(joint).is_some_and(|share| *share > EXPLAINED);
+    let is_hardly_explained = |joint: usize| as_it_is.unexplained.get(joint).is_some_and(|share| *share > MAY_REMAIN);
     let concerns_such = |one: &Scanned| {
-        let joint = one.supposition.joint();
+        let joint = one.correction.joint();
         joint.is_some_and(|joint| is_hardly_explained(joint) || is_hardly_explained(joint + 1))
     };
     let more = rest
         .into_iter()
         .filter(|one| concerns_such(one) && one.gains.iter().sum::<f64>() > -NOT_CONTRADICTED * one.gains.len() as f64);
-    let chosen: Vec<Scanned> = first.into_iter().chain(more.take(WEIGHED)).collect();
-    let mut weighed: Vec<Weighed> = chosen
+    let selected: Vec<Scanned> = first.into_iter().chain(more.take(WEIGHED)).collect();
+    let mut weighed: Vec<Weighed> = selected
         .into_par_iter()
         .filter_map(|one| {
             let of = one.concerned();
-            let with = weigh(one.supposition, &of, Some(&as_it_is))?;
+            let with = weigh(one.correction, &of, Some(&as_it_is))?;
             let pairs = as_it_is.misfit_of.iter().zip(&with.misfit_of);
             Some(Weighed {
-                supposition: one.supposition,
+                correction: one.correction,
                 recordings: of,
                 nats: as_it_is.misfit - with.misfit,
                 nats_of: pairs.map(|(before, after)| before - after).collect(),
@@ -124,11 +96,11 @@ pub fn supposed(arm: &Arm, known: &[Effect], recordings: &[&RegularRecording]) -
         })
         .collect();
     weighed.sort_by(|a, b| b.nats.total_cmp(&a.nats));
-    let judged = judged(arm, &as_it_is, &weighed)?;
-    let nats = nats_beside_catalogue(arm, known, recordings, &judged, &as_it_is)?;
+    let found = best_of(arm, &as_it_is, &weighed)?;
+    let nats = nats_beside_catalogue(arm, known, recordings, &found, &as_it_is)?;
     // What the catalogue explains as well is a warning if it would be certain otherwise.
-    let is_told = nats > if judged.is_shown { -TOLD } else { TOLD };
-    is_told.then(|| judged.told(arm, &as_it_is, recordings, nats))
+    let is_reported = nats > if found.is_shown { -REPORTED } else { REPORTED };
+    is_reported.then(|| found.proposal(arm, &as_it_is, recordings, nats))
 }
 
 /// Recordings to be fitted.
@@ -142,24 +114,21 @@ fn inputs(recordings: &[RegularRecording]) -> Vec<Input<'_>> {
     recordings.iter().map(input).collect()
 }
 
-/// The evidence for the best supposition if the whole catalogue is searched with it and without it, in the recordings that it concerns:
+/// The evidence for the best correction if the whole catalogue is searched with it and without it, in the recordings that it concerns:
 /// springs, payloads and other effects may explain what looks like a wrong sign or zero. `None` if that cannot be computed.
 fn nats_beside_catalogue(
     arm: &Arm,
     known: &[Effect],
     recordings: &[&RegularRecording],
-    judged: &Judged<'_>,
+    found: &Best<'_>,
     as_it_is: &Agreement,
 ) -> Option<f64> {
-    let best = judged.best;
+    let best = found.best;
     let old: Vec<RegularRecording> = best.recordings.iter().map(|&at| recordings[at].clone()).collect();
-    let new: Vec<RegularRecording> = old.iter().map(|one| best.supposition.applied(arm, one)).collect();
+    let new: Vec<RegularRecording> = old.iter().map(|one| best.correction.applied(arm, one)).collect();
     let base = if best.recordings.len() < recordings.len() {
         // The base may hang otherwise in some of the recordings.
-        let bases: Vec<Supposition> = [Supposition::AsItIs]
-            .into_iter()
-            .chain(Supposition::bases(arm))
-            .collect();
+        let bases: Vec<Correction> = [Correction::AsItIs].into_iter().chain(Correction::bases(arm)).collect();
         let misfits: Vec<(f64, Arm)> = bases
             .into_par_iter()
             .map(|base| {
@@ -179,9 +148,9 @@ fn nats_beside_catalogue(
     Some(without.ok()? - with.ok()?)
 }
 
-/// A supposition with its gain in each recording.
+/// A correction with its gain in each recording.
 struct Scanned {
-    supposition: Supposition,
+    correction: Correction,
     /// By how much it reduces the sum of the joints' log residuals.
     gains: Vec<f64>,
 }
@@ -197,7 +166,7 @@ impl Scanned {
     }
 }
 
-/// All suppositions with their gains by the URDF's own model, the largest first.
+/// All corrections with their gains by the URDF's own model, the largest first.
 fn scanned(arm: &Arm, recordings: &[&RegularRecording]) -> Vec<Scanned> {
     let mut all: Vec<Scanned> = Vec::new();
     for (at, recording) in recordings.iter().enumerate() {
@@ -206,18 +175,18 @@ fn scanned(arm: &Arm, recordings: &[&RegularRecording]) -> Vec<Scanned> {
         if smooth.len() <= LEAST_INSTANTS {
             continue;
         }
-        let before = fit(arm, &smooth, Supposition::AsItIs).score();
-        let gains: Vec<(Supposition, f64)> = Supposition::all(arm, &smooth.moves())
+        let before = fit(arm, &smooth, Correction::AsItIs).score();
+        let gains: Vec<(Correction, f64)> = Correction::all(arm, &smooth.moves())
             .into_par_iter()
-            .map(|supposition| (supposition, before - fit(arm, &smooth, supposition).score()))
+            .map(|correction| (correction, before - fit(arm, &smooth, correction).score()))
             .collect();
-        for (supposition, gain) in gains {
-            match all.iter_mut().find(|known| known.supposition == supposition) {
+        for (correction, gain) in gains {
+            match all.iter_mut().find(|known| known.correction == correction) {
                 Some(known) => known.gains[at] = gain,
                 None => {
                     let mut gains = vec![0.0; recordings.len()];
                     gains[at] = gain;
-                    all.push(Scanned { supposition, gains });
+                    all.push(Scanned { correction, gains });
                 }
             }
         }
@@ -228,8 +197,8 @@ fn scanned(arm: &Arm, recordings: &[&RegularRecording]) -> Vec<Scanned> {
     all
 }
 
-/// The best supposition, with what is as likely.
-struct Judged<'a> {
+/// The best correction, with what is as likely.
+struct Best<'a> {
     best: &'a Weighed,
     rivals: Vec<&'a Weighed>,
     /// Whether the base may hang from a ceiling or a wall as well.
@@ -238,22 +207,22 @@ struct Judged<'a> {
     shown_at: usize,
     /// The number of joints whose torques show it.
     supporters: usize,
-    /// Whether it is certain, as far as the model and friction tell.
+    /// Whether it is certain by the model and friction alone.
     is_shown: bool,
 }
 
-/// The best of the suppositions `weighed`, which begin with the one of most evidence; `None` if it is not worth telling.
-fn judged<'a>(arm: &Arm, as_it_is: &Agreement, weighed: &'a [Weighed]) -> Option<Judged<'a>> {
-    let is_base = |one: &Weighed| matches!(one.supposition, Supposition::Gravity(_));
+/// The best of the corrections `weighed`, which begin with the one of most evidence; `None` if it has too little evidence to be reported.
+fn best_of<'a>(arm: &Arm, as_it_is: &Agreement, weighed: &'a [Weighed]) -> Option<Best<'a>> {
+    let is_base = |one: &Weighed| matches!(one.correction, Correction::Gravity(_));
     let most = weighed.first()?.nats;
     let close: Vec<&Weighed> = weighed.iter().filter(|one| most - one.nats < LEAD).collect();
     // A base on a wall or on a ceiling is an effect that the diagnosis finds, not an error of the recording.
     let best = *close.iter().find(|one| !is_base(one))?;
     // Of the two signs that differ only in the attitude of the arm, that of the torque is proposed: it is a convention of the sensor.
-    let is_torque = |one: &&&Weighed| Some(one.supposition) == best.supposition.as_sign_of_the_torque();
+    let is_torque = |one: &&&Weighed| Some(one.correction) == best.correction.as_sign_of_the_torque();
     let best = *close.iter().find(is_torque).unwrap_or(&best);
     let may_be_base = close.iter().any(|one| is_base(one));
-    let is_rival = |one: &&&Weighed| one.supposition != best.supposition && !is_base(one);
+    let is_rival = |one: &&&Weighed| one.correction != best.correction && !is_base(one);
     let rivals: Vec<&Weighed> = close.iter().filter(is_rival).copied().collect();
     let supports = |&joint: &usize| best.nats_of[joint] > SUPPORTS;
     let supporters = (0..arm.dof()).filter(supports).count();
@@ -264,12 +233,12 @@ fn judged<'a>(arm: &Arm, as_it_is: &Agreement, weighed: &'a [Weighed]) -> Option
         .or_else(|| (0..arm.dof()).max_by(|&a, &b| best.nats_of[a].total_cmp(&best.nats_of[b])))?;
     let (without, with) = (as_it_is.unexplained[shown_at], best.with.unexplained[shown_at]);
     let is_clear = without > UNEXPLAINED && without > REDUCED * with;
-    let is_explained = |&joint: &usize| best.with.unexplained[joint] < EXPLAINED;
-    let of = best.supposition.joints(arm);
-    let of_friction = best.supposition.is_of_a_sign_of_friction();
+    let is_explained = |&joint: &usize| best.with.unexplained[joint] < MAY_REMAIN;
+    let of = best.correction.joints(arm);
+    let of_friction = best.correction.is_of_a_sign_of_friction();
     let is_overwhelming = best.nats > OVERWHELMING;
-    let is_seen = with < EXPLAINED && (is_clear || best.nats > TOLD_WHERE_EXPLAINED);
-    if best.nats <= TOLD || !(of_friction || is_seen || is_overwhelming) {
+    let is_seen = with < MAY_REMAIN && (is_clear || best.nats > REPORTED_WHERE_EXPLAINED);
+    if best.nats <= REPORTED || !(of_friction || is_seen || is_overwhelming) {
         return None;
     }
     let contradicts = |joint: &&usize| !is_explained(joint) && best.nats_of[**joint] < -SUPPORTS;
@@ -277,10 +246,10 @@ fn judged<'a>(arm: &Arm, as_it_is: &Agreement, weighed: &'a [Weighed]) -> Option
         is_clear || best.nats > CERTAIN
     } else {
         let has_evidence = best.nats > if is_clear { CERTAIN } else { CERTAIN_WHERE_EXPLAINED };
-        let is_contradicted = of.iter().filter(contradicts).count() > of.len() / 3;
+        let is_contradicted = of.iter().filter(contradicts).count() > of.len() / ONE_CONTRADICTS_IN;
         supporters > 1 && has_evidence && (is_overwhelming || !is_contradicted)
     };
-    Some(Judged {
+    Some(Best {
         best,
         rivals,
         may_be_base,
@@ -290,36 +259,36 @@ fn judged<'a>(arm: &Arm, as_it_is: &Agreement, weighed: &'a [Weighed]) -> Option
     })
 }
 
-impl Judged<'_> {
-    /// What is told, if the supposition has the evidence `nats` beside the whole catalogue.
-    fn told(&self, arm: &Arm, as_it_is: &Agreement, recordings: &[&RegularRecording], nats: f64) -> Supposed {
+impl Best<'_> {
+    /// The proposal, if the correction has the evidence `nats` beside the whole catalogue.
+    fn proposal(&self, arm: &Arm, as_it_is: &Agreement, recordings: &[&RegularRecording], nats: f64) -> Proposal {
         let names: Vec<&str> = arm.joints().iter().map(|joint| joint.name.as_str()).collect();
         let best = self.best;
         let leaves_limits = best.recordings.iter().any(|&at| {
-            let new = best.supposition.applied(arm, recordings[at]);
+            let new = best.correction.applied(arm, recordings[at]);
             turns::beyond_limits(arm, &new.q) > turns::beyond_limits(arm, &recordings[at].q) + BEYOND_LIMITS
         });
         let is_certain = self.is_shown && !self.may_be_base && nats > CERTAIN && !leaves_limits;
         let is_one = self
             .rivals
             .iter()
-            .all(|other| other.supposition.as_sign_of_the_torque() == Some(best.supposition));
-        let left = |agreement: &Agreement| {
+            .all(|other| other.correction.as_sign_of_the_torque() == Some(best.correction));
+        let unexplained = |agreement: &Agreement| {
             let share = agreement.unexplained[self.shown_at].min(1.0);
             format!("{} %", rounded(100.0 * share, 2))
         };
         let mut text = format!(
             "{}: with this correction, {} of the torque's variance at {} remains unexplained by the model, other inertial parameters \
              and friction; without it, {}",
-            best.supposition.sentence(&names, is_certain && is_one),
-            left(&best.with),
+            best.correction.sentence(&names, is_certain && is_one),
+            unexplained(&best.with),
             names[self.shown_at],
-            left(as_it_is)
+            unexplained(as_it_is)
         );
         let mut others: Vec<String> = self
             .rivals
             .iter()
-            .filter_map(|next| next.supposition.words(&names))
+            .filter_map(|next| next.correction.words(&names))
             .collect();
         others.dedup();
         if !others.is_empty() {
@@ -335,17 +304,17 @@ impl Judged<'_> {
             text += ". An effect that the model omits may be the cause, too";
         }
         // With the correct reading, the joints that it concerns are explained, unless they never were.
-        let of = best.supposition.joints(arm);
-        let remains = |&joint: &usize| best.with.unexplained[joint] > EXPLAINED.max(2.0 * as_it_is.unexplained[joint]);
+        let of = best.correction.joints(arm);
+        let remains = |&joint: &usize| best.with.unexplained[joint] > MAY_REMAIN.max(2.0 * as_it_is.unexplained[joint]);
         let is_whole = !of.iter().any(remains);
         if is_certain && !is_whole {
             text += ". Other columns may be wrong, too, because torques remain unexplained";
         }
-        Supposed {
-            joint: best.supposition.joint().map(|joint| names[joint].to_owned()),
+        Proposal {
+            joint: best.correction.joint().map(|joint| names[joint].to_owned()),
             text,
             changes: if is_one && is_whole && !leaves_limits {
-                best.supposition.changes(&names)
+                best.correction.changes(&names)
             } else {
                 Vec::new()
             },

@@ -1,13 +1,13 @@
-//! Suppositions about recordings, and the recordings as they would be read under each.
+//! Corrections of a recording's columns, and the recording with each.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use arm::{Arm, JointKind, Vector3};
 use recording::RegularRecording;
 
-/// A supposition about a recording.
+/// What may be wrong in a recording's columns, and is corrected.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Supposition {
+pub enum Correction {
     AsItIs,
     /// A joint's position has the opposite sign.
     Flipped(usize),
@@ -35,12 +35,12 @@ pub enum Supposition {
     Reversed,
     TorquesReversed,
     /// Gravity has another direction (base frame), as on a wall or a ceiling. That is an effect and not an error of the
-    /// recording. It is among the suppositions so that it is not taken for a wrong zero.
+    /// recording. It is among the corrections so that it is not taken for a wrong zero.
     Gravity(Vector3<f64>),
 }
 
-impl Supposition {
-    /// All suppositions on an arm, of which single joints only if they move: a resting joint gives too little information.
+impl Correction {
+    /// All corrections for an arm, of single joints only if they move: a resting joint gives too little information.
     pub fn all(arm: &Arm, moves: &[bool]) -> Vec<Self> {
         let dof = arm.dof();
         let mut all = Vec::new();
@@ -81,7 +81,7 @@ impl Supposition {
         others.map(Self::Gravity).collect()
     }
 
-    /// The arm under this supposition.
+    /// The arm with this correction.
     pub fn arm(self, arm: &Arm) -> Arm {
         match self {
             Self::Gravity(gravity) => arm.clone().with_gravity(gravity),
