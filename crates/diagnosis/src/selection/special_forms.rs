@@ -8,12 +8,7 @@ use crate::regression::strengths::Strengths;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::selection::rivals::Named;
-use crate::thresholds::NEARLY_AS_LIKELY;
-
-/// The number of candidates that are fitted beside each smaller correction.
-const TRIED: usize = 4;
-/// The largest number of special forms.
-const MOST: usize = 3;
+use crate::thresholds::{MOST_SPECIAL_FORMS, NEARLY_AS_LIKELY, SPECIAL_FORMS_TRIED};
 
 /// The special forms that the recordings do not exclude, the best first: those that are as likely beside a smaller correction of
 /// the links, and names that were given up because wrong inertial parameters explain nearly as much. `selected` is the final fit.
@@ -40,7 +35,7 @@ pub fn special_forms(study: &Study, products: &Products, selected: &Selection) -
             forms.push(form);
         }
     }
-    forms.truncate(MOST);
+    forms.truncate(MOST_SPECIAL_FORMS);
     forms
 }
 
@@ -65,7 +60,7 @@ fn beside(study: &Study, products: &Products, selected: &Selection, strengths: &
     let of = |c: usize| (study.candidates[c].hypothesis, study.candidates[c].joint);
     let mut tried: Vec<usize> = Vec::new();
     for &(promise, c) in &promises {
-        if promise > 0.0 && tried.len() < TRIED && !tried.iter().any(|&other| of(other) == of(c)) {
+        if promise > 0.0 && tried.len() < SPECIAL_FORMS_TRIED && !tried.iter().any(|&other| of(other) == of(c)) {
             tried.push(c);
         }
     }

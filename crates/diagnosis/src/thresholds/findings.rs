@@ -109,3 +109,7 @@ pub const STRETCH_ROWS: usize = 3;
 pub const CONTACT_START: f64 = 0.1;
 /// The resolution at which the duration of a contact is found (s), given as its interval.
 pub const CONTACT_DURATION: f64 = 0.2;
+/// The number of effects that are fitted beside each smaller correction of the links, as alternatives of links that are all wrong.
+pub const SPECIAL_FORMS_TRIED: usize = 4;
+/// The largest number of these alternatives.
+pub const MOST_SPECIAL_FORMS: usize = 3;

@@ -63,3 +63,11 @@ pub const MOST_LAST: usize = 3;
 pub const PAYLOAD_JOINTS: usize = 2;
 /// The number of times that the prior of the links is expanded about the fitted bodies.
 pub const MOST_BODIES: usize = 2;
+/// The number of the most promising candidates that are fitted in full each round.
+pub const FITTED_AT_ONCE: usize = 8;
+/// The number of forms of one effect on one joint that are fitted in full before other effects.
+pub const FORMS_AT_ONCE: usize = 3;
+/// The number of candidates that are looked at in a step of a growth, before all are.
+pub const MOST_PROMISING: usize = 150;
+/// The number of times that the next most promising candidates are tried if the first do not pay.
+pub const MOST_BATCHES: usize = 6;

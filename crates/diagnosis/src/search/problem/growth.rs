@@ -8,15 +8,7 @@ use rayon::prelude::*;
 use super::{IMPOSSIBLE, Problem, Selection};
 use crate::regression::fit::LeftOut;
 use crate::search::candidate::Hypothesis;
-
-/// The number of the most promising candidates that are fitted in full each round.
-const TRIED: usize = 8;
-/// The number of forms of one effect on one joint that are fitted in full before other effects.
-const AT_ONCE: usize = 3;
-/// The number of candidates that are looked at in a step of a growth, before all are.
-const PROMISING: usize = 150;
-/// The number of times that the next most promising candidates are tried if the first do not pay.
-const BATCHES: usize = 6;
+use crate::thresholds::{FITTED_AT_ONCE, FORMS_AT_ONCE, MOST_BATCHES, MOST_PROMISING};
 
 /// The memory of a stepwise growth.
 #[derive(Clone, Debug, Default)]
@@ -41,7 +33,7 @@ impl Growth {
         let promise = |c: &usize| self.promises.get(c).copied().unwrap_or(f64::INFINITY);
         candidates.sort_by(|a, b| promise(b).total_cmp(&promise(a)).then(a.cmp(b)));
         let unknown = candidates.partition_point(|c| promise(c) == f64::INFINITY);
-        let rest = candidates.split_off(candidates.len().min(unknown + PROMISING));
+        let rest = candidates.split_off(candidates.len().min(unknown + MOST_PROMISING));
         (candidates, rest)
     }
 }
@@ -97,17 +89,17 @@ impl Problem<'_> {
             .map(|(_, candidate)| {
                 let before = of_kind.entry(kind(candidate)).or_default();
                 *before += 1;
-                ((*before - 1) / AT_ONCE, candidate)
+                ((*before - 1) / FORMS_AT_ONCE, candidate)
             })
             .collect();
         turns.sort_by_key(|&(turn, _)| turn);
         let mut waiting = turns.into_iter().map(|(_, candidate)| candidate);
         // The fit to which the candidates of a joint are added is computed once.
         let bases: Vec<OnceLock<LeftOut<'_>>> = (0..self.table.dof()).map(|_| OnceLock::new()).collect();
-        for _ in 0..BATCHES {
-            let mut batch = Vec::with_capacity(TRIED);
-            while batch.len() < TRIED {
-                let next: Vec<usize> = waiting.by_ref().take(TRIED - batch.len()).collect();
+        for _ in 0..MOST_BATCHES {
+            let mut batch = Vec::with_capacity(FITTED_AT_ONCE);
+            while batch.len() < FITTED_AT_ONCE {
+                let next: Vec<usize> = waiting.by_ref().take(FITTED_AT_ONCE - batch.len()).collect();
                 if next.is_empty() {
                     break;
                 }
