@@ -20,6 +20,8 @@ static SPEC: Spec = Spec {
     sentence: "a torque limit of {limit}",
     parameters: &[Parameter::new("limit", Quantity::Torque).within(Range::Positive)],
     main: &["limit"],
+    // The torque that a contact needs may be the largest of a recording, so that an error of the contact's form looks like a limit.
+    least_beside: &[("external_contact", 1.0)],
     is_simulated: true,
     detectability: Detectability::Limit {
         because: "no torque limit was reached",
