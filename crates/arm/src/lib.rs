@@ -36,7 +36,6 @@ mod pose;
 mod real;
 mod regressor;
 mod scratch;
-mod sine;
 mod small;
 mod urdf;
 mod variants;

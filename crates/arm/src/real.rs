@@ -9,7 +9,7 @@ use std::slice::from_mut;
 use pulp::Simd;
 use pulp::bytemuck::cast_slice_mut;
 
-use crate::sine;
+mod sine;
 
 /// A number, or one of several states that are computed together.
 pub(crate) trait Real:

@@ -3,7 +3,7 @@
 //! The angle is reduced to [−π/4, π/4] (Cody and Waite, 1980, with π/2 in two parts), where polynomials approximate both functions
 //! (their coefficients are those of FreeBSD's libm). There are no branches, so that a vector takes hardly longer than a number.
 
-use crate::real::Real;
+use super::Real;
 
 /// 2/π.
 const TURNS: f64 = std::f64::consts::FRAC_2_PI;
