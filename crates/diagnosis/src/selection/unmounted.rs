@@ -13,9 +13,8 @@ use crate::search::study::Study;
 use crate::selection::bootstrap::{Resampled, resample};
 use crate::selection::judge::{self, Judged};
 use crate::selection::naming::name;
-use crate::selection::predict::{augmented, errors};
 use crate::selection::rivals::{allowance, standing};
-use crate::thresholds::{LEAST_OF_THE_LINK, NEARLY_ALL, PARTLY, UNDECIDED_NATS};
+use crate::thresholds::{LEAST_OF_THE_LINK, NEARLY_ALL, UNDECIDED_NATS};
 
 /// Names a body that is missing at the tool, if the background represents one and no other effect explains nearly as much in its
 /// place; returns the new resamplings. Other payloads are unchanged: a part of the background, or named by the search.
@@ -41,9 +40,7 @@ pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
         let standing = standing(study, &problem, &next, body);
         standing.margin < UNDECIDED_NATS && !standing.rivals.is_empty()
     };
-    // If hardly anything is explained, the body compensates a model that does not fit.
-    let explains = |joint: usize| errors(study, joint, &augmented(study, &next, joint)).train_nrmse_augmented < PARTLY;
-    if !is_missing || !(0..study.arm.dof()).any(explains) || is_undecided() {
+    if !is_missing || is_undecided() {
         study.strengths = before;
         return None;
     }
