@@ -1,4 +1,4 @@
-//! Sine and cosine of an angle, with the same bits in every lane, on every processor and beside every C library.
+//! Sine and cosine of an angle up to 1e5 rad, with the same bits in every lane, on every processor and beside every C library.
 //!
 //! The angle is reduced to [−π/4, π/4] (Cody and Waite, 1980, with π/2 in two parts), where polynomials approximate both functions
 //! (their coefficients are those of FreeBSD's libm). There are no branches, so that a vector takes hardly longer than a number.
