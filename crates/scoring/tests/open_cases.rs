@@ -43,7 +43,7 @@ fn folder(name: &str) -> PathBuf {
     root().join("../shared/blind").join(name)
 }
 
-/// Our score in the format of the script's lines with numbers.
+/// Our score in the script's own lines with numbers, word for word.
 fn printed(cases: &[Tried]) -> Vec<String> {
     let plain = score(cases).plain;
     let found = plain.found as f64;
@@ -67,7 +67,7 @@ fn printed(cases: &[Tried]) -> Vec<String> {
         plain.covered
     ));
     lines.push(format!(
-        "only baseline effects: {} of {} without a false name; outside the catalogue: {} of {} refused on the right joint; refused for no reason: {}; no answer: {}",
+        "nothing but the ordinary concealed: {} of {} left clean; outside the catalogue: {} of {} refused on the right joint; refused for no reason: {}; no answer: {}",
         plain.clean, plain.empty, plain.refused, plain.outside, plain.refused_without_cause, plain.missing
     ));
     if let Some(ratio) = plain.held_out {
