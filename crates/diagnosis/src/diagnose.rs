@@ -36,7 +36,7 @@ pub fn diagnose(
     if let (Some(load), None) = (&own_load, study.motions.changed_at) {
         study = study.with_own_load(&load.recordings, &load.prior(), options);
     }
-    let identified = identified(&study);
+    let identified = identified(&mut study);
     let last = FinalFit::new(&mut study, options, progress)?;
     progress(Step::new(0.78, "alternatives of the findings"));
     let conclusion = Conclusion::new(&study, &last, (&identified, own_load.as_ref()), inputs, options);

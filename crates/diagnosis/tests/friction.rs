@@ -181,3 +181,20 @@ fn friction_that_no_fitted_row_shows_is_not_named() {
         assert!(!findings.any(is_stribeck), "{velocity}: {:?}", sentences(&diagnosis));
     }
 }
+
+/// Full identification is measured on the rows of the final fit: friction that rises only near standstill is in its error.
+#[test]
+fn the_control_is_measured_on_the_rows_near_reversals_too() {
+    let identified = |rise: f64| {
+        let injected = |motion: &mut Motion, tau: &mut [f64]| {
+            baseline_friction(motion, tau);
+            for (tau, &speed) in tau.iter_mut().zip(&motion.qd) {
+                *tau += rise * speed.signum() * (-(speed / 0.01).powi(2)).exp();
+            }
+        };
+        let fit = diagnosed(&trio(), &trio(), &injected, Vec::new()).report.fit;
+        fit["elbow"].held_out_nrmse_identified.expect("a recording is held out")
+    };
+    let (without, with) = (identified(0.0), identified(3.0));
+    assert!(with > 2.0 * without, "{without} {with}");
+}

@@ -197,6 +197,12 @@ pub enum Detectability {
         /// Whether its size is relative to the joint's whole torque.
         is_of_all_torque: bool,
     },
+    /// On the whole arm, from the coefficients of its first columns, the least detectable of which counts: one mass, or the
+    /// components of a direction.
+    OfArm {
+        /// The number of these columns.
+        columns: usize,
+    },
 }
 
 impl Detectability {

@@ -14,6 +14,9 @@ use crate::search::study::Study;
 use crate::selection::predict::deviation;
 use crate::thresholds::{BEYOND, HIDDEN};
 
+/// Why an effect is not testable whose torque others resemble.
+const EXPLAINED: &str = "the effects found explain the same torque in these motions";
+
 /// The detectability of a column on a joint.
 pub struct Visibility {
     /// The amount that it adds, at a coefficient of one, to the weighted sum of squares in addition to the findings.
@@ -47,6 +50,7 @@ pub fn not_testable(study: &Study, products: &Products, selected: &Selection) ->
     let mut list: Vec<NotObservable> = (0..dof)
         .into_par_iter()
         .flat_map_iter(|joint| on_joint(study, products, selected, joint))
+        .chain(on_arm(study, products, selected))
         .collect();
     for joint in 0..dof {
         if products.count[joint] > 0.0 {
@@ -67,6 +71,58 @@ pub fn not_testable(study: &Study, products: &Products, selected: &Selection) ->
                 would_be_seen_below: BTreeMap::new(),
             });
         }
+    }
+    list
+}
+
+/// The effects on the whole arm whose torque wrong links, or the findings, resemble: a tool, a tilted base, a common factor.
+fn on_arm(study: &Study, products: &Products, selected: &Selection) -> Vec<NotObservable> {
+    let mut list = Vec::new();
+    for kind in in_turn() {
+        let Detectability::OfArm { columns } = kind.spec().detectability else {
+            continue;
+        };
+        let is_found = selected
+            .set
+            .iter()
+            .any(|&c| study.candidates[c].hypothesis.kind == kind);
+        let always = |candidate: &&Candidate| {
+            candidate
+                .columns
+                .iter()
+                .all(|&c| study.table.terms[c].onset().is_none())
+        };
+        let of_arm = || of(study, kind, None).filter(always);
+        let (Some(&key), Some(candidate), false) = (kind.spec().main.first(), of_arm().next(), is_found) else {
+            continue;
+        };
+        let beside_inertials = kind.spec().least_beside_inertials.filter(|_| products.has_background());
+        let cheapest = of_arm()
+            .map(|candidate| needed(study, candidate))
+            .fold(f64::INFINITY, f64::min);
+        let needed = cheapest.max(beside_inertials.unwrap_or(0.0));
+        let least = |&column: &usize| {
+            let evidence = products.evidence_of(&study.table, &selected.fit, column);
+            let size = (needed / evidence.max(1e-300)).sqrt();
+            let share = |joint| study.share(joint, size * spread(study, joint, column));
+            (size, (0..study.motions.dof).map(share).fold(0.0, f64::max), column)
+        };
+        let hardest = candidate.columns.iter().take(columns).map(least);
+        let Some((size, share, column)) = hardest.max_by(|a, b| a.0.total_cmp(&b.0)) else {
+            continue;
+        };
+        if share <= HIDDEN {
+            continue;
+        }
+        let (table, arm) = (&study.table, &study.arm);
+        let is_beyond = share > BEYOND || is_beyond_physics(size, column, candidate, table, &selected.fit, arm);
+        list.push(NotObservable {
+            effect: kind.spec().name,
+            joint: None,
+            because: EXPLAINED.to_owned(),
+            would_be_seen_above: (!is_beyond).then_some((key, size)).into_iter().collect(),
+            would_be_seen_below: BTreeMap::new(),
+        });
     }
     list
 }
@@ -96,7 +152,7 @@ fn on_joint(study: &Study, products: &Products, selected: &Selection, joint: usi
             });
         };
         match kind.spec().detectability {
-            Detectability::Never => {}
+            Detectability::Never | Detectability::OfArm { .. } => {}
             Detectability::Limit { because } => add(because, None, Some(largest_torque(study, joint))),
             Detectability::Sized {
                 because,
@@ -104,7 +160,7 @@ fn on_joint(study: &Study, products: &Products, selected: &Selection, joint: usi
                 is_seen_below,
             } => {
                 // Sizes in ascending order.
-                let mut sizes: Vec<(f64, bool)> = of(study, kind, joint)
+                let mut sizes: Vec<(f64, bool)> = of(study, kind, Some(joint))
                     .map(|candidate| {
                         let size = study.table.terms[candidate.columns[0]].sizes[0];
                         (size, is_seen(study, products, selected, candidate, joint))
@@ -127,7 +183,7 @@ fn on_joint(study: &Study, products: &Products, selected: &Selection, joint: usi
                 is_of_first,
                 is_of_all_torque,
             } => {
-                let Some(candidate) = of(study, kind, joint).next() else {
+                let Some(candidate) = of(study, kind, Some(joint)).next() else {
                     if let Some(because) = if_no_form {
                         add(because, None, None);
                     }
@@ -152,7 +208,7 @@ fn on_joint(study: &Study, products: &Products, selected: &Selection, joint: usi
                     least * visibility.spread / visibility.torque.max(1e-300)
                 };
                 if share > HIDDEN {
-                    let because = "the effects found explain the same torque in these motions";
+                    let because = EXPLAINED;
                     let (table, arm) = (&study.table, &study.arm);
                     if share > BEYOND || is_beyond_physics(least, column, candidate, table, &selected.fit, arm) {
                         add(because, None, None);
@@ -189,16 +245,19 @@ fn largest_torque(study: &Study, joint: usize) -> f64 {
         .fold(0.0_f64, |largest, tau| largest.max(tau.abs()))
 }
 
-fn of(study: &Study, kind: Kind, joint: usize) -> impl Iterator<Item = &Candidate> {
+fn of(study: &Study, kind: Kind, joint: Option<usize>) -> impl Iterator<Item = &Candidate> {
     study
         .candidates
         .iter()
-        .filter(move |candidate| candidate.hypothesis.kind == kind && candidate.joint == Some(joint))
+        .filter(move |candidate| candidate.hypothesis.kind == kind && candidate.joint == joint)
 }
 
-/// The evidence that a name needs here (nats).
+/// The evidence that a name needs here (nats); more where links are wrong and resemble it.
 pub fn needed(study: &Study, candidate: &Candidate) -> f64 {
-    candidate.cost.max(study.thresholds.least_evidence)
+    let is_wrong = study.strengths.common() > 0.0;
+    let beside_inertials = candidate.hypothesis.spec().least_beside_inertials.filter(|_| is_wrong);
+    let least = candidate.cost.max(study.thresholds.least_evidence);
+    least.max(beside_inertials.unwrap_or(0.0))
 }
 
 /// Whether an effect with a coefficient of one would have been detected at its size.

@@ -191,6 +191,30 @@ impl Table {
         table
     }
 
+    /// This table with the `columns` of another one along the same motions and arm.
+    pub fn with_columns_of(mut self, other: &Self, columns: &[usize]) -> Self {
+        for (joint, table) in self.joints.iter_mut().enumerate() {
+            for &column in columns {
+                let place = other.place[joint][column].map(|place| {
+                    table.x.push(other.joints[joint].x[place].clone());
+                    table.x.len() - 1
+                });
+                self.place[joint].push(place);
+            }
+        }
+        self.refresh();
+        self.terms.extend(columns.iter().map(|&column| other.terms[column]));
+        self
+    }
+
+    fn refresh(&mut self) {
+        self.joints.par_iter_mut().for_each(|table| {
+            for stretch in &mut table.stretches {
+                stretch.refresh(&table.x, &table.y);
+            }
+        });
+    }
+
     /// Evaluates more terms; those that depend on the motion alone are taken from `known` if it contains them.
     pub fn add(
         &mut self,
@@ -288,11 +312,7 @@ impl Table {
                 place.extend(more);
             }
         }
-        self.joints.par_iter_mut().for_each(|table| {
-            for stretch in &mut table.stretches {
-                stretch.refresh(&table.x, &table.y);
-            }
-        });
+        self.refresh();
         self.terms.extend(terms);
     }
 

@@ -6,6 +6,7 @@ use effects::background::{FRICTION_CURVE, GAIN, OWN_FRICTION, OWN_LOAD};
 use effects::{Cone, Term};
 
 use crate::data::statistics::{self, rms};
+use crate::regression::fit::Fit;
 use crate::report::JointFit;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
@@ -14,7 +15,12 @@ use crate::thresholds::{LEAST_ROWS, REMEMBERS, RESIDUAL_LAG, STRUCTURED, STRUCTU
 /// The residual of the model with named effects and background on all rows of one joint. At rest, dry friction may hold any
 /// torque within its cone, and the error is the distance to the cone.
 pub fn augmented(study: &Study, named: &Selection, joint: usize) -> Vec<f64> {
-    residual(study, named, joint, |_| true)
+    residual(study, &named.fit, joint)
+}
+
+/// The residual of the coefficients of `fit` on all rows of one joint, as that of [`augmented`].
+pub fn residual(study: &Study, fit: &Fit, joint: usize) -> Vec<f64> {
+    residual_of(study, fit, joint, |_| true)
 }
 
 /// The residual of the exported model: the links' inertial parameters, the constant torques and the named effects, without the
@@ -24,12 +30,11 @@ pub fn exported(study: &Study, named: &Selection, joint: usize) -> Vec<f64> {
         let kept_apart = [&OWN_FRICTION, &FRICTION_CURVE, &GAIN, &OWN_LOAD];
         kept_apart.iter().all(|law| !term.is(law))
     };
-    residual(study, named, joint, is_exported)
+    residual_of(study, &named.fit, joint, is_exported)
 }
 
-fn residual(study: &Study, named: &Selection, joint: usize, counts: impl Fn(&Term) -> bool) -> Vec<f64> {
+fn residual_of(study: &Study, fit: &Fit, joint: usize, counts: impl Fn(&Term) -> bool) -> Vec<f64> {
     let table = &study.table;
-    let fit = &named.fit;
     let (columns, coefficients): (Vec<usize>, Vec<f64>) = fit
         .columns
         .iter()

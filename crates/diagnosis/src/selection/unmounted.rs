@@ -13,8 +13,9 @@ use crate::search::study::Study;
 use crate::selection::bootstrap::{Resampled, resample};
 use crate::selection::judge::{self, Judged};
 use crate::selection::naming::name;
+use crate::selection::predict::{augmented, errors};
 use crate::selection::rivals::{allowance, standing};
-use crate::thresholds::{LEAST_OF_THE_LINK, NEARLY_ALL, UNDECIDED_NATS};
+use crate::thresholds::{LEAST_OF_THE_LINK, NEARLY_ALL, PARTLY, UNDECIDED_NATS};
 
 /// Names a body that is missing at the tool, if the background represents one and no other effect explains nearly as much in its
 /// place; returns the new resamplings. Other payloads are unchanged: a part of the background, or named by the search.
@@ -40,7 +41,7 @@ pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
         let standing = standing(study, &problem, &next, body);
         standing.margin < UNDECIDED_NATS && !standing.rivals.is_empty()
     };
-    if !is_missing || is_undecided() {
+    if !is_missing || is_undecided() || !explains_a_part(study, &next) {
         study.strengths = before;
         return None;
     }
@@ -52,6 +53,15 @@ pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
     );
     judged.named = next;
     Some(resampled)
+}
+
+/// Whether `selected` explains a part of the torque on any joint that moves. On torques that do not depend on the motion, a body that
+/// cancels the model's own torque reduces every error, too, but only to that of a constant.
+fn explains_a_part(study: &Study, selected: &Selection) -> bool {
+    (0..study.motions.dof).any(|joint| {
+        let fit = errors(study, joint, &augmented(study, selected, joint));
+        fit.train_nrmse_nominal > 0.0 && fit.train_nrmse_augmented < PARTLY
+    })
 }
 
 /// `selected` with a missing `body` and a smaller background, if the body explains nearly as much as that background and both

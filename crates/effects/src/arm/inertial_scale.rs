@@ -1,8 +1,8 @@
 //! Masses and inertias that are all a constant multiple of the model's.
 
 use crate::{
-    Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter, Place, Quantity, Range,
-    Scope, Spec, Term,
+    Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter, Place,
+    Quantity, Range, Scope, Spec, Term,
 };
 
 /// All masses and inertias are `factor` times the model's.
@@ -32,6 +32,8 @@ static SPEC: Spec = Spec {
     least_beside_residual: Some(1.5),
     is_wrong_mass: true,
     is_beyond_the_drive: true,
+    detectability: Detectability::OfArm { columns: 1 },
+    not_testable_turn: 14,
     in_urdf: InUrdf::Inertials,
     ..Spec::EMPTY
 };

@@ -4,8 +4,8 @@ use ::arm::{Arm, Inertia, Matrix3, Vector3};
 
 use crate::fitted::moving_mass;
 use crate::{
-    Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter, Place, Quantity,
-    Range, Scope, SetsIn, Shape, Spec, Term,
+    Detectability, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter,
+    Place, Quantity, Range, Scope, SetsIn, Shape, Spec, Term,
 };
 
 /// A body fixed to the tool.
@@ -38,6 +38,8 @@ static SPEC: Spec = Spec {
     may_be_inertial: true,
     is_wrong_mass: true,
     is_beyond_the_drive: true,
+    detectability: Detectability::OfArm { columns: 1 },
+    not_testable_turn: 13,
     in_urdf: InUrdf::Inertials,
     experiment: Some(Experiment {
         rank: 9,

@@ -3,8 +3,8 @@
 use ::arm::{Arm, Vector3};
 
 use crate::{
-    Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Range,
-    Scope, Shape, Spec, Term,
+    Detectability, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place,
+    Quantity, Range, Scope, Shape, Spec, Term,
 };
 
 /// The base is turned by `angle` about `axis` (unit vector in the base's frame), which changes the direction of gravity.
@@ -31,6 +31,8 @@ static SPEC: Spec = Spec {
     // Shifted centres of mass resemble a tilt. In simulated cases with wrong URDFs, injected tilts had 175 nats and more.
     least_beside_inertials: Some(60.0),
     is_beyond_the_drive: true,
+    detectability: Detectability::OfArm { columns: 2 },
+    not_testable_turn: 15,
     experiment: Some(Experiment {
         rank: 7,
         text: "level the base with a spirit level and record again: an effect that remains is not a tilt",

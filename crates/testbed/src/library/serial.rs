@@ -71,7 +71,8 @@ fn joint_of<'a>(tag: &BytesStart<'_>, fixed: &HashMap<&str, &'a FixedJoint>) -> 
 /// `tag` with the type `fixed`.
 fn fixed_tag(tag: &BytesStart<'_>) -> anyhow::Result<BytesStart<'static>> {
     let mut result = BytesStart::new("joint");
-    for attribute in tag.attributes() {
+    // A repeated attribute was refused when the URDF was read, and quick-xml's search for one takes the square of their number.
+    for attribute in tag.attributes().with_checks(false) {
         let attribute = attribute?;
         if attribute.key.as_ref() != b"type" {
             result.push_attribute(attribute);

@@ -100,6 +100,12 @@ impl Products {
         }
     }
 
+    /// The evidence (nats) that a column with a coefficient of one has in addition to the columns of `fit`, to second order in the
+    /// coefficient.
+    pub fn evidence_of(&self, table: &Table, fit: &Fit, column: usize) -> f64 {
+        0.5 * self.drop_of(table, fit, column) * self.per_row(table, column)
+    }
+
     /// The amount that a column with a coefficient of one adds to the weighted sum of squares in addition to the columns of
     /// `fit`.
     pub fn drop_of(&self, table: &Table, fit: &Fit, column: usize) -> f64 {

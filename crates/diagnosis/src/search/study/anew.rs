@@ -7,7 +7,7 @@ use super::about::inertial_changes;
 use super::{About, Study};
 use crate::data::rigid::Rigid;
 use crate::regression::fit::Fit;
-use crate::regression::table::Moving;
+use crate::regression::table::{Moving, Table};
 use crate::search::problem::Selection;
 use crate::thresholds::MOST_BODIES;
 
@@ -23,6 +23,15 @@ impl Study {
     pub fn linearise_for_final_fit(&mut self, fit: &Fit, kept: &[usize]) -> Vec<usize> {
         self.moving = Moving::ThroughReversals;
         self.about(fit, kept, true).unwrap_or_default()
+    }
+
+    /// Leaves only the background's columns and `columns` in the table, with the rows that are `moving`; returns the table before.
+    pub fn reduce_table(&mut self, columns: &[usize], moving: Moving) -> Table {
+        let background = 0..self.prior.terms().len();
+        let columns: Vec<usize> = background.chain(columns.iter().copied()).collect();
+        let empty = Table::new(&self.motions, &self.rigid, &self.scales, Vec::new(), &[], moving);
+        let reduced = empty.with_columns_of(&self.table, &columns);
+        std::mem::replace(&mut self.table, reduced)
     }
 
     /// Makes the prior of the links' inertial parameters quadratic about the bodies of `fit`.
