@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use gp::{Wide, on_widest};
+
 /// The reach of the kernel to either side, in widths.
 const REACH: f64 = 5.0;
 /// The half-power frequency times the width: (1 + u) e^(−u) = 1/√2 at u = (2π f σ)² / 2.
@@ -111,22 +113,61 @@ pub fn outputs(samples: usize, reach: usize, stride: usize) -> usize {
 }
 
 fn apply(weights: &[f64], signal: &[f64], stride: usize) -> Vec<f64> {
-    let count = outputs(signal.len(), weights.len() / 2, stride);
-    (0..count)
-        .map(|k| {
-            let window = &signal[k * stride..k * stride + weights.len()];
-            // Four partial sums, so that additions do not wait for each other.
-            let mut sums = [0.0; 4];
-            let (a, b) = (weights.chunks_exact(4), window.chunks_exact(4));
-            let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(w, s)| w * s).sum();
-            for (w, s) in a.zip(b) {
-                for lane in 0..4 {
-                    sums[lane] += w[lane] * s[lane];
+    on_widest(Filter {
+        weights,
+        signal,
+        stride,
+    })
+}
+
+struct Filter<'a> {
+    weights: &'a [f64],
+    signal: &'a [f64],
+    stride: usize,
+}
+
+/// The number of partial sums of an output, so that additions do not wait for each other.
+const PARTS: usize = 4;
+/// The number of outputs that are formed at the same time.
+const AT_ONCE: usize = 4;
+
+impl Wide for Filter<'_> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Vec<f64> {
+        let Self {
+            weights,
+            signal,
+            stride,
+        } = self;
+        let count = outputs(signal.len(), weights.len() / 2, stride);
+        let whole = weights.len() / PARTS * PARTS;
+        let mut filtered = Vec::with_capacity(count + AT_ONCE);
+        for first in (0..count).step_by(AT_ONCE) {
+            // The last group repeats the last output.
+            let windows: [&[f64]; AT_ONCE] = std::array::from_fn(|k| {
+                let from = (first + k).min(count - 1) * stride;
+                &signal[from..from + weights.len()]
+            });
+            let mut sums = [[0.0; PARTS]; AT_ONCE];
+            for from in (0..whole).step_by(PARTS) {
+                let w = &weights[from..from + PARTS];
+                for (sums, window) in sums.iter_mut().zip(windows) {
+                    let s = &window[from..from + PARTS];
+                    for part in 0..PARTS {
+                        sums[part] += w[part] * s[part];
+                    }
                 }
             }
-            (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
-        })
-        .collect()
+            for (sums, window) in sums.iter().zip(windows) {
+                let rest: f64 = weights[whole..].iter().zip(&window[whole..]).map(|(w, s)| w * s).sum();
+                filtered.push((sums[0] + sums[1]) + (sums[2] + sums[3]) + rest);
+            }
+        }
+        filtered.truncate(count);
+        filtered
+    }
 }
 
 #[cfg(test)]

@@ -125,7 +125,7 @@ pub fn inertials(
         };
         list.links.insert(name, link);
     }
-    let (evidence, outside) = study.evidence_of_inertials(products, held, &judged.named);
+    let (evidence, outside) = study.evidence_of_inertials(held, &judged.named);
     if evidence < study.thresholds.least_evidence || outside.is_some_and(|outside| outside <= 0.0) {
         return list;
     }
@@ -161,8 +161,8 @@ pub fn inertials(
     // The margin of a link over the best other link (nats), and the links that explain nearly as much in its place, the
     // best first.
     let instead = |link: usize| -> (f64, Vec<Confusable>) {
-        let [score, loss] = study.evidence_of_link(products, &judged.named, link);
-        let mut others = study.in_other_links(products, &judged.named, link);
+        let [score, loss] = study.evidence_of_link(&judged.named, link);
+        let mut others = study.in_other_links(&judged.named, link);
         others.sort_by(|(_, a), (_, b)| a[1].total_cmp(&b[1]));
         let margin = others.iter().map(|(_, lost)| lost[0]).fold(score, f64::min);
         let nearly = others.iter().filter(|(_, lost)| lost[1] <= allowance(loss));

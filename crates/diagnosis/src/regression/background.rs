@@ -4,6 +4,8 @@
 //! affine-invariant metric of Lee, Wensing and Park (2020), free of coordinates and units, so that ρ = 0.1 reads "ten per cent of
 //! each link's own mass, size and shape". It is expanded about the bodies of the last fit ([`Quadratic`]).
 
+use std::sync::Arc;
+
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use effects::Term;
@@ -25,6 +27,8 @@ pub struct Prior {
     links: Vec<Quadratic>,
     /// The standard deviation of each column's coefficient that is not an inertial parameter, at strength one.
     deviations: Vec<f64>,
+    /// Another one whenever the prior changes.
+    identity: Arc<()>,
 }
 
 /// The background at given strengths: its columns and their precision.
@@ -93,11 +97,17 @@ impl Prior {
     pub fn set_bodies(&mut self, changes: &[f64]) {
         let links = self.nominal.chunks_exact(PER_LINK).zip(changes.chunks_exact(PER_LINK));
         self.links = links.map(|(nominal, change)| prior_about(nominal, change)).collect();
+        self.identity = Arc::default();
     }
 
     fn push(&mut self, term: Term, deviation: f64) {
         self.terms.push(term);
         self.deviations.push(deviation);
+    }
+
+    /// The same one as long as the prior is the same.
+    pub fn identity(&self) -> &Arc<()> {
+        &self.identity
     }
 
     /// The column of a joint's torque constant; `None` if the joint does not move.

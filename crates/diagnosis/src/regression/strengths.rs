@@ -55,6 +55,11 @@ impl Strengths {
         }
     }
 
+    /// Whether some links differ from the URDF and most do not.
+    pub fn are_of_some_links(&self) -> bool {
+        self.common() == 0.0 && self.links.iter().any(|&rho| rho > 0.0)
+    }
+
     /// The evidence that they must bring (nats).
     pub fn cost(&self) -> f64 {
         let part = |strength: f64| if strength > 0.0 { PER_BACKGROUND_PART } else { 0.0 };

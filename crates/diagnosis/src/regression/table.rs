@@ -1,6 +1,7 @@
 //! All columns on all rows, and their inner products, from which every fit is computed.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use effects::arm::INERTIAL_PARAMETER;
 use effects::background::OWN_LOAD;
@@ -55,6 +56,8 @@ pub struct Table {
     pub joints: Vec<JointTable>,
     /// The rows of each recording.
     pub rows: Vec<Range<usize>>,
+    /// Another one whenever inner products change.
+    identity: Arc<()>,
 }
 
 impl Table {
@@ -147,6 +150,7 @@ impl Table {
             place: vec![Vec::new(); motions.dof],
             joints,
             rows,
+            identity: Arc::default(),
         };
         table.add(motions, rigid, scales, terms, None);
         table
@@ -170,11 +174,12 @@ impl Table {
             place: (0..dof).map(place).collect(),
             joints: (0..dof).map(|_| none()).collect(),
             rows: Vec::new(),
+            identity: Arc::default(),
             terms,
         }
     }
 
-    /// `terms` for another arm along these motions; terms that depend on the motion alone are taken from `self`.
+    /// `terms` for another arm along these motions; those that `self` contains are taken from it.
     pub fn formed_anew(
         mut self,
         motions: &Motions,
@@ -189,6 +194,15 @@ impl Table {
         let mut table = Self::new(motions, rigid, scales, Vec::new(), carried, moving);
         table.add(motions, rigid, scales, terms, Some(self));
         table
+    }
+
+    /// Removes the terms that are not `kept`; the rows of the others are unchanged.
+    pub fn retain(&mut self, kept: impl Fn(&Term) -> bool) {
+        let list: Vec<usize> = (0..self.terms.len()).filter(|&k| kept(&self.terms[k])).collect();
+        self.terms = list.iter().map(|&k| self.terms[k]).collect();
+        for place in &mut self.place {
+            *place = list.iter().map(|&k| place[k]).collect();
+        }
     }
 
     /// This table with the `columns` of another one along the same motions and arm.
@@ -207,7 +221,13 @@ impl Table {
         self
     }
 
+    /// The same one as long as the inner products are the same.
+    pub fn identity(&self) -> &Arc<()> {
+        &self.identity
+    }
+
     fn refresh(&mut self) {
+        self.identity = Arc::default();
         self.joints.par_iter_mut().for_each(|table| {
             for stretch in &mut table.stretches {
                 stretch.refresh(&table.x, &table.y);
@@ -215,7 +235,7 @@ impl Table {
         });
     }
 
-    /// Evaluates more terms; those that depend on the motion alone are taken from `known` if it contains them.
+    /// Evaluates more terms; those that `known` contains are taken from it.
     pub fn add(
         &mut self,
         motions: &Motions,
@@ -227,7 +247,7 @@ impl Table {
         let copies: Vec<Option<usize>> = terms
             .iter()
             .map(|&term| {
-                let known = known.as_ref().filter(|_| !term.is_dynamic())?;
+                let known = known.as_ref()?;
                 known.terms.iter().position(|&other| other == term)
             })
             .collect();
@@ -241,8 +261,9 @@ impl Table {
             // The motion behind a compliant joint is simulated once for all joints on which it acts.
             let links: Vec<Vec<LinkSide>> = terms
                 .par_iter()
-                .map(|&term| {
-                    let along = motions.chunks.iter().zip(rigid);
+                .zip(copies)
+                .map(|(&term, copy)| {
+                    let along = motions.chunks.iter().zip(rigid).filter(|_| copy.is_none());
                     along
                         .filter_map(|(chunk, rigid)| link_side(term, chunk, rigid, scales))
                         .collect()

@@ -24,11 +24,13 @@ use crate::trace::Trace;
 
 mod about;
 mod anew;
+mod formed;
 mod notes;
 mod payloads;
 mod strengths;
 
 pub use about::About;
+use formed::Formed;
 
 /// The recordings, the model along them, and the candidates.
 pub struct Study {
@@ -60,6 +62,9 @@ pub struct Study {
     pub measured: Vec<Vec<f64>>,
     /// Measured torque minus that of the nominal model, on all rows (N m or N).
     pub nominal: Vec<Vec<f64>>,
+    /// The torque of the arm on each joint (N m or N) along which its springs and gaps that are not selected were simulated, if it is
+    /// not that of `rigid`: `[joint][chunk][tick]`.
+    simulated_along: Vec<Option<Vec<Vec<f64>>>>,
     /// Whether the columns are evaluated about an arm other than the nominal one.
     carries: bool,
     /// The rows that are fitted.
@@ -76,6 +81,8 @@ pub struct Study {
     pub thresholds: Thresholds,
     /// The record of decisions.
     pub trace: Trace,
+    /// The inner products of the present table.
+    formed: Formed,
     /// Hypotheses that the final fit refused; they are not searched again.
     refused: Vec<(Hypothesis, Option<usize>)>,
     /// Names that the final fit gave up, because wrong inertial parameters explain nearly as much.
@@ -210,6 +217,7 @@ impl Study {
         let table = Table::new(&motions, &rigid, &scales, terms, &[], Moving::Steadily);
         let nominal = table.joints.iter().map(|joint| joint.y.clone()).collect();
         let strengths = stated.first(arm.dof());
+        let simulated_along = vec![None; motions.dof];
         Self {
             arm,
             past,
@@ -225,6 +233,7 @@ impl Study {
             force,
             nominal,
             measured,
+            simulated_along,
             carries: false,
             moving: Moving::Steadily,
             strengths,
@@ -233,6 +242,7 @@ impl Study {
             thresholds,
             prior,
             trace: Trace::default(),
+            formed: Formed::default(),
             refused: Vec::new(),
             given_up: Vec::new(),
         }
@@ -246,17 +256,6 @@ impl Study {
     /// Inner products over the recordings that `selected` selects.
     pub fn products(&self, selected: impl Fn(usize) -> bool) -> Products {
         self.bare_products(selected).with_background(self.background())
-    }
-
-    /// Inner products over the recordings to be fitted.
-    pub fn training_products(&self) -> Products {
-        self.products(|recording| self.fitted[recording])
-    }
-
-    /// Inner products over the held-out recordings; `None` if there are none.
-    pub fn held_products(&self) -> Option<Products> {
-        let has_held_out = self.fitted.contains(&false);
-        has_held_out.then(|| self.products(|recording| !self.fitted[recording]))
     }
 
     /// The background of every fit, if there is one.

@@ -1,6 +1,7 @@
 //! The final fit: the named effects are linearised about the arm that contains them, and effects that fail the last tests are removed.
 
 use effects::Effect;
+use effects::arm::Payload;
 use effects::sensor::TorqueScale;
 use torque::Corrected;
 
@@ -18,7 +19,8 @@ use crate::selection::rivals::standing;
 use crate::selection::torque_constants;
 
 use crate::thresholds::{
-    CLEAR_THOUGH_UNDETERMINED, HOPELESS, LEAST_FINAL_SHARE, LEAST_UNDECIDED, PARTLY, UNDECIDED_NATS,
+    CLEAR_THOUGH_UNDETERMINED, HOPELESS, LEAST_BESIDE_SOME_LINKS, LEAST_FINAL_SHARE, LEAST_UNDECIDED, PARTLY,
+    UNDECIDED_NATS,
 };
 
 /// Fits the named effects about the arm that contains them, including the rows near reversals. Removes effects that increase the
@@ -232,6 +234,10 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
         if (is_small || hypothesis.spec().is_wrong_mass || hypothesis.is(&TorqueScale)) && margin() < UNDECIDED_NATS {
             return Some(("another effect explains nearly as much in its place", false));
         }
+        let evidence = |study: &mut Study| study.evidence_beside_best_background(&judged.named, member.candidate);
+        if hypothesis.is(&Payload) && study.strengths.are_of_some_links() && evidence(study) < LEAST_BESIDE_SOME_LINKS {
+            return Some(("links that are all wrong explain nearly as much in its place", true));
+        }
         // If most links agree with the URDF, one wrong link is an unlikely explanation.
         let preferred = study.preferred.as_ref().map_or(0.0, Strengths::common);
         let is_wrong = study.strengths.common().max(preferred) > 0.0;
@@ -242,7 +248,7 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
             .coefficient(study.candidates[member.candidate].columns[0])
             .abs();
         let is_too_far = hypothesis.spec().most_beside_inertials.is_some_and(|most| size > most);
-        let is_weak = is_too_far || study.evidence_beside_best_background(&judged.named, member.candidate) < least;
+        let is_weak = is_too_far || evidence(study) < least;
         is_weak.then_some(("wrong inertials explain nearly as much in its place", true))
     };
     members.into_iter().find_map(|member| {

@@ -162,7 +162,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
     let mut as_likely = None;
     if finding.hypothesis.spec().may_be_inertial {
         let hypothesis = Hypothesis::of(&InertialParameters);
-        let trials = study.in_the_background(problem.products, &set, selected);
+        let trials = study.in_the_background(&set, selected);
         let results_of = |(link, next): (Option<usize>, Selection)| {
             (
                 next.fit.loss - selected.fit.loss,

@@ -36,6 +36,9 @@ pub const TELLING_DRIVES: usize = 2;
 /// The reduction of the evidence that the inertia of each drive beyond [`TELLING_DRIVES`] must bring (nats). Without it, a
 /// gap that is never crossed could replace an encoder offset with a drive inertia, which have the same torque.
 pub const KNOWN_DRIVE: f64 = 3.0;
+/// Springs and gaps between drive and link that are not selected are simulated again if the model's torque on their joint has changed
+/// by more than this part of its standard deviation since.
+pub const SIMULATED_ANEW: f64 = 0.03;
 /// The gain that an exchange of a candidate for another must bring (nats).
 pub const SWAP_GAIN: f64 = 0.5;
 /// In the search for another load of some recordings, the least standard deviation of a residual, as a part of that of the

@@ -52,6 +52,9 @@ pub const LEAST_FINAL_SHARE: f64 = 0.01;
 /// The evidence of an effect, beside the background that is best without it, with which it is named although its main parameter may
 /// be that of no effect (nats).
 pub const CLEAR_THOUGH_UNDETERMINED: f64 = 20.0;
+/// The evidence of a payload beside links of which only some differ from the URDF, compared with links that all do (nats). Source: two
+/// simulated arms without a payload whose links are all wrong, where it was 6 and 22.
+pub const LEAST_BESIDE_SOME_LINKS: f64 = 30.0;
 /// The search is not repeated after the final fit has refused this number of names.
 pub const MOST_REFUSED: usize = 3;
 /// A time is outside the 95 % interval of an onset if the fit is worse by this with an onset at that time (nats). Source:

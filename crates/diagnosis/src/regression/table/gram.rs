@@ -17,8 +17,16 @@ pub struct Stretch {
     pub recording: usize,
     /// Inner products over its moving rows.
     pub gram: Gram,
-    /// The moving rows.
-    rows: Vec<usize>,
+    /// The moving rows, as runs of consecutive ones.
+    runs: Vec<Range<usize>>,
+}
+
+/// Consecutive runs of `rows`, which ascend.
+fn runs(rows: &[usize]) -> Vec<Range<usize>> {
+    let follows = |a: &usize, b: &usize| a + 1 == *b;
+    rows.chunk_by(follows)
+        .map(|run| run[0]..run[run.len() - 1] + 1)
+        .collect()
 }
 
 impl Stretch {
@@ -40,7 +48,7 @@ impl Stretch {
             stretches.extend(rows.chunks(length).map(|rows| Self {
                 recording,
                 gram: Gram::default(),
-                rows: rows.to_vec(),
+                runs: runs(rows),
             }));
         }
         stretches
@@ -50,7 +58,8 @@ impl Stretch {
     pub fn refresh(&mut self, x: &[Vec<f64>], y: &[f64]) {
         let known = self.gram.len();
         let total = x.len();
-        let pick = |signal: &[f64]| -> Vec<f64> { self.rows.iter().map(|&row| signal[row]).collect() };
+        let pick =
+            |signal: &[f64]| -> Vec<f64> { self.runs.iter().flat_map(|run| &signal[run.clone()]).copied().collect() };
         let y = pick(y);
         self.gram.square = y.iter().map(|y| y * y).sum();
         if known == total {
@@ -64,7 +73,9 @@ impl Stretch {
         // The columns one after the other, for this call only, because they take as much memory as the table.
         let mut packed = Vec::with_capacity(total * y.len());
         for x in x {
-            packed.extend(self.rows.iter().map(|&row| x[row]));
+            for run in &self.runs {
+                packed.extend_from_slice(&x[run.clone()]);
+            }
         }
         let all = MatRef::from_column_major_slice(&packed, y.len(), total);
         for from in (known..total).step_by(TOGETHER) {
@@ -80,7 +91,7 @@ impl Stretch {
             );
             release_vectors();
             for k in from..to {
-                self.gram.rows.push((0..=k).map(|i| product[(i, k - from)]).collect());
+                self.gram.rows.push(product.col_as_slice(k - from)[..=k].to_vec());
             }
         }
     }

@@ -6,10 +6,11 @@ use rayon::prelude::*;
 use super::about::inertial_changes;
 use super::{About, Study};
 use crate::data::rigid::Rigid;
+use crate::data::statistics::rms;
 use crate::regression::fit::Fit;
 use crate::regression::table::{Moving, Table};
 use crate::search::problem::Selection;
-use crate::thresholds::MOST_BODIES;
+use crate::thresholds::{MOST_BODIES, SIMULATED_ANEW};
 
 impl Study {
     /// Evaluates everything about the arm of `fit`, so that the remaining tilts, encoder offsets and payloads are small.
@@ -64,7 +65,7 @@ impl Study {
         }
         self.carries = carries;
         let nominal = self.arm.inertial_parameters();
-        self.rigid = self
+        let rigid: Vec<Rigid> = self
             .motions
             .chunks
             .par_iter()
@@ -79,10 +80,30 @@ impl Study {
                 rigid
             })
             .collect();
+        let before = std::mem::replace(&mut self.rigid, rigid);
+        for joint in 0..self.motions.dof {
+            let before = || before.iter().map(|rigid| rigid.tau[joint].clone()).collect();
+            let along = self.simulated_along[joint].take().unwrap_or_else(before);
+            self.simulated_along[joint] = self.is_near(joint, &along).then_some(along);
+        }
         let (set, terms) = self.forget_trials(kept);
-        let old = std::mem::take(&mut self.table);
+        let columns = set.iter().flat_map(|&c| self.candidates[c].columns.iter());
+        let selected: Vec<Term> = columns.map(|&column| terms[column]).collect();
+        let is_near = |term: &Term| self.simulated_along[term.of[0]].is_some();
+        let keeps = |term: &Term| term.law.link_side.is_some() && is_near(term) && !selected.contains(term);
+        let mut old = std::mem::take(&mut self.table);
+        old.retain(|term| !term.is_dynamic() || keeps(term));
         self.table = old.formed_anew(&self.motions, &self.rigid, &self.scales, terms, carried, self.moving);
         Some(set)
+    }
+
+    /// Whether the torque of the arm on `joint` is nearly the one along which its springs and gaps were simulated: `[chunk][tick]` (N m
+    /// or N).
+    fn is_near(&self, joint: usize, simulated_along: &[Vec<f64>]) -> bool {
+        let pairs = self.rigid.iter().zip(simulated_along);
+        let differences = pairs.flat_map(|(rigid, before)| rigid.tau[joint].iter().zip(before));
+        let change = rms(differences.map(|(now, before)| now - before)).unwrap_or(0.0);
+        change <= SIMULATED_ANEW * self.scales.torque[joint]
     }
 
     /// Removes the trial candidates that are not in `set`; returns the set's new indices, and the remaining terms. The table

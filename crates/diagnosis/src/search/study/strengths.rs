@@ -52,14 +52,9 @@ impl Study {
 
     /// The loss of the score of `selected`, and of the likelihood of the held-out recordings, if all links have the URDF's
     /// inertial parameters (nats).
-    pub fn evidence_of_inertials(
-        &self,
-        products: &Products,
-        held: Option<&Products>,
-        selected: &Selection,
-    ) -> (f64, Option<f64>) {
+    pub fn evidence_of_inertials(&self, held: Option<&Products>, selected: &Selection) -> (f64, Option<f64>) {
         let links = vec![0.0; self.arm.dof()];
-        let (products, without) = self.with_links(products, selected, links);
+        let (products, without) = self.with_links(selected, links);
         let without = self.problem(&products).reweighted(without);
         let outside =
             held.map(|held| held.loss_of(&self.table, &without.fit) - held.loss_of(&self.table, &selected.fit));
@@ -67,16 +62,16 @@ impl Study {
     }
 
     /// The loss of score and likelihood of `selected` (nats) if `link` differs from the URDF no more than most links.
-    pub fn evidence_of_link(&self, products: &Products, selected: &Selection, link: usize) -> [f64; 2] {
+    pub fn evidence_of_link(&self, selected: &Selection, link: usize) -> [f64; 2] {
         let mut links = self.strengths.links.clone();
         links[link] = self.strengths.common();
-        let (_, without) = self.with_links(products, selected, links);
+        let (_, without) = self.with_links(selected, links);
         [without.score - selected.score, without.fit.loss - selected.fit.loss]
     }
 
     /// The links that may differ from the URDF in the place of `link`, each with the loss of score and likelihood of `selected`
     /// (nats).
-    pub fn in_other_links(&self, products: &Products, selected: &Selection, link: usize) -> Vec<(usize, [f64; 2])> {
+    pub fn in_other_links(&self, selected: &Selection, link: usize) -> Vec<(usize, [f64; 2])> {
         let common = self.strengths.common();
         let as_most = |&other: &usize| self.strengths.links[other] == common;
         let others: Vec<usize> = (0..self.arm.dof()).filter(as_most).collect();
@@ -85,7 +80,7 @@ impl Study {
             .map(|other| {
                 let mut links = self.strengths.links.clone();
                 links.swap(link, other);
-                let (_, instead) = self.with_links(products, selected, links);
+                let (_, instead) = self.with_links(selected, links);
                 (
                     other,
                     [instead.score - selected.score, instead.fit.loss - selected.fit.loss],
@@ -95,12 +90,12 @@ impl Study {
     }
 
     /// The products and the fit of `selected` with other strengths of the links' inertial parameters.
-    fn with_links(&self, products: &Products, selected: &Selection, links: Vec<f64>) -> (Products, Selection) {
+    fn with_links(&self, selected: &Selection, links: Vec<f64>) -> (Products, Selection) {
         let strengths = Strengths {
             links,
             ..self.strengths.clone()
         };
-        let products = products.with_background(self.prior.at(&strengths));
+        let products = self.products_at(&strengths);
         let next = self
             .problem(&products)
             .choose(selected.set.clone(), &selected.fit.weights);
@@ -109,12 +104,7 @@ impl Study {
 
     /// The best strengths of a background without the other members of `set`, among those that are stronger somewhere than the
     /// present ones: alternatives of an effect that may be a part of the background. Each has its link and its fit.
-    pub fn in_the_background(
-        &self,
-        products: &Products,
-        set: &[usize],
-        near: &Selection,
-    ) -> Vec<(Option<usize>, Selection)> {
+    pub fn in_the_background(&self, set: &[usize], near: &Selection) -> Vec<(Option<usize>, Selection)> {
         let common = self.strengths.common();
         let stronger = |strengths: &Strengths| {
             let pairs = strengths.links.iter().zip(&self.strengths.links);
@@ -135,7 +125,7 @@ impl Study {
             .map(|strengths| {
                 let link = (0..strengths.links.len())
                     .find(|&link| strengths.common() == common && strengths.links[link] > self.strengths.links[link]);
-                let products = products.with_background(self.prior.at(&strengths));
+                let products = self.products_at(&strengths);
                 (link, self.problem(&products).choose(set.to_vec(), &near.fit.weights))
             })
             .collect()
@@ -149,10 +139,9 @@ impl Study {
         if self.strengths.common() > 0.0 || links.iter().all(|&rho| rho == 0.0) || self.stated.links.is_some() {
             return None;
         }
-        let bare = self.bare_products(|r| self.fitted[r]);
         let at_least = |least: f64| {
             let links: Vec<f64> = links.iter().map(|&rho| rho.max(least)).collect();
-            let (_, next) = self.with_links(&bare, selected, links.clone());
+            let (_, next) = self.with_links(selected, links.clone());
             let strengths = Strengths {
                 links,
                 ..self.strengths.clone()
@@ -165,28 +154,21 @@ impl Study {
             .find(|(_, next)| next.score < selected.score + margin)
     }
 
-    /// Inner products over the training recordings, with a background of other strengths.
-    pub fn products_at(&self, strengths: &Strengths) -> Products {
-        let bare = self.bare_products(|r| self.fitted[r]);
-        bare.with_background(self.prior.at(strengths))
-    }
-
     /// `selected` with more of the candidates `allowed`, and with the strengths of the background that the evidence prefers.
     /// Each step takes the candidate or the change of strengths that gains more. Members that no longer pay are removed.
     pub fn grown(&mut self, mut selected: Selection, allowed: &[usize]) -> Selection {
-        let bare = self.bare_products(|r| self.fitted[r]);
-        let mut products = bare.with_background(self.background());
+        let mut products = self.training_products();
         let mut growth = Growth::default();
         let mut moves = 0;
         while moves < MOST_MOVES {
             let problem = self.problem(&products);
             let grown = problem.grow(&selected, allowed, &mut growth);
             self.note_tried(&selected, &std::mem::take(&mut growth.tried));
-            let mut stronger = self.strengthened(&bare, &selected, self.strengths.neighbours());
+            let mut stronger = self.strengthened(&selected, self.strengths.neighbours());
             if grown.is_none() && stronger.is_none() {
                 let others = self.strengths.with_other_links().into_iter();
                 let others = others.chain(self.strengths.in_one_link()).collect();
-                stronger = self.strengthened(&bare, &selected, others);
+                stronger = self.strengthened(&selected, others);
             }
             let (rule, strengths, next) = match (grown, stronger) {
                 (Some(next), None) => ("largest gain", None, problem.reweighted(next)),
@@ -196,9 +178,9 @@ impl Study {
                 (_, Some((strengths, other))) => ("more evidence for this background", Some(strengths), other),
                 // An effect that is a part of the background does not pay in addition to it, but may do so with a smaller
                 // background.
-                (None, None) => match self.exchanged(&bare, &selected, allowed) {
+                (None, None) => match self.exchanged(&selected, allowed) {
                     Some((strengths, next)) => {
-                        let products = bare.with_background(self.prior.at(&strengths));
+                        let products = self.products_at(&strengths);
                         let next = self.problem(&products).reweighted(next);
                         ("effects in the place of the background", Some(strengths), next)
                     }
@@ -207,7 +189,7 @@ impl Study {
             };
             if let Some(strengths) = strengths {
                 moves += 1;
-                products = bare.with_background(self.prior.at(&strengths));
+                products = self.products_at(&strengths);
                 self.strengths = strengths;
                 growth.begin_anew();
                 self.note_strengths(rule, &selected, &next);
@@ -226,9 +208,9 @@ impl Study {
     }
 
     /// `selected` with a smaller background and a few more of the candidates `allowed`, if that is better.
-    fn exchanged(&self, bare: &Products, selected: &Selection, allowed: &[usize]) -> Option<(Strengths, Selection)> {
+    fn exchanged(&self, selected: &Selection, allowed: &[usize]) -> Option<(Strengths, Selection)> {
         let trials = self.stated.weaker(&self.strengths).filter_map(|strengths| {
-            let products = bare.with_background(self.prior.at(&strengths));
+            let products = self.products_at(&strengths);
             let problem = self.problem(&products);
             let mut next = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));
             let mut growth = Growth::default();
@@ -245,7 +227,6 @@ impl Study {
 
     /// `selected` with the strengths of the background that the evidence prefers.
     pub fn with_best_strengths(&mut self, mut selected: Selection) -> Selection {
-        let bare = self.bare_products(|r| self.fitted[r]);
         for _ in 0..MOST_MOVES {
             let kinds = [
                 Strengths::neighbours,
@@ -256,7 +237,7 @@ impl Study {
             ];
             let next = kinds
                 .into_iter()
-                .find_map(|others| self.strengthened(&bare, &selected, others(&self.strengths)));
+                .find_map(|others| self.strengthened(&selected, others(&self.strengths)));
             match next {
                 Some((strengths, next)) => {
                     self.strengths = strengths;
@@ -273,9 +254,8 @@ impl Study {
     /// best background. An effect that resembles wrong inertials allows a smaller background, which must not count as
     /// evidence for the effect.
     pub fn evidence_beside_best_background(&mut self, selected: &Selection, member: usize) -> f64 {
-        let bare = self.bare_products(|r| self.fitted[r]);
         let kept = self.strengths.clone();
-        let products = bare.with_background(self.background());
+        let products = self.training_products();
         let without = self.problem(&products).without(selected, member);
         // The present background may be smaller than the evidence prefers, because of the held-out recordings.
         let mut best = |mut fit: Selection| {
@@ -283,7 +263,7 @@ impl Study {
                 let mut neighbours = self.strengths.neighbours();
                 // The strength of friction that differs between recordings is kept: it has no relation to the effect.
                 neighbours.retain(|next| next.friction == kept.friction);
-                let Some((strengths, next)) = self.strengthened(&bare, &fit, neighbours) else {
+                let Some((strengths, next)) = self.strengthened(&fit, neighbours) else {
                     break;
                 };
                 self.strengths = strengths;
@@ -298,7 +278,6 @@ impl Study {
     /// `selected` with another body of a link in the place of the effects on its joint that may together imitate it: a scale
     /// of the link and a spring on a lever resemble a shifted centre of mass. Effects that are clearly better are kept.
     pub fn without_imitations(&mut self, mut selected: Selection) -> Selection {
-        let bare = self.bare_products(|r| self.fitted[r]);
         for link in 0..self.arm.dof() {
             let imitates = |&c: &usize| {
                 let candidate = &self.candidates[c];
@@ -316,7 +295,7 @@ impl Study {
             });
             let trials = trials.filter(|strengths| self.stated.allows(strengths));
             let bodies = trials.map(|strengths| {
-                let products = bare.with_background(self.prior.at(&strengths));
+                let products = self.products_at(&strengths);
                 let next = self.problem(&products).choose(rest.clone(), &selected.fit.weights);
                 (strengths, next)
             });
@@ -333,17 +312,12 @@ impl Study {
     }
 
     /// The best of the strengths `others`, with `selected` fitted again, if they are better.
-    fn strengthened(
-        &self,
-        bare: &Products,
-        selected: &Selection,
-        others: Vec<Strengths>,
-    ) -> Option<(Strengths, Selection)> {
+    fn strengthened(&self, selected: &Selection, others: Vec<Strengths>) -> Option<(Strengths, Selection)> {
         let trials: Vec<(Strengths, Selection)> = others
             .into_par_iter()
             .filter(|strengths| self.stated.allows(strengths))
             .map(|strengths| {
-                let products = bare.with_background(self.prior.at(&strengths));
+                let products = self.products_at(&strengths);
                 let problem = self.problem(&products);
                 let next = problem.choose(selected.set.clone(), &selected.fit.weights);
                 // Without a background, the weights may be far from the final ones.
@@ -360,22 +334,17 @@ impl Study {
             return None;
         }
         let before = strengths.impossible_constants.len();
-        let (strengths, next) = self.with_possible_constants(bare, strengths, next);
+        let (strengths, next) = self.with_possible_constants(strengths, next);
         let pays = strengths.impossible_constants.len() == before || next.score < selected.score - 1e-6;
         pays.then_some((strengths, next))
     }
 
     /// The fit of `selected` beside a background of these strengths, from which those torque constants are left out, the farthest one
     /// first, that would be wrong by more than any is.
-    fn with_possible_constants(
-        &self,
-        bare: &Products,
-        mut strengths: Strengths,
-        mut selected: Selection,
-    ) -> (Strengths, Selection) {
+    fn with_possible_constants(&self, mut strengths: Strengths, mut selected: Selection) -> (Strengths, Selection) {
         let most = MOST_CONSTANT.max(MOST_DEVIATIONS * self.stated.torque_accuracy());
         loop {
-            let products = bare.with_background(self.prior.at(&strengths));
+            let products = self.products_at(&strengths);
             selected = self.problem(&products).reweighted(selected);
             let deviation = |joint: usize| {
                 let column = self.torque_constant(joint)?;
@@ -388,7 +357,7 @@ impl Study {
                 return (strengths, selected);
             };
             strengths.impossible_constants.push(joint);
-            let products = bare.with_background(self.prior.at(&strengths));
+            let products = self.products_at(&strengths);
             selected = self
                 .problem(&products)
                 .choose(selected.set.clone(), &selected.fit.weights);

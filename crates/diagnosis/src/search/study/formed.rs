@@ -1,0 +1,98 @@
+//! The inner products of a study, formed once for each table, and once for each background.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::Study;
+use crate::regression::fit::Products;
+use crate::regression::strengths::Strengths;
+
+/// The number of backgrounds whose products are stored.
+const KEPT: usize = 64;
+
+/// Products that are valid for the present table and prior.
+#[derive(Debug, Default)]
+pub struct Formed(Mutex<List>);
+
+/// The products over the training recordings and over the held-out ones.
+#[derive(Debug, Default)]
+struct List {
+    /// The table and the prior that they are of.
+    of: Option<[Arc<()>; 2]>,
+    /// Without background.
+    bare: [Option<Products>; 2],
+    /// With the backgrounds that were requested last.
+    with_background: Vec<(bool, Strengths, Products)>,
+}
+
+impl List {
+    /// Forgets what is of another table or prior.
+    fn renew(&mut self, table: &Arc<()>, prior: &Arc<()>) {
+        let is_same =
+            |[own_table, own_prior]: &[Arc<()>; 2]| [Arc::ptr_eq(own_table, table), Arc::ptr_eq(own_prior, prior)];
+        let [same_table, same_prior] = self.of.as_ref().map_or([false; 2], is_same);
+        if !same_table {
+            self.bare = [None, None];
+        }
+        if !same_table || !same_prior {
+            self.with_background.clear();
+            self.of = Some([Arc::clone(table), Arc::clone(prior)]);
+        }
+    }
+}
+
+impl Study {
+    /// Inner products over the recordings to be fitted.
+    pub fn training_products(&self) -> Products {
+        self.formed(false, &self.strengths)
+    }
+
+    /// Inner products over the held-out recordings; `None` if there are none.
+    pub fn held_products(&self) -> Option<Products> {
+        let has_held_out = self.fitted.contains(&false);
+        has_held_out.then(|| self.formed(true, &self.strengths))
+    }
+
+    /// Inner products over the training recordings, with a background of other strengths.
+    pub fn products_at(&self, strengths: &Strengths) -> Products {
+        self.formed(false, strengths)
+    }
+
+    fn formed(&self, held_out: bool, strengths: &Strengths) -> Products {
+        let known = |list: &mut List| {
+            list.renew(self.table.identity(), self.prior.identity());
+            let is_same = |(held, with, _): &&(bool, Strengths, Products)| (*held, with) == (held_out, strengths);
+            list.with_background
+                .iter()
+                .find(is_same)
+                .map(|(.., products)| products.clone())
+        };
+        if let Some(products) = self.stored(known) {
+            return products;
+        }
+        // They are formed without the lock, so that no thread waits, and are the same from every thread.
+        let bare = self.bare(held_out);
+        let products = bare.with_background(self.prior.at(strengths));
+        self.stored(|list| {
+            if list.with_background.len() == KEPT {
+                list.with_background.remove(0);
+            }
+            list.with_background
+                .push((held_out, strengths.clone(), products.clone()));
+        });
+        products
+    }
+
+    fn bare(&self, held_out: bool) -> Products {
+        let place = usize::from(held_out);
+        if let Some(products) = self.stored(|list| list.bare[place].clone()) {
+            return products;
+        }
+        let products = self.bare_products(|recording| self.fitted[recording] != held_out);
+        self.stored(|list| list.bare[place] = Some(products.clone()));
+        products
+    }
+
+    fn stored<T>(&self, with: impl FnOnce(&mut List) -> T) -> T {
+        with(&mut self.formed.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
