@@ -108,3 +108,24 @@ fn what_an_effect_explains_is_not_reported_as_another_load() {
     };
     assert!(!is_reported(&diagnosed([0.0; 4], |_, _| true, push)));
 }
+
+/// A body at the tool is a change of the last link, so that either is named alone. An error of that link and a body of the opposite
+/// sign would need fewer coefficients than another body of the link.
+#[test]
+fn a_change_of_the_last_link_is_one_body() {
+    let arm = trio();
+    let last = arm.joints()[ELBOW].inertia.mass;
+    for share in [0.5, 1.0] {
+        let robot = arm.clone().with_scaled_link(ELBOW, 1.0 + share).with_payload(&Inertia {
+            mass: -0.8 * share * last,
+            com: Vector3::new(0.01, 0.0, -0.02),
+            tensor: Matrix3::zeros(),
+        });
+        let friction = |motion: &mut Motion, tau: &mut [f64]| baseline_friction(motion, tau);
+        let diagnosis = support::diagnosed(&arm, &robot, &friction, Vec::new());
+        let bodies = ["payload", "link_inertial_error", "inertial_parameters"];
+        let named = named(&diagnosis);
+        let of_bodies = named.iter().filter(|(effect, _)| bodies.contains(effect)).count();
+        assert_eq!(of_bodies, 1, "{:?}", sentences(&diagnosis));
+    }
+}

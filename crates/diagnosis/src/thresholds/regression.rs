@@ -43,7 +43,7 @@ pub const FELT: f64 = 0.55;
 /// The prior standard deviation of the links' common strength: a URDF is seldom wrong by more than this part everywhere.
 pub const USUAL_STRENGTH: f64 = 0.3;
 /// The strengths of all links' inertial parameters that are tried.
-pub const LINK_STRENGTHS: [f64; 9] = [0.0, 0.01, 0.03, 0.055, 0.1, 0.2, 0.4, 0.63, 1.0];
+pub const LINK_STRENGTHS: [f64; 7] = [0.0, 0.01, 0.03, 0.1, 0.2, 0.4, 1.0];
 /// The strengths that are tried on one link in addition to the common one.
 pub const OWN_STRENGTHS: [f64; 3] = [0.1, 0.3, 1.0];
 /// The factor between the strengths that are tried in the end.

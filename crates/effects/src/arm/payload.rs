@@ -32,6 +32,8 @@ static SPEC: Spec = Spec {
             .remarked("kg m²: Ixx Ixy Iyy Ixz Iyz Izz about the centre of mass, along the tool's axes"),
     ],
     main: &["mass"],
+    // Both are a change of the last link's ten inertial parameters.
+    excludes: &["link_inertial_error"],
     may_set_in: true,
     prior: 4.0,
     is_certain_in_form: true,

@@ -9,7 +9,9 @@ impl Problem<'_> {
     /// Whether two candidates exclude each other: sizes of one effect, or forms of one curve.
     pub fn exclude(&self, a: usize, b: usize) -> bool {
         let (a, b) = (&self.candidates[a], &self.candidates[b]);
-        if a.joint != b.joint {
+        // An effect at the tool has the same torque as one of the last link.
+        let place = |candidate: &Candidate| candidate.joint.or_else(|| self.table.dof().checked_sub(1));
+        if place(a) != place(b) {
             return false;
         }
         // A candidate with an onset is in addition to one that always acts.
@@ -20,7 +22,7 @@ impl Problem<'_> {
             [a, b].map(|c| &self.table.terms[c.columns[0]]),
             [a.hypothesis, b.hypothesis],
         );
-        if one.kind == other.kind {
+        if one.kind == other.kind && a.joint == b.joint {
             one.other == other.other && one.kind.get().is_same(first, second)
         } else {
             one.spec().excludes.contains(&other.spec().name) || other.spec().excludes.contains(&one.spec().name)
