@@ -22,6 +22,7 @@ pub mod rivals;
 pub mod special_forms;
 pub mod torque_constants;
 pub mod unmounted;
+pub mod without_moment;
 
 /// The final fit: the named effects, their uncertainty, and the residuals.
 pub struct FinalFit {

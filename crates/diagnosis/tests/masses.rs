@@ -324,3 +324,53 @@ fn a_special_form_of_wrong_links_is_an_alternative_of_them() {
         links.confusable_with
     );
 }
+
+/// The diagnosis of a PUMA 560 with dry friction and a `payload` (kg) at the centre of its wrist. Masses and centres of mass of its
+/// links differ from the URDF by `strength` times the draws of `seed`.
+fn wrong_everywhere(seed: u64, strength: f64, payload: f64) -> Diagnosis {
+    const PUMA: &str = include_str!("../../../assets/puma560.urdf");
+    let believed = Arm::from_urdf_text(PUMA, "puma560.urdf").expect("it is an arm");
+    let mut robot = believed.clone();
+    let draw = |k: usize| {
+        let phase = ((seed * 64 + k as u64) as f64 * 12.9898).sin() * 43_758.545_3;
+        3.4 * (phase - phase.floor() - 0.5)
+    };
+    for link in 0..robot.dof() {
+        let mut inertia = robot.joints()[link].inertia;
+        let factor = (strength * draw(4 * link)).exp();
+        let size = 0.1;
+        inertia.com += size * strength * arm::Vector3::new(draw(4 * link + 1), draw(4 * link + 2), draw(4 * link + 3));
+        inertia.mass *= factor;
+        inertia.tensor *= factor;
+        robot = robot.with_link_inertia(link, inertia);
+    }
+    let robot = robot.with_payload(&arm::Inertia {
+        mass: payload,
+        com: arm::Vector3::zeros(),
+        tensor: arm::Matrix3::identity() * 1e-3 * payload,
+    });
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        for (tau, qd) in tau.iter_mut().zip(&motion.qd) {
+            *tau += 4.0 * qd.signum();
+        }
+    };
+    diagnosed(&believed, &robot, &injected, Vec::new())
+}
+
+/// A body whose centre of mass is at the tool's origin, where the axes of the wrist meet, only adds a mass to the wrist. A heavier link
+/// before it does so, too, so that the body is an alternative of links that are all wrong.
+#[test]
+fn a_payload_at_the_centre_of_a_wrist_is_an_alternative_of_wrong_links() {
+    let diagnosis = wrong_everywhere(8, 0.03, 2.5);
+    let findings = &diagnosis.report.findings;
+    assert!(
+        findings.iter().all(|finding| finding.effect != "payload"),
+        "{:?}",
+        sentences(&diagnosis)
+    );
+    let links = findings
+        .iter()
+        .filter(|finding| finding.effect == "inertial_parameters");
+    let mut alternatives = links.flat_map(|links| &links.confusable_with);
+    assert!(alternatives.any(|other| other.effect == "payload"), "{findings:?}");
+}

@@ -17,6 +17,7 @@ use crate::selection::naming::{Named, may_be_nothing, name};
 use crate::selection::predict::{augmented, errors, structured};
 use crate::selection::rivals::standing;
 use crate::selection::torque_constants;
+use crate::selection::without_moment::without_moment;
 
 use crate::thresholds::{
     CLEAR_THOUGH_UNDETERMINED, HOPELESS, LEAST_BESIDE_SOME_LINKS, LEAST_FINAL_SHARE, LEAST_UNDECIDED, PARTLY,
@@ -57,7 +58,13 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
             Some((unclear, false)) => {
                 drop_name(study, judged, unclear, "its interval contains the value without effect");
             }
-            None => return resampled,
+            None => match without_moment(study, judged, &resampled) {
+                Some(payload) => {
+                    study.give_up(payload);
+                    drop_name(study, judged, payload, "it may have no moment about the tool's origin");
+                }
+                None => return resampled,
+            },
         }
     }
 }

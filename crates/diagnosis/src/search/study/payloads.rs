@@ -46,7 +46,9 @@ impl Study {
     pub fn without_payload_of_a_link(&mut self, selected: Selection) -> Selection {
         let is_unfelt = |&c: &usize| {
             let sets_in = || !self.always_acts(c);
-            self.candidates[c].hypothesis.is(&Payload) && !sets_in() && !self.is_felt_at_the_end(&selected, c)
+            let columns = &self.candidates[c].columns;
+            let is_felt = || self.are_felt_at_the_end(columns, &selected.fit.values(columns));
+            self.candidates[c].hypothesis.is(&Payload) && !sets_in() && !is_felt()
         };
         let unfelt: Vec<usize> = selected.set.iter().copied().filter(is_unfelt).collect();
         let (Some(&payload), true) = (unfelt.first(), self.strengths.common() > 0.0) else {
@@ -77,13 +79,11 @@ impl Study {
         selected
     }
 
-    /// Whether the share of `candidate` in the torque of one of the last joints is comparable to its largest share in any
+    /// Whether the share of these columns in the torque of one of the last joints is comparable to their largest share in any
     /// joint.
-    fn is_felt_at_the_end(&self, selected: &Selection, candidate: usize) -> bool {
-        let columns = &self.candidates[candidate].columns;
-        let values = selected.fit.values(columns);
+    pub fn are_felt_at_the_end(&self, columns: &[usize], values: &[f64]) -> bool {
         let share = |joint: usize| {
-            let torque = self.table.torque(joint, columns, &values);
+            let torque = self.table.torque(joint, columns, values);
             let rows = self.training_rows(joint);
             self.share(joint, statistics::deviation(rows.iter().map(|&row| torque[row])))
         };

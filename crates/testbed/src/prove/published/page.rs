@@ -149,11 +149,11 @@ fn how_hard(real: &Real) -> String {
     format!(
         "Limits of this test: publishers rarely state that an effect is absent, so that a name can contradict the publication for only {pairs} of all \
          (effect, joint) pairs, on {} of {} robots ({list}). Of the {all} published effects, {several} leave open which of several effects is \
-         meant (\u{201c}Coulomb or viscous\u{201d}). Without these, {} of {} are named; of these, {named_of_several} of {several}.",
+         meant (\u{201c}Coulomb or viscous\u{201d}). Of these {several}, {named_of_several} are named; of the other {}, {}.",
         deniable.len(),
         real.robots.len(),
-        named - named_of_several,
         all - several,
+        named - named_of_several,
     )
 }
 
