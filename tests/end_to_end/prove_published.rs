@@ -127,7 +127,7 @@ fn recordings_are_sealed_diagnosed_and_held_against_what_is_published() {
             "chapter 3",
             recording,
             "for only 1 of all (effect, joint) pairs",
-            "Without these, 1 of 2 are named",
+            "are named; of the other 2, 1.",
             "--published published.toml --recordings data",
         ] {
             assert!(text.contains(needed), "there is no {needed}");
