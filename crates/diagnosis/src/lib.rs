@@ -25,6 +25,7 @@ mod diagnosis;
 mod error;
 mod excitation;
 mod findings;
+mod lanes;
 mod next;
 mod options;
 mod regression;

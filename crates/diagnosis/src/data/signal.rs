@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use gp::{Wide, on_widest};
+use crate::lanes::dots_with;
 
 /// The reach of the kernel to either side, in widths.
 const REACH: f64 = 5.0;
@@ -113,61 +113,10 @@ pub fn outputs(samples: usize, reach: usize, stride: usize) -> usize {
 }
 
 fn apply(weights: &[f64], signal: &[f64], stride: usize) -> Vec<f64> {
-    on_widest(Filter {
-        weights,
-        signal,
-        stride,
-    })
-}
-
-struct Filter<'a> {
-    weights: &'a [f64],
-    signal: &'a [f64],
-    stride: usize,
-}
-
-/// The number of partial sums of an output, so that additions do not wait for each other.
-const PARTS: usize = 4;
-/// The number of outputs that are formed at the same time.
-const AT_ONCE: usize = 4;
-
-impl Wide for Filter<'_> {
-    type Output = Vec<f64>;
-
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) -> Vec<f64> {
-        let Self {
-            weights,
-            signal,
-            stride,
-        } = self;
-        let count = outputs(signal.len(), weights.len() / 2, stride);
-        let whole = weights.len() / PARTS * PARTS;
-        let mut filtered = Vec::with_capacity(count + AT_ONCE);
-        for first in (0..count).step_by(AT_ONCE) {
-            // The last group repeats the last output.
-            let windows: [&[f64]; AT_ONCE] = std::array::from_fn(|k| {
-                let from = (first + k).min(count - 1) * stride;
-                &signal[from..from + weights.len()]
-            });
-            let mut sums = [[0.0; PARTS]; AT_ONCE];
-            for from in (0..whole).step_by(PARTS) {
-                let w = &weights[from..from + PARTS];
-                for (sums, window) in sums.iter_mut().zip(windows) {
-                    let s = &window[from..from + PARTS];
-                    for part in 0..PARTS {
-                        sums[part] += w[part] * s[part];
-                    }
-                }
-            }
-            for (sums, window) in sums.iter().zip(windows) {
-                let rest: f64 = weights[whole..].iter().zip(&window[whole..]).map(|(w, s)| w * s).sum();
-                filtered.push((sums[0] + sums[1]) + (sums[2] + sums[3]) + rest);
-            }
-        }
-        filtered.truncate(count);
-        filtered
-    }
+    let window = |k: usize| &signal[k * stride..k * stride + weights.len()];
+    let count = outputs(signal.len(), weights.len() / 2, stride);
+    let windows: Vec<&[f64]> = (0..count).map(window).collect();
+    dots_with(weights, &windows)
 }
 
 #[cfg(test)]

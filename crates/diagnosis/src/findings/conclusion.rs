@@ -74,7 +74,7 @@ impl Conclusion {
             let same = |known: &Effect| known.name() == finding.effect && known.joint() == finding.joint.as_deref();
             !study.past.iter().any(same)
         });
-        let mut inertials = inertials(study, products, held.as_ref(), judged, resampled);
+        let mut inertials = inertials(study, held.as_ref(), judged, resampled);
         let transients = transients::search(study, judged, residual);
         let mut others = std::mem::take(&mut inertials.findings);
         if options.only.is_none() {

@@ -55,13 +55,7 @@ fn numbers(body: &Inertia) -> [f64; PER_LINK] {
 }
 
 /// The inertial parameters of the links by the background of the final fit.
-pub fn inertials(
-    study: &Study,
-    products: &Products,
-    held: Option<&Products>,
-    judged: &Judged,
-    resampled: &Resampled,
-) -> Inertials {
+pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resampled: &Resampled) -> Inertials {
     let strengths = &study.strengths;
     let dof = study.arm.dof();
     if strengths.links.iter().all(|&rho| rho == 0.0) {
@@ -174,7 +168,7 @@ pub fn inertials(
     };
     // The alternatives of links that are all wrong: effects beside links that are less wrong.
     let everywhere = || -> Vec<Confusable> {
-        let forms = special_forms(study, products, &judged.named);
+        let forms = special_forms(study, &judged.named);
         let confusable = |(form, joint): (Hypothesis, Option<usize>)| Confusable {
             effect: form.name().unwrap_or_default(),
             joint: joint.map(|joint| study.arm.joints()[joint].name.clone()),

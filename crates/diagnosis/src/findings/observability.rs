@@ -86,21 +86,18 @@ fn on_arm(study: &Study, products: &Products, selected: &Selection) -> Vec<NotOb
             .set
             .iter()
             .any(|&c| study.candidates[c].hypothesis.kind == kind);
-        let always = |candidate: &&Candidate| {
-            candidate
-                .columns
-                .iter()
-                .all(|&c| study.table.terms[c].onset().is_none())
-        };
-        let of_arm = || of(study, kind, None).filter(always);
-        let (Some(&key), Some(candidate), false) = (kind.spec().main.first(), of_arm().next(), is_found) else {
+        let always = |&c: &usize| study.candidates[c].hypothesis.kind == kind && study.always_acts(c);
+        let forms: Vec<&Candidate> = (0..study.candidates.len())
+            .filter(always)
+            .map(|c| &study.candidates[c])
+            .collect();
+        let (Some(&key), Some(candidate), false) = (kind.spec().main.first(), forms.first(), is_found) else {
             continue;
         };
-        let beside_inertials = kind.spec().least_beside_inertials.filter(|_| products.has_background());
-        let cheapest = of_arm()
-            .map(|candidate| needed(study, candidate))
+        let needed = forms
+            .iter()
+            .map(|form| needed(study, form))
             .fold(f64::INFINITY, f64::min);
-        let needed = cheapest.max(beside_inertials.unwrap_or(0.0));
         let least = |&column: &usize| {
             let evidence = products.evidence_of(&study.table, &selected.fit, column);
             let size = (needed / evidence.max(1e-300)).sqrt();
@@ -160,7 +157,7 @@ fn on_joint(study: &Study, products: &Products, selected: &Selection, joint: usi
                 is_seen_below,
             } => {
                 // Sizes in ascending order.
-                let mut sizes: Vec<(f64, bool)> = of(study, kind, Some(joint))
+                let mut sizes: Vec<(f64, bool)> = of(study, kind, joint)
                     .map(|candidate| {
                         let size = study.table.terms[candidate.columns[0]].sizes[0];
                         (size, is_seen(study, products, selected, candidate, joint))
@@ -183,7 +180,7 @@ fn on_joint(study: &Study, products: &Products, selected: &Selection, joint: usi
                 is_of_first,
                 is_of_all_torque,
             } => {
-                let Some(candidate) = of(study, kind, Some(joint)).next() else {
+                let Some(candidate) = of(study, kind, joint).next() else {
                     if let Some(because) = if_no_form {
                         add(because, None, None);
                     }
@@ -245,11 +242,11 @@ fn largest_torque(study: &Study, joint: usize) -> f64 {
         .fold(0.0_f64, |largest, tau| largest.max(tau.abs()))
 }
 
-fn of(study: &Study, kind: Kind, joint: Option<usize>) -> impl Iterator<Item = &Candidate> {
+fn of(study: &Study, kind: Kind, joint: usize) -> impl Iterator<Item = &Candidate> {
     study
         .candidates
         .iter()
-        .filter(move |candidate| candidate.hypothesis.kind == kind && candidate.joint == joint)
+        .filter(move |candidate| candidate.hypothesis.kind == kind && candidate.joint == Some(joint))
 }
 
 /// The evidence that a name needs here (nats); more where links are wrong and resemble it.

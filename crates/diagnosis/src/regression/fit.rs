@@ -11,7 +11,6 @@ use crate::thresholds::{EVIDENCE_PER_PERIOD, EVIDENCE_RATE, MOST_EVIDENCE_RATE};
 mod added;
 mod eliminated;
 mod joined;
-mod lanes;
 mod left_out;
 
 pub use added::Reduced;

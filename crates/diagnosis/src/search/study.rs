@@ -253,11 +253,6 @@ impl Study {
         self.force
     }
 
-    /// Inner products over the recordings that `selected` selects.
-    pub fn products(&self, selected: impl Fn(usize) -> bool) -> Products {
-        self.bare_products(selected).with_background(self.background())
-    }
-
     /// The background of every fit, if there is one.
     pub fn background(&self) -> Option<Background> {
         self.prior.at(&self.strengths)

@@ -3,7 +3,6 @@
 
 use rayon::prelude::*;
 
-use crate::regression::fit::Products;
 use crate::regression::strengths::Strengths;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
@@ -12,14 +11,14 @@ use crate::thresholds::{MOST_SPECIAL_FORMS, NEARLY_AS_LIKELY, SPECIAL_FORMS_TRIE
 
 /// The special forms that the recordings do not exclude, the best first: those that are as likely beside a smaller correction of
 /// the links, and names that were given up because wrong inertial parameters explain nearly as much. `selected` is the final fit.
-pub fn special_forms(study: &Study, products: &Products, selected: &Selection) -> Vec<Named> {
+pub fn special_forms(study: &Study, selected: &Selection) -> Vec<Named> {
     let links = |strengths: &Strengths| strengths.links.clone();
     let is_smaller =
         |strengths: &Strengths| links(strengths) != links(&study.strengths) && study.stated.allows(strengths);
     let smaller: Vec<Strengths> = study.strengths.weaker().into_iter().filter(is_smaller).collect();
     let mut scores: Vec<(f64, Named)> = smaller
         .into_par_iter()
-        .flat_map_iter(|strengths| beside(study, products, selected, &strengths))
+        .flat_map_iter(|strengths| beside(study, selected, &strengths))
         .filter(|(score, _)| *score < selected.score + NEARLY_AS_LIKELY)
         .collect();
     scores.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -40,8 +39,8 @@ pub fn special_forms(study: &Study, products: &Products, selected: &Selection) -
 }
 
 /// The most promising special forms beside links of these `strengths`, each with its score (nats).
-fn beside(study: &Study, products: &Products, selected: &Selection, strengths: &Strengths) -> Vec<(f64, Named)> {
-    let products = products.with_background(study.background_at(strengths));
+fn beside(study: &Study, selected: &Selection, strengths: &Strengths) -> Vec<(f64, Named)> {
+    let products = study.products_at(strengths);
     let problem = study.problem(&products);
     let base = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));
     let is_free = |&c: &usize| {

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::lanes::{LANES, Lanes, forward_by_columns};
 use super::{Fit, Products, cholesky};
+use crate::lanes::{LANES, Lanes, forward_by_columns};
 use crate::regression::table::Table;
 
 /// Columns that may be added to a fit, without the part that its columns explain.

@@ -9,7 +9,7 @@ use std::sync::{Arc, OnceLock, PoisonError};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::Products;
-use super::lanes::{LANES, Lanes, dot, dots_of, dots_with, forward};
+use crate::lanes::{LANES, Lanes, dot, dots_of, dots_with, forward};
 use crate::regression::background::Background;
 use crate::regression::table::Table;
 

@@ -34,7 +34,7 @@ impl Reader<'_> {
     fn likeliest_onset(&self, near: f64) -> (f64, [f64; 2]) {
         let study = self.study;
         let table = &study.table;
-        let fitted = study.products(|recording| study.fitted[recording]);
+        let fitted = study.training_products();
         let columns = &study.candidates[self.candidate].columns;
         let value = |column: usize| self.resampled.column(column).map(|at| self.resampled.estimate[at]);
         // Its torque if it always acted.
