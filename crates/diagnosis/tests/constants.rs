@@ -75,6 +75,27 @@ fn a_large_constant_has_a_name() {
     assert_constants(&diagnosis, &[("shoulder", -0.05), ("elbow", 0.015)]);
 }
 
+/// A constant of an eighth of the joint's torque has a name where the other joints have small constants, too.
+#[test]
+fn a_constant_far_larger_than_those_of_the_other_joints_has_a_name() {
+    let diagnosis = diagnosed([0.05, 0.8, 0.05], &[]);
+    assert_eq!(
+        named(&diagnosis),
+        [("torque_offset", Some("shoulder"))],
+        "{:?}",
+        sentences(&diagnosis)
+    );
+    assert_constants(&diagnosis, &[("turn", 0.05), ("elbow", 0.05)]);
+}
+
+/// A constant of 3 % beside constants of the other joints is no friction that depends on the direction.
+#[test]
+fn a_constant_like_those_of_the_other_joints_is_no_asymmetric_friction() {
+    let diagnosis = diagnosed([0.026, 0.2, 0.015], &[]);
+    assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
+    assert_constants(&diagnosis, &[("turn", 0.026), ("shoulder", 0.2), ("elbow", 0.015)]);
+}
+
 #[test]
 fn exact_torques_need_no_constants() {
     let diagnosis = diagnosed([0.0; 3], &[]);

@@ -13,7 +13,7 @@ use crate::report::Parameter;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::selection::bootstrap::Resampled;
-use crate::thresholds::{LEAST_FINAL_SHARE, OFFSET_STRENGTHS, SYSTEMATIC};
+use crate::thresholds::{FRICTION_PRIOR, LEAST_FINAL_SHARE, OFFSET_STRENGTHS, SYSTEMATIC, USUAL_CONSTANTS};
 
 /// A constant below this share of the joint's typical torque is rounding, and not a correction.
 const NEGLIGIBLE: f64 = 1e-6;
@@ -38,15 +38,18 @@ pub fn leave_to_background(study: &mut Study, mut selected: Selection) -> Select
         let mut best: Option<(Strengths, Selection)> = None;
         for &member in &named {
             for offset in OFFSET_STRENGTHS.into_iter().filter(|&offset| offset > 0.0) {
-                let set = selected.others(member);
+                let others = selected.others(member);
                 let strengths = Strengths {
                     offset,
-                    named_offsets: set.iter().filter_map(|&c| names(study, c)).collect(),
+                    named_offsets: others.iter().filter_map(|&c| names(study, c)).collect(),
                     ..study.strengths.clone()
                 };
                 let products = study.products_at(&strengths);
                 let problem = study.problem(&products);
-                let next = problem.reweighted(problem.choose(set, &selected.fit.weights));
+                let next = problem.reweighted(problem.without(&selected, member));
+                if is_unusual(study, member, offset, &next) {
+                    continue;
+                }
                 let least = best.as_ref().map_or(selected.score, |(_, best)| best.score);
                 if next.score < least - 1e-6 {
                     best = Some((strengths, next));
@@ -58,6 +61,20 @@ pub fn leave_to_background(study: &mut Study, mut selected: Selection) -> Select
         study.note_strengths("constants of all joints in the place of a named one", &selected, &next);
         selected = next;
     }
+}
+
+/// Whether the constant torque that replaces the name of `member` in `next` is larger than those of a background at the strength
+/// `offset`.
+fn is_unusual(study: &Study, member: usize, offset: f64, next: &Selection) -> bool {
+    let Some(joint) = names(study, member) else {
+        return false;
+    };
+    let term = Term::on(&OFFSET, joint);
+    let Some(column) = study.table.terms.iter().position(|other| *other == term) else {
+        return false;
+    };
+    let usual = offset * FRICTION_PRIOR * study.scales.torque[joint];
+    next.fit.coefficient(column).abs() > USUAL_CONSTANTS * usual
 }
 
 /// The constant torques in the fit `selected`, by the joints' names.
