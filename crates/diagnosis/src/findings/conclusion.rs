@@ -99,15 +99,22 @@ impl Conclusion {
             .collect();
         let fit = fit(study, [residual, &by_exported], identified);
         let mut unexplained = unexplained(study, judged, &transients, residual);
-        poorly_predicted(study, &fit, !findings.is_empty(), &mut unexplained);
+        poorly_predicted(study, judged, &fit, residual, !findings.is_empty(), &mut unexplained);
         if !not_enough_data.is_empty() {
             // More data are the only next step.
             unexplained.clear();
         }
-        let located = locate(study, residual);
+        let located = locate(study, &study.nominal, residual);
         if findings.is_empty() {
             beyond_limits(study, &fit, &transients, &mut unexplained);
             with_places(&located, &mut unexplained);
+        } else if unexplained.iter().any(|open| open.depends_on.is_empty()) {
+            let mut open = locate(study, residual, residual);
+            for place in &mut open {
+                // A residual that drifts has an unmodelled form. What remains in one stretch of time is not a drift.
+                place.regions.retain(|region| region.axis != "elapsed_time");
+            }
+            with_places(&open, &mut unexplained);
         }
         findings.sort_by(|(a, _), (b, _)| {
             b.share

@@ -10,12 +10,12 @@ use crate::thresholds::{
     WINDOW, WINDOW_STANDS_OUT,
 };
 
-/// Locates the residual of `nominal` (`[joint][row]`), and compares it with that of `augmented`.
-pub fn locate(study: &Study, augmented: &[Vec<f64>]) -> Vec<Located> {
+/// Locates a residual (`[joint][row]`), and compares it with that of the `augmented` model.
+pub fn locate(study: &Study, residual: &[Vec<f64>], augmented: &[Vec<f64>]) -> Vec<Located> {
     let states = states(study);
     (0..study.motions.dof)
         .into_par_iter()
-        .filter_map(|joint| on_joint(study, &states[joint], joint, &study.nominal[joint], &augmented[joint]))
+        .filter_map(|joint| on_joint(study, &states[joint], joint, &residual[joint], &augmented[joint]))
         .collect()
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::data::statistics::rms;
 use crate::findings::locate::locate;
 use crate::findings::sentences;
 use crate::findings::transients::Transients;
@@ -10,7 +11,7 @@ use crate::report::{Finding, JointFit, Located, TimeWindow, Unexplained, Verdict
 use crate::search::study::Study;
 use crate::selection::judge::Judged;
 use crate::selection::predict::structured;
-use crate::thresholds::{LEAST_MOTION, PARTLY, POOR, POOR_ABOVE_NOISE, STRUCTURED};
+use crate::thresholds::{LEAST_MOTION, PARTLY, POOR, POOR_ABOVE_NOISE, REMEMBERS, STRUCTURED, STRUCTURED_IN_TRAINING};
 
 /// The structured residuals on each joint that no effect in the catalogue explains.
 pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, residual: &[Vec<f64>]) -> Vec<Unexplained> {
@@ -37,7 +38,7 @@ pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, resi
             entry.1.push((*share, "time".to_owned()));
         }
     }
-    let located = locate(study, residual);
+    let located = locate(study, &study.nominal, residual);
     by_joint
         .into_iter()
         .map(|(joint, (share, mut on))| {
@@ -62,10 +63,12 @@ pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, resi
         .collect()
 }
 
-/// Adds the joints that are poorly predicted with the findings.
+/// Adds the joints that are poorly predicted with the findings, whose residuals are `residual` (`[joint][row]`).
 pub fn poorly_predicted(
     study: &Study,
+    judged: &Judged,
     fit: &BTreeMap<String, JointFit>,
+    residual: &[Vec<f64>],
     has_findings: bool,
     unexplained: &mut Vec<Unexplained>,
 ) {
@@ -76,9 +79,17 @@ pub fn poorly_predicted(
         // Without findings, a torque that looks like noise is no torque of the model either.
         let is_unrelated = !has_findings && error >= PARTLY;
         let is_poor = is_unrelated || error >= POOR && error * this.torque_std >= POOR_ABOVE_NOISE * this.noise;
-        if is_known || !(is_poor || structured(this).is_some()) {
+        let in_training = beside_contacts(study, judged, &residual[joint], joint);
+        let is_structured = structured(this).is_some()
+            || in_training >= STRUCTURED_IN_TRAINING && this.residual_autocorrelation > REMEMBERS;
+        if is_known || !(is_poor || is_structured) {
             continue;
         }
+        let error = if is_poor || structured(this).is_some() {
+            error
+        } else {
+            in_training
+        };
         let was_fitted = !study.training_rows(joint).is_empty();
         unexplained.push(Unexplained {
             joint: name.clone(),
@@ -92,6 +103,16 @@ pub fn poorly_predicted(
             time: Vec::new(),
         });
     }
+}
+
+/// The error of a joint (NRMSE) on the training recordings outside the named contacts, which act for a short time and differ from
+/// any model of a constant force.
+fn beside_contacts(study: &Study, judged: &Judged, residual: &[f64], joint: usize) -> f64 {
+    let contacts: Vec<[f64; 2]> = judged.named.set.iter().filter_map(|&c| study.window(c)).collect();
+    let times = study.motions.row_times();
+    let is_outside = |&row: &usize| contacts.iter().all(|[from, to]| times[row] < *from || times[row] > *to);
+    let rows: Vec<usize> = study.training_rows(joint).iter().copied().filter(is_outside).collect();
+    study.share(joint, rms(rows.iter().map(|&row| residual[row])).unwrap_or(0.0))
 }
 
 /// Keeps the residuals on joints whose error a diagnosis with findings would not call explained, and transients, for recordings
@@ -118,8 +139,7 @@ fn error(fit: &JointFit) -> f64 {
     fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented)
 }
 
-/// Adds the place where the nominal residual is largest to the entries without one, for recordings without findings: their
-/// residual is the nominal one.
+/// Adds the place where the residual that is `located` is largest to the entries without one.
 pub fn with_places(located: &[Located], unexplained: &mut [Unexplained]) {
     for open in unexplained.iter_mut().filter(|open| open.depends_on.is_empty()) {
         let Some(place) = located.iter().find(|located| located.joint == open.joint) else {
