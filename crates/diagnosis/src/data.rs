@@ -1,7 +1,7 @@
 //! Phase 1, data: recordings with one common filter, the rigid model along them, scales and noise.
 
 use arm::Arm;
-use effects::{Effect, Scales};
+use effects::Scales;
 use rayon::prelude::*;
 
 use crate::error::DiagnosisError;
@@ -23,8 +23,6 @@ pub mod used;
 pub struct Data {
     /// The nominal model: the URDF's, with known effects.
     pub arm: Arm,
-    /// Known effects that are not functions of the motion at one time. They are found again, and not reported.
-    pub past: Vec<Effect>,
     /// The filtered recordings.
     pub motions: motion::Motions,
     /// The model along them, one per chunk.
@@ -65,6 +63,7 @@ impl Data {
             .map(|chunk| rigid::Rigid::new(arm, &nominal, &offset, chunk))
             .collect();
         let mut scales = measure::scales(&motions, torque);
+        known.take_off_past(&mut motions, &mut recorded, &rigid, &scales);
         // A channel is judged as it was recorded: what known effects leave of it may be noise.
         let mut exchange = |motions: &mut motion::Motions| {
             for (chunk, tau) in motions.chunks.iter_mut().zip(&mut recorded) {
@@ -83,7 +82,6 @@ impl Data {
             seconds: measure::seconds(&motions),
             noise: measure::noise(&motions, &rigid, &fitted),
             arm: known.arm,
-            past: known.past,
             motions,
             rigid,
             scales,

@@ -4,6 +4,8 @@ mod support;
 
 use arm::{Matrix6xX, Workspace};
 use diagnosis::{Options, diagnose};
+use effects::Effect;
+use effects::drive::Backlash;
 use recording::RegularRecording;
 use support::{
     ELBOW, Injected, Motion, SHOULDER, TURN, baseline_friction, diagnosed, inputs, recorded, regular, sentences, trio,
@@ -208,6 +210,32 @@ fn backlash() {
     };
     let diagnosis = check(&injected, &[("backlash", "elbow")]);
     is_sized(&diagnosis, "backlash", &[("halfgap", 0.01)], 0.1);
+}
+
+/// A known gap can only be found again. If it is not, that is said.
+#[test]
+fn a_known_gap_that_is_not_there_is_reported() {
+    let gap = |joint: &str| Effect::of(&Backlash).on(joint.to_owned()).with("halfgap", 0.01);
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        motion.q[ELBOW] += 0.01 * (tau[ELBOW] / 0.05).tanh();
+        baseline_friction(motion, tau);
+    };
+    let diagnosis = diagnosed(&trio(), &trio(), &injected, vec![gap("elbow"), gap("shoulder")]);
+    assert!(
+        diagnosis
+            .report
+            .findings
+            .iter()
+            .all(|finding| finding.effect != "backlash"),
+        "{:?}",
+        sentences(&diagnosis)
+    );
+    let remarks = diagnosis.remarks.join("\n");
+    assert!(
+        remarks.contains("the known backlash on shoulder is not found"),
+        "{remarks}"
+    );
+    assert!(!remarks.contains("the known backlash on elbow"), "{remarks}");
 }
 
 /// A spring between drive and link gives way without a gap, and without a delay.

@@ -63,6 +63,12 @@ pub trait EffectKind: Debug + Sync {
         None
     }
 
+    /// The term of an effect that depends on the past of the motion or on the commanded torque ([`Spec::is_simulated`]), with the
+    /// sizes of `effect`; its coefficient is one. `None` if its parameters do not determine its torque.
+    fn past(&self, _effect: &Effect, _joint: usize) -> Option<Term> {
+        None
+    }
+
     /// What is wrong with its parameters, apart from their ranges: the parameter, its value and the requirement.
     fn refuse(&self, _effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
         None

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use crate::effect::Effect;
 use crate::kind::EffectKind;
 use crate::spec::Spec;
-use crate::{CATALOGUE, UNMODELLED};
+use crate::{CATALOGUE, Term, UNMODELLED};
 
 /// The names of the catalogue, in its order.
 pub static NAMES: LazyLock<Vec<&'static str>> =
@@ -91,6 +91,11 @@ impl Effect {
     /// Its kind.
     pub fn kind(&self) -> Kind {
         Kind::with_spec(self.spec())
+    }
+
+    /// Its term on the joint of an index, as [`EffectKind::past`] gives it.
+    pub fn past(&self, joint: usize) -> Option<Term> {
+        self.kind().get().past(self, joint)
     }
 }
 

@@ -1,10 +1,11 @@
 //! Effects that the user knows.
 
 use arm::Arm;
-use effects::Effect;
+use effects::{Effect, Scales, Term};
 use torque::{Corrected, Prediction, Workspace};
 
 use crate::data::motion::Motions;
+use crate::data::rigid::Rigid;
 use crate::error::DiagnosisError;
 
 /// The model with the known effects.
@@ -12,8 +13,8 @@ pub struct Known {
     /// The arm, with known payloads, link errors, drives and gravity.
     pub arm: Arm,
     model: Option<Corrected>,
-    /// Known effects that are not functions of the motion at one time. They are found again, and not reported.
-    pub past: Vec<Effect>,
+    /// Known effects that are not functions of the motion at one time.
+    past: Vec<Effect>,
 }
 
 impl Known {
@@ -65,6 +66,37 @@ impl Known {
             }
         }
         recorded
+    }
+
+    /// Subtracts the known effects that depend on the past of the motion or on the commanded torque, `recorded`: `rigid` is the arm
+    /// along `motions`, from which the other known effects are subtracted.
+    pub fn take_off_past(
+        &self,
+        motions: &mut Motions,
+        recorded: &mut [Vec<Vec<f64>>],
+        rigid: &[Rigid],
+        scales: &Scales,
+    ) {
+        let index = |effect: &Effect| {
+            self.arm
+                .joints()
+                .iter()
+                .position(|joint| Some(&*joint.name) == effect.joint())
+        };
+        let term = |effect: &Effect| effect.past(index(effect)?);
+        let terms: Vec<Term> = self.past.iter().filter_map(term).collect();
+        let chunks = motions.chunks.iter_mut().zip(recorded).zip(rigid);
+        for ((chunk, recorded), rigid) in chunks {
+            let mut left = std::mem::replace(&mut chunk.tau, std::mem::take(recorded));
+            let along = rigid.along(chunk, scales);
+            for term in &terms {
+                for (joint, tau) in left.iter_mut().enumerate() {
+                    let values = term.column(joint, &along).unwrap_or_default();
+                    tau.iter_mut().zip(values).for_each(|(tau, value)| *tau -= value);
+                }
+            }
+            *recorded = std::mem::replace(&mut chunk.tau, left);
+        }
     }
 }
 

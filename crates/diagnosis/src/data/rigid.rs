@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use arm::{Arm, PARAMETERS_PER_LINK, Workspace};
+use effects::{Scales, Signals};
 use nalgebra::{Matrix6xX, Vector3};
 
 use crate::data::motion::Chunk;
@@ -45,6 +46,33 @@ impl Rigid {
     /// those of links with the inertial parameters `nominal`.
     pub fn new(arm: &Arm, nominal: &[f64], offset: &[f64], chunk: &Chunk) -> Self {
         Self::with_derivatives(arm, nominal, offset, chunk, true)
+    }
+
+    /// `chunk`, to which this belongs, as regressors see it.
+    pub fn along<'a>(&'a self, chunk: &'a Chunk, scales: &'a Scales) -> Signals<'a> {
+        Signals {
+            recording: chunk.recording,
+            start: chunk.start,
+            period: chunk.period,
+            q: &chunk.q,
+            qd: &chunk.qd,
+            qdd: &chunk.qdd,
+            tau: &chunk.tau,
+            rigid: effects::Rigid {
+                tau: &self.tau,
+                rotors: &self.rotors,
+                links: &self.links,
+                payload: &self.payload,
+                fixed_bodies: &self.fixed_bodies,
+                by_position: &self.by_position,
+                by_velocity: &self.by_velocity,
+                mass: &self.mass,
+                tilt: &self.tilt,
+                gravity: &self.gravity,
+                force: &self.force,
+            },
+            scales,
+        }
     }
 
     /// The torque that the gear of `joint` transmits to the links at a tick of `chunk` (N m or N): τ without that of the rotor.

@@ -70,10 +70,18 @@ impl Conclusion {
             residual,
         } = last;
         let mut findings = findings(study, products, held.as_ref(), judged, resampled);
-        findings.retain(|(finding, _)| {
-            let same = |known: &Effect| known.name() == finding.effect && known.joint() == finding.joint.as_deref();
-            !study.past.iter().any(same)
-        });
+        // A known gap is found again, because its size alone does not determine its torque.
+        let is_same = |known: &Effect, (finding, _): &(Finding, _)| {
+            known.name() == finding.effect && known.joint() == finding.joint.as_deref()
+        };
+        let gaps = options
+            .known
+            .iter()
+            .filter(|known| known.spec().is_simulated && known.past(0).is_none());
+        let (known, unknown): (Vec<&Effect>, Vec<&Effect>) =
+            gaps.partition(|gap| findings.iter().any(|finding| is_same(gap, finding)));
+        findings.retain(|finding| !known.iter().any(|gap| is_same(gap, finding)));
+        let not_there = unknown.into_iter().map(sentences::not_subtracted);
         let mut inertials = inertials(study, held.as_ref(), judged, resampled);
         let transients = transients::search(study, judged, residual);
         let mut others = std::mem::take(&mut inertials.findings);
@@ -139,7 +147,7 @@ impl Conclusion {
             torque_constants::note_on_unnamed(study, &judged.named),
             sentences::constant_torques(&constant_torques::reported(study, &constants)),
         ];
-        let unnamed = unnamed.into_iter().flatten().collect();
+        let unnamed = unnamed.into_iter().flatten().chain(not_there).collect();
         Self {
             located,
             constant_torques: constants,

@@ -149,6 +149,15 @@ pub fn of(finding: &Finding, fit: &BTreeMap<String, JointFit>) -> String {
     format!("{place}: {what}, {share}{effect}")
 }
 
+/// That a known effect is not found in the recordings and could not be subtracted.
+pub fn not_subtracted(known: &Effect) -> String {
+    format!(
+        "the known {} on {} is not found in these recordings. It is not subtracted, because its size alone does not determine its torque; the errors contain it",
+        known.spec().title,
+        known.joint().unwrap_or("the arm")
+    )
+}
+
 /// The experiment that shows which effect causes a residual that depends on `on` (`own_position`, `history`, …).
 pub fn next_experiment(joint: &str, on: &str) -> String {
     if let Some(other) = on.strip_prefix("other_joint:") {

@@ -3,7 +3,7 @@
 use arm::Arm;
 use effects::arm::contact_columns;
 use effects::laws::SIGN;
-use effects::{Effect, Grounds, Scales, Term};
+use effects::{Grounds, Scales, Term};
 
 use crate::data::Data;
 use crate::data::measure::{self, spans};
@@ -36,8 +36,6 @@ use formed::Formed;
 pub struct Study {
     /// The nominal model.
     pub arm: Arm,
-    /// Known effects that are not functions of the motion at one time.
-    pub past: Vec<Effect>,
     /// The filtered recordings.
     pub motions: Motions,
     /// The model along them, one per chunk.
@@ -125,7 +123,6 @@ impl Study {
         }
         let data = Data {
             arm: self.arm,
-            past: self.past,
             motions,
             rigid: self.rigid,
             scales: self.scales,
@@ -141,7 +138,6 @@ impl Study {
         let (stated, thresholds) = (Stated::of(options), options.thresholds.clone());
         let Data {
             arm,
-            past,
             motions,
             rigid,
             scales,
@@ -220,7 +216,6 @@ impl Study {
         let simulated_along = vec![None; motions.dof];
         Self {
             arm,
-            past,
             motions,
             rigid,
             scales,

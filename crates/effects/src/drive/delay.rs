@@ -80,6 +80,10 @@ impl EffectKind for ActuationDelay {
         Some(Effect::of(&Self).on(estimate.joint_name()).with("delay", delay))
     }
 
+    fn past(&self, effect: &Effect, joint: usize) -> Option<Term> {
+        Some(Term::on(&LATE, joint).sized([effect.number("delay")]))
+    }
+
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
         machine.delays[at.joint] += effect.number("delay");
     }

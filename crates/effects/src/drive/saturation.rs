@@ -104,6 +104,10 @@ impl EffectKind for TorqueSaturation {
         Some(Effect::of(&Self).on(estimate.joint_name()).with("limit", limit))
     }
 
+    fn past(&self, effect: &Effect, joint: usize) -> Option<Term> {
+        Some(Term::on(&EXCESS, joint).sized([effect.number("limit")]))
+    }
+
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
         machine.limits[at.joint] = machine.limits[at.joint].min(effect.number("limit"));
     }
