@@ -26,15 +26,8 @@ pub struct Options {
 
 impl Options {
     /// Whether the effect of this name (`None`: an unmodelled form) is a candidate on a joint or (`None`) on the whole arm: all
-    /// are, unless particular effects are requested, and but for known delays, limits and springs, of which a joint has one.
+    /// are, unless particular effects are requested.
     pub(crate) fn may_be(&self, effect: Option<&str>, joint: Option<&String>) -> bool {
-        let is_same = |known: &Effect| {
-            let is_subtracted = known.past(0).is_some();
-            effect == Some(known.name()) && joint.map(String::as_str) == known.joint() && is_subtracted
-        };
-        if self.known.iter().any(is_same) {
-            return false;
-        }
         self.only.as_ref().is_none_or(|wanted| {
             let is_wanted = |one: &Wanted| {
                 let is_there = joint == one.joint.as_ref() || (joint.is_some() && joint == one.other.as_ref());

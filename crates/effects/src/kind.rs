@@ -63,9 +63,8 @@ pub trait EffectKind: Debug + Sync {
         None
     }
 
-    /// The term of an effect that depends on the past of the motion or on the commanded torque ([`Spec::is_simulated`]), with the
-    /// sizes of `effect`; its coefficient is one. `None` if its parameters do not determine its torque.
-    fn past(&self, _effect: &Effect, _joint: usize) -> Option<Term> {
+    /// The term of an effect that is a function of the commanded torque, with the sizes of `effect`; its coefficient is one.
+    fn of_torque(&self, _effect: &Effect, _joint: usize) -> Option<Term> {
         None
     }
 

@@ -93,9 +93,9 @@ impl Effect {
         Kind::with_spec(self.spec())
     }
 
-    /// Its term on the joint of an index, as [`EffectKind::past`] gives it.
-    pub fn past(&self, joint: usize) -> Option<Term> {
-        self.kind().get().past(self, joint)
+    /// Its term on the joint of an index, as [`EffectKind::of_torque`] gives it.
+    pub fn of_torque(&self, joint: usize) -> Option<Term> {
+        self.kind().get().of_torque(self, joint)
     }
 }
 

@@ -13,8 +13,8 @@ pub struct Known {
     /// The arm, with known payloads, link errors, drives and gravity.
     pub arm: Arm,
     model: Option<Corrected>,
-    /// Known effects that are not functions of the motion at one time.
-    past: Vec<Effect>,
+    /// Known effects that are functions of the commanded torque.
+    of_torque: Vec<Effect>,
 }
 
 impl Known {
@@ -27,15 +27,16 @@ impl Known {
             return Ok(Self {
                 arm: arm.clone(),
                 model: None,
-                past: Vec::new(),
+                of_torque: Vec::new(),
             });
         }
-        let (past, now): (Vec<Effect>, Vec<Effect>) = effects.iter().cloned().partition(has_memory);
+        let (simulated, now): (Vec<Effect>, Vec<Effect>) = effects.iter().cloned().partition(is_simulated);
         let model = Corrected::new(arm, &now)?;
+        let of_torque = simulated.into_iter().filter(|effect| effect.of_torque(0).is_some());
         Ok(Self {
             arm: model.arm().clone(),
             model: Some(model),
-            past,
+            of_torque: of_torque.collect(),
         })
     }
 
@@ -68,9 +69,9 @@ impl Known {
         recorded
     }
 
-    /// Subtracts the known effects that depend on the past of the motion or on the commanded torque, `recorded`: `rigid` is the arm
-    /// along `motions`, from which the other known effects are subtracted.
-    pub fn take_off_past(
+    /// Subtracts the known effects that are functions of the commanded torque, which is `recorded` (`[chunk][joint][tick]`) where any
+    /// effect is known. `rigid` is the arm along `motions`.
+    pub fn take_off_commanded(
         &self,
         motions: &mut Motions,
         recorded: &mut [Vec<Vec<f64>>],
@@ -83,8 +84,8 @@ impl Known {
                 .iter()
                 .position(|joint| Some(&*joint.name) == effect.joint())
         };
-        let term = |effect: &Effect| effect.past(index(effect)?);
-        let terms: Vec<Term> = self.past.iter().filter_map(term).collect();
+        let term = |effect: &Effect| effect.of_torque(index(effect)?);
+        let terms: Vec<Term> = self.of_torque.iter().filter_map(term).collect();
         let chunks = motions.chunks.iter_mut().zip(recorded).zip(rigid);
         for ((chunk, recorded), rigid) in chunks {
             let mut left = std::mem::replace(&mut chunk.tau, std::mem::take(recorded));
@@ -101,6 +102,6 @@ impl Known {
 }
 
 /// Whether an effect depends on the past of the motion or on the commanded torque.
-fn has_memory(effect: &Effect) -> bool {
+fn is_simulated(effect: &Effect) -> bool {
     effect.spec().is_simulated
 }

@@ -27,6 +27,7 @@ use crate::search::study::Study;
 use crate::selection::FinalFit;
 use crate::selection::predict::{errors, exported};
 use crate::selection::{constant_torques, torque_constants};
+use crate::thresholds::LEAST_FOR_DYNAMICS;
 
 /// The conclusions from the final fit.
 pub struct Conclusion {
@@ -70,18 +71,7 @@ impl Conclusion {
             residual,
         } = last;
         let mut findings = findings(study, products, held.as_ref(), judged, resampled);
-        // A known gap is found again, because its size alone does not determine its torque.
-        let is_same = |known: &Effect, (finding, _): &(Finding, _)| {
-            known.name() == finding.effect && known.joint() == finding.joint.as_deref()
-        };
-        let gaps = options
-            .known
-            .iter()
-            .filter(|known| known.spec().is_simulated && known.past(0).is_none());
-        let (known, unknown): (Vec<&Effect>, Vec<&Effect>) =
-            gaps.partition(|gap| findings.iter().any(|finding| is_same(gap, finding)));
-        findings.retain(|finding| !known.iter().any(|gap| is_same(gap, finding)));
-        let not_there = unknown.into_iter().map(sentences::not_subtracted);
+        let not_there = without_known(study, options, &mut findings);
         let mut inertials = inertials(study, held.as_ref(), judged, resampled);
         let transients = transients::search(study, judged, residual);
         let mut others = std::mem::take(&mut inertials.findings);
@@ -271,6 +261,27 @@ fn fit(study: &Study, residuals: [&[Vec<f64>]; 2], identified: &[Option<f64>]) -
         (study.arm.joints()[joint].name.clone(), errors)
     };
     residuals[0].iter().enumerate().map(of).collect()
+}
+
+/// Removes known gaps and springs between drive and link from `findings`: their torque depends on the links, which may be wrong, so
+/// that they are found again instead of subtracted. Returns remarks on those that are not found, or with another size.
+fn without_known(study: &Study, options: &Options, findings: &mut Vec<(Finding, Option<usize>)>) -> Vec<String> {
+    let is_found_again = |known: &&Effect| known.spec().is_simulated && known.of_torque(0).is_none();
+    let mut remarks = Vec::new();
+    for known in options.known.iter().filter(is_found_again) {
+        let is_same = |finding: &Finding| known.name() == finding.effect && known.joint() == finding.joint.as_deref();
+        match findings.iter().position(|(finding, _)| is_same(finding)) {
+            Some(place) => {
+                let (finding, _) = findings.remove(place);
+                remarks.extend(sentences::of_another_size(known, &finding));
+            }
+            None => remarks.push(sentences::not_subtracted(
+                known,
+                study.motions.cutoff < LEAST_FOR_DYNAMICS,
+            )),
+        }
+    }
+    remarks
 }
 
 #[cfg(test)]

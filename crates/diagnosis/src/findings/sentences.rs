@@ -149,13 +149,39 @@ pub fn of(finding: &Finding, fit: &BTreeMap<String, JointFit>) -> String {
     format!("{place}: {what}, {share}{effect}")
 }
 
-/// That a known effect is not found in the recordings and could not be subtracted.
-pub fn not_subtracted(known: &Effect) -> String {
-    format!(
-        "the known {} on {} is not found in these recordings. It is not subtracted, because its size alone does not determine its torque; the errors contain it",
+/// That a known gap or spring between drive and link was not subtracted: it was not found, or not looked for because the cut-off
+/// `is_low`.
+pub fn not_subtracted(known: &Effect, is_low: bool) -> String {
+    let what = format!(
+        "the known {} on {}",
         known.spec().title,
         known.joint().unwrap_or("the arm")
-    )
+    );
+    if is_low {
+        format!(
+            "{what} is not subtracted, because effects between drive and link are not looked for with a cut-off below 5 Hz"
+        )
+    } else {
+        format!("{what} is not found in these recordings. If it is there, the errors contain it")
+    }
+}
+
+/// That a known effect was found with another size: the known value is outside the interval and not within a fifth of the value.
+pub fn of_another_size(known: &Effect, found: &Finding) -> Option<String> {
+    let key = *known.spec().main.first()?;
+    let (stated, parameter) = (known.number(key), found.parameters.get(key)?);
+    let [low, high] = parameter.ci95;
+    let is_alike = (stated / parameter.value - 1.0).abs() < 0.2 || (low..=high).contains(&stated);
+    (!is_alike).then(|| {
+        format!(
+            "the known {} on {} has another size in these recordings: a {key} of {} {}, and not {}",
+            known.spec().title,
+            known.joint().unwrap_or("the arm"),
+            number(parameter.value),
+            parameter.unit,
+            number(stated)
+        )
+    })
 }
 
 /// The experiment that shows which effect causes a residual that depends on `on` (`own_position`, `history`, …).

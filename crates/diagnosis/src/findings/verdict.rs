@@ -10,8 +10,10 @@ use crate::regression::fit::Products;
 use crate::report::{Finding, JointFit, Located, TimeWindow, Unexplained, Verdict};
 use crate::search::study::Study;
 use crate::selection::judge::Judged;
-use crate::selection::predict::structured;
-use crate::thresholds::{LEAST_MOTION, PARTLY, POOR, POOR_ABOVE_NOISE, REMEMBERS, STRUCTURED, STRUCTURED_IN_TRAINING};
+use crate::selection::predict::{autocorrelation, structured};
+use crate::thresholds::{
+    LEAST_MOTION, PARTLY, POOR, POOR_ABOVE_NOISE, REMEMBERS, STRUCTURED, STRUCTURED_ABOVE_NOISE, STRUCTURED_IN_TRAINING,
+};
 
 /// The structured residuals on each joint that no effect in the catalogue explains.
 pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, residual: &[Vec<f64>]) -> Vec<Unexplained> {
@@ -79,17 +81,11 @@ pub fn poorly_predicted(
         // Without findings, a torque that looks like noise is no torque of the model either.
         let is_unrelated = !has_findings && error >= PARTLY;
         let is_poor = is_unrelated || error >= POOR && error * this.torque_std >= POOR_ABOVE_NOISE * this.noise;
-        let in_training = beside_contacts(study, judged, &residual[joint], joint);
-        let is_structured = structured(this).is_some()
-            || in_training >= STRUCTURED_IN_TRAINING && this.residual_autocorrelation > REMEMBERS;
-        if is_known || !(is_poor || is_structured) {
+        let in_training = structured_in_training(study, judged, &residual[joint], joint);
+        if is_known || !(is_poor || structured(this).is_some() || in_training.is_some()) {
             continue;
         }
-        let error = if is_poor || structured(this).is_some() {
-            error
-        } else {
-            in_training
-        };
+        let error = error.max(in_training.unwrap_or(0.0));
         let was_fitted = !study.training_rows(joint).is_empty();
         unexplained.push(Unexplained {
             joint: name.clone(),
@@ -105,14 +101,20 @@ pub fn poorly_predicted(
     }
 }
 
-/// The error of a joint (NRMSE) on the training recordings outside the named contacts, which act for a short time and differ from
-/// any model of a constant force.
-fn beside_contacts(study: &Study, judged: &Judged, residual: &[f64], joint: usize) -> f64 {
+/// The error of a joint (NRMSE) on the training recordings, if it is large and structured. Rows in which a named contact acts do not
+/// count: contacts are short, and no model of them is exact.
+fn structured_in_training(study: &Study, judged: &Judged, residual: &[f64], joint: usize) -> Option<f64> {
     let contacts: Vec<[f64; 2]> = judged.named.set.iter().filter_map(|&c| study.window(c)).collect();
     let times = study.motions.row_times();
-    let is_outside = |&row: &usize| contacts.iter().all(|[from, to]| times[row] < *from || times[row] > *to);
-    let rows: Vec<usize> = study.training_rows(joint).iter().copied().filter(is_outside).collect();
-    study.share(joint, rms(rows.iter().map(|&row| residual[row])).unwrap_or(0.0))
+    let mut counts = vec![false; residual.len()];
+    for row in study.training_rows(joint) {
+        counts[row] = contacts.iter().all(|[from, to]| times[row] < *from || times[row] > *to);
+    }
+    let rms = rms((0..residual.len()).filter(|&row| counts[row]).map(|row| residual[row]))?;
+    let is_structured = study.share(joint, rms) >= STRUCTURED_IN_TRAINING
+        && rms >= STRUCTURED_ABOVE_NOISE * study.noise[joint].sqrt()
+        && autocorrelation(study, residual, &counts) > REMEMBERS;
+    is_structured.then(|| study.share(joint, rms))
 }
 
 /// Keeps the residuals on joints whose error a diagnosis with findings would not call explained, and transients, for recordings

@@ -153,7 +153,8 @@ pub fn structured(fit: &JointFit) -> Option<f64> {
     is_structured.then_some(error)
 }
 
-fn autocorrelation(study: &Study, signal: &[f64], moving: &[bool]) -> f64 {
+/// The autocorrelation of a signal over [`RESIDUAL_LAG`], on the rows that count.
+pub fn autocorrelation(study: &Study, signal: &[f64], moving: &[bool]) -> f64 {
     let (mut product, mut power) = (0.0, 0.0);
     for (recording, rows) in study.table.rows.iter().enumerate() {
         let lag = (RESIDUAL_LAG / study.seconds[recording]).round().max(1.0) as usize;

@@ -80,7 +80,12 @@ impl EffectKind for ActuationDelay {
         Some(Effect::of(&Self).on(estimate.joint_name()).with("delay", delay))
     }
 
-    fn past(&self, effect: &Effect, joint: usize) -> Option<Term> {
+    /// Delays add up.
+    fn is_twin(&self, _a: &Effect, _b: &Effect) -> bool {
+        false
+    }
+
+    fn of_torque(&self, effect: &Effect, joint: usize) -> Option<Term> {
         Some(Term::on(&LATE, joint).sized([effect.number("delay")]))
     }
 

@@ -99,10 +99,6 @@ impl EffectKind for JointElasticity {
         Some(effect.with("stiffness", stiffness).with("damping", damping))
     }
 
-    fn past(&self, effect: &Effect, joint: usize) -> Option<Term> {
-        Some(Term::about(&ELASTIC, joint).sized([effect.number("stiffness"), effect.number("damping")]))
-    }
-
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
         machine.springs[at.joint] = Some(Sprung {
             stiffness: effect.number("stiffness"),

@@ -104,7 +104,12 @@ impl EffectKind for TorqueSaturation {
         Some(Effect::of(&Self).on(estimate.joint_name()).with("limit", limit))
     }
 
-    fn past(&self, effect: &Effect, joint: usize) -> Option<Term> {
+    /// The lower limit counts.
+    fn is_twin(&self, _a: &Effect, _b: &Effect) -> bool {
+        false
+    }
+
+    fn of_torque(&self, effect: &Effect, joint: usize) -> Option<Term> {
         Some(Term::on(&EXCESS, joint).sized([effect.number("limit")]))
     }
 
