@@ -7,6 +7,7 @@ use effects::arm::InertialParameters;
 
 use crate::report::{Finding, JointFit, Parameter};
 use crate::selection::naming::may_be_nothing;
+use crate::thresholds::{ALIKE_SIZES, LEAST_FOR_DYNAMICS};
 
 /// A number with three significant digits, with an exponent only when it is very small or very large.
 fn number(value: f64) -> String {
@@ -159,19 +160,19 @@ pub fn not_subtracted(known: &Effect, is_low: bool) -> String {
     );
     if is_low {
         format!(
-            "{what} is not subtracted, because effects between drive and link are not looked for with a cut-off below 5 Hz"
+            "{what} is not subtracted, because effects between drive and link are not looked for with a cut-off below {LEAST_FOR_DYNAMICS} Hz"
         )
     } else {
         format!("{what} is not found in these recordings. If it is there, the errors contain it")
     }
 }
 
-/// That a known effect was found with another size: the known value is outside the interval and not within a fifth of the value.
+/// That a known effect was found with another size: the known value is outside the interval, and differs by more than [`ALIKE_SIZES`].
 pub fn of_another_size(known: &Effect, found: &Finding) -> Option<String> {
     let key = *known.spec().main.first()?;
     let (stated, parameter) = (known.number(key), found.parameters.get(key)?);
     let [low, high] = parameter.ci95;
-    let is_alike = (stated / parameter.value - 1.0).abs() < 0.2 || (low..=high).contains(&stated);
+    let is_alike = (stated / parameter.value - 1.0).abs() < ALIKE_SIZES || (low..=high).contains(&stated);
     (!is_alike).then(|| {
         format!(
             "the known {} on {} has another size in these recordings: a {key} of {} {}, and not {}",

@@ -154,12 +154,12 @@ pub fn structured(fit: &JointFit) -> Option<f64> {
 }
 
 /// The autocorrelation of a signal over [`RESIDUAL_LAG`], on the rows that count.
-pub fn autocorrelation(study: &Study, signal: &[f64], moving: &[bool]) -> f64 {
+pub fn autocorrelation(study: &Study, signal: &[f64], counts: &[bool]) -> f64 {
     let (mut product, mut power) = (0.0, 0.0);
     for (recording, rows) in study.table.rows.iter().enumerate() {
         let lag = (RESIDUAL_LAG / study.seconds[recording]).round().max(1.0) as usize;
         for row in rows.start..rows.end.saturating_sub(lag) {
-            if moving[row] && moving[row + lag] {
+            if counts[row] && counts[row + lag] {
                 product += signal[row] * signal[row + lag];
                 power += 0.5 * (signal[row].powi(2) + signal[row + lag].powi(2));
             }

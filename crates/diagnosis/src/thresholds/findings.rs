@@ -75,6 +75,9 @@ pub const POOR: f64 = 0.35;
 pub const POOR_ABOVE_NOISE: f64 = 3.0;
 /// An error (NRMSE) above this, on training and on held-out recordings, is not explained if it is also structured.
 pub const STRUCTURED: f64 = 0.06;
+/// A known gap or spring between drive and link and the one that is found have the same size if they differ by less than this
+/// part.
+pub const ALIKE_SIZES: f64 = 0.2;
 /// A structured error above this on the training recordings, outside contacts, is not explained even if the held-out recordings do
 /// not show it: they may not reach the states in which it arises.
 pub const STRUCTURED_IN_TRAINING: f64 = 0.12;
