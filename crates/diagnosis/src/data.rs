@@ -63,7 +63,7 @@ impl Data {
             .map(|chunk| rigid::Rigid::new(arm, &nominal, &offset, chunk))
             .collect();
         let mut scales = measure::scales(&motions, torque);
-        known.take_off_commanded(&mut motions, &mut recorded, &rigid, &scales);
+        known.take_off_commanded(&mut motions, &recorded, &rigid, &scales);
         // A channel is judged as it was recorded: what known effects leave of it may be noise.
         let mut exchange = |motions: &mut motion::Motions| {
             for (chunk, tau) in motions.chunks.iter_mut().zip(&mut recorded) {

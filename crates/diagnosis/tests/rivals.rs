@@ -5,7 +5,7 @@ mod support;
 use arm::{Matrix6xX, Workspace};
 use diagnosis::{Options, diagnose};
 use effects::Effect;
-use effects::drive::Backlash;
+use effects::drive::{ActuationDelay, Backlash, TorqueSaturation};
 use recording::RegularRecording;
 use support::{
     ELBOW, Injected, Motion, SHOULDER, TURN, baseline_friction, diagnosed, inputs, recorded, regular, sentences, trio,
@@ -244,6 +244,36 @@ fn a_known_gap_is_compared_with_the_recordings() {
         remarks.contains("the known backlash on elbow has another size"),
         "{remarks}"
     );
+}
+
+/// Known effects on the commanded torque act one after the other: of two limits the lower one counts, and delays add up.
+#[test]
+fn several_known_effects_on_the_commanded_torque_act_one_after_the_other() {
+    let limit = |limit: f64| Effect::of(&TorqueSaturation).on("shoulder").with("limit", limit);
+    let late = |delay: f64| Effect::of(&ActuationDelay).on("shoulder").with("delay", delay);
+    let wound_up = |motion: &mut Motion, tau: &mut [f64]| {
+        baseline_friction(motion, tau);
+        wind_up(&mut tau[SHOULDER], 8.0);
+    };
+    let nominal = |known: Vec<Effect>| {
+        let diagnosis = diagnosed(&trio(), &trio(), &wound_up, known);
+        diagnosis.report.fit["shoulder"]
+            .held_out_nrmse_nominal
+            .expect("it is moved")
+    };
+    let one = nominal(vec![limit(8.0)]);
+    for known in [vec![limit(8.0), limit(9.0)], vec![limit(9.0), limit(8.0)]] {
+        let two = nominal(known);
+        assert!((one - two).abs() < 1e-9, "{one} with one limit, {two} with two");
+    }
+    let both = nominal(vec![limit(8.0), late(0.008)]);
+    for known in [
+        vec![late(0.008), limit(8.0)],
+        vec![limit(8.0), late(0.004), late(0.004)],
+    ] {
+        let other = nominal(known);
+        assert!((both - other).abs() < 1e-9, "{both} and {other}");
+    }
 }
 
 /// A spring between drive and link gives way without a gap, and without a delay.

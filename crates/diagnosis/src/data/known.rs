@@ -70,33 +70,35 @@ impl Known {
     }
 
     /// Subtracts the known effects that are functions of the commanded torque, which is `recorded` (`[chunk][joint][tick]`) where any
-    /// effect is known. `rigid` is the arm along `motions`.
+    /// effect is known. Each acts on what the one before it leaves of the commanded torque. `rigid` is the arm along `motions`.
     pub fn take_off_commanded(
         &self,
         motions: &mut Motions,
-        recorded: &mut [Vec<Vec<f64>>],
+        recorded: &[Vec<Vec<f64>>],
         rigid: &[Rigid],
         scales: &Scales,
     ) {
-        let index = |effect: &Effect| {
-            self.arm
-                .joints()
-                .iter()
-                .position(|joint| Some(&*joint.name) == effect.joint())
-        };
-        let term = |effect: &Effect| effect.of_torque(index(effect)?);
-        let terms: Vec<Term> = self.of_torque.iter().filter_map(term).collect();
-        let chunks = motions.chunks.iter_mut().zip(recorded).zip(rigid);
-        for ((chunk, recorded), rigid) in chunks {
-            let mut left = std::mem::replace(&mut chunk.tau, std::mem::take(recorded));
-            let along = rigid.along(chunk, scales);
-            for term in &terms {
-                for (joint, tau) in left.iter_mut().enumerate() {
-                    let values = term.column(joint, &along).unwrap_or_default();
-                    tau.iter_mut().zip(values).for_each(|(tau, value)| *tau -= value);
+        let joints = self.arm.joints().iter().enumerate();
+        let terms: Vec<(usize, Term)> = joints
+            .flat_map(|(joint, described)| {
+                let is_here = |effect: &&Effect| effect.joint() == Some(&*described.name);
+                let here = self.of_torque.iter().filter(is_here);
+                here.filter_map(move |effect| Some((joint, effect.of_torque(joint)?)))
+            })
+            .collect();
+        if terms.is_empty() {
+            return;
+        }
+        for ((chunk, recorded), rigid) in motions.chunks.iter_mut().zip(recorded).zip(rigid) {
+            let mut left = std::mem::replace(&mut chunk.tau, recorded.clone());
+            for (joint, term) in &terms {
+                let removed = term.column(*joint, &rigid.along(chunk, scales)).unwrap_or_default();
+                for (k, removed) in removed.into_iter().enumerate() {
+                    chunk.tau[*joint][k] -= removed;
+                    left[*joint][k] -= removed;
                 }
             }
-            *recorded = std::mem::replace(&mut chunk.tau, left);
+            chunk.tau = left;
         }
     }
 }
