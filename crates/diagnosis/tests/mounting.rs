@@ -95,6 +95,51 @@ fn a_tool_that_is_drawn_and_not_mounted_is_named_beside_a_wrong_link() {
     }
 }
 
+/// Beside links that are all wrong by about 5 %, the last link keeps nothing of the tool, and is not called a lighter link.
+#[test]
+fn a_tool_that_is_not_mounted_is_named_beside_links_that_are_all_wrong() {
+    const PUMA: &str = include_str!("../../../assets/puma560.urdf");
+    let tool = arm::Inertia {
+        mass: 0.9,
+        com: Vector3::new(0.01, 0.02, 0.08),
+        tensor: arm::Matrix3::identity() * 2e-3,
+    };
+    let shifts = [
+        [1.06, 3.0, -4.0],
+        [0.94, -4.0, 5.0],
+        [1.07, 5.0, 2.0],
+        [0.95, -2.0, -5.0],
+        [0.93, 4.0, 3.0],
+        [1.05, 2.0, -3.0],
+    ];
+    let mut robot = Arm::from_urdf_text(PUMA, "puma560.urdf").expect("it is an arm");
+    let drawn = robot.clone().with_payload(&tool);
+    for (link, [factor, x, z]) in shifts.into_iter().enumerate() {
+        let mut body = robot.joints()[link].inertia;
+        body.com += 1e-3 * Vector3::new(x, 0.0, z);
+        robot = robot.with_link_inertia(link, body).with_scaled_link(link, factor);
+    }
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        for (tau, qd) in tau.iter_mut().zip(&motion.qd) {
+            *tau += 4.0 * qd.signum();
+        }
+    };
+    let diagnosis = diagnosed(&drawn, &robot, &injected, Vec::new());
+    let named = named(&diagnosis);
+    assert!(named.contains(&("payload", None)), "{:?}", sentences(&diagnosis));
+    assert!(
+        named.iter().all(|(effect, _)| *effect != "link_inertial_error"),
+        "{named:?}"
+    );
+    let payload = diagnosis
+        .report
+        .findings
+        .iter()
+        .find(|finding| finding.effect == "payload");
+    let [low, high] = payload.expect("it is named").parameters["mass"].ci95;
+    assert!(low < -0.9 && -0.9 < high && high < -0.3, "{low} to {high}");
+}
+
 /// A channel that shows zero most of the time, or another quantity, does not affect the other joints.
 #[test]
 fn channels_without_torque_are_omitted() {

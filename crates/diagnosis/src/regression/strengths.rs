@@ -3,8 +3,8 @@
 use std::fmt;
 
 use crate::thresholds::{
-    BEYOND_STRONGEST, FINER_STRENGTH, FRICTION_STRENGTHS, GAIN_STRENGTHS, LINK_STRENGTHS, OFFSET_STRENGTHS,
-    OWN_STRENGTHS, PER_BACKGROUND_PART, PER_LINK_APART, USUAL_STRENGTH,
+    BEYOND_STRONGEST, CONSTANTS_BESIDE_LINKS, FINER_STRENGTH, FRICTION_STRENGTHS, GAIN_STRENGTHS, LINK_STRENGTHS,
+    OFFSET_STRENGTHS, OWN_STRENGTHS, PER_BACKGROUND_PART, PER_LINK_APART, USUAL_STRENGTH,
 };
 
 /// The strengths of the parts of the background, as standard deviations; zero switches a part off.
@@ -62,16 +62,22 @@ impl Strengths {
 
     /// The evidence that they must bring (nats).
     pub fn cost(&self) -> f64 {
-        let part = |strength: f64| if strength > 0.0 { PER_BACKGROUND_PART } else { 0.0 };
+        let part = |strength: f64, cost: f64| if strength > 0.0 { cost } else { 0.0 };
         let common = self.common();
         let apart = self.links.iter().filter(|&&rho| rho != common).count();
         let unlikely = 0.5 * (common / USUAL_STRENGTH).powi(2);
         // Several wrong links among links that are exact are less likely than links that are all somewhat wrong.
         let several = if common == 0.0 { apart.saturating_sub(1) } else { 0 };
-        part(self.friction)
-            + part(self.offset)
-            + part(self.gain)
-            + part(common)
+        // Where all links are wrong, the torque constants are probably wrong, too.
+        let constants = if common > 0.0 {
+            CONSTANTS_BESIDE_LINKS
+        } else {
+            PER_BACKGROUND_PART
+        };
+        part(self.friction, PER_BACKGROUND_PART)
+            + part(self.offset, PER_BACKGROUND_PART)
+            + part(self.gain, constants)
+            + part(common, PER_BACKGROUND_PART)
             + unlikely
             + PER_LINK_APART * (apart + several) as f64
     }

@@ -90,16 +90,21 @@ impl Problem<'_> {
         Selection { fit, score, ..selected }
     }
 
-    /// The cost of a simulated effect whose coefficient differs from one (nats).
+    /// The cost of simulated effects whose coefficients differ from one (nats).
     fn misfit(&self, set: &[usize], fit: &Fit) -> f64 {
         set.iter()
             .map(|&c| &self.candidates[c])
-            .filter(|candidate| candidate.hypothesis.spec().is_simulated)
-            .map(|candidate| {
-                let coefficient = fit.coefficient(candidate.columns[0]).max(1e-3);
-                0.5 * (coefficient.ln() / self.thresholds.unit_spread).powi(2)
-            })
+            .map(|candidate| self.misfit_of(candidate, fit.coefficient(candidate.columns[0])))
             .sum()
+    }
+
+    /// The cost of a candidate with this coefficient of its first column (nats): of a simulated effect, it should be one.
+    fn misfit_of(&self, candidate: &Candidate, coefficient: f64) -> f64 {
+        if candidate.hypothesis.spec().is_simulated {
+            0.5 * (coefficient.max(1e-3).ln() / self.thresholds.unit_spread).powi(2)
+        } else {
+            0.0
+        }
     }
 
     /// Whether `candidate` is possible in `fit`.

@@ -2,9 +2,10 @@
 //!
 //! Any change of the last link may be a body on the tool, because the ten columns are the same. A general change of all links'
 //! inertial parameters costs fewer nats than ten coefficients, so that the search leaves a missing tool to the background. If
-//! that one body explains nearly as much as the background of all links, it is named.
+//! that one body explains nearly as much as the background of all links, it is named, and also if there is clearly more evidence
+//! for the body beside a smaller background.
 
-use effects::arm::Payload;
+use effects::arm::{InertialParameters, LinkInertialError, Payload};
 
 use crate::regression::bodies::PER_LINK;
 use crate::regression::strengths::Strengths;
@@ -14,20 +15,28 @@ use crate::selection::bootstrap::{Resampled, resample};
 use crate::selection::judge::{self, Judged};
 use crate::selection::naming::name;
 use crate::selection::predict::{augmented, errors};
-use crate::selection::rivals::{allowance, standing};
-use crate::thresholds::{LEAST_OF_THE_LINK, NEARLY_ALL, PARTLY, UNDECIDED_NATS};
+use crate::selection::rivals::{Named, allowance, standing};
+use crate::thresholds::{LEAST_BESIDE_SOME_LINKS, LEAST_OF_THE_LINK, NEARLY_ALL, PARTLY, UNDECIDED_NATS};
 
-/// Names a body that is missing at the tool, if the background represents one and no other effect explains nearly as much in its
-/// place; returns the new resamplings. Other payloads are unchanged: a part of the background, or named by the search.
+/// Names a body that is missing at the tool, if the background or a lighter last link represents one and no other effect explains
+/// nearly as much in its place; returns the new resamplings. Other payloads are unchanged: a part of the background, or named by the search.
 pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
     let is_payload = |c: usize| study.candidates[c].hypothesis.is(&Payload);
-    if study.strengths.links.last().is_none_or(|&rho| rho == 0.0) || judged.named.set.iter().any(|&c| is_payload(c)) {
+    let lighter = lighter_last_link(study, &judged.named);
+    let is_exact = study.strengths.links.last().is_none_or(|&rho| rho == 0.0);
+    if is_exact && lighter.is_none() || judged.named.set.iter().any(|&c| is_payload(c)) {
         return None;
     }
     let whole = |&c: &usize| is_payload(c) && study.candidates[c].columns.len() == PER_LINK;
     let always = |&c: &usize| study.always_acts(c);
     let body = (0..study.candidates.len()).filter(whole).find(always)?;
-    let (strengths, next) = instead(study, &judged.named, body)?;
+    // About the last link's body without the tool, the quadratic prior is smallest between that body and the URDF's. Beside the
+    // missing body, it would leave a part of the tool to the link.
+    let prior = study.set_bodies_but_the_last(&judged.named.fit);
+    let Some((strengths, next)) = instead(study, &judged.named, lighter, body) else {
+        study.set_prior(prior);
+        return None;
+    };
     let before = std::mem::replace(&mut study.strengths, strengths);
     let resampled = resample(study, &next);
     let drawn = study.arm.inertial_parameters()[(study.arm.dof() - 1) * PER_LINK];
@@ -39,10 +48,15 @@ pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
     let problem = study.problem(&products);
     let is_undecided = || {
         let standing = standing(study, &problem, &next, body);
-        standing.margin < UNDECIDED_NATS && !standing.rivals.is_empty()
+        // The background and a lighter last link were compared in `instead`.
+        let last = study.arm.dof() - 1;
+        let is_lighter = |rival: &Named| lighter.is_some() && rival.0.is(&LinkInertialError) && rival.1 == Some(last);
+        let is_other = |rival: &Named| !rival.0.is(&InertialParameters) && !is_lighter(rival);
+        standing.margin < UNDECIDED_NATS && standing.rivals.iter().any(is_other)
     };
     if !is_missing || is_undecided() || !explains_a_part(study, &next) {
         study.strengths = before;
+        study.set_prior(prior);
         return None;
     }
     judged.members = judge::describe(study, &problem, &next);
@@ -64,10 +78,23 @@ fn explains_a_part(study: &Study, selected: &Selection) -> bool {
     })
 }
 
-/// `selected` with a missing `body` and a smaller background, if the body explains nearly as much as that background and both
-/// predict held-out recordings nearly as well.
-fn instead(study: &Study, selected: &Selection, body: usize) -> Option<(Strengths, Selection)> {
-    let with = [selected.set.as_slice(), &[body]].concat();
+/// The named error of the last link, if it makes the link lighter by more than a URDF is wrong without a missing tool.
+fn lighter_last_link(study: &Study, selected: &Selection) -> Option<usize> {
+    let last = study.arm.dof() - 1;
+    let is_lighter = |&c: &usize| {
+        let candidate = &study.candidates[c];
+        candidate.hypothesis.is(&LinkInertialError)
+            && candidate.joint == Some(last)
+            && selected.fit.coefficient(candidate.columns[0]) < -LEAST_OF_THE_LINK
+    };
+    selected.set.iter().copied().find(is_lighter)
+}
+
+/// `selected` with a missing `body` in the place of a `lighter` last link and of a part of the background, if the body explains nearly
+/// as much as these, or the evidence is clearly greater with it, and if both predict held-out recordings nearly as well.
+fn instead(study: &Study, selected: &Selection, lighter: Option<usize>, body: usize) -> Option<(Strengths, Selection)> {
+    let others: Vec<usize> = selected.set.iter().copied().filter(|&c| Some(c) != lighter).collect();
+    let with = [others.as_slice(), &[body]].concat();
     let fit = |strengths: &Strengths, set: &[usize]| {
         let products = study.products_at(strengths);
         let problem = study.problem(&products);
@@ -79,22 +106,29 @@ fn instead(study: &Study, selected: &Selection, body: usize) -> Option<(Strength
         links: vec![0.0; study.arm.dof()],
         ..study.strengths.clone()
     };
-    let (bare, _) = fit(&exact, &selected.set);
+    let (bare, _) = fit(&exact, &others);
     let (alone, _) = fit(&exact, &with);
     let explained = bare.score - selected.score;
-    if bare.score - alone.score < NEARLY_ALL * explained {
-        return None;
-    }
+    let is_nearly_all = bare.score - alone.score >= NEARLY_ALL * explained;
     let fitted = study
         .stated
         .weaker(&study.strengths)
+        .chain([study.strengths.clone()])
+        .chain(study.strengths.finer())
+        .filter(|strengths| study.stated.allows(strengths))
         .map(|strengths| (fit(&strengths, &with), strengths));
     let ((next, _), strengths) = fitted
         .filter(|((next, is_possible), _)| {
             *is_possible && next.fit.coefficient(study.candidates[body].columns[0]) < 0.0
         })
         .min_by(|a, b| a.0.0.score.total_cmp(&b.0.0.score))?;
-    if next.score - selected.score > allowance(explained) {
+    let most = match lighter {
+        _ if is_nearly_all => allowance(explained),
+        // A missing tool is likelier than a last link that is lighter by as much.
+        Some(_) => UNDECIDED_NATS,
+        None => -LEAST_BESIDE_SOME_LINKS,
+    };
+    if next.score - selected.score > most {
         return None;
     }
     if let Some(held) = study.held_products() {

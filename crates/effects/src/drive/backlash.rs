@@ -73,7 +73,7 @@ fn link_side(term: &Term, motion: &Signals<'_>) -> LinkSide {
 const STOP_RATIOS: [f64; 2] = [1.0, 0.2];
 
 /// The gaps that are tried first, as shares of the range of the motion.
-const GAPS: [f64; 7] = [0.0025, 0.004, 0.008, 0.014, 0.022, 0.035, 0.06];
+const GAPS: [f64; 9] = [0.0007, 0.0013, 0.0025, 0.004, 0.008, 0.014, 0.022, 0.035, 0.06];
 
 /// The frequency at which the link swings against compliant ends of a gap, before it is refined (Hz).
 const STOP_FREQUENCY: f64 = 20.0;

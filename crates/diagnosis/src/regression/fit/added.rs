@@ -67,8 +67,9 @@ impl Products {
         group.iter().enumerate().map(column).collect()
     }
 
-    /// The reduction of the weighted sum of squares of `fit` by `added` columns, at its weights.
-    pub fn drop(&self, table: &Table, fit: &Fit, added: &[usize], reduced: &Reduced) -> f64 {
+    /// The reduction of the weighted sum of squares of `fit` by `added` columns, at its weights, and the coefficient that the first of
+    /// them has then.
+    pub fn drop(&self, table: &Table, fit: &Fit, added: &[usize], reduced: &Reduced) -> (f64, f64) {
         let (p, c) = (fit.selected().len(), added.len());
         let columns: Vec<&Column> = added.iter().map(|column| &reduced.0[column]).collect();
         let mut own = DMatrix::zeros(c, c);
@@ -93,10 +94,15 @@ impl Products {
             own[(k, k)] += 1e-6;
         }
         let factor = cholesky(&own);
-        let drop = factor.solve_lower_triangular(&right).map_or(0.0, |z| z.norm_squared());
+        let half = factor
+            .solve_lower_triangular(&right)
+            .unwrap_or_else(|| DVector::zeros(c));
+        let drop = half.norm_squared();
+        let solution = factor.tr_solve_lower_triangular(&half);
+        let coefficient = solution.map_or(0.0, |solution| solution[0] / columns[0].size);
         match (&fit.eliminated, added.first()) {
-            (Some(_), Some(&first)) => drop / self.per_row(table, first),
-            _ => drop,
+            (Some(_), Some(&first)) => (drop / self.per_row(table, first), coefficient),
+            _ => (drop, coefficient),
         }
     }
 

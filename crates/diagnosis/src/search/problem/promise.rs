@@ -31,14 +31,19 @@ impl Problem<'_> {
         if new.is_empty() {
             return f64::NEG_INFINITY;
         }
-        let drop = self.products.drop(self.table, &selected.fit, &new, reduced);
-        let cost = self.candidates[candidate].cost
-            - self.thresholds.per_coefficient * (self.candidates[candidate].columns.len() - new.len()) as f64;
+        let (drop, coefficient) = self.products.drop(self.table, &selected.fit, &new, reduced);
+        let own = &self.candidates[candidate];
+        let misfit = if new[0] == own.columns[0] {
+            self.misfit_of(own, coefficient)
+        } else {
+            0.0
+        };
+        let cost = own.cost - self.thresholds.per_coefficient * (own.columns.len() - new.len()) as f64;
         let log = |drop: f64, joint: usize| {
             let count = self.products.count[joint].max(1.0);
             -0.5 * self.products.evidence[joint] * (1.0 - (drop / count).min(0.999_999)).ln()
         };
-        let gain = match self.candidates[candidate].joint {
+        let gain = match own.joint {
             Some(joint) => log(drop, joint),
             // The promise is at least the gain of a reduction that is distributed evenly over the joints.
             None => {
@@ -46,6 +51,6 @@ impl Problem<'_> {
                 (0..joints).map(|joint| log(drop / joints as f64, joint)).sum::<f64>()
             }
         };
-        gain - cost
+        gain - cost - misfit
     }
 }

@@ -7,6 +7,8 @@ use super::about::inertial_changes;
 use super::{About, Study};
 use crate::data::rigid::Rigid;
 use crate::data::statistics::rms;
+use crate::regression::background::Prior;
+use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::Fit;
 use crate::regression::table::{Moving, Table};
 use crate::search::problem::Selection;
@@ -39,6 +41,21 @@ impl Study {
     pub fn set_bodies(&mut self, fit: &Fit) {
         let changes = inertial_changes(self, fit);
         self.prior.set_bodies(&changes);
+    }
+
+    /// Makes the prior quadratic about the bodies of `fit`, but about the URDF's body of the last link; returns the prior before.
+    pub fn set_bodies_but_the_last(&mut self, fit: &Fit) -> Prior {
+        let before = self.prior.clone();
+        let mut changes = inertial_changes(self, fit);
+        let last = changes.len().saturating_sub(PER_LINK);
+        changes[last..].fill(0.0);
+        self.prior.set_bodies(&changes);
+        before
+    }
+
+    /// Makes `prior` the prior again.
+    pub fn set_prior(&mut self, prior: Prior) {
+        self.prior = prior;
     }
 
     /// `selected` with the prior about its own bodies, and with the strengths of the background that the evidence then prefers.
