@@ -1,5 +1,5 @@
-//! What is done with bytes that nobody vouches for. `tests/untrusted` replays the corpus through the same functions without a nightly
-//! toolchain.
+//! What is done with bytes that nobody vouches for. `tests/untrusted` replays the corpus through the same functions without
+//! cargo-fuzz.
 
 pub mod targets;
 

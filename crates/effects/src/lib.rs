@@ -99,6 +99,7 @@ pub mod sensor {
     pub use encoder_offset::EncoderOffset;
     pub use torque_offset::TorqueOffset;
     pub use torque_scale::TorqueScale;
+    pub(crate) use torque_scale::USUAL_DEVIATIONS;
 }
 
 /// Errors of the arm's bodies and of its mounting, and forces on it.

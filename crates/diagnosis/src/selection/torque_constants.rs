@@ -1,5 +1,6 @@
 //! Torque constants that deserve a name: the background corrects all of them a little, and one that deviates much is an effect.
 
+use effects::arm::InertialScale;
 use effects::sensor::TorqueScale;
 
 use crate::search::problem::Selection;
@@ -14,7 +15,9 @@ use crate::thresholds::{CONSTANT_TOLERANCE, LEAST_ALIKE, LEAST_TORQUE_ACCURACY, 
 pub fn accuracy(study: &Study, set: &[usize]) -> f64 {
     let strengths = &study.strengths;
     let all_are_exact = strengths.gain == 0.0 && strengths.links.iter().all(|&rho| rho == 0.0);
-    let is_one_named = set.iter().filter(|&&c| names(study, c).is_some()).count() <= 1;
+    // A common factor of all masses is one of all torque constants, too.
+    let names_some = |&&c: &&usize| names(study, c).is_some() || study.candidates[c].hypothesis.is(&InertialScale);
+    let is_one_named = set.iter().filter(names_some).count() <= 1;
     if study.stated.gain.is_none() && all_are_exact && is_one_named {
         // The inertials and all other torque constants are exact.
         return LEAST_TORQUE_ACCURACY;

@@ -32,8 +32,8 @@ pub const MOST_DEVIATIONS: f64 = 4.0;
 pub const MOST_USUAL: f64 = 2.0;
 /// The evidence that a part of the background must bring (nats).
 pub const PER_BACKGROUND_PART: f64 = 4.0;
-/// The evidence that wrong torque constants must bring where all links are wrong (nats). Source: of ten real robots, one whose torque
-/// constants hardly any evidence decides is predicted better with wrong ones.
+/// The evidence that wrong torque constants must bring where all links are wrong (nats). Source: one of ten real robots (the Panda), on
+/// which the evidence hardly decides, is predicted better with them; on the other nine, nothing depends on it.
 pub const CONSTANTS_BESIDE_LINKS: f64 = 3.0;
 /// The evidence that a separate strength of one link must bring (nats).
 pub const PER_LINK_APART: f64 = 8.0;

@@ -1,5 +1,6 @@
 //! Masses and inertias that are all a constant multiple of the model's.
 
+use crate::sensor::USUAL_DEVIATIONS;
 use crate::{
     Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter, Place,
     Quantity, Range, Scope, Spec, Term,
@@ -64,6 +65,11 @@ impl EffectKind for InertialScale {
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
         RELATIVE.contains(&fitted.value(0))
+    }
+
+    /// Torque constants that are all wrong have the same torque, so that the factor must be beyond what is usual of them.
+    fn is_certain(&self, effect: &Effect, _interval: &dyn Fn(&str) -> Option<[f64; 2]>, accuracy: f64) -> bool {
+        (effect.number("factor") - 1.0).abs() >= USUAL_DEVIATIONS * accuracy
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {

@@ -49,7 +49,7 @@ const KNOWN_BODY: &str = "attach a body of known mass to the tool and record the
 
 /// The least deviation of a scale from one, in standard deviations of the torque constants. A smaller deviation is within the
 /// tolerance.
-const USUAL_DEVIATIONS: f64 = 1.5;
+pub(crate) const USUAL_DEVIATIONS: f64 = 1.5;
 
 /// The relative deviation from one that a torque scale may have.
 const RELATIVE: std::ops::Range<f64> = -0.7..2.0;

@@ -67,8 +67,8 @@ impl Products {
         group.iter().enumerate().map(column).collect()
     }
 
-    /// The reduction of the weighted sum of squares of `fit` by `added` columns, at its weights, and the coefficient that the first of
-    /// them has then.
+    /// The reduction of the weighted sum of squares of `fit` by `added` columns (one at least), at its weights, and the fitted
+    /// coefficient of the first of them.
     pub fn drop(&self, table: &Table, fit: &Fit, added: &[usize], reduced: &Reduced) -> (f64, f64) {
         let (p, c) = (fit.selected().len(), added.len());
         let columns: Vec<&Column> = added.iter().map(|column| &reduced.0[column]).collect();
