@@ -93,4 +93,14 @@ mod tests {
         let effect = Effect::of(&InertialScale).with("factor", 1.2);
         agree(&effect, &[(Term::about(&SCALE, 0), 0.2)]);
     }
+
+    #[test]
+    fn a_factor_within_the_tolerance_of_torque_constants_is_not_certain() {
+        let certain = |factor: f64, accuracy: f64| {
+            let effect = Effect::of(&InertialScale).with("factor", factor);
+            InertialScale.is_certain(&effect, &|_| None, accuracy)
+        };
+        assert!(certain(0.965, 0.015) && certain(1.2, 0.05));
+        assert!(!certain(0.965, 0.05) && !certain(1.06, 0.05));
+    }
 }
