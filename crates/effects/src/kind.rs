@@ -81,6 +81,11 @@ pub trait EffectKind: Debug + Sync {
     /// Adds the effect to a machine.
     fn apply(&self, _effect: &Effect, _at: Place, _machine: &mut Machine) {}
 
+    /// The title of an effect with these parameters.
+    fn title(&self, _effect: &Effect) -> &'static str {
+        self.spec().title
+    }
+
     /// A finding as a short phrase with its parameters.
     fn sentence(&self, _effect: &Effect) -> &'static str {
         self.spec().sentence

@@ -228,6 +228,14 @@ impl EffectKind for Payload {
         a == b
     }
 
+    fn title(&self, effect: &Effect) -> &'static str {
+        if effect.number("mass") < 0.0 {
+            "tool not mounted"
+        } else {
+            SPEC.title
+        }
+    }
+
     fn sentence(&self, effect: &Effect) -> &'static str {
         if effect.number("mass") < 0.0 {
             "the URDF draws a body at the tool that is not mounted: {mass}"
