@@ -204,23 +204,15 @@ fn a_scale_is_not_a_torque_saturation() {
 /// (`tests/cases/backlash` has a simulated drive.)
 #[test]
 fn backlash() {
-    let injected = |motion: &mut Motion, tau: &mut [f64]| {
-        motion.q[ELBOW] += 0.01 * (tau[ELBOW] / 0.05).tanh();
-        baseline_friction(motion, tau);
-    };
-    let diagnosis = check(&injected, &[("backlash", "elbow")]);
-    is_sized(&diagnosis, "backlash", &[("halfgap", 0.01)], 0.1);
-}
-
-/// A gap of a few milliradians, as gears have.
-#[test]
-fn a_gap_of_a_gear_has_its_size() {
-    let injected = |motion: &mut Motion, tau: &mut [f64]| {
-        motion.q[ELBOW] += 0.002 * (tau[ELBOW] / 0.05).tanh();
-        baseline_friction(motion, tau);
-    };
-    let diagnosis = check(&injected, &[("backlash", "elbow")]);
-    is_sized(&diagnosis, "backlash", &[("halfgap", 0.002)], 0.1);
+    // Gears have gaps of a few milliradians.
+    for half in [0.01, 0.002] {
+        let injected = |motion: &mut Motion, tau: &mut [f64]| {
+            motion.q[ELBOW] += half * (tau[ELBOW] / 0.05).tanh();
+            baseline_friction(motion, tau);
+        };
+        let diagnosis = check(&injected, &[("backlash", "elbow")]);
+        is_sized(&diagnosis, "backlash", &[("halfgap", half)], 0.1);
+    }
 }
 
 /// A known gap can only be found again. If it is not, or with another size, that is said.

@@ -99,7 +99,7 @@ pub mod sensor {
     pub use encoder_offset::EncoderOffset;
     pub use torque_offset::TorqueOffset;
     pub use torque_scale::TorqueScale;
-    pub(crate) use torque_scale::USUAL_DEVIATIONS;
+    pub(crate) use torque_scale::is_beyond_tolerance;
 }
 
 /// Errors of the arm's bodies and of its mounting, and forces on it.

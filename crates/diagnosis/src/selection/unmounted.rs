@@ -19,7 +19,8 @@ use crate::selection::rivals::{Named, allowance, standing};
 use crate::thresholds::{LEAST_BESIDE_SOME_LINKS, LEAST_OF_THE_LINK, NEARLY_ALL, PARTLY, UNDECIDED_NATS};
 
 /// Names a body that is missing at the tool, if the background or a lighter last link represents one and no other effect explains
-/// nearly as much in its place; returns the new resamplings. Other payloads are unchanged: a part of the background, or named by the search.
+/// nearly as much in its place; returns the new resamplings. Other payloads are unchanged: a part of the background, or named by
+/// the search.
 pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
     let is_payload = |c: usize| study.candidates[c].hypothesis.is(&Payload);
     let lighter = lighter_last_link(study, &judged.named);
@@ -49,9 +50,8 @@ pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
     let is_undecided = || {
         let standing = standing(study, &problem, &next, body);
         // The background and a lighter last link were compared in `instead`.
-        let last = study.arm.dof() - 1;
-        let is_lighter = |rival: &Named| lighter.is_some() && rival.0.is(&LinkInertialError) && rival.1 == Some(last);
-        let is_other = |rival: &Named| !rival.0.is(&InertialParameters) && !is_lighter(rival);
+        let replaced = lighter.map(|c| (study.candidates[c].hypothesis, study.candidates[c].joint));
+        let is_other = |rival: &Named| !rival.0.is(&InertialParameters) && Some(*rival) != replaced;
         standing.margin < UNDECIDED_NATS && standing.rivals.iter().any(is_other)
     };
     if !is_missing || is_undecided() || !explains_a_part(study, &next) {
@@ -84,7 +84,7 @@ struct Instead {
 
 /// The named error of the last link, if it makes the link lighter by more than a URDF is wrong without a missing tool.
 fn lighter_last_link(study: &Study, selected: &Selection) -> Option<usize> {
-    let last = study.arm.dof() - 1;
+    let last = study.arm.dof().checked_sub(1)?;
     let is_lighter = |&c: &usize| {
         let candidate = &study.candidates[c];
         candidate.hypothesis.is(&LinkInertialError)
@@ -98,8 +98,8 @@ fn lighter_last_link(study: &Study, selected: &Selection) -> Option<usize> {
 /// `selected` with a missing `body` in the place of a `lighter` last link and of a part of the background, if the body explains nearly
 /// as much as these, or the evidence is clearly greater with it, and if both predict held-out recordings nearly as well.
 ///
-/// Scores are compared each with the prior about its own bodies. The determinants of the two priors differ by up to 20 nats in favour of
-/// `selected` where the last link loses nine tenths of its mass.
+/// Scores are compared each with the prior about its own bodies. The determinants of the two priors differ by up to 20 nats in
+/// favour of `selected` where the last link loses nine tenths of its mass.
 fn instead(study: &Study, selected: &Selection, lighter: Option<usize>, body: usize) -> Option<Instead> {
     let others: Vec<usize> = selected.set.iter().copied().filter(|&c| Some(c) != lighter).collect();
     let with = [others.as_slice(), &[body]].concat();

@@ -56,7 +56,8 @@ pub const FRICTION_STRENGTHS: [f64; 3] = [0.0, 1.0, 3.0];
 /// The strengths of the joints' constant torques that are tried, relative to [`FRICTION_PRIOR`].
 pub const OFFSET_STRENGTHS: [f64; 3] = [0.0, 1.0, 3.0];
 /// The largest constant torque, in standard deviations of the background's, that is left to the background instead of being
-/// named. Source: 17 simulated cases in which constants replaced names; the small constants of all joints are up to 1.7 and the injected one is 2.4.
+/// named. Source: 17 simulated cases in which constants replaced names; the small constants of all joints are up to 1.7 and the
+/// injected one is 2.4.
 pub const USUAL_CONSTANTS: f64 = 2.0;
 /// The strengths of the torque constants that are tried.
 pub const GAIN_STRENGTHS: [f64; 3] = [0.0, 1.0, 2.0];

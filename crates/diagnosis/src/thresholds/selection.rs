@@ -62,7 +62,8 @@ pub const MOST_REFUSED: usize = 3;
 pub const ONSET_INTERVAL: f64 = 2.0 * 1.92;
 /// The part of its duration by which a contact that begins gently seems to begin later.
 pub const PUSH_START: f64 = 0.1;
-/// The least part of the evidence for the background of all links (nats) that one missing body must bring alone.
+/// The part of the evidence for the background of all links (nats) from which one missing body that brings it alone may take the
+/// place of that background with somewhat less evidence. A body that brings less needs [`LEAST_BESIDE_SOME_LINKS`] more.
 pub const NEARLY_ALL: f64 = 0.7;
 /// The least mass of a missing tool, as a part of the last link's mass in the URDF with its tool. A URDF may be wrong by
 /// less without a missing tool.

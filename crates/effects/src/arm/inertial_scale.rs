@@ -1,6 +1,6 @@
 //! Masses and inertias that are all a constant multiple of the model's.
 
-use crate::sensor::USUAL_DEVIATIONS;
+use crate::sensor::is_beyond_tolerance;
 use crate::{
     Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter, Place,
     Quantity, Range, Scope, Spec, Term,
@@ -69,7 +69,7 @@ impl EffectKind for InertialScale {
 
     /// Torque constants that are all wrong have the same torque, so that the factor must be beyond what is usual of them.
     fn is_certain(&self, effect: &Effect, _interval: &dyn Fn(&str) -> Option<[f64; 2]>, accuracy: f64) -> bool {
-        (effect.number("factor") - 1.0).abs() >= USUAL_DEVIATIONS * accuracy
+        is_beyond_tolerance(effect, accuracy)
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {

@@ -40,8 +40,8 @@ static SPEC: Spec = Spec {
         text: "sweep the joint slowly over more of its range: a straight spring goes on rising where a lever's torque turns back",
     }),
     may_be_inertial: true,
-    // Few joints have a gravity compensator. Of five that were named in simulated cases of two engines, none was right: three were springs, and two
-    // wrong links.
+    // Few joints have a gravity compensator. Of five that were named in simulated cases of two engines, none was right: three
+    // were springs, and two wrong links.
     prior: 10.0,
     least_beside_inertials: Some(25.0),
     ..Spec::EMPTY

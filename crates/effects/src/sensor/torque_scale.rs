@@ -49,10 +49,15 @@ const KNOWN_BODY: &str = "attach a body of known mass to the tool and record the
 
 /// The least deviation of a scale from one, in standard deviations of the torque constants. A smaller deviation is within the
 /// tolerance.
-pub(crate) const USUAL_DEVIATIONS: f64 = 1.5;
+const USUAL_DEVIATIONS: f64 = 1.5;
 
 /// The relative deviation from one that a torque scale may have.
 const RELATIVE: std::ops::Range<f64> = -0.7..2.0;
+
+/// Whether the factor of `effect` deviates from one by more than torque constants of this `accuracy`, a relative standard deviation, do.
+pub(crate) fn is_beyond_tolerance(effect: &Effect, accuracy: f64) -> bool {
+    (effect.number("factor") - 1.0).abs() >= USUAL_DEVIATIONS * accuracy
+}
 
 impl EffectKind for TorqueScale {
     fn spec(&self) -> &'static Spec {
@@ -78,7 +83,7 @@ impl EffectKind for TorqueScale {
     }
 
     fn is_certain(&self, effect: &Effect, _interval: &dyn Fn(&str) -> Option<[f64; 2]>, accuracy: f64) -> bool {
-        (effect.number("factor") - 1.0).abs() >= USUAL_DEVIATIONS * accuracy
+        is_beyond_tolerance(effect, accuracy)
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {

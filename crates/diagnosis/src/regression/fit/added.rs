@@ -94,12 +94,10 @@ impl Products {
             own[(k, k)] += 1e-6;
         }
         let factor = cholesky(&own);
-        let half = factor
-            .solve_lower_triangular(&right)
-            .unwrap_or_else(|| DVector::zeros(c));
-        let drop = half.norm_squared();
-        let solution = factor.tr_solve_lower_triangular(&half);
-        let coefficient = solution.map_or(0.0, |solution| solution[0] / columns[0].size);
+        factor.solve_lower_triangular_mut(&mut right);
+        let drop = right.norm_squared();
+        factor.tr_solve_lower_triangular_mut(&mut right);
+        let coefficient = right[0] / columns[0].size;
         match (&fit.eliminated, added.first()) {
             (Some(_), Some(&first)) => (drop / self.per_row(table, first), coefficient),
             _ => (drop, coefficient),
