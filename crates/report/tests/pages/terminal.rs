@@ -102,6 +102,20 @@ fn words_in_the_table_are_not_broken() {
     }
 }
 
+/// The table names a body that the URDF draws and the robot lacks in those words, not a payload.
+#[test]
+fn a_payload_of_negative_mass_is_a_tool_that_is_not_mounted() {
+    let (mut report, ..) = made_up::diagnosis(6, Plot::Rich);
+    let text = terminal::diagnosis(&report);
+    assert!(text.contains("payload") && !text.contains("mounted"), "{text}");
+    let finding = report.findings.iter_mut().find(|finding| finding.effect == "payload");
+    let finding = finding.expect("a payload");
+    finding.as_effect = finding.as_effect.clone().with("mass", -0.9);
+    assert_eq!(report::words::effect(finding), "tool not mounted");
+    let text = terminal::diagnosis(&report);
+    assert!(text.contains("mounted"), "{text}");
+}
+
 #[test]
 fn an_empty_diagnosis_has_no_table() {
     let (report, ..) = made_up::diagnosis(7, Plot::Clean);

@@ -9,8 +9,7 @@ use diagnosis::{
     Confusable, Finding, JointFit, JointRollout, Located, NotObservable, Parameter, Place, RecordingNames, Region,
     Report, TimeWindow, Trace, Traces, Unexplained, Verdict,
 };
-use effects::Effect;
-use effects::sensor::TorqueOffset;
+use effects::{Effect, Kind};
 use report::statistics::rms;
 
 use motion::{EFFECTS, Row, acts, arm, spread, trace};
@@ -62,6 +61,10 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
             .collect();
         let joint = row.1.map(name);
         let (main, value, ..) = row.2[0];
+        let mut as_effect = Effect::of(Kind::named(row.0).expect("a name of the catalogue").get());
+        for &(key, value, ..) in row.2 {
+            as_effect = as_effect.with(key, value);
+        }
         Finding {
             effect: row.0,
             joint: joint.clone(),
@@ -104,7 +107,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
                 row.0.replace('_', " ")
             ),
             corrects: true,
-            as_effect: Effect::of(&TorqueOffset).on(String::new()).with("offset", 0.0),
+            as_effect,
         }
     });
     let mut findings: Vec<Finding> = findings.collect();
