@@ -12,6 +12,7 @@ use crate::thresholds::MOST_REFUSED;
 
 pub mod bootstrap;
 pub mod constant_torques;
+pub mod direction;
 pub mod final_fit;
 pub mod gain;
 pub mod hypothesis;
@@ -80,6 +81,7 @@ fn found(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> (judge::Judged, Resa
         let resampled = final_fit::confirmed(study, &mut judged);
         // A refused name may have prevented that another effect was found.
         if study.refused() == refused || refused > MOST_REFUSED {
+            let resampled = direction::decide(study, &mut judged).unwrap_or(resampled);
             let resampled = unmounted::unmounted(study, &mut judged).unwrap_or(resampled);
             return (judged, resampled);
         }

@@ -7,16 +7,19 @@ use crate::term::{Law, Term};
 /// The part of a joint's largest speed below which its friction curve bends.
 const SLOW: f64 = 0.1;
 
-/// Friction in the recording `of[1]` only: sgn q̇ (form 0) or q̇ (form 1) there, zero in the other recordings.
+/// Friction in the recording `of[1]` only: sgn q̇ (form 0), q̇ (form 1) or |sgn q̇| (form 2, which is not in the background but compared
+/// with form 0) there, zero in the other recordings.
 pub static OWN_FRICTION: Law = Law {
     name: "own friction",
     column: |term, joint, motion| {
         if term.of[1] != motion.recording {
             Some(vec![0.0; motion.ticks()])
-        } else if term.form == 0 {
-            motion.map(|k| motion.sign(joint, k))
         } else {
-            Some(motion.qd[joint].clone())
+            match term.form {
+                0 => motion.map(|k| motion.sign(joint, k)),
+                1 => Some(motion.qd[joint].clone()),
+                _ => motion.map(|k| motion.sign(joint, k).abs()),
+            }
         }
     },
     ..Law::PLAIN

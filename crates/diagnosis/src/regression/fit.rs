@@ -86,6 +86,19 @@ impl Fit {
         columns.iter().map(|&column| self.coefficient(column)).collect()
     }
 
+    /// The information about the coefficients of the last `count` selected columns, if nothing is known of the other coefficients but
+    /// what the fit and the background's prior say (in the weights' units: the inverse of their covariance if rows were
+    /// independent).
+    pub fn information_of_last(&self, count: usize) -> DMatrix<f64> {
+        // The last block of a Cholesky factor is the factor of the Schur complement of the other blocks.
+        let first = self.scale.len() - count;
+        let mut factor = self.factor.view((first, first), (count, count)).lower_triangle();
+        for (mut row, scale) in factor.row_iter_mut().zip(&self.scale[first..]) {
+            row *= *scale;
+        }
+        &factor * factor.transpose()
+    }
+
     /// The selected columns, without those of the background.
     pub fn selected(&self) -> &[usize] {
         &self.columns[self.background..]
@@ -139,7 +152,7 @@ impl Products {
     }
 
     /// Independent pieces of evidence per row of a joint.
-    fn evidence_per_row(&self, joint: usize) -> f64 {
+    pub fn evidence_per_row(&self, joint: usize) -> f64 {
         self.evidence[joint] / self.count[joint].max(1.0)
     }
 

@@ -1,5 +1,7 @@
 //! The data of the search: filtered recordings, the model along them, columns, candidates.
 
+use std::collections::BTreeMap;
+
 use arm::Arm;
 use effects::arm::contact_columns;
 use effects::laws::SIGN;
@@ -31,6 +33,7 @@ mod strengths;
 
 pub use about::About;
 use formed::Formed;
+pub use strengths::moved;
 
 /// The recordings, the model along them, and the candidates.
 pub struct Study {
@@ -83,6 +86,9 @@ pub struct Study {
     formed: Formed,
     /// Hypotheses that the final fit refused; they are not searched again.
     refused: Vec<(Hypothesis, Option<usize>)>,
+    /// The evidence, by joint, for the name of its constant torque, offset or asymmetric friction, if the differences between recordings
+    /// decide (nats).
+    pub directions: BTreeMap<usize, f64>,
     /// Names that the final fit gave up, because wrong inertial parameters explain nearly as much.
     pub given_up: Vec<(Hypothesis, Option<usize>)>,
 }
@@ -164,7 +170,7 @@ impl Study {
             &nominal,
             &scales.torque,
             &scales.speed,
-            &strengths::moved(&motions, &scales),
+            &moved(&motions, &scales),
             own_load,
         );
         let mut terms: Vec<Term> = prior.terms().to_vec();
@@ -240,6 +246,7 @@ impl Study {
             formed: Formed::default(),
             refused: Vec::new(),
             given_up: Vec::new(),
+            directions: BTreeMap::new(),
         }
     }
 

@@ -81,6 +81,8 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
         study.note("does not predict held-out recordings", &selected, &next);
         selected = next;
     }
+    let is_unmodelled = |&c: &usize| study.candidates[c].hypothesis.name().is_none();
+    let had_unmodelled = selected.set.iter().any(is_unmodelled);
     loop {
         members = describe(study, &problem, &selected);
         let Some(weak) = weakest(study, &members) else { break };
@@ -92,8 +94,8 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
         .into_iter()
         .partition(|member| study.candidates[member.candidate].hypothesis.name().is_none());
     let mut kept = problem.choose(named.iter().map(|m| m.candidate).collect(), &selected.fit.weights);
-    if !unmodelled.is_empty() {
-        // Unmodelled forms may have replaced simple effects. A constant is allowed if no other form remains on its joint, or if it
+    if had_unmodelled {
+        // Unmodelled forms, also those that were too small, may have replaced simple effects. A constant is allowed if no other form remains on its joint, or if it
         // is much larger than the residual of the named effects there, because unmodelled forms also represent constants.
         let candidates = &study.candidates;
         let simple: Vec<usize> = (0..candidates.len())

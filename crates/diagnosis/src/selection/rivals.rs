@@ -95,8 +95,12 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
     // The gains of rivals are computed with the weights of the fit without the finding. With the weights of the finding's
     // own fit, every effect on its joint would seem to explain everything.
     let ground = problem.reweighted(without.clone());
+    // The differences between recordings may decide on the equivalent name, which the fit does not know.
+    let alias = alias(study, selected, member, &set);
+    let decided = alias.and_then(|(_, joint)| study.directions.get(&joint?).copied());
     let is_other = |c: usize| {
         let other = &study.candidates[c];
+        let is_excluded = decided.is_some() && Some((other.hypothesis, other.joint)) == alias;
         let same_name = other.hypothesis.name() == finding.hypothesis.name() && other.joint == finding.joint;
         // A candidate with all of the finding's columns and more is a finer form of it, not another hypothesis.
         let finer = finding.columns.iter().all(|column| other.columns.contains(column));
@@ -104,6 +108,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
         let are_links = finding.hypothesis.kind == other.hypothesis.kind && finding.hypothesis.spec().is_wrong_mass;
         !same_name
             && !finer
+            && !is_excluded
             && other.hypothesis.name().is_some()
             && (other.joint == finding.joint || other.joint.is_none() || finding.joint.is_none() || are_links)
             && !set.iter().any(|&known| {
@@ -153,11 +158,12 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
             on_all_joints.extend(factors.iter().map(|&c| result(c, &next)));
         }
     }
-    let alias = alias(study, selected, member, &set);
     // If an offset is constant from the beginning, its size relative to the friction is that of few asymmetries. What has changed
     // while the friction was the same may be either, and so may an asymmetry: it has the size of both.
     let sets_in = || !study.always_acts(member);
-    let equally_likely = alias.filter(|_| finding.hypothesis.is(&FrictionAsymmetry) || sets_in());
+    let is_equal = || finding.hypothesis.is(&FrictionAsymmetry) || sets_in();
+    let alias = alias.filter(|_| decided.is_none_or(|nats| nats < NEARLY_NATS));
+    let equally_likely = alias.filter(|_| decided.is_none() && is_equal());
     results.extend(equally_likely.map(|(hypothesis, joint)| (0.0, 0.0, hypothesis, joint)));
     let mut as_likely = None;
     if finding.hypothesis.spec().may_be_inertial {
@@ -202,7 +208,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
     };
     // A simpler hypothesis is more probable: the margin includes the costs.
     let pair = pairs.iter().map(|pair| pair.1).fold(f64::INFINITY, f64::min);
-    let margin_over_single = explained.min(single).min(pair);
+    let margin_over_single = explained.min(single).min(pair).min(decided.unwrap_or(f64::INFINITY));
     let margin = margin_over_single.min(of_all_joints);
     rivals.extend(alias.filter(|alias| !rivals.contains(alias)));
     Standing {

@@ -9,7 +9,7 @@ use crate::data::rigid::Rigid;
 use crate::data::statistics::rms;
 use crate::regression::background::Prior;
 use crate::regression::bodies::PER_LINK;
-use crate::regression::fit::Fit;
+use crate::regression::fit::{Fit, Products};
 use crate::regression::table::{Moving, Table};
 use crate::search::problem::Selection;
 use crate::thresholds::{MOST_BODIES, SIMULATED_ANEW};
@@ -30,11 +30,29 @@ impl Study {
 
     /// Leaves only the background's columns and `columns` in the table, with the rows that are `moving`; returns the table before.
     pub fn reduce_table(&mut self, columns: &[usize], moving: Moving) -> Table {
+        let reduced = self.reduced_table(columns, moving);
+        std::mem::replace(&mut self.table, reduced)
+    }
+
+    /// A table with the background's columns and `columns` only, with the rows that are `moving`.
+    fn reduced_table(&self, columns: &[usize], moving: Moving) -> Table {
         let background = 0..self.prior.terms().len();
         let columns: Vec<usize> = background.chain(columns.iter().copied()).collect();
         let empty = Table::new(&self.motions, &self.rigid, &self.scales, Vec::new(), &[], moving);
-        let reduced = empty.with_columns_of(&self.table, &columns);
-        std::mem::replace(&mut self.table, reduced)
+        empty.with_columns_of(&self.table, &columns)
+    }
+
+    /// `columns` and, after them, `more` terms fitted at given weights of the joints: the products over the training recordings, and
+    /// the fit. Its columns are those of the background, and then the others in this order.
+    pub fn fit_with(&self, columns: &[usize], more: Vec<Term>, weights: &[f64]) -> (Products, Fit) {
+        let mut table = self.reduced_table(columns, self.moving);
+        table.add(&self.motions, &self.rigid, &self.scales, more, None);
+        let is_fitted = |recording: usize| self.fitted[recording];
+        let products = Products::new(&table, is_fitted, &self.seconds, &self.motions.tempo, &self.floor);
+        let products = products.with_background(self.background());
+        let columns: Vec<usize> = (self.prior.terms().len()..table.terms.len()).collect();
+        let fit = products.solve(&table, &columns, weights);
+        (products, fit)
     }
 
     /// Makes the prior of the links' inertial parameters quadratic about the bodies of `fit`.
