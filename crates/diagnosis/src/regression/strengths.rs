@@ -27,6 +27,17 @@ pub struct Strengths {
     pub impossible_constants: Vec<usize>,
 }
 
+/// A part of the background that [`Strengths::weaker`] reduces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The links' inertial parameters.
+    Links,
+    /// The form of friction.
+    Friction,
+    /// The torque constants.
+    Gain,
+}
+
 impl fmt::Display for Strengths {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let links: Vec<String> = self.links.iter().map(f64::to_string).collect();
@@ -221,6 +232,17 @@ impl Strengths {
             list.push(Self { gain, ..self.clone() });
         }
         list
+    }
+
+    /// The part in which `other` differs from these strengths: the first one, if there are several.
+    pub fn part_that_differs(&self, other: &Self) -> Part {
+        if self.links != other.links {
+            Part::Links
+        } else if self.friction != other.friction {
+            Part::Friction
+        } else {
+            Part::Gain
+        }
     }
 
     /// Whether friction curves or torque constants differ from the model's.

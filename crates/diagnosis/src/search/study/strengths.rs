@@ -7,7 +7,7 @@ use super::Study;
 use crate::data::motion::{Chunk, Motions};
 use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::Products;
-use crate::regression::strengths::Strengths;
+use crate::regression::strengths::{Part, Strengths};
 use crate::search::problem::{Growth, Selection};
 use crate::thresholds::{
     LINK_STRENGTHS, MOST_CONSTANT, MOST_DEVIATIONS, MOST_SELECTED, MOVED, OWN_STRENGTHS, PER_IMITATION,
@@ -15,6 +15,12 @@ use crate::thresholds::{
 
 /// The largest number of effects that may together replace a part of the background.
 const IN_PLACE: usize = 3;
+
+/// The score beyond that of the present background (nats) from which a smaller part of it cannot be replaced by a few effects.
+const HOPELESS_EXCHANGE: f64 = 100.0;
+
+/// The largest gain of a later effect in place of the background, relative to that of the one before it.
+const MOST_LATER_GAIN: f64 = 2.0;
 
 /// The largest number of consecutive changes of the strengths. Recomputed weights may raise a score again, so that two
 /// strengths could alternate forever.
@@ -209,20 +215,48 @@ impl Study {
 
     /// `selected` with a smaller background and a few more of the candidates `allowed`, if that is better.
     fn exchanged(&self, selected: &Selection, allowed: &[usize]) -> Option<(Strengths, Selection)> {
-        let trials = self.stated.weaker(&self.strengths).filter_map(|strengths| {
-            let products = self.products_at(&strengths);
-            let problem = self.problem(&products);
-            let mut next = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));
-            let mut growth = Growth::default();
-            for _ in 0..IN_PLACE {
-                if next.score < selected.score - 1e-6 {
-                    return Some((strengths, next));
-                }
-                next = problem.reweighted(problem.grow(&next, allowed, &mut growth)?);
+        let mut best: Option<(Strengths, Selection)> = None;
+        let mut hopeless: Vec<Part> = Vec::new();
+        let weaker: Vec<Strengths> = self.stated.weaker(&self.strengths).collect();
+        // The strongest first: if effects do not nearly replace what it lacks, they do not replace more.
+        for strengths in weaker.into_iter().rev() {
+            let part = self.strengths.part_that_differs(&strengths);
+            if hopeless.contains(&part) {
+                continue;
             }
-            (next.score < selected.score - 1e-6).then_some((strengths, next))
-        });
-        trials.min_by(|a, b| a.1.score.total_cmp(&b.1.score))
+            let next = self.with_few_more(&strengths, selected, allowed);
+            let beyond = next.score - selected.score;
+            if beyond > HOPELESS_EXCHANGE {
+                hopeless.push(part);
+            }
+            if beyond < -1e-6 && best.as_ref().is_none_or(|(_, best)| next.score < best.score) {
+                best = Some((strengths, next));
+            }
+        }
+        best
+    }
+
+    /// `selected` with a background of other `strengths`, and with those of the candidates `allowed` that gain most: as many as make it
+    /// better than `selected`, or a few, unless it is too far from that.
+    fn with_few_more(&self, strengths: &Strengths, selected: &Selection, allowed: &[usize]) -> Selection {
+        let products = self.products_at(strengths);
+        let problem = self.problem(&products);
+        let mut next = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));
+        let mut growth = Growth::default();
+        for more in (0..IN_PLACE).rev() {
+            if next.score < selected.score - 1e-6 {
+                break;
+            }
+            let Some(grown) = problem.grow(&next, allowed, &mut growth) else {
+                break;
+            };
+            let before = next.score;
+            next = problem.reweighted(grown);
+            if next.score - selected.score > MOST_LATER_GAIN * more as f64 * (before - next.score) {
+                break;
+            }
+        }
+        next
     }
 
     /// `selected` with the strengths of the background that the evidence prefers.
