@@ -7,12 +7,14 @@ use effects::{CATALOGUE, Effect};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+mod dependence;
 mod different_load;
 mod doubt;
 mod next_experiment;
 mod recording_names;
 mod schema;
 
+pub use dependence::{Axis, Dependence};
 pub use different_load::DifferentLoad;
 pub use doubt::Doubt;
 pub use next_experiment::{JointLimits, NextExperiment, NotSeparated, Obstacle, Separation, Shows};
@@ -228,7 +230,8 @@ pub struct Unexplained {
     pub share: f64,
     /// `own_position`, `own_speed`, `load`, `time`, `history`, `other_joint:NAME`, …; empty if no tried regressor predicts it. In
     /// a diagnosis without findings, where no tried regressor predicts anything, it is the state in which the residual is largest.
-    pub depends_on: Vec<String>,
+    #[schemars(with = "Vec<String>")]
+    pub depends_on: Vec<Dependence>,
     /// Stretches of time where it is largest; the whole time if empty.
     pub time: Vec<TimeWindow>,
     /// The experiment that narrows it down.
@@ -282,7 +285,8 @@ pub struct TimeWindow {
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Region {
     /// `near_reversal`, `speed`, `load`, `angle`, `elapsed_time`.
-    pub axis: &'static str,
+    #[schemars(with = "String")]
+    pub axis: Axis,
     /// Its bounds, in the axis' unit.
     pub range: [f64; 2],
     /// RMS of the nominal residual there, over the torque's standard deviation.

@@ -3,11 +3,13 @@
 mod support;
 
 use arm::{Arm, Vector3};
+use diagnosis::Dependence;
+use effects::Regressor;
 use support::{ELBOW, Injected, Motion, SHOULDER, baseline_friction, diagnosed, named, sentences, trio};
 
 /// Checks that the findings beside plain friction on recordings of `robot` are `expected`; `None` is the whole arm. Returns what every
 /// unexplained residual depends on, with its joint.
-fn check(robot: &Arm, injected: Injected<'_>, expected: &[(&str, Option<&str>)]) -> Vec<(String, Vec<String>)> {
+fn check(robot: &Arm, injected: Injected<'_>, expected: &[(&str, Option<&str>)]) -> Vec<(String, Vec<Dependence>)> {
     let diagnosis = diagnosed(&trio(), robot, injected, Vec::new());
     assert_eq!(named(&diagnosis), expected, "{:?}", sentences(&diagnosis));
     let unexplained = diagnosis.report.unexplained.into_iter();
@@ -22,7 +24,7 @@ fn an_oscillation_in_time_is_not_a_torque_ripple() {
         tau[ELBOW] += (14.0 * motion.clock).sin();
     };
     let open = check(&trio(), &injected, &[]);
-    assert_eq!(open, [("elbow".to_owned(), vec!["time".to_owned()])]);
+    assert_eq!(open, [("elbow".to_owned(), vec![Regressor::Time.into()])]);
 }
 
 /// A delay is a part of the torque's derivative, to which viscous friction and a rotor's inertia also contribute.
@@ -57,7 +59,11 @@ fn a_torque_by_the_speed_of_another_joint_is_not_a_transmission_coupling() {
         tau[ELBOW] += 1.2 * motion.qd[SHOULDER];
     };
     let open = check(&trio(), &injected, &[]);
-    assert_eq!(open, [("elbow".to_owned(), vec!["other_joint:shoulder".to_owned()])]);
+    let behind = Dependence {
+        on: Regressor::OtherJoint,
+        joint: Some("shoulder".to_owned()),
+    };
+    assert_eq!(open, [("elbow".to_owned(), vec![behind])]);
 }
 
 /// A base that is turned about the axis of the shoulder turns gravity for all joints, and not the zero of one.

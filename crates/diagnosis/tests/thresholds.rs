@@ -107,7 +107,7 @@ fn has(report: &Report, (what, joint): (&str, &str)) -> bool {
     let mut findings = report.findings.iter();
     let mut unexplained = report.unexplained.iter();
     findings.any(|finding| finding.effect == what && finding.joint.as_deref() == Some(joint))
-        || unexplained.any(|open| open.joint == joint && open.depends_on.iter().any(|on| on == what))
+        || unexplained.any(|open| open.joint == joint && open.depends_on.iter().any(|on| on.to_string() == what))
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 mod support;
 
-use diagnosis::{Options, Report, Verdict, diagnose};
+use diagnosis::{Axis, Options, Report, Verdict, diagnose};
+use effects::Regressor;
 use support::{ELBOW, Motion, SHOULDER, TURN, baseline_friction, diagnosed, inputs, recorded, regular, trio};
 
 /// Torque constants that are wrong on all joints, each by another part, are reported although no finding names them.
@@ -61,8 +62,8 @@ fn an_unpredictable_residual_has_its_joint_its_place_and_an_experiment() {
     assert_eq!(open.joint, "elbow");
     assert!(open.share > 0.35 && open.share < 0.6, "{open:?}");
     assert_eq!(
-        open.depends_on.first().map(String::as_str),
-        Some("own_position"),
+        open.depends_on.first(),
+        Some(&Regressor::OwnPosition.into()),
         "{open:?}"
     );
     assert!(
@@ -77,7 +78,7 @@ fn an_unpredictable_residual_has_its_joint_its_place_and_an_experiment() {
     let region = located
         .regions
         .iter()
-        .find(|region| region.axis == "angle")
+        .find(|region| region.axis == Axis::Angle)
         .expect("it stands out");
     assert!(region.range[0] > 0.8, "{region:?}");
     assert!(!open.time.is_empty() && open.time == located.time, "{open:?}");
@@ -109,5 +110,5 @@ fn what_only_training_recordings_show_is_unexplained() {
     };
     assert_eq!(open.joint, "elbow");
     assert!((open.share - fit.train_nrmse_augmented).abs() < 0.02, "{open:?}");
-    assert!(open.depends_on.iter().any(|on| on == "own_position"), "{open:?}");
+    assert!(open.depends_on.contains(&Regressor::OwnPosition.into()), "{open:?}");
 }

@@ -49,7 +49,7 @@ pub use laws::Times;
 pub use machine::{Circumstance, Contact, Dry, Machine, Place, Scaled, Smooth, Sprung, State, sign};
 pub use quantity::Quantity;
 pub use signals::{Rigid, Scales, Signals};
-pub use spec::{Against, Detectability, Experiment, InUrdf, ONSET, Parameter, Range, Scope, Shape, Spec};
+pub use spec::{Against, Detectability, Experiment, InUrdf, ONSET, Parameter, Range, Regressor, Scope, Shape, Spec};
 pub use term::{Carried, Column, Cone, Law, OtherForm, Size, Term};
 
 /// Friction in the drive and its gear.

@@ -18,6 +18,40 @@ pub enum Scope {
     Arm,
 }
 
+/// What predicts the residual of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Regressor {
+    /// The joint's past motion.
+    History,
+    /// The joint's load.
+    Load,
+    /// The motion of another joint.
+    OtherJoint,
+    /// The joint's position.
+    OwnPosition,
+    /// The product of the joint's position and velocity.
+    OwnPositionTimesSpeed,
+    /// The joint's velocity.
+    OwnSpeed,
+    /// Time.
+    Time,
+}
+
+impl Regressor {
+    /// Its name in reports.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::History => "history",
+            Self::Load => "load",
+            Self::OtherJoint => "other_joint",
+            Self::OwnPosition => "own_position",
+            Self::OwnPositionTimesSpeed => "own_position_times_speed",
+            Self::OwnSpeed => "own_speed",
+            Self::Time => "time",
+        }
+    }
+}
+
 /// What a URDF can hold of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InUrdf {
@@ -303,7 +337,7 @@ pub struct Spec {
     /// The state against which figures show it.
     pub against: Against,
     /// What an unattributed residual depends on, for an unmodelled form.
-    pub depends_on: &'static str,
+    pub depends_on: Option<Regressor>,
     /// How its detectable size is determined where it was not found.
     pub detectability: Detectability,
     /// Its place in the list of effects that are not testable.
@@ -352,7 +386,7 @@ impl Spec {
         in_urdf: InUrdf::Nothing,
         is_periodic: false,
         against: Against::Predicted,
-        depends_on: "",
+        depends_on: None,
         detectability: Detectability::Never,
         not_testable_turn: u8::MAX,
         experiment: None,

@@ -141,7 +141,7 @@ fn unexplained(report: &Report, arm: &Arm) -> Vec<Block> {
         return Vec::new();
     }
     let row = |open: &diagnosis::Unexplained| {
-        let on: Vec<String> = open.depends_on.iter().map(|code| words::dependence(code)).collect();
+        let on: Vec<String> = open.depends_on.iter().map(words::dependence).collect();
         let on = if on.is_empty() && report.is_requested {
             "not searched".to_owned()
         } else if on.is_empty() {

@@ -1,7 +1,7 @@
 //! Regions of state and stretches of time in which a residual is largest, in words.
 
 use arm::{Joint, JointKind};
-use diagnosis::{Region, TimeWindow};
+use diagnosis::{Axis, Region, TimeWindow};
 
 use crate::numbers;
 
@@ -23,15 +23,18 @@ pub fn region(region: &Region, joint: &Joint) -> String {
     let is_sliding = joint.kind == JointKind::Prismatic;
     let unit = |turning, sliding| if is_sliding { sliding } else { turning };
     let unit = match region.axis {
-        "angle" => unit("rad", "m"),
-        "near_reversal" | "speed" => unit("rad/s", "m/s"),
-        "load" => unit("N m", "N"),
-        "elapsed_time" => "s",
-        _ => "",
+        Axis::Angle => unit("rad", "m"),
+        Axis::NearReversal | Axis::Speed => unit("rad/s", "m/s"),
+        Axis::Load => unit("N m", "N"),
+        Axis::ElapsedTime => "s",
     };
     let [from, to] = region.range.map(numbers::trimmed);
-    match region.axis {
-        "near_reversal" => format!("speed below {to} {unit}"),
-        axis => format!("{} from {from} to {to} {unit}", axis.replace('_', " ")),
-    }
+    let quantity = match region.axis {
+        Axis::NearReversal => return format!("speed below {to} {unit}"),
+        Axis::Speed => "speed",
+        Axis::Load => "load",
+        Axis::Angle => "angle",
+        Axis::ElapsedTime => "elapsed time",
+    };
+    format!("{quantity} from {from} to {to} {unit}")
 }

@@ -142,7 +142,7 @@ pub fn prose(report: &Report) -> String {
 /// The size of an unexplained residual and what it depends on.
 fn unexplained(report: &Report, open: &Unexplained) -> String {
     let size = numbers::of_torque_spread(open.share);
-    let on: Vec<String> = open.depends_on.iter().map(|code| words::dependence(code)).collect();
+    let on: Vec<String> = open.depends_on.iter().map(words::dependence).collect();
     if on.is_empty() && report.is_requested {
         format!("unexplained residual {size}; other effects were not searched")
     } else if on.is_empty() {

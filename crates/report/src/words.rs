@@ -4,7 +4,8 @@ use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use arm::JointKind;
-use diagnosis::{Confusable, Finding, JointFit, NotObservable, Parameter, Report, Verdict};
+use diagnosis::{Confusable, Dependence, Finding, JointFit, NotObservable, Parameter, Report, Verdict};
+use effects::Regressor;
 
 use crate::numbers;
 use crate::statistics::rms;
@@ -134,24 +135,19 @@ pub fn joint(joint: Option<&str>) -> &str {
     joint.unwrap_or("whole arm")
 }
 
-/// `own_position`, `other_joint:NAME` and the like, in words.
-pub fn dependence(code: &str) -> String {
-    if let Some((kind, name)) = code.split_once(':') {
-        let kind = kind.replace('_', " ");
-        return match kind.as_str() {
-            "other joint" => format!("the motion of {name}"),
-            _ => format!("{kind} {name}"),
-        };
-    }
-    match code {
-        "own_position" => "the joint's position".into(),
-        "own_speed" => "the joint's velocity".into(),
-        "own_acceleration" => "the joint's acceleration".into(),
-        "time" => "time".into(),
-        "history" => "the joint's past motion (hysteresis)".into(),
-        "load" => "the load torque".into(),
-        "own_position_times_speed" => "the product of the joint's position and velocity".into(),
-        other => other.replace('_', " "),
+/// What predicts a residual, in words.
+pub fn dependence(dependence: &Dependence) -> String {
+    match dependence.on {
+        Regressor::OwnPosition => "the joint's position".into(),
+        Regressor::OwnSpeed => "the joint's velocity".into(),
+        Regressor::Time => "time".into(),
+        Regressor::History => "the joint's past motion (hysteresis)".into(),
+        Regressor::Load => "the load torque".into(),
+        Regressor::OwnPositionTimesSpeed => "the product of the joint's position and velocity".into(),
+        Regressor::OtherJoint => match &dependence.joint {
+            Some(name) => format!("the motion of {name}"),
+            None => "the motion of another joint".into(),
+        },
     }
 }
 

@@ -19,7 +19,7 @@ use crate::data::statistics::NORMAL_95;
 use crate::diagnosis::Diagnosis;
 use crate::options::Options;
 use crate::report::{
-    DifferentLoad, Finding, JointFit, Located, NotObservable, Parameter, RecordingNames, Report, SCHEMA, Traces,
+    Axis, DifferentLoad, Finding, JointFit, Located, NotObservable, Parameter, RecordingNames, Report, SCHEMA, Traces,
     Unexplained, UsedPart,
 };
 use crate::search::own_load::OwnLoad;
@@ -110,7 +110,7 @@ impl Conclusion {
             let mut open = locate(study, residual, residual);
             for place in &mut open {
                 // A residual that drifts has an unmodelled form. What remains in one stretch of time is not a drift.
-                place.regions.retain(|region| region.axis != "elapsed_time");
+                place.regions.retain(|region| region.axis != Axis::ElapsedTime);
             }
             with_places(&open, &mut unexplained);
         }

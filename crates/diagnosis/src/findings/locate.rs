@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::data::statistics::rms;
-use crate::report::{Located, Region, TimeWindow};
+use crate::report::{Axis, Located, Region, TimeWindow};
 use crate::search::study::Study;
 use crate::thresholds::{
     LEAST_PAIRS, LEAST_WINDOW_ROWS, MOST_WINDOWS, OVER_NOISE, REGION_BINS, REGION_STANDS_OUT, SAME_LOAD, SAME_MOTION,
@@ -76,19 +76,23 @@ fn on_joint(study: &Study, state: &State, joint: usize, nominal: &[f64], augment
     }
     let torque = study.scales.torque[joint].max(1e-300);
     let first = state.time.iter().copied().fold(f64::INFINITY, f64::min);
-    let axes: [(&'static str, Vec<f64>); 5] = [
-        ("near_reversal", state.qd.iter().map(|qd| qd.abs()).collect()),
-        ("speed", state.qd.clone()),
-        ("load", state.load.clone()),
-        ("angle", state.q.clone()),
-        ("elapsed_time", state.time.iter().map(|t| t - first).collect()),
+    let axes: [(Axis, Vec<f64>); 5] = [
+        (Axis::NearReversal, state.qd.iter().map(|qd| qd.abs()).collect()),
+        (Axis::Speed, state.qd.clone()),
+        (Axis::Load, state.load.clone()),
+        (Axis::Angle, state.q.clone()),
+        (Axis::ElapsedTime, state.time.iter().map(|t| t - first).collect()),
     ];
     let mut regions = Vec::new();
     for (axis, values) in axes {
         let mut sorted: Vec<usize> = rows.clone();
         sorted.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
         // The region near a reversal is the slowest bin; the others are tried in turn.
-        let bins = if axis == "near_reversal" { 0..1 } else { 0..REGION_BINS };
+        let bins = if axis == Axis::NearReversal {
+            0..1
+        } else {
+            0..REGION_BINS
+        };
         let best = bins
             .map(|bin| &sorted[sorted.len() * bin / REGION_BINS..sorted.len() * (bin + 1) / REGION_BINS])
             .filter(|bin| !bin.is_empty())

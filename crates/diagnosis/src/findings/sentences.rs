@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use effects::Effect;
 use effects::arm::InertialParameters;
+use effects::{Effect, Regressor};
 
-use crate::report::{Finding, JointFit, Parameter};
+use crate::report::{Dependence, Finding, JointFit, Parameter};
 use crate::selection::naming::may_be_nothing;
 use crate::thresholds::{ALIKE_SIZES, LEAST_FOR_DYNAMICS};
 
@@ -185,25 +185,27 @@ pub fn of_another_size(known: &Effect, found: &Finding) -> Option<String> {
     })
 }
 
-/// The experiment that shows which effect causes a residual that depends on `on` (`own_position`, `history`, …).
-pub fn next_experiment(joint: &str, on: &str) -> String {
-    if let Some(other) = on.strip_prefix("other_joint:") {
+/// The experiment that shows which effect causes a residual that depends on `on`.
+pub fn next_experiment(joint: &str, on: Option<&Dependence>) -> String {
+    if let Some(other) = on.and_then(|on| on.joint.as_ref()) {
         return format!("move {joint} alone with {other} at rest, then {other} alone with {joint} at rest");
     }
-    match on {
-        "own_position" => format!(
+    match on.map(|on| on.on) {
+        Some(Regressor::OwnPosition) => format!(
             "sweep {joint} slowly over its whole range in both directions, with all other joints at rest, at two speeds"
         ),
-        "history" => format!(
+        Some(Regressor::History) => format!(
             "repeat one motion of {joint} after pauses of different lengths and with reversals of different amplitudes"
         ),
-        "own_position_times_speed" => {
+        Some(Regressor::OwnPositionTimesSpeed) => {
             format!("sweep {joint} over its range at three constant speeds, in both directions")
         }
-        "load" => format!(
+        Some(Regressor::Load) => format!(
             "repeat one motion of {joint} in several postures of the other joints, with and without a known load on the tool"
         ),
-        "time" => format!("repeat one motion of {joint} every minute for ten minutes"),
-        _ => format!("move {joint} alone at three constant speeds, in both directions, twice"),
+        Some(Regressor::Time) => format!("repeat one motion of {joint} every minute for ten minutes"),
+        Some(Regressor::OwnSpeed | Regressor::OtherJoint) | None => {
+            format!("move {joint} alone at three constant speeds, in both directions, twice")
+        }
     }
 }

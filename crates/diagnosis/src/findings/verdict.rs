@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use effects::Regressor;
+
 use crate::data::statistics::rms;
 use crate::findings::locate::locate;
 use crate::findings::sentences;
 use crate::findings::transients::Transients;
 use crate::regression::fit::Products;
-use crate::report::{Finding, JointFit, Located, TimeWindow, Unexplained, Verdict};
+use crate::report::{Dependence, Finding, JointFit, Located, TimeWindow, Unexplained, Verdict};
 use crate::search::study::Study;
 use crate::selection::judge::Judged;
 use crate::selection::predict::{autocorrelation, structured};
@@ -17,14 +19,17 @@ use crate::thresholds::{
 
 /// The structured residuals on each joint that no effect in the catalogue explains.
 pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, residual: &[Vec<f64>]) -> Vec<Unexplained> {
-    let mut by_joint: BTreeMap<usize, (f64, Vec<(f64, String)>)> = BTreeMap::new();
+    let mut by_joint: BTreeMap<usize, (f64, Vec<(f64, Dependence)>)> = BTreeMap::new();
     for member in &judged.unmodelled {
         let candidate = &study.candidates[member.candidate];
         let Some(joint) = candidate.joint else { continue };
-        let on = match (candidate.hypothesis.spec().depends_on, candidate.hypothesis.other) {
-            ("", _) => continue,
-            (kind, Some(other)) => format!("{kind}:{}", study.arm.joints()[other].name),
-            (kind, None) => kind.to_owned(),
+        let Some(on) = candidate.hypothesis.spec().depends_on else {
+            continue;
+        };
+        let other = candidate.hypothesis.other;
+        let on = Dependence {
+            on,
+            joint: other.map(|other| study.arm.joints()[other].name.clone()),
         };
         let entry = by_joint.entry(joint).or_default();
         entry.0 = entry.0.hypot(member.share());
@@ -35,9 +40,9 @@ pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, resi
     let mut in_transients = transients.unexplained.clone();
     for (&joint, (share, _)) in &transients.unexplained {
         let entry = by_joint.entry(joint).or_default();
-        if !entry.1.iter().any(|(_, known)| known == "time") {
+        if !entry.1.iter().any(|(_, known)| known.on == Regressor::Time) {
             entry.0 = entry.0.max(*share);
-            entry.1.push((*share, "time".to_owned()));
+            entry.1.push((*share, Regressor::Time.into()));
         }
     }
     let located = locate(study, &study.nominal, residual);
@@ -50,12 +55,12 @@ pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, resi
             let time: Vec<TimeWindow> = transients.unwrap_or_else(|| {
                 located
                     .iter()
-                    .find(|located| located.joint == name && on.iter().any(|(_, on)| on == "time"))
+                    .find(|located| located.joint == name && on.iter().any(|(_, on)| on.on == Regressor::Time))
                     .map_or(Vec::new(), |located: &Located| located.time.clone())
             });
-            let depends_on: Vec<String> = on.into_iter().map(|(_, on)| on).collect();
+            let depends_on: Vec<Dependence> = on.into_iter().map(|(_, on)| on).collect();
             Unexplained {
-                next: sentences::next_experiment(&name, depends_on.first().map_or("", String::as_str)),
+                next: sentences::next_experiment(&name, depends_on.first()),
                 joint: name,
                 share,
                 depends_on,
@@ -92,7 +97,7 @@ pub fn poorly_predicted(
             share: error,
             depends_on: Vec::new(),
             next: if was_fitted {
-                sentences::next_experiment(name, "")
+                sentences::next_experiment(name, None)
             } else {
                 format!("add a training recording in which {name} moves")
             },
@@ -148,18 +153,13 @@ pub fn with_places(located: &[Located], unexplained: &mut [Unexplained]) {
             continue;
         };
         for region in &place.regions {
-            let on = match region.axis {
-                "near_reversal" | "speed" => "own_speed",
-                "angle" => "own_position",
-                "elapsed_time" => "time",
-                axis => axis,
-            };
-            if !open.depends_on.iter().any(|known| known == on) {
-                open.depends_on.push(on.to_owned());
+            let on = Dependence::from(region.axis.regressor());
+            if !open.depends_on.contains(&on) {
+                open.depends_on.push(on);
             }
         }
         if let Some(first) = open.depends_on.first() {
-            open.next = sentences::next_experiment(&open.joint, first);
+            open.next = sentences::next_experiment(&open.joint, Some(first));
         }
         open.time.clone_from(&place.time);
     }

@@ -5,6 +5,7 @@ use effects::arm::Payload;
 use effects::sensor::TorqueScale;
 use torque::Corrected;
 
+use crate::regression::bodies::PER_LINK;
 use crate::regression::strengths::Strengths;
 use crate::report::JointFit;
 use crate::search::problem::{IMPOSSIBLE, Problem, Selection};
@@ -20,8 +21,8 @@ use crate::selection::torque_constants;
 use crate::selection::without_moment::without_moment;
 
 use crate::thresholds::{
-    CLEAR_THOUGH_UNDETERMINED, HOPELESS, LEAST_BESIDE_SOME_LINKS, LEAST_FINAL_SHARE, LEAST_UNDECIDED, PARTLY,
-    UNDECIDED_NATS,
+    CLEAR_THOUGH_UNDETERMINED, HOPELESS, LEAST_BESIDE_SOME_LINKS, LEAST_FINAL_SHARE, LEAST_MOUNTED, LEAST_UNDECIDED,
+    PARTLY, UNDECIDED_NATS,
 };
 
 /// Fits the named effects about the arm that contains them, including the rows near reversals. Removes effects that increase the
@@ -242,8 +243,11 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
             return Some(("another effect explains nearly as much in its place", false));
         }
         let evidence = |study: &mut Study| study.evidence_beside_best_background(&judged.named, member.candidate);
-        if hypothesis.is(&Payload) && study.strengths.are_of_some_links() && evidence(study) < LEAST_BESIDE_SOME_LINKS {
-            return Some(("links that are all wrong explain nearly as much in its place", true));
+        let is_doubtful = || {
+            study.strengths.are_of_some_links() || is_small_beside_the_last_link(study, &judged.named, member.candidate)
+        };
+        if hypothesis.is(&Payload) && is_doubtful() && evidence(study) < LEAST_BESIDE_SOME_LINKS {
+            return Some(("links that are wrong explain nearly as much in its place", true));
         }
         // If most links agree with the URDF, one wrong link is an unlikely explanation.
         let preferred = study.preferred.as_ref().map_or(0.0, Strengths::common);
@@ -262,6 +266,15 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
         let (rule, is_inertial) = rule(member)?;
         Some((member.candidate, rule, is_inertial))
     })
+}
+
+/// Whether a payload is small beside the last link, which may then differ from the URDF by as much: a centre of mass that lies some
+/// millimetres elsewhere has the same torque.
+fn is_small_beside_the_last_link(study: &Study, selected: &Selection, payload: usize) -> bool {
+    let candidate = &study.candidates[payload];
+    let mass = selected.fit.coefficient(candidate.columns[0]);
+    let drawn = study.arm.inertial_parameters()[(study.arm.dof() - 1) * PER_LINK];
+    candidate.columns.len() == PER_LINK && study.always_acts(payload) && mass > 0.0 && mass < LEAST_MOUNTED * drawn
 }
 
 /// Whether the effect is hardly larger than the structured residual of its joint, and of a kind that may be a part of that residual;

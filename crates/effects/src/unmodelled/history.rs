@@ -1,6 +1,6 @@
 //! Functions of past motion.
 
-use crate::{EffectKind, Form, Grounds, Law, Size, Spec, Term, Turn};
+use crate::{EffectKind, Form, Grounds, Law, Regressor, Size, Spec, Term, Turn};
 
 /// A function of past motion: creeping friction, hysteresis.
 #[derive(Debug)]
@@ -8,7 +8,7 @@ pub struct History;
 
 static SPEC: Spec = Spec {
     name: "history",
-    depends_on: "history",
+    depends_on: Some(Regressor::History),
     ..Spec::UNNAMED
 };
 

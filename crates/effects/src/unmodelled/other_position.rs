@@ -1,6 +1,6 @@
 //! Any smooth function of another joint's position.
 
-use crate::{EffectKind, Form, Grounds, Spec, Times, Turn};
+use crate::{EffectKind, Form, Grounds, Regressor, Spec, Times, Turn};
 
 /// Any smooth function of another joint's position.
 #[derive(Debug)]
@@ -8,7 +8,7 @@ pub struct OtherPosition;
 
 static SPEC: Spec = Spec {
     name: "other_position",
-    depends_on: "other_joint",
+    depends_on: Some(Regressor::OtherJoint),
     ..Spec::UNNAMED
 };
 

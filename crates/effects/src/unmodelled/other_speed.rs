@@ -1,6 +1,6 @@
 //! Even or nonlinear functions of another joint's velocity.
 
-use crate::{EffectKind, Form, Grounds, Law, Spec, Term, Turn};
+use crate::{EffectKind, Form, Grounds, Law, Regressor, Spec, Term, Turn};
 
 /// An even or nonlinear function of another joint's velocity.
 #[derive(Debug)]
@@ -8,7 +8,7 @@ pub struct OtherSpeed;
 
 static SPEC: Spec = Spec {
     name: "other_speed",
-    depends_on: "other_joint",
+    depends_on: Some(Regressor::OtherJoint),
     ..Spec::UNNAMED
 };
 

@@ -1,6 +1,6 @@
 //! Any smooth function of the joint's own position.
 
-use crate::{EffectKind, Form, Grounds, Spec, Times, Turn};
+use crate::{EffectKind, Form, Grounds, Regressor, Spec, Times, Turn};
 
 /// Any smooth function of the joint's own position.
 #[derive(Debug)]
@@ -8,7 +8,7 @@ pub struct OwnPosition;
 
 static SPEC: Spec = Spec {
     name: "own_position",
-    depends_on: "own_position",
+    depends_on: Some(Regressor::OwnPosition),
     ..Spec::UNNAMED
 };
 

@@ -1,7 +1,7 @@
 //! A sinusoid in time.
 
 use crate::laws::{is_same_wave, sine_and_cosine, wave};
-use crate::{EffectKind, Form, Grounds, Law, Spec, Term};
+use crate::{EffectKind, Form, Grounds, Law, Regressor, Spec, Term};
 
 /// A sinusoid in time.
 #[derive(Debug)]
@@ -11,7 +11,7 @@ static SPEC: Spec = Spec {
     name: "periodic",
     may_be_in_one_recording: true,
     is_suggested: true,
-    depends_on: "time",
+    depends_on: Some(Regressor::Time),
     ..Spec::UNNAMED
 };
 

@@ -1,7 +1,7 @@
 //! Products of position and velocity.
 
 use crate::laws::centred;
-use crate::{EffectKind, Form, Grounds, Law, Spec, Term, Times, Turn};
+use crate::{EffectKind, Form, Grounds, Law, Regressor, Spec, Term, Times, Turn};
 
 /// A product of position and velocity.
 #[derive(Debug)]
@@ -9,7 +9,7 @@ pub struct Product;
 
 static SPEC: Spec = Spec {
     name: "product",
-    depends_on: "own_position_times_speed",
+    depends_on: Some(Regressor::OwnPositionTimesSpeed),
     ..Spec::UNNAMED
 };
 

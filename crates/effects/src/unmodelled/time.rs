@@ -1,7 +1,7 @@
 //! Any slow function of time.
 
 use crate::laws::tent;
-use crate::{EffectKind, Form, Grounds, Law, Spec, Term, Turn};
+use crate::{EffectKind, Form, Grounds, Law, Regressor, Spec, Term, Turn};
 
 /// Any slow function of time.
 #[derive(Debug)]
@@ -10,7 +10,7 @@ pub struct Time;
 static SPEC: Spec = Spec {
     name: "time",
     may_be_in_one_recording: true,
-    depends_on: "time",
+    depends_on: Some(Regressor::Time),
     ..Spec::UNNAMED
 };
 

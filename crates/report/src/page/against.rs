@@ -1,7 +1,8 @@
 //! The state against which an effect is drawn: the horizontal axis, and the sign that is applied to residuals.
 
 use arm::{Arm, JointKind};
-use diagnosis::{Finding, Trace};
+use diagnosis::{Dependence, Finding, Trace};
+use effects::Regressor;
 
 /// A quantity of the state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,18 +46,18 @@ impl Against {
     }
 
     /// The state that an unexplained residual depends on; `None` if it is not a single quantity.
-    pub fn of_dependence(code: &str, arm: &Arm) -> Option<Self> {
-        match code {
-            "own_position" => Some(Self::Position),
-            "own_speed" => Some(Self::Speed),
-            "own_acceleration" => Some(Self::Acceleration),
-            "time" => Some(Self::Time),
-            "load" => Some(Self::Load),
-            other => {
-                let name = other.strip_prefix("other_joint:")?;
-                let joint = arm.joints().iter().position(|joint| joint.name == name)?;
+    pub fn of_dependence(dependence: &Dependence, arm: &Arm) -> Option<Self> {
+        match dependence.on {
+            Regressor::OwnPosition => Some(Self::Position),
+            Regressor::OwnSpeed => Some(Self::Speed),
+            Regressor::Time => Some(Self::Time),
+            Regressor::Load => Some(Self::Load),
+            Regressor::OtherJoint => {
+                let name = dependence.joint.as_ref()?;
+                let joint = arm.joints().iter().position(|joint| joint.name == *name)?;
                 Some(Self::OtherSpeed(joint))
             }
+            Regressor::History | Regressor::OwnPositionTimesSpeed => None,
         }
     }
 

@@ -79,7 +79,7 @@ impl Page<'_> {
                         } @else if open.depends_on.is_empty() {
                             "The residual has structure, but no regressor that was tried predicts it."
                         } @else {
-                            @let on: Vec<String> = open.depends_on.iter().map(|code| words::dependence(code)).collect();
+                            @let on: Vec<String> = open.depends_on.iter().map(words::dependence).collect();
                             "The residual depends on " (words::list(&on)) ", in a way that no effect in the catalogue describes."
                         }
                     }
@@ -95,10 +95,7 @@ impl Page<'_> {
     /// The residual against the quantities that it depends on, in at most two figures.
     fn residuals_against(&self, joint: usize, open: &Unexplained) -> Markup {
         let arm = self.figures.arm;
-        let states = open
-            .depends_on
-            .iter()
-            .filter_map(|code| Against::of_dependence(code, arm));
+        let states = open.depends_on.iter().filter_map(|on| Against::of_dependence(on, arm));
         let clouds: Vec<Cloud> = states
             .filter_map(|against| self.figures.unexplained(joint, against))
             .take(2)

@@ -6,10 +6,10 @@ use std::collections::BTreeMap;
 
 use arm::Arm;
 use diagnosis::{
-    Confusable, Finding, JointFit, JointRollout, Located, NotObservable, Parameter, Place, RecordingNames, Region,
-    Report, TimeWindow, Trace, Traces, Unexplained, Verdict,
+    Axis, Confusable, Dependence, Finding, JointFit, JointRollout, Located, NotObservable, Parameter, Place,
+    RecordingNames, Region, Report, TimeWindow, Trace, Traces, Unexplained, Verdict,
 };
-use effects::{Effect, Kind};
+use effects::{Effect, Kind, Regressor};
 use report::statistics::rms;
 
 use motion::{EFFECTS, Row, acts, arm, spread, trace};
@@ -143,7 +143,13 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
             .then(|| Unexplained {
                 joint: name(4),
                 share: 0.17,
-                depends_on: vec!["own_position".into(), format!("other_joint:{}", name(0))],
+                depends_on: vec![
+                    Regressor::OwnPosition.into(),
+                    Dependence {
+                        on: Regressor::OtherJoint,
+                        joint: Some(name(0)),
+                    },
+                ],
                 time: Vec::new(),
                 next: "Sweep this joint alone, slowly, over its range in both directions, twice.".into(),
             })
@@ -166,13 +172,13 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
                 repeatable: (j != 2).then_some(0.97 - 0.05 * j as f64),
                 regions: vec![
                     Region {
-                        axis: "angle",
+                        axis: Axis::Angle,
                         range: [-1.9, -0.8],
                         residual: 0.71,
                         residual_augmented: 0.05,
                     },
                     Region {
-                        axis: "near_reversal",
+                        axis: Axis::NearReversal,
                         range: [0.0, 0.05],
                         residual: 0.42,
                         residual_augmented: 0.08,
