@@ -41,7 +41,11 @@ pub enum Part {
 impl fmt::Display for Strengths {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // A finer strength is a product of factors, with as many digits as it has.
-        let links: Vec<String> = self.links.iter().map(|rho| ((rho * 1e3).round() / 1e3).to_string()).collect();
+        let links: Vec<String> = self
+            .links
+            .iter()
+            .map(|rho| ((rho * 1e3).round() / 1e3).to_string())
+            .collect();
         write!(
             f,
             "links {}; friction {}; offsets {}; torque constants {}",
