@@ -29,6 +29,7 @@ mod kinds;
 pub mod laws;
 mod machine;
 mod quantity;
+mod regressor;
 mod signals;
 mod spec;
 mod term;
@@ -48,8 +49,9 @@ pub use kinds::{Kind, NAMES, experiment_against, spec};
 pub use laws::Times;
 pub use machine::{Circumstance, Contact, Dry, Machine, Place, Scaled, Smooth, Sprung, State, sign};
 pub use quantity::Quantity;
+pub use regressor::Regressor;
 pub use signals::{Rigid, Scales, Signals};
-pub use spec::{Against, Detectability, Experiment, InUrdf, ONSET, Parameter, Range, Regressor, Scope, Shape, Spec};
+pub use spec::{Against, Detectability, Experiment, InUrdf, ONSET, Parameter, Range, Scope, Shape, Spec};
 pub use term::{Carried, Column, Cone, Law, OtherForm, Size, Term};
 
 /// Friction in the drive and its gear.

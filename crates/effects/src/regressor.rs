@@ -1,0 +1,35 @@
+//! What predicts a residual that no effect explains.
+
+/// What predicts the residual of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Regressor {
+    /// The joint's past motion.
+    History,
+    /// The joint's load.
+    Load,
+    /// The motion of another joint.
+    OtherJoint,
+    /// The joint's position.
+    OwnPosition,
+    /// The product of the joint's position and velocity.
+    OwnPositionTimesSpeed,
+    /// The joint's velocity.
+    OwnSpeed,
+    /// Time.
+    Time,
+}
+
+impl Regressor {
+    /// Its name in reports.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::History => "history",
+            Self::Load => "load",
+            Self::OtherJoint => "other_joint",
+            Self::OwnPosition => "own_position",
+            Self::OwnPositionTimesSpeed => "own_position_times_speed",
+            Self::OwnSpeed => "own_speed",
+            Self::Time => "time",
+        }
+    }
+}
