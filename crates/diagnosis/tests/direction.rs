@@ -3,26 +3,36 @@
 mod support;
 
 use diagnosis::{Diagnosis, Finding, Options, diagnose};
+use effects::Effect;
 use recording::RegularRecording;
-use support::{ELBOW, Motion, inputs, recorded, regular, sentences, start, trio};
+use support::{ELBOW, Motion, exports_what_it_reports, inputs, recorded, regular, sentences, trio};
 
 /// The diagnosis of four recordings of 16 s, the third held out, with friction of `warmth` times its level in each. On the elbow, the
 /// friction forwards exceeds that backwards by twice `half`, and the sensor has an `offset` (N m).
 fn diagnosed(warmth: [f64; 4], half: f64, offset: f64) -> Diagnosis {
+    diagnosed_with(warmth, [half, offset, 0.0], &[])
+}
+
+/// The same with `known` effects, and with `excess` of the friction at standstill (N m) on the elbow.
+fn diagnosed_with(warmth: [f64; 4], [half, offset, excess]: [f64; 3], known: &[Effect]) -> Diagnosis {
     let robot = trio();
     let record = |variant: usize| {
         let injected = |motion: &mut Motion, tau: &mut [f64]| {
-            assert!(motion.clock >= start(variant));
             for (joint, &speed) in motion.qd.iter().enumerate() {
-                let half = if joint == ELBOW { half } else { 0.0 };
-                tau[joint] += warmth[variant] * (0.6 * speed.signum() + half) + 0.4 * speed;
+                let [half, excess] = if joint == ELBOW { [half, excess] } else { [0.0; 2] };
+                let level = 0.6 + excess * (-(speed / 0.1).powi(2)).exp();
+                tau[joint] += warmth[variant] * (level * speed.signum() + half) + 0.4 * speed;
             }
             tau[ELBOW] += offset;
         };
         regular(&recorded(&robot, variant, 16.0, &injected))
     };
     let recordings: Vec<RegularRecording> = (0..4).map(record).collect();
-    diagnose(&robot, &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed")
+    let options = Options {
+        known: known.to_vec(),
+        ..Options::default()
+    };
+    diagnose(&robot, &inputs(&recordings), &options, &|_| {}).expect("it can be diagnosed")
 }
 
 /// The only finding for a constant torque, and whether the other name is its alternative.
@@ -38,7 +48,7 @@ fn constant(diagnosis: &Diagnosis) -> (&Finding, bool) {
     (finding, finding.confusable_with.iter().any(is_alias))
 }
 
-/// Friction of all recordings: in the mean one, and larger and smaller ones.
+/// The friction of each recording, relative to its usual level.
 const WARMTH: [f64; 4] = [0.8, 1.25, 1.1, 1.0];
 
 #[test]
@@ -69,4 +79,26 @@ fn equal_friction_leaves_the_alternative() {
         let (finding, has_alias) = constant(&diagnosis);
         assert!(has_alias && finding.probability == Some(0.5), "{finding:?}");
     }
+}
+
+/// Beside another dry friction, the Coulomb level is stated once, so that the exported model is the fitted one.
+#[test]
+fn an_offset_beside_another_friction_states_no_second_level() {
+    let sizes = [0.0, 0.25, 0.6];
+    let diagnosis = diagnosed_with(WARMTH, sizes, &[]);
+    let (finding, _) = constant(&diagnosis);
+    assert_eq!(finding.effect, "torque_offset");
+    let is_of_elbow = |finding: &&Finding| finding.joint.as_deref() == Some("elbow");
+    let elbow: Vec<&str> = diagnosis
+        .report
+        .findings
+        .iter()
+        .filter(is_of_elbow)
+        .map(|f| f.effect)
+        .collect();
+    assert!(
+        elbow.contains(&"stribeck_friction") && !elbow.contains(&"coulomb_friction"),
+        "{elbow:?}"
+    );
+    exports_what_it_reports(&diagnosis, &diagnosed_with(WARMTH, sizes, &diagnosis.effects), 0.2);
 }

@@ -7,19 +7,30 @@ use crate::term::{Law, Term};
 /// The part of a joint's largest speed below which its friction curve bends.
 const SLOW: f64 = 0.1;
 
-/// Friction in the recording `of[1]` only: sgn q̇ (form 0), q̇ (form 1) or |sgn q̇| (form 2, which is not in the background but compared
-/// with form 0) there, zero in the other recordings.
+/// Friction in the recording `of[1]` only: sgn q̇ (form 0) or q̇ (form 1) there, zero in the other recordings.
 pub static OWN_FRICTION: Law = Law {
     name: "own friction",
     column: |term, joint, motion| {
         if term.of[1] != motion.recording {
             Some(vec![0.0; motion.ticks()])
+        } else if term.form == 0 {
+            motion.map(|k| motion.sign(joint, k))
         } else {
-            match term.form {
-                0 => motion.map(|k| motion.sign(joint, k)),
-                1 => Some(motion.qd[joint].clone()),
-                _ => motion.map(|k| motion.sign(joint, k).abs()),
-            }
+            Some(motion.qd[joint].clone())
+        }
+    },
+    ..Law::PLAIN
+};
+
+/// A constant torque while the joint moves in the recording `of[1]`, zero in the other recordings. It is not in the background, but
+/// compared with its friction.
+pub static OWN_CONSTANT: Law = Law {
+    name: "own constant",
+    column: |term, joint, motion| {
+        if term.of[1] == motion.recording {
+            motion.map(|k| motion.sign(joint, k).abs())
+        } else {
+            Some(vec![0.0; motion.ticks()])
         }
     },
     ..Law::PLAIN

@@ -187,7 +187,8 @@ pub fn of_another_size(known: &Effect, found: &Finding) -> Option<String> {
 
 /// The experiment that shows which effect causes a residual that depends on `on`.
 pub fn next_experiment(joint: &str, on: Option<&Dependence>) -> String {
-    if let Some(other) = on.and_then(|on| on.joint.as_ref()) {
+    let is_other = |on: &&Dependence| on.on == Regressor::OtherJoint;
+    if let Some(other) = on.filter(is_other).and_then(|on| on.joint.as_ref()) {
         return format!("move {joint} alone with {other} at rest, then {other} alone with {joint} at rest");
     }
     match on.map(|on| on.on) {

@@ -86,9 +86,9 @@ impl Fit {
         columns.iter().map(|&column| self.coefficient(column)).collect()
     }
 
-    /// The information about the coefficients of the last `count` selected columns, if nothing is known of the other coefficients but
-    /// what the fit and the background's prior say (in the weights' units: the inverse of their covariance if rows were
-    /// independent).
+    /// The information about the coefficients of the last `count` selected columns, that is the inverse of their covariance, if nothing
+    /// is known of the other coefficients but what the recordings and the background's prior say. Beside a background, every piece of
+    /// evidence counts once; without one, every row.
     pub fn information_of_last(&self, count: usize) -> DMatrix<f64> {
         // The last block of a Cholesky factor is the factor of the Schur complement of the other blocks.
         let first = self.scale.len() - count;
@@ -152,7 +152,7 @@ impl Products {
     }
 
     /// Independent pieces of evidence per row of a joint.
-    pub fn evidence_per_row(&self, joint: usize) -> f64 {
+    fn evidence_per_row(&self, joint: usize) -> f64 {
         self.evidence[joint] / self.count[joint].max(1.0)
     }
 

@@ -86,8 +86,8 @@ pub struct Study {
     formed: Formed,
     /// Hypotheses that the final fit refused; they are not searched again.
     refused: Vec<(Hypothesis, Option<usize>)>,
-    /// The evidence, by joint, for the name of its constant torque, offset or asymmetric friction, if the differences between recordings
-    /// decide (nats).
+    /// The evidence, by joint, for the name of a constant torque that always acts, if the differences between recordings decide whether
+    /// it is an offset or asymmetric friction (nats).
     pub directions: BTreeMap<usize, f64>,
     /// Names that the final fit gave up, because wrong inertial parameters explain nearly as much.
     pub given_up: Vec<(Hypothesis, Option<usize>)>,

@@ -5,10 +5,8 @@
 //! recordings, their information H, and the Coulomb levels F_r, all from one fit, Q = min_a (a f − ĉ)ᵀ H (a f − ĉ) is compared for
 //! f_r = F_r (friction) and f_r = 1 (sensor).
 
-use std::cmp::Ordering;
-
 use effects::Term;
-use effects::background::OWN_FRICTION;
+use effects::background::{OWN_CONSTANT, OWN_FRICTION};
 use effects::friction::{CoulombFriction, FrictionAsymmetry};
 use effects::laws::{ABS_SIGN, ONE, SIGN};
 use effects::sensor::TorqueOffset;
@@ -24,97 +22,110 @@ use crate::selection::torque_constants::keep_named_ones;
 use crate::thresholds::DIRECTION_NATS;
 
 /// Renames the constant torques of the final fit that the differences between recordings call otherwise, and stores the evidence for
-/// all of these names in the study; returns the new resamplings if a name changes.
+/// these names, and for those of asymmetric friction that are confirmed, in the study; returns the new resamplings if a name changes.
 pub fn decide(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
     let mut changed = false;
     for member in judged.named.set.clone() {
         let Some(joint) = names(study, member) else { continue };
-        let Some((level, constant)) = level_and_constant(study, &judged.named, member, joint) else {
+        let Some(constants) = Constants::new(study, &judged.named, member, joint) else {
             continue;
         };
-        let Some(nats) = evidence_for_friction(study, &judged.named, member, joint, level) else {
-            continue;
-        };
-        let is_friction = study.candidates[member].hypothesis.is(&FrictionAsymmetry);
-        let may_be = match nats.partial_cmp(&0.0) {
-            // Friction does not drive a joint.
-            Some(Ordering::Greater) => constant.abs() < level,
-            _ => true,
-        };
-        if nats.abs() < DIRECTION_NATS || !may_be {
+        let nats = constants.evidence_for_friction();
+        // Friction opposes the motion in each direction: the constant is smaller than the level.
+        if nats.abs() < DIRECTION_NATS || nats > 0.0 && !constants.oppose_the_motion() {
             continue;
         }
-        study.directions.insert(joint, nats.abs());
-        if is_friction != (nats > 0.0) {
-            rename(study, judged, member, joint, nats);
+        let is_friction = study.candidates[member].hypothesis.is(&FrictionAsymmetry);
+        if is_friction == (nats > 0.0) {
+            // An offset that keeps its name was not in doubt.
+            if is_friction {
+                study.directions.insert(joint, nats);
+            }
+        } else if rename(study, judged, member, joint, nats > 0.0) {
+            study.directions.insert(joint, nats.abs());
             changed = true;
         }
     }
     changed.then(|| resample(study, &judged.named))
 }
 
-/// The Coulomb level and the constant torque of a joint in the fit (N m or N), if the two may be asymmetric friction.
-fn level_and_constant(study: &Study, selected: &Selection, member: usize, joint: usize) -> Option<(f64, f64)> {
-    let terms = &study.table.terms;
-    let coefficient = |wanted: Term| {
-        let column = terms.iter().position(|term| *term == wanted)?;
-        let is_fitted = selected.fit.selected().contains(&column);
-        is_fitted.then(|| selected.fit.coefficient(column))
-    };
-    let level = coefficient(Term::on(&SIGN, joint)).filter(|level| *level > 0.0)?;
-    let constant = study.candidates[member].columns.iter().rev().copied().next()?;
-    Some((level, selected.fit.coefficient(constant)))
+/// The constant torques of a joint in the training recordings that move it.
+struct Constants {
+    /// One per recording (N m or N).
+    values: DVector<f64>,
+    /// Their information.
+    information: DMatrix<f64>,
+    /// The Coulomb levels of the recordings (N m or N).
+    levels: DVector<f64>,
 }
 
-/// The evidence for friction that depends on the direction, against an offset of the sensor (nats; negative: for the offset); `None`
-/// if fewer than two recordings move the joint, or if friction is the same in all of them.
-///
-/// The variance of the constants about either law is unknown, because an offset may drift, too: it is at least that of the fit.
-fn evidence_for_friction(study: &Study, selected: &Selection, member: usize, joint: usize, level: f64) -> Option<f64> {
-    let recordings = moved(&study.motions, &study.scales).swap_remove(joint);
-    if recordings.len() < 2 || study.strengths.friction <= 0.0 {
-        return None;
+impl Constants {
+    /// Those in the place of the constant that `member` names on `joint`; `None` if fewer than two recordings move the joint, if
+    /// friction is the same in all of them, or if the joint has no dry friction.
+    fn new(study: &Study, selected: &Selection, member: usize, joint: usize) -> Option<Self> {
+        let mut recordings = moved(&study.motions, &study.scales).swap_remove(joint);
+        recordings.retain(|&recording| study.table.joints[joint].count[recording] > 0);
+        if recordings.len() < 2 || study.strengths.friction <= 0.0 {
+            return None;
+        }
+        let terms = &study.table.terms;
+        let constant = study.candidates[member].columns.last().copied()?;
+        let mut columns = selected.fit.selected().to_vec();
+        columns.retain(|&column| column != constant);
+        let common = columns
+            .iter()
+            .position(|&column| terms[column] == Term::on(&SIGN, joint))?;
+        let own_constant = |&recording: &usize| Term::on(&OWN_CONSTANT, joint).of(recording);
+        let more = recordings.iter().map(own_constant).collect();
+        let fit = study.fit_with(&columns, more, &selected.fit.weights);
+        let count = recordings.len();
+        let common = fit.coefficients[fit.background + common];
+        // The terms of the background are the first of every table, so that their columns have the same indices in this fit.
+        let level = |&recording: &usize| {
+            let own = Term::on(&OWN_FRICTION, joint).of(recording);
+            let column = terms.iter().position(|term| *term == own);
+            common + column.map_or(0.0, |column| fit.coefficient(column))
+        };
+        Some(Self {
+            values: DVector::from_column_slice(&fit.coefficients[fit.coefficients.len() - count..]),
+            information: fit.information_of_last(count),
+            levels: DVector::from_iterator(count, recordings.iter().map(level)),
+        })
     }
-    let columns = selected.fit.selected();
-    let constant = *study.candidates[member].columns.last()?;
-    let others: Vec<usize> = columns.iter().copied().filter(|&column| column != constant).collect();
-    let of = |recording: usize, form: usize| Term::on(&OWN_FRICTION, joint).of(recording).form(form);
-    let more = recordings.iter().map(|&recording| of(recording, 2)).collect();
-    let (products, fit) = study.fit_with(&others, more, &selected.fit.weights);
-    let count = recordings.len();
-    let constants = DVector::from_column_slice(&fit.coefficients[fit.coefficients.len() - count..]);
-    let information = fit.information_of_last(count) * products.evidence_per_row(joint);
-    // The terms of the background are the first of every table, so that their columns have the same indices in this fit.
-    let own = |&recording: &usize| {
-        let term = of(recording, 0);
-        let column = study.table.terms.iter().position(|other| *other == term);
-        column.map_or(0.0, |column| fit.coefficient(column))
-    };
-    let common = others
-        .iter()
-        .position(|&column| study.table.terms[column] == Term::on(&SIGN, joint));
-    let level = common.map_or(level, |at| fit.coefficients[fit.background + at]);
-    let levels = DVector::from_iterator(count, recordings.iter().map(|recording| level + own(recording)));
-    let free = (count - 1) as f64;
-    let misfit = |shape: &DVector<f64>| free + least(&information, &constants, shape);
-    let (friction, sensor) = (misfit(&levels), misfit(&DVector::repeat(count, 1.0)));
-    Some(0.5 * free * (sensor / friction).ln())
-}
 
-/// min over a of (a f − c)ᵀ H (a f − c).
-fn least(information: &DMatrix<f64>, constants: &DVector<f64>, shape: &DVector<f64>) -> f64 {
-    let weighted = information * shape;
-    let square = shape.dot(&weighted);
-    let all = constants.dot(&(information * constants));
-    if square > 0.0 {
-        (all - constants.dot(&weighted).powi(2) / square).max(0.0)
-    } else {
-        all
+    /// Whether the constants and the levels together are friction in both directions of all recordings.
+    fn oppose_the_motion(&self) -> bool {
+        self.values
+            .iter()
+            .zip(&self.levels)
+            .all(|(constant, level)| constant.abs() < *level)
+    }
+
+    /// The evidence for friction that depends on the direction, against an offset of the sensor (nats; negative: for the offset).
+    ///
+    /// The variance of the constants about either law is unknown, because an offset may drift, too: it is at least that of the fit.
+    fn evidence_for_friction(&self) -> f64 {
+        let free = (self.values.len() - 1) as f64;
+        let misfit = |shape: &DVector<f64>| free + self.misfit(shape);
+        let sensor = misfit(&DVector::repeat(self.values.len(), 1.0));
+        0.5 * free * (sensor / misfit(&self.levels)).ln()
+    }
+
+    /// min over a of (a f − c)ᵀ H (a f − c).
+    fn misfit(&self, shape: &DVector<f64>) -> f64 {
+        let weighted = &self.information * shape;
+        let square = shape.dot(&weighted);
+        let all = self.values.dot(&(&self.information * &self.values));
+        if square > 0.0 {
+            (all - self.values.dot(&weighted).powi(2) / square).max(0.0)
+        } else {
+            all
+        }
     }
 }
 
-/// Replaces the name of `member` by the other one.
-fn rename(study: &mut Study, judged: &mut Judged, member: usize, joint: usize, nats: f64) {
+/// Replaces the name of `member` by asymmetric friction, or by an offset; returns whether that name is allowed.
+fn rename(study: &mut Study, judged: &mut Judged, member: usize, joint: usize, is_friction: bool) -> bool {
     let [friction, offset, dry] = [
         (
             Hypothesis::of(&FrictionAsymmetry),
@@ -124,18 +135,29 @@ fn rename(study: &mut Study, judged: &mut Judged, member: usize, joint: usize, n
         (Hypothesis::of(&CoulombFriction), vec![Term::on(&SIGN, joint)]),
     ]
     .map(|(hypothesis, terms)| study.add(hypothesis, Some(joint), terms));
+    let new = if is_friction { friction } else { offset };
     let mut set = judged.named.others(member);
-    if nats > 0.0 {
-        set.retain(|&c| study.candidates[c].columns != study.candidates[dry].columns);
-        set.push(friction);
-    } else {
-        set.extend([dry, offset]);
+    if is_friction {
+        set.retain(|&c| c != dry);
     }
+    let products = study.training_products();
+    let problem = study.problem(&products);
+    if !study.allowed().contains(&new) || set.iter().any(|&c| problem.exclude(c, new)) {
+        return false;
+    }
+    // Another friction of the joint may state the Coulomb level.
+    let level = study.candidates[dry].columns[0];
+    let states_the_level = |&c: &usize| study.candidates[c].columns.contains(&level);
+    if !is_friction && !set.iter().any(states_the_level) {
+        set.push(dry);
+    }
+    set.push(new);
     keep_named_ones(study, &set);
     let products = study.training_products();
     let problem = study.problem(&products);
     let next = problem.choose(set, &judged.named.fit.weights);
-    study.note("the constant torque of each recording decides", &judged.named, &next);
+    study.note("the constant torques of the recordings decide", &judged.named, &next);
     judged.members = judge::describe(study, &problem, &next);
     judged.named = next;
+    true
 }

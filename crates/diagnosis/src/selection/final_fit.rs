@@ -244,7 +244,9 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
         }
         let evidence = |study: &mut Study| study.evidence_beside_best_background(&judged.named, member.candidate);
         let is_doubtful = || {
-            study.strengths.are_of_some_links() || is_small_beside_the_last_link(study, &judged.named, member.candidate)
+            let may_differ = study.stated.links != Some(0.0);
+            may_differ && is_small_beside_the_last_link(study, &judged.named, member.candidate)
+                || study.strengths.are_of_some_links()
         };
         if hypothesis.is(&Payload) && is_doubtful() && evidence(study) < LEAST_BESIDE_SOME_LINKS {
             return Some(("links that are wrong explain nearly as much in its place", true));

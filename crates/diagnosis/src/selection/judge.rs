@@ -59,6 +59,8 @@ impl Judged {
 /// Judges `selected`; `held` are the products of the held-out recordings, if there are any.
 pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut selected: Selection) -> Judged {
     let problem = study.problem(products);
+    let is_unmodelled = |&c: &usize| study.candidates[c].hypothesis.name().is_none();
+    let had_unmodelled = selected.set.iter().any(is_unmodelled);
     let off = |selected: &Selection| -> Option<usize> {
         let is_off = |&c: &usize| !is_at_its_size(&study.candidates[c], &selected.fit);
         selected.set.iter().copied().find(is_off)
@@ -81,8 +83,6 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
         study.note("does not predict held-out recordings", &selected, &next);
         selected = next;
     }
-    let is_unmodelled = |&c: &usize| study.candidates[c].hypothesis.name().is_none();
-    let had_unmodelled = selected.set.iter().any(is_unmodelled);
     loop {
         members = describe(study, &problem, &selected);
         let Some(weak) = weakest(study, &members) else { break };
@@ -95,8 +95,9 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
         .partition(|member| study.candidates[member.candidate].hypothesis.name().is_none());
     let mut kept = problem.choose(named.iter().map(|m| m.candidate).collect(), &selected.fit.weights);
     if had_unmodelled {
-        // Unmodelled forms, also those that were too small, may have replaced simple effects. A constant is allowed if no other form remains on its joint, or if it
-        // is much larger than the residual of the named effects there, because unmodelled forms also represent constants.
+        // Unmodelled forms, including those that were dropped, may have displaced simple effects. A constant is allowed if no other
+        // form remains on its joint, or if it is much larger than the residual of the named effects there, because unmodelled forms
+        // also represent constants.
         let candidates = &study.candidates;
         let simple: Vec<usize> = (0..candidates.len())
             .filter(|&c| candidates[c].hypothesis.spec().is_baseline_or_constant)

@@ -97,7 +97,8 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
     let ground = problem.reweighted(without.clone());
     // The differences between recordings may decide on the equivalent name, which the fit does not know.
     let alias = alias(study, selected, member, &set);
-    let decided = alias.and_then(|(_, joint)| study.directions.get(&joint?).copied());
+    let always = alias.filter(|_| study.always_acts(member));
+    let decided = always.and_then(|(_, joint)| study.directions.get(&joint?).copied());
     let is_other = |c: usize| {
         let other = &study.candidates[c];
         let is_excluded = decided.is_some() && Some((other.hypothesis, other.joint)) == alias;

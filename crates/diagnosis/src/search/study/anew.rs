@@ -38,21 +38,24 @@ impl Study {
     fn reduced_table(&self, columns: &[usize], moving: Moving) -> Table {
         let background = 0..self.prior.terms().len();
         let columns: Vec<usize> = background.chain(columns.iter().copied()).collect();
-        let empty = Table::new(&self.motions, &self.rigid, &self.scales, Vec::new(), &[], moving);
+        let mut empty = Table::new(&self.motions, &self.rigid, &self.scales, Vec::new(), &[], moving);
+        // The torques of this table contain those of the effects in the arm about which it is evaluated.
+        for (joint, known) in empty.joints.iter_mut().zip(&self.table.joints) {
+            joint.y.clone_from(&known.y);
+        }
         empty.with_columns_of(&self.table, &columns)
     }
 
-    /// `columns` and, after them, `more` terms fitted at given weights of the joints: the products over the training recordings, and
-    /// the fit. Its columns are those of the background, and then the others in this order.
-    pub fn fit_with(&self, columns: &[usize], more: Vec<Term>, weights: &[f64]) -> (Products, Fit) {
+    /// `columns` and, after them, `more` terms fitted to the training recordings at given weights of the joints. The fit's columns are
+    /// those of the background, and then the others in this order.
+    pub fn fit_with(&self, columns: &[usize], more: Vec<Term>, weights: &[f64]) -> Fit {
         let mut table = self.reduced_table(columns, self.moving);
         table.add(&self.motions, &self.rigid, &self.scales, more, None);
         let is_fitted = |recording: usize| self.fitted[recording];
         let products = Products::new(&table, is_fitted, &self.seconds, &self.motions.tempo, &self.floor);
         let products = products.with_background(self.background());
         let columns: Vec<usize> = (self.prior.terms().len()..table.terms.len()).collect();
-        let fit = products.solve(&table, &columns, weights);
-        (products, fit)
+        products.solve(&table, &columns, weights)
     }
 
     /// Makes the prior of the links' inertial parameters quadratic about the bodies of `fit`.
