@@ -5,7 +5,7 @@ mod support;
 use diagnosis::{Diagnosis, Finding, Options, diagnose};
 use effects::Effect;
 use recording::RegularRecording;
-use support::{ELBOW, Motion, exports_what_it_reports, inputs, recorded, regular, sentences, trio};
+use support::{ELBOW, Motion, effects_on, exports_what_it_reports, inputs, recorded, regular, sentences, trio};
 
 /// The diagnosis of four recordings of 16 s, the third held out, with friction of `warmth` times its level in each. On the elbow, the
 /// friction forwards exceeds that backwards by twice `half`, and the sensor has an `offset` (N m).
@@ -88,14 +88,7 @@ fn an_offset_beside_another_friction_states_no_second_level() {
     let diagnosis = diagnosed_with(WARMTH, sizes, &[]);
     let (finding, _) = constant(&diagnosis);
     assert_eq!(finding.effect, "torque_offset");
-    let is_of_elbow = |finding: &&Finding| finding.joint.as_deref() == Some("elbow");
-    let elbow: Vec<&str> = diagnosis
-        .report
-        .findings
-        .iter()
-        .filter(is_of_elbow)
-        .map(|f| f.effect)
-        .collect();
+    let elbow = effects_on(&diagnosis, "elbow");
     assert!(
         elbow.contains(&"stribeck_friction") && !elbow.contains(&"coulomb_friction"),
         "{elbow:?}"

@@ -4,7 +4,7 @@ mod support;
 
 use diagnosis::{Diagnosis, Input, Options, diagnose};
 use recording::RegularRecording;
-use support::{ELBOW, Motion, baseline_friction, diagnosed, recorded, regular, sentences, start, trio};
+use support::{ELBOW, Motion, baseline_friction, diagnosed, effects_on, recorded, regular, sentences, start, trio};
 
 /// Friction that only reaches its level at some speed is not larger at standstill.
 #[test]
@@ -123,14 +123,7 @@ fn recordings_from_before_do_not_worsen_the_size_of_new_stribeck_friction() {
             );
             high - low
         });
-        let elbow = |finding: &&diagnosis::Finding| finding.joint.as_deref() == Some("elbow");
-        let names: Vec<&str> = diagnosis
-            .report
-            .findings
-            .iter()
-            .filter(elbow)
-            .map(|finding| finding.effect)
-            .collect();
+        let names = effects_on(&diagnosis, "elbow");
         assert!(!names.contains(&"coulomb_friction"), "its level is stated: {said:?}");
         widths
     });

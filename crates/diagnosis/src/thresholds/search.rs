@@ -74,3 +74,9 @@ pub const FORMS_AT_ONCE: usize = 3;
 pub const MOST_PROMISING: usize = 150;
 /// The number of times that the next most promising candidates are tried if the first do not pay.
 pub const MOST_BATCHES: usize = 6;
+/// The score beyond that of the present background (nats) from which a smaller part of it cannot be replaced by a few effects, and neither
+/// can a still smaller one. Source: 85 simulated cases, whose answers are the same to the byte without this limit.
+pub const HOPELESS_EXCHANGE: f64 = 100.0;
+/// The largest gain of a later effect in place of the background, relative to that of the one before it. Source: as for
+/// [`HOPELESS_EXCHANGE`].
+pub const MOST_LATER_GAIN: f64 = 2.0;

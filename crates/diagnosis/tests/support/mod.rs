@@ -171,6 +171,13 @@ pub fn named(diagnosis: &Diagnosis) -> Vec<(&str, Option<&str>)> {
         .collect()
 }
 
+/// The effects of the findings on a joint.
+pub fn effects_on<'a>(diagnosis: &'a Diagnosis, joint: &str) -> Vec<&'a str> {
+    let findings = diagnosis.report.findings.iter();
+    let on_joint = findings.filter(|finding| finding.joint.as_deref() == Some(joint));
+    on_joint.map(|finding| finding.effect).collect()
+}
+
 /// The sentences of the findings.
 pub fn sentences(diagnosis: &Diagnosis) -> Vec<&str> {
     diagnosis

@@ -10,17 +10,12 @@ use crate::regression::fit::Products;
 use crate::regression::strengths::{Part, Strengths};
 use crate::search::problem::{Growth, Selection};
 use crate::thresholds::{
-    LINK_STRENGTHS, MOST_CONSTANT, MOST_DEVIATIONS, MOST_SELECTED, MOVED, OWN_STRENGTHS, PER_IMITATION,
+    HOPELESS_EXCHANGE, LINK_STRENGTHS, MOST_CONSTANT, MOST_DEVIATIONS, MOST_LATER_GAIN, MOST_SELECTED, MOVED,
+    OWN_STRENGTHS, PER_IMITATION,
 };
 
 /// The largest number of effects that may together replace a part of the background.
 const IN_PLACE: usize = 3;
-
-/// The score beyond that of the present background (nats) from which a smaller part of it cannot be replaced by a few effects.
-const HOPELESS_EXCHANGE: f64 = 100.0;
-
-/// The largest gain of a later effect in place of the background, relative to that of the one before it.
-const MOST_LATER_GAIN: f64 = 2.0;
 
 /// The largest number of consecutive changes of the strengths. Recomputed weights may raise a score again, so that two
 /// strengths could alternate forever.
