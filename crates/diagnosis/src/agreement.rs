@@ -116,11 +116,11 @@ pub fn searched(arm: &Arm, inputs: &[Input<'_>], known: &[Effect], other: &Agree
 
 /// What the fit `selected` says.
 fn found(study: &Study, products: &Products, selected: &Selection) -> Agreement {
-    let joints = || 0..study.arm.dof();
+    let joints = || 0..study.data.arm.dof();
     // The mean square about the mean, of the rows that are fitted.
     let variance = |joint: usize| {
         let rows = study.training_rows(joint);
-        let torques: Vec<f64> = rows.iter().map(|&row| study.measured[joint][row]).collect();
+        let torques: Vec<f64> = rows.iter().map(|&row| study.data.measured[joint][row]).collect();
         deviation(torques.iter()).powi(2) + products.floor[joint]
     };
     let variances: Vec<f64> = joints().map(|joint| variance(joint).max(f64::MIN_POSITIVE)).collect();
@@ -133,7 +133,7 @@ fn found(study: &Study, products: &Products, selected: &Selection) -> Agreement 
         unexplained: joints()
             .map(|joint| selected.fit.rss[joint] / (products.count[joint].max(1.0) * variances[joint]))
             .collect(),
-        cutoff: study.motions.cutoff,
+        cutoff: study.data.motions.cutoff,
         strengths: study.strengths.clone(),
     }
 }

@@ -32,8 +32,8 @@ pub fn diagnose(
     progress(Step::new(0.08, "filtering, rigid-body torques"));
     let data = Data::new(arm, inputs, options)?;
     let mut study = Study::new(data, options);
-    let own_load = OwnLoad::found(&study).filter(|load| !(study.motions.one_clock && load.changed_once(&study)));
-    if let (Some(load), None) = (&own_load, study.motions.changed_at) {
+    let own_load = OwnLoad::found(&study).filter(|load| !(study.data.motions.one_clock && load.changed_once(&study)));
+    if let (Some(load), None) = (&own_load, study.data.motions.changed_at) {
         study = study.with_own_load(&load.recordings, &load.prior(), options);
     }
     let identified = identified(&mut study);
@@ -62,7 +62,7 @@ fn next_experiment(
     }
     if !conclusion.not_enough_data.is_empty() {
         let remark = "no motion is proposed, because the recordings do not contain enough data";
-        study.motions.remarks.push(remark.to_owned());
+        study.data.motions.remarks.push(remark.to_owned());
         return Ok(None);
     }
     progress(Step::new(0.8, "next experiment"));

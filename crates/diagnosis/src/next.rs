@@ -218,7 +218,7 @@ fn confusions(
         let columns = set.iter().flat_map(|&c| study.candidates[c].columns.iter().copied());
         columns.collect::<BTreeSet<usize>>().into_iter().collect()
     };
-    let index = |name: &str| study.arm.joints().iter().position(|joint| joint.name == name);
+    let index = |name: &str| study.data.arm.joints().iter().position(|joint| joint.name == name);
     let (mut list, mut unpredicted) = (Vec::new(), Vec::new());
     for (finding, member) in findings {
         let Some(member) = *member else { continue };
@@ -283,7 +283,7 @@ fn confusions(
 fn visible<'a>(study: &Study, selected: &Selection, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> {
     let of = |entry: &'a NotObservable| {
         let name = entry.joint.as_deref()?;
-        let joint = study.arm.joints().iter().position(|joint| joint.name == name)?;
+        let joint = study.data.arm.joints().iter().position(|joint| joint.name == name)?;
         let spec = effects::spec(entry.effect)?;
         if matches!(spec.detectability, Detectability::Limit { .. }) {
             let (parameter, before) = entry.would_be_seen_below.iter().next()?;

@@ -55,7 +55,7 @@ impl FinalFit {
             None => found(study, progress),
         };
         resampled.allow_for_other_background(study, &judged.named);
-        let joints = (0..study.arm.dof()).into_par_iter();
+        let joints = (0..study.data.arm.dof()).into_par_iter();
         let residual = joints
             .map(|joint| predict::augmented(study, &judged.named, joint))
             .collect();

@@ -91,7 +91,7 @@ impl Conclusion {
             // With too few data, no finding is supported.
             findings.clear();
         }
-        let by_exported: Vec<Vec<f64>> = (0..study.motions.dof)
+        let by_exported: Vec<Vec<f64>> = (0..study.data.motions.dof)
             .into_par_iter()
             .map(|joint| exported(study, &judged.named, joint))
             .collect();
@@ -120,7 +120,7 @@ impl Conclusion {
                 .then(a.effect.cmp(b.effect))
                 .then(a.joint.cmp(&b.joint))
         });
-        let changed = study.motions.changed_at.map(|_| {
+        let changed = study.data.motions.changed_at.map(|_| {
             let new = findings.iter().filter(|(finding, _)| finding.since_before);
             new.map(|(finding, _)| sentences::changed(finding)).collect()
         });
@@ -128,7 +128,7 @@ impl Conclusion {
         let is_named = |(finding, _): &(Finding, _)| finding.since_before && finding.as_effect.spec().is_wrong_mass;
         let different_load = own_load
             .filter(|_| !findings.iter().any(is_named))
-            .map(|load| different(load, &study.motions.sources));
+            .map(|load| different(load, &study.data.motions.sources));
         for (finding, _) in &mut findings {
             finding.sentence = sentences::of(finding, &fit);
         }
@@ -166,12 +166,12 @@ impl Conclusion {
     /// The diagnosis of `arm`, without a next experiment.
     pub fn diagnosis(self, arm: &Arm, mut study: Study) -> Diagnosis {
         let names = |held_out: bool| {
-            let sources = study.motions.sources.iter();
+            let sources = study.data.motions.sources.iter();
             let selected = sources.filter(|source| source.held_out == held_out);
             selected.map(|source| source.name.clone()).collect()
         };
         let effects = self.effects().collect();
-        study.motions.remarks.extend(self.unnamed);
+        study.data.motions.remarks.extend(self.unnamed);
         let findings: Vec<Finding> = self.findings.into_iter().map(|(finding, _)| finding).collect();
         let report = Report {
             schema: SCHEMA,
@@ -179,7 +179,7 @@ impl Conclusion {
             recordings: RecordingNames {
                 train: names(false),
                 held_out: names(true),
-                used_in_part: used_in_part(&study.motions.sources),
+                used_in_part: used_in_part(&study.data.motions.sources),
             },
             doubts: Vec::new(),
             warnings: Vec::new(),
@@ -203,7 +203,7 @@ impl Conclusion {
             traces: self.traces,
             effects,
             next: None,
-            remarks: std::mem::take(&mut study.motions.remarks),
+            remarks: std::mem::take(&mut study.data.motions.remarks),
             trace: study.trace.take(),
         }
     }
@@ -258,7 +258,7 @@ fn fit(study: &Study, residuals: [&[Vec<f64>]; 2], identified: &[Option<f64>]) -
             held_out_nrmse_exported: of_exported.held_out_nrmse_augmented,
             ..errors(study, joint, residual)
         };
-        (study.arm.joints()[joint].name.clone(), errors)
+        (study.data.arm.joints()[joint].name.clone(), errors)
     };
     residuals[0].iter().enumerate().map(of).collect()
 }
@@ -277,7 +277,7 @@ fn without_known(study: &Study, options: &Options, findings: &mut Vec<(Finding, 
             }
             None => remarks.push(sentences::not_subtracted(
                 known,
-                study.motions.cutoff < LEAST_FOR_DYNAMICS,
+                study.data.motions.cutoff < LEAST_FOR_DYNAMICS,
             )),
         }
     }

@@ -37,7 +37,7 @@ struct Regression {
 /// Findings from second encoders, and from motor currents beside torque sensors.
 pub fn findings(study: &Study, named: &Selection, inputs: &[Input<'_>]) -> Vec<Finding> {
     let mut list = Vec::new();
-    for joint in 0..study.motions.dof {
+    for joint in 0..study.data.motions.dof {
         let already = named.set.iter().any(|&c| {
             let candidate = &study.candidates[c];
             candidate.joint == Some(joint) && candidate.hypothesis.is(&JointElasticity)
@@ -61,7 +61,7 @@ fn gather(
     for input in inputs {
         let recording = input.recording;
         for segment in &recording.segments {
-            let cutoff = study.motions.cutoff.min(LARGEST_CUTOFF / recording.period);
+            let cutoff = study.data.motions.cutoff.min(LARGEST_CUTOFF / recording.period);
             let kernel = Kernel::new(cutoff, recording.period);
             let stride = ((SENSOR_SPACING / cutoff / recording.period) as usize).max(1);
             if segment.ticks.len() < 2 * kernel.reach() + SENSOR_ROWS * stride {
@@ -79,7 +79,7 @@ fn gather(
                 continue;
             };
             for (k, y) in y.into_iter().enumerate() {
-                if speed[k].abs() > SENSORS_MOVE * study.scales.rest[joint] {
+                if speed[k].abs() > SENSORS_MOVE * study.data.scales.rest[joint] {
                     rows.x.push(x.iter().map(|column| column[k]).collect());
                     rows.y.push(y);
                     rows.held_out.push(input.held_out);
@@ -174,7 +174,7 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
         let friction: Vec<f64> = filter(q, Order::First).iter().map(|v| v.signum()).collect();
         Some((vec![ones, place, tau, friction], y))
     });
-    let range = study.scales.range[joint];
+    let range = study.data.scales.range[joint];
     let result = regress(&rows)?;
     let (compliance, error) = (-result.coefficients[2], result.errors[2]);
     let bends = compliance * deviation(rows.x.iter().map(|x| x[2]));
@@ -186,7 +186,7 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
     if !credible {
         return None;
     }
-    let kind = study.arm.joints()[joint].kind;
+    let kind = study.data.arm.joints()[joint].kind;
     let unit = Quantity::Stiffness.unit(kind);
     let stiffness = Parameter {
         value: 1.0 / compliance,
@@ -196,7 +196,7 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
         ],
         unit,
     };
-    let name = study.arm.joints()[joint].name.clone();
+    let name = study.data.arm.joints()[joint].name.clone();
     let effect = Effect::of(&JointElasticity).on(name.clone());
     let effect = effect.with("stiffness", stiffness.value).with("damping", 0.0);
     let gain = result.held_out.map(|explained| 1.0 - (1.0 - explained).max(0.0).sqrt());
@@ -237,9 +237,9 @@ fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>])
     if !result.follows(FRICTION_EXPLAINS) {
         return Vec::new();
     }
-    let kind = study.arm.joints()[joint].kind;
-    let name = study.arm.joints()[joint].name.clone();
-    let torque = study.scales.torque[joint].max(1e-300);
+    let kind = study.data.arm.joints()[joint].kind;
+    let name = study.data.arm.joints()[joint].name.clone();
+    let torque = study.data.scales.torque[joint].max(1e-300);
     let gain = result.held_out.map(|explained| 1.0 - (1.0 - explained).max(0.0).sqrt());
     let place = BY_MOTOR_CURRENT;
     let mut list = Vec::new();
@@ -261,7 +261,7 @@ fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>])
         let coefficient = result.parameter(1, Quantity::Damping.unit(kind));
         let effect = Effect::of(&ViscousFriction).on(name.clone());
         let effect = effect.with("coefficient", coefficient.value);
-        let share = coefficient.value * study.scales.speed[joint] / torque;
+        let share = coefficient.value * study.data.scales.speed[joint] / torque;
         list.push(finding(
             effect,
             &name,

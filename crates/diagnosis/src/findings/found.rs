@@ -50,7 +50,7 @@ fn finding(
     standing: &Standing,
 ) -> Vec<Finding> {
     let candidate = &study.candidates[member.candidate];
-    let joint_name = |joint: usize| study.arm.joints()[joint].name.clone();
+    let joint_name = |joint: usize| study.data.arm.joints()[joint].name.clone();
     let share_by_joint: BTreeMap<String, f64> = member
         .shares
         .iter()
@@ -112,7 +112,7 @@ fn finding(
                 Vec::new()
             },
             place: place.clone(),
-            since_before: study.motions.changed_at.is_some() && !study.always_acts(member.candidate),
+            since_before: study.data.motions.changed_at.is_some() && !study.always_acts(member.candidate),
             corrects: true,
             ..Finding::of(named.effect)
         });
@@ -126,7 +126,7 @@ fn as_last_link(study: &Study, candidate: usize) -> Option<Named> {
     let is_payload = study.candidates[candidate].hypothesis.is(&Payload);
     let links = Hypothesis::of(&InertialParameters);
     let is_wrong = study.strengths.links.iter().any(|&rho| rho > 0.0);
-    (is_payload && study.always_acts(candidate) && is_wrong).then(|| (links, study.arm.dof().checked_sub(1)))
+    (is_payload && study.always_acts(candidate) && is_wrong).then(|| (links, study.data.arm.dof().checked_sub(1)))
 }
 
 /// The share of the drive's inertia that is named with a spring or a gap.
@@ -146,22 +146,22 @@ fn rotor_share(study: &Study, judged: &Judged, candidate: usize) -> f64 {
 
 fn place(study: &Study, hypothesis: Hypothesis, candidate: usize) -> Place {
     if let Some([from, to]) = study.window(candidate) {
-        let at = study.motions.recording_at(0.5 * (from + to));
+        let at = study.data.motions.recording_at(0.5 * (from + to));
         // Refinement may have moved an end just beyond the end of the recording.
         let own = |time: f64| {
             at.map_or(time, |at| {
-                let [first, last] = study.motions.span(at);
-                study.motions.own_time(at, time.clamp(first, last))
+                let [first, last] = study.data.motions.span(at);
+                study.data.motions.own_time(at, time.clamp(first, last))
             })
         };
-        let recording = at.map(|at| study.motions.sources[at].name.clone());
+        let recording = at.map(|at| study.data.motions.sources[at].name.clone());
         return Place {
             time: vec![[own(from), own(to)]],
             recording,
             state: None,
         };
     }
-    let joint = &study.arm.joints()[study.candidates[candidate].joint.unwrap_or(0)];
+    let joint = &study.data.arm.joints()[study.candidates[candidate].joint.unwrap_or(0)];
     Place {
         state: hypothesis.kind.get().region(&study.terms(candidate), joint.kind),
         ..Place::default()

@@ -18,8 +18,8 @@ const FREE: f64 = 3.0;
 /// reversals.
 pub fn identified(study: &mut Study) -> Vec<Option<f64>> {
     let strengths = Strengths {
-        links: vec![FREE; study.arm.dof()],
-        ..Strengths::none(study.arm.dof())
+        links: vec![FREE; study.data.arm.dof()],
+        ..Strengths::none(study.data.arm.dof())
     };
     let is_part = |&candidate: &usize| {
         let hypothesis = study.candidates[candidate].hypothesis;
@@ -36,7 +36,7 @@ pub fn identified(study: &mut Study) -> Vec<Option<f64>> {
     let fit = products.fit(&study.table, &selected, &products.first_weights());
     let fit = products.reweighted(&study.table, fit);
     let of = |joint| errors(study, joint, &residual(study, &fit, joint)).held_out_nrmse_augmented;
-    let list = (0..study.arm.dof()).map(of).collect();
+    let list = (0..study.data.arm.dof()).map(of).collect();
     study.table = searched;
     list
 }

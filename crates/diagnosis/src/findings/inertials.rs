@@ -57,7 +57,7 @@ fn numbers(body: &Inertia) -> [f64; PER_LINK] {
 /// The inertial parameters of the links by the background of the final fit.
 pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resampled: &Resampled) -> Inertials {
     let strengths = &study.strengths;
-    let dof = study.arm.dof();
+    let dof = study.data.arm.dof();
     if strengths.links.iter().all(|&rho| rho == 0.0) {
         return Inertials::default();
     }
@@ -80,7 +80,7 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
         let of = &nominal[link * PER_LINK..(link + 1) * PER_LINK];
         let own = |draw: &[f64]| body(&physical(of, &read(draw)));
         let estimate = own(&resampled.estimate);
-        let name = study.arm.joints()[link].name.clone();
+        let name = study.data.arm.joints()[link].name.clone();
         list.effects.push(InertialParameters::effect(name.clone(), &estimate));
         let columns: Vec<usize> = places.iter().flatten().map(|&place| resampled.columns[place]).collect();
         let values: Vec<f64> = places
@@ -110,7 +110,7 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
             })
             .collect();
         let share = shares[link].iter().copied().fold(0.0, f64::max);
-        let nominal_mass = study.arm.joints()[link].inertia.mass;
+        let nominal_mass = study.data.arm.joints()[link].inertia.mass;
         let link = LinkInertials {
             nominal_mass,
             parameters,
@@ -144,7 +144,7 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
     let by_joint = |shares: &[f64]| -> BTreeMap<String, f64> {
         let named = (0..dof).filter(|&joint| shares[joint] > LISTED_SHARE);
         named
-            .map(|joint| (study.arm.joints()[joint].name.clone(), shares[joint]))
+            .map(|joint| (study.data.arm.joints()[joint].name.clone(), shares[joint]))
             .collect()
     };
     let largest = |shares: &[f64]| shares.iter().copied().fold(0.0, f64::max);
@@ -162,7 +162,7 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
         let nearly = others.iter().filter(|(_, lost)| lost[1] <= allowance(loss));
         let rivals = nearly.map(|&(other, _)| Confusable {
             effect: InertialParameters.spec().name,
-            joint: Some(study.arm.joints()[other].name.clone()),
+            joint: Some(study.data.arm.joints()[other].name.clone()),
         });
         (margin, rivals.collect())
     };
@@ -171,7 +171,7 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
         let forms = special_forms(study, &judged.named);
         let confusable = |(form, joint): (Hypothesis, Option<usize>)| Confusable {
             effect: form.name().unwrap_or_default(),
-            joint: joint.map(|joint| study.arm.joints()[joint].name.clone()),
+            joint: joint.map(|joint| study.data.arm.joints()[joint].name.clone()),
         };
         forms.into_iter().map(confusable).collect()
     };
@@ -191,7 +191,7 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
         }
         let (margin, confusable_with) = joint.map_or_else(|| (evidence, everywhere()), instead);
         list.findings.push(Finding {
-            joint: joint.map(|joint| study.arm.joints()[joint].name.clone()),
+            joint: joint.map(|joint| study.data.arm.joints()[joint].name.clone()),
             parameters,
             probability: Some(probability(margin)),
             confusable_with,
@@ -206,7 +206,7 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
         .iter()
         .any(|member| study.candidates[member.candidate].hypothesis.is(&Payload));
     for &link in apart.iter().filter(|&&link| !(has_payload && link + 1 == dof)) {
-        let name = &study.arm.joints()[link].name;
+        let name = &study.data.arm.joints()[link].name;
         let parameters = list
             .links
             .get(name)

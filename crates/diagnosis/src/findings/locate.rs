@@ -13,7 +13,7 @@ use crate::thresholds::{
 /// Locates a residual (`[joint][row]`), and compares it with that of the `augmented` model.
 pub fn locate(study: &Study, residual: &[Vec<f64>], augmented: &[Vec<f64>]) -> Vec<Located> {
     let states = states(study);
-    (0..study.motions.dof)
+    (0..study.data.motions.dof)
         .into_par_iter()
         .filter_map(|joint| on_joint(study, &states[joint], joint, &residual[joint], &augmented[joint]))
         .collect()
@@ -30,7 +30,7 @@ struct State {
 }
 
 fn states(study: &Study) -> Vec<State> {
-    (0..study.motions.dof)
+    (0..study.data.motions.dof)
         .map(|joint| {
             let mut state = State {
                 q: Vec::new(),
@@ -40,7 +40,7 @@ fn states(study: &Study) -> Vec<State> {
                 time: Vec::new(),
                 recording: Vec::new(),
             };
-            for (chunk, rigid) in study.motions.chunks.iter().zip(&study.rigid) {
+            for (chunk, rigid) in study.data.motions.chunks.iter().zip(&study.data.rigid) {
                 for row in 0..chunk.rows() {
                     let tick = chunk.tick_of(row);
                     state.q.push(chunk.q[joint][tick]);
@@ -74,7 +74,7 @@ fn on_joint(study: &Study, state: &State, joint: usize, nominal: &[f64], augment
     if all < OVER_NOISE * floor {
         return None;
     }
-    let torque = study.scales.torque[joint].max(1e-300);
+    let torque = study.data.scales.torque[joint].max(1e-300);
     let first = state.time.iter().copied().fold(f64::INFINITY, f64::min);
     let axes: [(Axis, Vec<f64>); 5] = [
         (Axis::NearReversal, state.qd.iter().map(|qd| qd.abs()).collect()),
@@ -111,7 +111,7 @@ fn on_joint(study: &Study, state: &State, joint: usize, nominal: &[f64], augment
     }
     regions.sort_by(|a, b| b.residual.total_cmp(&a.residual));
     Some(Located {
-        joint: study.arm.joints()[joint].name.clone(),
+        joint: study.data.arm.joints()[joint].name.clone(),
         over_noise: all / floor,
         repeatable: repeatable(study, state, joint, &rows, nominal),
         regions,
@@ -142,9 +142,9 @@ fn windows(study: &Study, state: &State, rows: &[usize], nominal: &[f64], all: f
         .take_while(|(residual, ..)| *residual > WINDOW_STANDS_OUT * all)
         .take(MOST_WINDOWS)
         .map(|(_, recording, [start, end])| TimeWindow {
-            recording: study.motions.sources[recording].name.clone(),
-            start: study.motions.own_time(recording, start),
-            end: study.motions.own_time(recording, end),
+            recording: study.data.motions.sources[recording].name.clone(),
+            start: study.data.motions.own_time(recording, start),
+            end: study.data.motions.own_time(recording, end),
         })
         .collect();
     list.sort_by(|a, b| a.recording.cmp(&b.recording).then(a.start.total_cmp(&b.start)));
@@ -153,13 +153,13 @@ fn windows(study: &Study, state: &State, rows: &[usize], nominal: &[f64], all: f
 
 /// The part of the residual that repeats where the joint's own state does, in another recording.
 fn repeatable(study: &Study, state: &State, joint: usize, rows: &[usize], nominal: &[f64]) -> Option<f64> {
-    let torque = study.scales.torque[joint];
+    let torque = study.data.scales.torque[joint];
     let acceleration = root_mean_square(rows.iter().map(|&row| state.qdd[row]));
     let cell = |row: usize| {
         let part = |value: f64, range: f64| (value / (SAME_MOTION * range).max(1e-12)).floor() as i64;
         (
-            part(state.q[row], study.scales.range[joint]),
-            part(state.qd[row], study.scales.speed[joint]),
+            part(state.q[row], study.data.scales.range[joint]),
+            part(state.qd[row], study.data.scales.speed[joint]),
             part(state.load[row], SAME_LOAD * torque),
             part(state.qdd[row], SAME_LOAD * acceleration),
         )

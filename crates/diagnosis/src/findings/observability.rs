@@ -46,7 +46,7 @@ impl Visibility {
 
 /// The effects that are not testable in addition to the selection `selected`.
 pub fn not_testable(study: &Study, products: &Products, selected: &Selection) -> Vec<NotObservable> {
-    let dof = study.motions.dof;
+    let dof = study.data.motions.dof;
     let mut list: Vec<NotObservable> = (0..dof)
         .into_par_iter()
         .flat_map_iter(|joint| on_joint(study, products, selected, joint))
@@ -57,7 +57,7 @@ pub fn not_testable(study: &Study, products: &Products, selected: &Selection) ->
             continue;
         }
         // A channel without torque has no scale.
-        let because = if study.scales.torque[joint] == 0.0 {
+        let because = if study.data.scales.torque[joint] == 0.0 {
             "the recordings hold no torque of the joint"
         } else {
             "the joint does not move in the training recordings"
@@ -65,7 +65,7 @@ pub fn not_testable(study: &Study, products: &Products, selected: &Selection) ->
         for kind in in_turn().filter(|kind| kind.spec().is_baseline) {
             list.push(NotObservable {
                 effect: kind.spec().name,
-                joint: Some(study.arm.joints()[joint].name.clone()),
+                joint: Some(study.data.arm.joints()[joint].name.clone()),
                 because: because.into(),
                 would_be_seen_above: BTreeMap::new(),
                 would_be_seen_below: BTreeMap::new(),
@@ -102,7 +102,7 @@ fn on_arm(study: &Study, products: &Products, selected: &Selection) -> Vec<NotOb
             let evidence = products.evidence_of(&study.table, &selected.fit, column);
             let size = (needed / evidence.max(1e-300)).sqrt();
             let share = |joint| study.share(joint, size * spread(study, joint, column));
-            (size, (0..study.motions.dof).map(share).fold(0.0, f64::max), column)
+            (size, (0..study.data.motions.dof).map(share).fold(0.0, f64::max), column)
         };
         let hardest = candidate.columns.iter().take(columns).map(least);
         let Some((size, share, column)) = hardest.max_by(|a, b| a.0.total_cmp(&b.0)) else {
@@ -111,7 +111,7 @@ fn on_arm(study: &Study, products: &Products, selected: &Selection) -> Vec<NotOb
         if share <= HIDDEN {
             continue;
         }
-        let (table, arm) = (&study.table, &study.arm);
+        let (table, arm) = (&study.table, &study.data.arm);
         let is_beyond = share > BEYOND || is_beyond_physics(size, column, candidate, table, &selected.fit, arm);
         list.push(NotObservable {
             effect: kind.spec().name,
@@ -125,7 +125,7 @@ fn on_arm(study: &Study, products: &Products, selected: &Selection) -> Vec<NotOb
 }
 
 fn on_joint(study: &Study, products: &Products, selected: &Selection, joint: usize) -> Vec<NotObservable> {
-    let name = &study.arm.joints()[joint].name;
+    let name = &study.data.arm.joints()[joint].name;
     if products.count[joint] == 0.0 {
         return Vec::new();
     }
@@ -195,7 +195,7 @@ fn on_joint(study: &Study, products: &Products, selected: &Selection, joint: usi
                     spread: spread(study, joint, column),
                     count: products.count[joint],
                     evidence: products.evidence[joint],
-                    torque: study.scales.torque[joint],
+                    torque: study.data.scales.torque[joint],
                     least_share: study.thresholds.least_share,
                 };
                 let least = visibility.least(needed(study, candidate));
@@ -206,7 +206,7 @@ fn on_joint(study: &Study, products: &Products, selected: &Selection, joint: usi
                 };
                 if share > HIDDEN {
                     let because = EXPLAINED;
-                    let (table, arm) = (&study.table, &study.arm);
+                    let (table, arm) = (&study.table, &study.data.arm);
                     if share > BEYOND || is_beyond_physics(least, column, candidate, table, &selected.fit, arm) {
                         add(because, None, None);
                         continue;
@@ -234,10 +234,11 @@ fn in_turn() -> impl Iterator<Item = Kind> {
 /// The largest torque of a joint in the training recordings (N m or N).
 fn largest_torque(study: &Study, joint: usize) -> f64 {
     study
+        .data
         .motions
         .chunks
         .iter()
-        .filter(|chunk| study.fitted[chunk.recording])
+        .filter(|chunk| study.data.fitted[chunk.recording])
         .flat_map(|chunk| &chunk.tau[joint])
         .fold(0.0_f64, |largest, tau| largest.max(tau.abs()))
 }

@@ -14,7 +14,7 @@ pub fn traces(
     findings: &[(Finding, Option<usize>)],
     residuals: [&[Vec<f64>]; 2],
 ) -> Traces {
-    let dof = study.motions.dof;
+    let dof = study.data.motions.dof;
     let table = &study.table;
     let torques: Vec<Vec<Vec<f64>>> = findings
         .par_iter()
@@ -47,9 +47,9 @@ pub fn traces(
                 .collect()
         })
         .collect();
-    let times = study.motions.row_times();
+    let times = study.data.motions.row_times();
     let state = |pick: &dyn Fn(&crate::data::motion::Chunk, usize) -> f64| -> Vec<f64> {
-        let chunks = study.motions.chunks.iter();
+        let chunks = study.data.motions.chunks.iter();
         chunks
             .flat_map(|chunk| {
                 (0..chunk.rows())
@@ -67,6 +67,7 @@ pub fn traces(
     let qd = each(&|chunk, joint, tick| chunk.qd[joint][tick]);
     let qdd = each(&|chunk, joint, tick| chunk.qdd[joint][tick]);
     let recordings = study
+        .data
         .motions
         .sources
         .iter()
@@ -90,12 +91,12 @@ pub fn traces(
                 held_out: source.held_out,
                 time: times[rows.clone()]
                     .iter()
-                    .map(|&time| study.motions.own_time(recording, time))
+                    .map(|&time| study.data.motions.own_time(recording, time))
                     .collect(),
                 q: cut(&q),
                 qd: cut(&qd),
                 qdd: cut(&qdd),
-                tau: cut(&study.measured),
+                tau: cut(&study.data.measured),
                 residual: cut(&study.nominal),
                 residual_augmented: cut(residuals[0]),
                 residual_exported: cut(residuals[1]),

@@ -42,12 +42,12 @@ struct Push {
 /// Searches transients in the residuals of the named effects (`[joint][row]`) in the held-out recordings.
 pub fn search(study: &Study, judged: &Judged, residual: &[Vec<f64>]) -> Transients {
     let mut transients = Transients::default();
-    let held: Vec<bool> = study.fitted.iter().map(|fitted| !fitted).collect();
+    let held: Vec<bool> = study.data.fitted.iter().map(|fitted| !fitted).collect();
     if !held.contains(&true) {
         return transients;
     }
-    let times = study.motions.row_times();
-    let weights: Vec<f64> = (0..study.motions.dof)
+    let times = study.data.motions.row_times();
+    let weights: Vec<f64> = (0..study.data.motions.dof)
         .map(|joint| {
             // The usual residual of a joint that was never fitted is unknown.
             if study.training_rows(joint).len() < LEAST_TRANSIENT_ROWS {
@@ -75,10 +75,10 @@ pub fn search(study: &Study, judged: &Judged, residual: &[Vec<f64>]) -> Transien
             continue;
         };
         let felt = powers.iter().filter(|power| power.sqrt() > ABOVE_USUAL).count();
-        if felt < study.motions.dof.min(LEAST_PUSHED) {
+        if felt < study.data.motions.dof.min(LEAST_PUSHED) {
             continue;
         }
-        let name = study.motions.sources[recording].name.clone();
+        let name = study.data.motions.sources[recording].name.clone();
         let (force, explained) = force(study, &times, residual, &weights, (from, to));
         if explained > ONE_FORCE && !already {
             pushes.push(Push {
@@ -90,7 +90,7 @@ pub fn search(study: &Study, judged: &Judged, residual: &[Vec<f64>]) -> Transien
         } else {
             // The joint on which the transient exceeds the usual residual most.
             let window = (from, to);
-            let at = (0..study.motions.dof)
+            let at = (0..study.data.motions.dof)
                 .map(|joint| (powers[joint], joint))
                 .max_by(|a, b| a.0.total_cmp(&b.0));
             if let Some((_, joint)) = at {
@@ -99,8 +99,8 @@ pub fn search(study: &Study, judged: &Judged, residual: &[Vec<f64>]) -> Transien
                 entry.0 = entry.0.max(rms);
                 entry.1.push(TimeWindow {
                     recording: name,
-                    start: study.motions.own_time(recording, from),
-                    end: study.motions.own_time(recording, to),
+                    start: study.data.motions.own_time(recording, from),
+                    end: study.data.motions.own_time(recording, to),
                 });
             }
         }
@@ -131,7 +131,7 @@ fn usual(study: &Study, joint: usize, residual: &[Vec<f64>]) -> f64 {
     let mut all = Vec::new();
     let mut largest = 0.0_f64;
     for (recording, rows) in study.table.rows.iter().enumerate() {
-        let length = ((TRANSIENT_STRETCH / study.seconds[recording]) as usize).max(STRETCH_ROWS);
+        let length = ((TRANSIENT_STRETCH / study.data.seconds[recording]) as usize).max(STRETCH_ROWS);
         let mut stretches = Vec::new();
         let mut from = rows.start;
         while from < rows.end {
@@ -146,7 +146,7 @@ fn usual(study: &Study, joint: usize, residual: &[Vec<f64>]) -> f64 {
             from = to;
         }
         all.extend_from_slice(&stretches);
-        if !study.fitted[recording] && stretches.len() >= LEAST_STRETCHES {
+        if !study.data.fitted[recording] && stretches.len() >= LEAST_STRETCHES {
             largest = largest.max(median(stretches));
         }
     }
@@ -159,11 +159,16 @@ fn rows<'a>(
     times: &'a [f64],
     window: (f64, f64),
 ) -> impl Iterator<Item = (usize, usize, usize)> + 'a {
-    let held = study.table.rows.iter().enumerate().filter(|(r, _)| !study.fitted[*r]);
+    let held = study
+        .table
+        .rows
+        .iter()
+        .enumerate()
+        .filter(|(r, _)| !study.data.fitted[*r]);
     held.flat_map(move |(recording, rows)| {
         rows.clone()
             .filter(move |&row| times[row] >= window.0 && times[row] <= window.1)
-            .flat_map(move |row| (0..study.motions.dof).map(move |joint| (recording, row, joint)))
+            .flat_map(move |row| (0..study.data.motions.dof).map(move |joint| (recording, row, joint)))
     })
     .filter(|&(_, row, joint)| study.table.joints[joint].moving[row])
 }
@@ -176,7 +181,7 @@ fn power(
     weights: &[f64],
     window: (f64, f64),
 ) -> Option<(usize, Vec<f64>)> {
-    let mut sums = vec![(0.0, 0.0); study.motions.dof];
+    let mut sums = vec![(0.0, 0.0); study.data.motions.dof];
     let mut at = None;
     for (recording, row, joint) in rows(study, times, window) {
         at = Some(recording);
@@ -238,7 +243,7 @@ fn contact(study: &Study, residual: &[Vec<f64>], pushes: &[Push]) -> Option<Find
         let mut list: Vec<[f64; 2]> = pushes
             .iter()
             .filter(|push| push.source == source)
-            .map(|push| push.window.map(|time| study.motions.own_time(source, time)))
+            .map(|push| push.window.map(|time| study.data.motions.own_time(source, time)))
             .collect();
         list.sort_by(|a, b| a[0].total_cmp(&b[0]));
         list
@@ -249,11 +254,11 @@ fn contact(study: &Study, residual: &[Vec<f64>], pushes: &[Push]) -> Option<Find
         unit,
     };
     let spread = force.norm() * (1.0 - explained).max(0.0).sqrt();
-    let times = study.motions.row_times();
-    let share_by_joint: BTreeMap<String, f64> = (0..study.motions.dof)
+    let times = study.data.motions.row_times();
+    let share_by_joint: BTreeMap<String, f64> = (0..study.data.motions.dof)
         .map(|joint| {
             let rms = joint_rms(study, &times, residual, joint, (from, to));
-            (study.arm.joints()[joint].name.clone(), study.share(joint, rms))
+            (study.data.arm.joints()[joint].name.clone(), study.share(joint, rms))
         })
         .collect();
     let effect = Effect::of(&ExternalContact)
@@ -271,7 +276,7 @@ fn contact(study: &Study, residual: &[Vec<f64>], pushes: &[Push]) -> Option<Find
         held_out_gain: Some(1.0 - (1.0 - explained).max(0.0).sqrt()),
         place: Place {
             time: same,
-            recording: Some(study.motions.sources[source].name.clone()),
+            recording: Some(study.data.motions.sources[source].name.clone()),
             state: None,
         },
         ..Finding::of(effect)

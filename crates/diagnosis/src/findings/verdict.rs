@@ -29,7 +29,7 @@ pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, resi
         let other = candidate.hypothesis.other;
         let on = Dependence {
             on,
-            joint: other.map(|other| study.arm.joints()[other].name.clone()),
+            joint: other.map(|other| study.data.arm.joints()[other].name.clone()),
         };
         let entry = by_joint.entry(joint).or_default();
         entry.0 = entry.0.hypot(member.share());
@@ -50,7 +50,7 @@ pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, resi
         .into_iter()
         .map(|(joint, (share, mut on))| {
             on.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-            let name = study.arm.joints()[joint].name.clone();
+            let name = study.data.arm.joints()[joint].name.clone();
             let transients = in_transients.remove(&joint).map(|(_, windows)| windows);
             let time: Vec<TimeWindow> = transients.unwrap_or_else(|| {
                 located
@@ -79,7 +79,7 @@ pub fn poorly_predicted(
     has_findings: bool,
     unexplained: &mut Vec<Unexplained>,
 ) {
-    for (joint, name) in study.arm.joints().iter().map(|joint| &joint.name).enumerate() {
+    for (joint, name) in study.data.arm.joints().iter().map(|joint| &joint.name).enumerate() {
         let Some(this) = fit.get(name) else { continue };
         let error = error(this);
         let is_known = unexplained.iter().any(|residual| residual.joint == *name);
@@ -110,14 +110,14 @@ pub fn poorly_predicted(
 /// count: contacts are short, and no model of them is exact.
 fn structured_in_training(study: &Study, judged: &Judged, residual: &[f64], joint: usize) -> Option<f64> {
     let contacts: Vec<[f64; 2]> = judged.named.set.iter().filter_map(|&c| study.window(c)).collect();
-    let times = study.motions.row_times();
+    let times = study.data.motions.row_times();
     let mut counts = vec![false; residual.len()];
     for row in study.training_rows(joint) {
         counts[row] = contacts.iter().all(|[from, to]| times[row] < *from || times[row] > *to);
     }
     let rms = rms((0..residual.len()).filter(|&row| counts[row]).map(|row| residual[row]))?;
     let is_structured = study.share(joint, rms) >= STRUCTURED_IN_TRAINING
-        && rms >= STRUCTURED_ABOVE_NOISE * study.noise[joint].sqrt()
+        && rms >= STRUCTURED_ABOVE_NOISE * study.data.noise[joint].sqrt()
         && autocorrelation(study, residual, &counts) > REMEMBERS;
     is_structured.then(|| study.share(joint, rms))
 }
@@ -130,7 +130,7 @@ pub fn beyond_limits(
     transients: &Transients,
     unexplained: &mut Vec<Unexplained>,
 ) {
-    let joints = study.arm.joints();
+    let joints = study.data.arm.joints();
     unexplained.retain(|open| {
         let is_small = fit.get(&open.joint).is_some_and(|fit| error(fit) < STRUCTURED);
         !is_small
@@ -171,15 +171,15 @@ pub fn not_enough(study: &Study, products: &Products) -> Vec<String> {
         let counts = study.table.joints[joint]
             .count
             .iter()
-            .zip(&study.seconds)
-            .zip(&study.fitted);
+            .zip(&study.data.seconds)
+            .zip(&study.data.fitted);
         counts
             .filter(|(_, fitted)| **fitted)
             .map(|((count, seconds), _)| *count as f64 * seconds)
             .sum()
     };
-    let longest = (0..study.motions.dof).map(seconds).fold(0.0, f64::max);
-    let all: f64 = (study.table.rows.iter().zip(&study.seconds).zip(&study.fitted))
+    let longest = (0..study.data.motions.dof).map(seconds).fold(0.0, f64::max);
+    let all: f64 = (study.table.rows.iter().zip(&study.data.seconds).zip(&study.data.fitted))
         .filter(|(_, fitted)| **fitted)
         .map(|((rows, seconds), _)| rows.len() as f64 * seconds)
         .sum();

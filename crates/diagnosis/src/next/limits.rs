@@ -40,8 +40,8 @@ impl Limits {
         let with = |effects: Vec<&Effect>| Corrected::new(arm, &effects.into_iter().cloned().collect::<Vec<_>>());
         let (found, model) = (with(found)?, with(others)?);
         let (wider, faster) = if explain { BEYOND_RECORDED } else { BEYOND_UNEXPLAINED };
-        let joints = study.arm.joints();
-        let scales = &study.scales;
+        let joints = study.data.arm.joints();
+        let scales = &study.data.scales;
         let typical = {
             let moving = (0..joints.len()).filter(|&j| scales.speed[j] > scales.rest[j]);
             median(moving.map(|j| 0.5 * scales.range[j]).collect())
@@ -81,7 +81,9 @@ impl Limits {
             } else {
                 FASTER_UNLIMITED.min(faster) * speed
             });
-            let torque = study.measured[j].iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
+            let torque = study.data.measured[j]
+                .iter()
+                .fold(0.0_f64, |most, tau| most.max(tau.abs()));
             let allowed = if joint.limits.effort.is_finite() {
                 // A drive that gave this torque in the recordings can give it again.
                 (WITHIN_LIMITS * joint.limits.effort).max(torque.min(joint.limits.effort))

@@ -76,15 +76,15 @@ impl<'a> Prospect<'a> {
         columns.dedup();
         let terms: Vec<Term> = columns.iter().map(|&column| study.table.terms[column]).collect();
         let fitted = || {
-            let chunks = study.motions.chunks.iter();
-            chunks.filter(|chunk| study.fitted[chunk.recording])
+            let chunks = study.data.motions.chunks.iter();
+            chunks.filter(|chunk| study.data.fitted[chunk.recording])
         };
         let template = fitted().max_by_key(|chunk| chunk.ticks())?;
         // A sum of slow sines needs no finer grid.
         let (period, stride) = (COARSER as f64 * template.period, template.stride.div_ceil(COARSER));
         let needs = |term: &Term| term.law.needs_derivatives;
-        let dof = study.motions.dof;
-        let end = study.motions.chunks.iter().map(|chunk| chunk.time(chunk.ticks()));
+        let dof = study.data.motions.dof;
+        let end = study.data.motions.chunks.iter().map(|chunk| chunk.time(chunk.ticks()));
         let mut torque = vec![[0.0; 3]; dof];
         let mut speed = vec![[0.0; 2]; dof];
         for chunk in fitted() {
@@ -97,9 +97,9 @@ impl<'a> Prospect<'a> {
             study,
             selected,
             about: About::new(study, &selected.fit),
-            nominal: study.arm.inertial_parameters(),
+            nominal: study.data.arm.inertial_parameters(),
             derivatives: terms.iter().any(needs),
-            grid: (period, Kernel::new(study.motions.cutoff, period), stride),
+            grid: (period, Kernel::new(study.data.motions.cutoff, period), stride),
             bare: Table::bare(terms, dof),
             old: products.picked(&study.table, &columns),
             columns,
@@ -114,16 +114,16 @@ impl<'a> Prospect<'a> {
     pub fn now(&self) -> Outlook {
         Outlook {
             products: self.old.clone(),
-            torque: self.study.scales.torque.clone(),
+            torque: self.study.data.scales.torque.clone(),
             weights: self.selected.fit.weights.clone(),
-            largest: vec![0.0; self.study.motions.dof],
+            largest: vec![0.0; self.study.data.motions.dof],
         }
     }
 
     /// The recordings with the motion of `reference`.
     pub fn with(&self, reference: &Reference) -> Outlook {
         let study = self.study;
-        let dof = study.motions.dof;
+        let dof = study.data.motions.dof;
         let mut chunk = self.chunk(reference);
         let (About { arm, offset, .. }, derivatives) = (&self.about, self.derivatives);
         let rigid = Rigid::with_derivatives(arm, &self.nominal, offset, &chunk, derivatives);
@@ -142,27 +142,27 @@ impl<'a> Prospect<'a> {
             let mut power = self.speed[j];
             powers(&mut power, &chunk.qd[j], &chunk.qdd[j], chunk.period);
             tempo.push((power[1] / power[0].max(1e-300)).sqrt() / std::f64::consts::TAU);
-            rates.push(evidence_rate(study.motions.tempo[j]));
+            rates.push(evidence_rate(study.data.motions.tempo[j]));
         }
         let seconds = chunk.period * chunk.stride as f64;
-        let mut source = study.motions.sources[self.template].clone();
+        let mut source = study.data.motions.sources[self.template].clone();
         (source.held_out, source.has_own_load) = (false, false);
         let motions = Motions {
             changed_at: None,
             dof,
             chunks: vec![chunk],
             sources: vec![source],
-            cutoff: study.motions.cutoff,
+            cutoff: study.data.motions.cutoff,
             tempo: tempo.clone(),
-            one_clock: study.motions.one_clock,
-            begins: study.motions.begins,
+            one_clock: study.data.motions.one_clock,
+            begins: study.data.motions.begins,
             remarks: Vec::new(),
         };
         let terms = self.bare.terms.clone();
         let table = Table::new(
             &motions,
             &[rigid],
-            &study.scales,
+            &study.data.scales,
             terms,
             &self.about.carried,
             Moving::ThroughReversals,
@@ -180,7 +180,7 @@ impl<'a> Prospect<'a> {
             })
             .collect();
         let floor = (0..dof)
-            .map(|j| study.noise[j] + (study.thresholds.tolerance * torque[j]).powi(2))
+            .map(|j| study.data.noise[j] + (study.thresholds.tolerance * torque[j]).powi(2))
             .collect();
         Outlook {
             products: self.old.joined(&new, &variance, evidence, floor),
@@ -192,7 +192,7 @@ impl<'a> Prospect<'a> {
 
     /// The motion on the grid of the recordings. It is slow enough to pass the first filter unchanged.
     fn chunk(&self, reference: &Reference) -> Chunk {
-        let dof = self.study.motions.dof;
+        let dof = self.study.data.motions.dof;
         let (period, kernel, stride) = self.grid.clone();
         let ticks = (DURATION / period) as usize + 1;
         let zeros = || vec![vec![0.0; ticks]; dof];
@@ -223,7 +223,7 @@ impl<'a> Prospect<'a> {
     fn add_torques(&self, chunk: &mut Chunk, rigid: &Rigid) {
         let fit = &self.selected.fit;
         let is_carried = |term: Term| self.about.carried.iter().any(|(carried, _)| *carried == term);
-        let scales = &self.study.scales;
+        let scales = &self.study.data.scales;
         let mut free = rigid.tau.clone();
         let mut own = Vec::new();
         for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
@@ -273,7 +273,7 @@ impl<'a> Prospect<'a> {
         let study = self.study;
         let possible = rivals.into_iter().find_map(|(mut fit, set, added)| {
             fit.columns.clone_from(set);
-            let is_possible = |&c: &usize| is_possible(&study.candidates[c], &study.table, &fit, &study.arm);
+            let is_possible = |&c: &usize| is_possible(&study.candidates[c], &study.table, &fit, &study.data.arm);
             added.iter().all(is_possible).then_some(fit.loss)
         });
         // An alternative that is physically impossible there counts as no effect in the finding's place.

@@ -40,7 +40,7 @@ pub struct OwnLoad {
 impl OwnLoad {
     /// The load that only some of the recordings have, if there is one.
     pub fn found(study: &Study) -> Option<Self> {
-        let (dof, recordings) = (study.motions.dof, study.motions.sources.len());
+        let (dof, recordings) = (study.data.motions.dof, study.data.motions.sources.len());
         if dof < 2 || recordings < 2 {
             return None;
         }
@@ -79,10 +79,11 @@ impl OwnLoad {
 
     /// Whether it is in the last or in the first recordings only: the load may have changed once.
     pub fn changed_once(&self, study: &Study) -> bool {
-        let sources = study.motions.sources.len();
+        let sources = study.data.motions.sources.len();
         let mut order: Vec<usize> = (0..sources).collect();
         let begins = |recording: &usize| {
             let mut chunks = study
+                .data
                 .motions
                 .chunks
                 .iter()
@@ -147,7 +148,7 @@ struct Part {
 impl Part {
     /// The parts of `joint`, one per recording.
     fn of_joint(study: &Study, joint: usize) -> Vec<Self> {
-        let (dof, table) = (study.motions.dof, &study.table);
+        let (dof, table) = (study.data.motions.dof, &study.table);
         let this = &table.joints[joint];
         let column = |term: &Term| {
             let number = table.terms.iter().position(|known| known == term)?;
@@ -171,7 +172,7 @@ impl Part {
             resting[row] = !this.moving[row];
         }
         let part = |recording: usize| {
-            let weight = study.seconds[recording] * evidence_rate(study.motions.tempo[joint]);
+            let weight = study.data.seconds[recording] * evidence_rate(study.data.motions.tempo[joint]);
             let products = |is_counted: &[bool], friction: usize| {
                 let range = table.rows[recording].clone();
                 let rows: Vec<usize> = range.filter(|&row| is_counted[row]).collect();
@@ -221,23 +222,23 @@ struct Variances(Vec<[f64; 2]>);
 impl Variances {
     fn first(study: &Study) -> Self {
         let of = |torque: &f64| [torque.powi(2).max(f64::MIN_POSITIVE.sqrt()); 2];
-        Self(study.scales.torque.iter().map(of).collect())
+        Self(study.data.scales.torque.iter().map(of).collect())
     }
 
     fn of(study: &Study, parts: &[Part], solution: &Solution) -> Self {
         let of = |joint: usize| {
             let of_joint = || parts.iter().filter(|part| part.joint == joint);
             let evidence: f64 = of_joint().map(|part| part.evidence[0]).sum();
-            if evidence < LEAST_LOAD_ROWS || study.scales.torque[joint] <= 0.0 {
+            if evidence < LEAST_LOAD_ROWS || study.data.scales.torque[joint] <= 0.0 {
                 // Its friction is unknown, and its torque says nothing about a load.
                 return [f64::INFINITY; 2];
             }
             let squares: f64 = of_joint().map(|part| part.residuals(solution)[0]).sum();
-            let moving = (squares / evidence).max((LOAD_FLOOR * study.scales.torque[joint]).powi(2));
-            let level = solution.common[PER_LINK * study.motions.dof + DRIVE * joint];
+            let moving = (squares / evidence).max((LOAD_FLOOR * study.data.scales.torque[joint]).powi(2));
+            let level = solution.common[PER_LINK * study.data.motions.dof + DRIVE * joint];
             [moving, moving + level * level]
         };
-        Self((0..study.motions.dof).map(of).collect())
+        Self((0..study.data.motions.dof).map(of).collect())
     }
 }
 

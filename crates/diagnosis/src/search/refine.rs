@@ -129,7 +129,7 @@ fn first_sizes(study: &Study, member: usize) -> Vec<Vec<Term>> {
     if sizes(&own).is_empty()
         || own
             .iter()
-            .any(|term| found_onset(term, study.motions.changed_at).is_some())
+            .any(|term| found_onset(term, study.data.motions.changed_at).is_some())
     {
         return Vec::new();
     }
@@ -177,9 +177,9 @@ pub fn resize(study: &mut Study, mut selected: Selection, again: bool) -> Select
                 .map(|&column| study.table.terms[column])
                 .collect();
             let mass = candidate.joint.map_or(0.0, |joint| {
-                mean(study.rigid.iter().flat_map(|rigid| rigid.link_mass(joint)))
+                mean(study.data.rigid.iter().flat_map(|rigid| rigid.link_mass(joint)))
             });
-            let mut list = variants(&terms, round, mass, study.motions.changed_at);
+            let mut list = variants(&terms, round, mass, study.data.motions.changed_at);
             if round == 0 {
                 list.extend(first_sizes(study, member));
             }

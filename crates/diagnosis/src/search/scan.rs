@@ -286,10 +286,10 @@ pub fn golden(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
 pub fn contact_gain(study: &Study, without: &Fit, columns: &[usize]) -> f64 {
     let table = &study.table;
     let residual = residuals(table, without);
-    let times = study.motions.row_times();
+    let times = study.data.motions.row_times();
     let mut fit = ForceFit::default();
     for row in study.training() {
-        let piece = ((times[row] - study.motions.begins) / CONTACT_PIECE).floor() as i64;
+        let piece = ((times[row] - study.data.motions.begins) / CONTACT_PIECE).floor() as i64;
         for joint in 0..table.dof() {
             let this = &table.joints[joint];
             let mut x = Vector3::zeros();

@@ -1,16 +1,13 @@
-//! The data of the search: filtered recordings, the model along them, columns, candidates.
+//! The state of the search: the data, columns, candidates, and the background that was selected.
 
 use std::collections::BTreeMap;
 
-use arm::Arm;
 use effects::arm::contact_columns;
 use effects::laws::SIGN;
-use effects::{Grounds, Scales, Term};
+use effects::{Grounds, Term};
 
 use crate::data::Data;
 use crate::data::measure::{self, spans};
-use crate::data::motion::Motions;
-use crate::data::rigid::Rigid;
 use crate::data::statistics::mean;
 use crate::options::Options;
 use crate::regression::background::{Background, Prior};
@@ -35,32 +32,18 @@ pub use about::About;
 use formed::Formed;
 pub use strengths::moved;
 
-/// The recordings, the model along them, and the candidates.
+/// The data, and the columns and candidates that may explain them.
 pub struct Study {
-    /// The nominal model.
-    pub arm: Arm,
-    /// The filtered recordings.
-    pub motions: Motions,
-    /// The model along them, one per chunk.
-    pub rigid: Vec<Rigid>,
-    /// Typical and largest values of each joint.
-    pub scales: Scales,
+    /// The recordings; [`Data::rigid`] is that of the arm about which the columns are evaluated.
+    pub data: Data,
     /// All columns.
     pub table: Table,
     /// All candidates.
     pub candidates: Vec<Candidate>,
     /// The variance due to noise, filtering and small errors, one per joint.
     pub floor: Vec<f64>,
-    /// The variance of the measured noise alone, one per joint.
-    pub noise: Vec<f64>,
-    /// The time between rows, one per recording (s).
-    pub seconds: Vec<f64>,
-    /// Whether a recording is fitted.
-    pub fitted: Vec<bool>,
     /// The columns of a force on the tool that always acts.
     force: [usize; 3],
-    /// Measured torque on all rows (N m or N).
-    pub measured: Vec<Vec<f64>>,
     /// Measured torque minus that of the nominal model, on all rows (N m or N).
     pub nominal: Vec<Vec<f64>>,
     /// The torque of the arm on each joint (N m or N) along which its springs and gaps that are not selected were simulated, if it is
@@ -107,7 +90,7 @@ fn begun(hypothesis: Hypothesis, terms: &[Term], at: f64) -> Vec<Term> {
 impl Study {
     /// A torque (N m or N) as a share of the typical torque of `joint`.
     pub fn share(&self, joint: usize, torque: f64) -> f64 {
-        torque / self.scales.torque[joint].max(1e-300)
+        torque / self.data.scales.torque[joint].max(1e-300)
     }
 
     /// Whether a candidate acts at all times, and not from an onset on.
@@ -123,20 +106,10 @@ impl Study {
     /// This study, in whose background the `recordings` have a load of their own, with ten inertial parameters of the standard
     /// deviations `deviations`.
     pub fn with_own_load(self, recordings: &[usize], deviations: &[f64; PER_LINK], options: &Options) -> Self {
-        let mut motions = self.motions;
+        let mut data = self.data;
         for &recording in recordings {
-            motions.sources[recording].has_own_load = true;
+            data.motions.sources[recording].has_own_load = true;
         }
-        let data = Data {
-            arm: self.arm,
-            motions,
-            rigid: self.rigid,
-            scales: self.scales,
-            measured: self.measured,
-            noise: self.noise,
-            seconds: self.seconds,
-            fitted: self.fitted,
-        };
         Self::with(data, options, Some(deviations))
     }
 
@@ -147,44 +120,42 @@ impl Study {
             motions,
             rigid,
             scales,
-            measured,
             noise,
-            seconds,
             fitted,
-        } = data;
-        let nominal = arm.inertial_parameters();
+            ..
+        } = &data;
         let floor = noise
             .iter()
             .zip(&scales.torque)
             .map(|(noise, torque)| noise + (thresholds.tolerance * torque).powi(2))
             .collect();
-        let times: Vec<(f64, f64)> = spans(&motions)
+        let times: Vec<(f64, f64)> = spans(motions)
             .into_iter()
-            .zip(&fitted)
+            .zip(fitted)
             .filter_map(|(span, fitted)| fitted.then_some(span))
             .flatten()
             .collect();
         let first = times.first().map_or(0.0, |span| span.0);
         let span = times.last().map_or(1.0, |span| span.1 - first).max(1.0);
         let prior = Prior::new(
-            &nominal,
+            &arm.inertial_parameters(),
             &scales.torque,
             &scales.speed,
-            &moved(&motions, &scales),
+            &moved(motions, scales),
             own_load,
         );
         let mut terms: Vec<Term> = prior.terms().to_vec();
         let mut candidates = Vec::new();
         let mass = |joint: usize| mean(rigid.iter().flat_map(|r| r.link_mass(joint)));
         let mut list = catalogue(&Grounds {
-            arm: &arm,
-            scales: &scales,
+            arm,
+            scales,
             span: motions.one_clock.then_some(span),
             times: &times,
             mass: &(0..motions.dof).map(mass).collect::<Vec<f64>>(),
-            largest: &measure::largest(&motions),
-            needed: &measure::needed(&motions, &rigid),
-            inertial: &measure::inertial(&motions, &rigid, &scales.torque),
+            largest: &measure::largest(motions),
+            needed: &measure::needed(motions, rigid),
+            inertial: &measure::inertial(motions, rigid, &scales.torque),
         });
         if motions.cutoff < LEAST_FOR_DYNAMICS {
             list.retain(|(hypothesis, ..)| !hypothesis.spec().is_simulated);
@@ -216,28 +187,17 @@ impl Study {
         let always = contact_columns(f64::NEG_INFINITY, f64::INFINITY, false);
         let force = [0, 1, 2].map(|k| terms.len() + k);
         terms.extend(always);
-        let table = Table::new(&motions, &rigid, &scales, terms, &[], Moving::Steadily);
-        let nominal = table.joints.iter().map(|joint| joint.y.clone()).collect();
-        let strengths = stated.first(arm.dof());
-        let simulated_along = vec![None; motions.dof];
+        let table = Table::new(motions, rigid, scales, terms, &[], Moving::Steadily);
         Self {
-            arm,
-            motions,
-            rigid,
-            scales,
+            nominal: table.joints.iter().map(|joint| joint.y.clone()).collect(),
             table,
             candidates,
             floor,
-            noise,
-            seconds,
-            fitted,
             force,
-            nominal,
-            measured,
-            simulated_along,
+            simulated_along: vec![None; motions.dof],
             carries: false,
             moving: Moving::Steadily,
-            strengths,
+            strengths: stated.first(arm.dof()),
             preferred: None,
             stated,
             thresholds,
@@ -247,6 +207,7 @@ impl Study {
             refused: Vec::new(),
             given_up: Vec::new(),
             directions: BTreeMap::new(),
+            data,
         }
     }
 
@@ -267,7 +228,13 @@ impl Study {
 
     /// Inner products over the recordings that `selected` selects, without background.
     fn bare_products(&self, selected: impl Fn(usize) -> bool) -> Products {
-        Products::new(&self.table, selected, &self.seconds, &self.motions.tempo, &self.floor)
+        Products::new(
+            &self.table,
+            selected,
+            &self.data.seconds,
+            &self.data.motions.tempo,
+            &self.floor,
+        )
     }
 
     /// The problem with these products.
@@ -276,14 +243,19 @@ impl Study {
             table: &self.table,
             products,
             candidates: &self.candidates,
-            arm: &self.arm,
+            arm: &self.data.arm,
             thresholds: &self.thresholds,
         }
     }
 
     /// The rows of the training recordings.
     pub fn training(&self) -> impl Iterator<Item = usize> {
-        let rows = self.table.rows.iter().zip(&self.fitted).filter(|(_, fitted)| **fitted);
+        let rows = self
+            .table
+            .rows
+            .iter()
+            .zip(&self.data.fitted)
+            .filter(|(_, fitted)| **fitted);
         rows.flat_map(|(rows, _)| rows.clone()).collect::<Vec<_>>().into_iter()
     }
 
@@ -296,7 +268,12 @@ impl Study {
     /// The moving rows of `joint` in the training recordings.
     pub fn training_rows(&self, joint: usize) -> Vec<usize> {
         let moving = &self.table.joints[joint].moving;
-        let rows = self.table.rows.iter().zip(&self.fitted).filter(|(_, fitted)| **fitted);
+        let rows = self
+            .table
+            .rows
+            .iter()
+            .zip(&self.data.fitted)
+            .filter(|(_, fitted)| **fitted);
         rows.flat_map(|(rows, _)| rows.clone())
             .filter(|&row| moving[row])
             .collect()
@@ -306,13 +283,16 @@ impl Study {
     pub fn resting_rows(&self, joint: usize) -> Vec<usize> {
         let mut rows = Vec::new();
         let mut first = 0;
-        for chunk in &self.motions.chunks {
+        for chunk in &self.data.motions.chunks {
             let reach = (RESTING_REACH * chunk.kernel.width() / chunk.period).ceil() as usize;
             let qd = &chunk.qd[joint];
             for row in 0..chunk.rows() {
                 let tick = chunk.tick_of(row);
                 let window = &qd[tick.saturating_sub(reach)..(tick + reach + 1).min(qd.len())];
-                if window.iter().all(|qd| qd.abs() < RESTING * self.scales.rest[joint]) {
+                if window
+                    .iter()
+                    .all(|qd| qd.abs() < RESTING * self.data.scales.rest[joint])
+                {
                     rows.push(first + row);
                 }
             }
@@ -326,7 +306,7 @@ impl Study {
         let (mut loads, mut times) = (Vec::with_capacity(rows.len()), Vec::with_capacity(rows.len()));
         let mut rows = rows.iter().peekable();
         let mut first = 0;
-        for (chunk, rigid) in self.motions.chunks.iter().zip(&self.rigid) {
+        for (chunk, rigid) in self.data.motions.chunks.iter().zip(&self.data.rigid) {
             let end = first + chunk.rows();
             while let Some(&&row) = rows.peek()
                 && row < end
@@ -344,7 +324,8 @@ impl Study {
     /// Evaluates more terms.
     pub fn extend(&mut self, terms: Vec<Term>) {
         if !terms.is_empty() {
-            self.table.add(&self.motions, &self.rigid, &self.scales, terms, None);
+            self.table
+                .add(&self.data.motions, &self.data.rigid, &self.data.scales, terms, None);
         }
     }
 
@@ -362,7 +343,8 @@ impl Study {
                 .copied()
                 .filter(|term| !self.table.terms.contains(term))
                 .collect();
-            self.table.add(&self.motions, &self.rigid, &self.scales, missing, None);
+            self.table
+                .add(&self.data.motions, &self.data.rigid, &self.data.scales, missing, None);
             terms
                 .iter()
                 .filter_map(|term| self.table.terms.iter().position(|known| known == term))

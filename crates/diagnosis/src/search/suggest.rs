@@ -17,35 +17,35 @@ impl Study {
     /// Adds the candidates that the residual of `selected` suggests.
     pub fn suggest(&mut self, selected: &Selection) {
         let residual = scan::residuals(&self.table, &selected.fit);
-        let times = self.motions.row_times();
-        let dof = self.motions.dof;
+        let times = self.data.motions.row_times();
+        let dof = self.data.motions.dof;
         let windows = scan::contacts(
             &self.table,
             &times,
             &residual,
             &selected.fit.weights,
             self.force(),
-            &self.fitted,
+            &self.data.fitted,
             MOST_CONTACTS,
         );
         let found: Vec<(Vec<f64>, Vec<f64>)> = (0..dof)
             .into_par_iter()
             .map(|joint| {
-                if self.scales.speed[joint] <= self.scales.rest[joint] {
+                if self.data.scales.speed[joint] <= self.data.scales.rest[joint] {
                     return (Vec::new(), Vec::new());
                 }
-                let (table, motions) = (&self.table, &self.motions);
+                let (table, motions) = (&self.table, &self.data.motions);
                 (
                     scan::ripples(
                         table,
                         motions,
-                        &self.scales,
+                        &self.data.scales,
                         joint,
                         &residual[joint],
-                        &self.fitted,
+                        &self.data.fitted,
                         MOST_RIPPLES,
                     ),
-                    scan::waves(table, motions, joint, &residual[joint], &self.fitted, MOST_WAVES),
+                    scan::waves(table, motions, joint, &residual[joint], &self.data.fitted, MOST_WAVES),
                 )
             })
             .collect();
@@ -69,7 +69,8 @@ impl Study {
             .flat_map(|(_, _, terms)| terms.iter().copied())
             .filter(|term| !self.table.terms.contains(term))
             .collect();
-        self.table.add(&self.motions, &self.rigid, &self.scales, missing, None);
+        self.table
+            .add(&self.data.motions, &self.data.rigid, &self.data.scales, missing, None);
         for (hypothesis, joint, terms) in new {
             self.add(hypothesis, joint, terms);
         }
@@ -91,7 +92,7 @@ impl Study {
 
     /// The recording of which contacts in these windows (s) cover the largest part, and that part.
     pub fn contact_share(&self, windows: &[[f64; 2]]) -> Option<(usize, f64)> {
-        let shares = measure::spans(&self.motions).into_iter().map(|spans| {
+        let shares = measure::spans(&self.data.motions).into_iter().map(|spans| {
             let covered = |&(from, to): &(f64, f64)| -> f64 {
                 let inside = windows
                     .iter()

@@ -305,12 +305,12 @@ fn systems(
         .collect();
     let mut blocks = Vec::new();
     let time: f64 = (0..table.rows.len())
-        .filter(|&r| study.fitted[r])
-        .map(|r| table.rows[r].len() as f64 * study.seconds[r])
+        .filter(|&r| study.data.fitted[r])
+        .map(|r| table.rows[r].len() as f64 * study.data.seconds[r])
         .sum();
     let length = BLOCK.max(time / MOST_BLOCKS as f64);
-    for (recording, rows) in table.rows.iter().enumerate().filter(|(r, _)| study.fitted[*r]) {
-        let count = ((rows.len() as f64 * study.seconds[recording] / length).round() as usize).max(1);
+    for (recording, rows) in table.rows.iter().enumerate().filter(|(r, _)| study.data.fitted[*r]) {
+        let count = ((rows.len() as f64 * study.data.seconds[recording] / length).round() as usize).max(1);
         for block in 0..count {
             let from = rows.start + rows.len() * block / count;
             blocks.push(from..rows.start + rows.len() * (block + 1) / count);

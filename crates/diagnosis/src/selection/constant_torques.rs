@@ -73,7 +73,7 @@ fn is_unusual(study: &Study, member: usize, offset: f64, next: &Selection) -> bo
     let Some(column) = study.table.terms.iter().position(|other| *other == term) else {
         return false;
     };
-    let usual = offset * FRICTION_PRIOR * study.scales.torque[joint];
+    let usual = offset * FRICTION_PRIOR * study.data.scales.torque[joint];
     next.fit.coefficient(column).abs() > USUAL_CONSTANTS * usual
 }
 
@@ -87,23 +87,23 @@ pub fn corrections(study: &Study, selected: &Selection, resampled: &Resampled) -
         }
         let at = resampled.column(column)?;
         let (value, ci95) = resampled.interval_within(SYSTEMATIC, |draw| draw[at]);
-        if value.abs() < NEGLIGIBLE * study.scales.torque[joint] {
+        if value.abs() < NEGLIGIBLE * study.data.scales.torque[joint] {
             return None;
         }
         let unit = Quantity::Torque.unit(described.kind);
         Some((described.name.clone(), Parameter { value, ci95, unit }))
     };
-    study.arm.joints().iter().enumerate().filter_map(of).collect()
+    study.data.arm.joints().iter().enumerate().filter_map(of).collect()
 }
 
 /// The `corrections` that are large enough to be reported.
 pub fn reported(study: &Study, corrections: &BTreeMap<String, Parameter>) -> BTreeMap<String, Parameter> {
     let of = |(joint, described): (usize, &Joint)| {
         let offset = corrections.get(&described.name)?;
-        let is_reported = offset.value.abs() >= LEAST_FINAL_SHARE * study.scales.torque[joint];
+        let is_reported = offset.value.abs() >= LEAST_FINAL_SHARE * study.data.scales.torque[joint];
         is_reported.then(|| (described.name.clone(), *offset))
     };
-    study.arm.joints().iter().enumerate().filter_map(of).collect()
+    study.data.arm.joints().iter().enumerate().filter_map(of).collect()
 }
 
 /// The effect that corrects the torque model by a constant.

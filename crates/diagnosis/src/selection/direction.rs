@@ -63,7 +63,7 @@ impl Constants {
     /// Those in the place of the constant that `member` names on `joint`; `None` if fewer than two recordings move the joint, if
     /// friction is the same in all of them, or if the joint has no dry friction.
     fn new(study: &Study, selected: &Selection, member: usize, joint: usize) -> Option<Self> {
-        let mut recordings = moved(&study.motions, &study.scales).swap_remove(joint);
+        let mut recordings = moved(&study.data.motions, &study.data.scales).swap_remove(joint);
         recordings.retain(|&recording| study.table.joints[joint].count[recording] > 0);
         if recordings.len() < 2 || study.strengths.friction <= 0.0 {
             return None;

@@ -149,7 +149,7 @@ fn prove(study: &mut Study, judged: &mut Judged) {
 
 /// Removes the effects on joints whose torque is predicted worse than by a constant: such a channel measures something else.
 fn give_up(study: &Study, judged: &mut Judged) {
-    let fits: Vec<JointFit> = (0..study.motions.dof)
+    let fits: Vec<JointFit> = (0..study.data.motions.dof)
         .map(|joint| errors(study, joint, &augmented(study, &judged.named, joint)))
         .collect();
     let is_hopeless = |joint: usize| {
@@ -184,7 +184,8 @@ fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Option<
     let contradicted = |member: &judge::Member| {
         let named = name(study, resampled, member.candidate);
         // The correction of its sizes may make the effect impossible, for example by a negative level.
-        let is_impossible = |named: &Named| Corrected::new(&study.arm, std::slice::from_ref(&named.effect)).is_err();
+        let is_impossible =
+            |named: &Named| Corrected::new(&study.data.arm, std::slice::from_ref(&named.effect)).is_err();
         // The intervals of its parameters, or the other effects, exclude it.
         let is_contradicted = |named: &Named| {
             let interval = |key: &str| named.parameters.get(key).map(|parameter| parameter.ci95);
@@ -275,7 +276,7 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
 fn is_small_beside_the_last_link(study: &Study, selected: &Selection, payload: usize) -> bool {
     let candidate = &study.candidates[payload];
     let mass = selected.fit.coefficient(candidate.columns[0]);
-    let drawn = study.arm.inertial_parameters()[(study.arm.dof() - 1) * PER_LINK];
+    let drawn = study.data.arm.inertial_parameters()[(study.data.arm.dof() - 1) * PER_LINK];
     candidate.columns.len() == PER_LINK && study.always_acts(payload) && mass > 0.0 && mass < LEAST_MOUNTED * drawn
 }
 
@@ -297,7 +298,7 @@ fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Membe
     };
     match candidate.joint {
         Some(joint) => is_part(joint),
-        None => (0..study.motions.dof)
+        None => (0..study.data.motions.dof)
             .filter(|&joint| member.shares[joint] > 0.0)
             .all(is_part),
     }
@@ -358,7 +359,7 @@ fn harmed(study: &Study, selected: &Selection) -> (Option<usize>, bool) {
             .is_some_and(|(nominal, augmented)| judge::harms(nominal, augmented))
     };
     let (mut moving, mut resting) = (None, false);
-    for joint in 0..study.motions.dof {
+    for joint in 0..study.data.motions.dof {
         let fit = fit_of(study, selected, joint);
         if is_worse(fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented) {
             moving = moving.or(Some(joint));
@@ -379,7 +380,7 @@ fn better_outside(study: &Study, selected: &Selection) -> Option<(Strengths, Sel
                 .hypot(fit.held_out_nrmse_resting.unwrap_or(0.0));
             Some(error.max(f64::MIN_POSITIVE).ln())
         };
-        (0..study.motions.dof).filter_map(of).sum::<f64>()
+        (0..study.data.motions.dof).filter_map(of).sum::<f64>()
     };
     let trials = study.stated.weaker(&study.strengths).map(|strengths| {
         let products = study.products_at(&strengths);

@@ -86,7 +86,12 @@ fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joi
     let torque = study.table.torque(joint, columns, &fit.values(columns));
     let residual = study.table.residual(joint, &without.columns, &without.coefficients);
     let rows = study.training_rows(joint);
-    let is_odd = odd_pieces(&study.motions.row_times(), study.motions.begins, &rows, &torque);
+    let is_odd = odd_pieces(
+        &study.data.motions.row_times(),
+        study.data.motions.begins,
+        &rows,
+        &torque,
+    );
     let (mut with, mut bare) = (0.0, 0.0);
     for fitted in [false, true] {
         let (mut power, mut product) = (0.0, 0.0);

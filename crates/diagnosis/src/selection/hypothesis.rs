@@ -70,7 +70,7 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
             "{} on {place}: not testable with these recordings; it is not fitted",
             one.effect
         );
-        study.motions.remarks.push(remark);
+        study.data.motions.remarks.push(remark);
     }
     for round in 0..ROUNDS {
         selected = resize(study, selected, round > 0);
@@ -96,7 +96,7 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
 fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, DiagnosisError> {
     let mut places = Vec::new();
     for (k, one) in wanted.iter().enumerate() {
-        let number = |name: &String| study.arm.joints().iter().position(|joint| joint.name == *name);
+        let number = |name: &String| study.data.arm.joints().iter().position(|joint| joint.name == *name);
         let joint_of = |name: &Option<String>| match name {
             Some(name) => number(name)
                 .map(Some)
@@ -158,7 +158,7 @@ fn no_effect(name: &str) -> String {
 
 /// The reason why a joint is refused that the robot does not have.
 fn no_joint(name: &str, study: &Study) -> String {
-    let names: Vec<String> = study.arm.joints().iter().map(|joint| joint.name.clone()).collect();
+    let names: Vec<String> = study.data.arm.joints().iter().map(|joint| joint.name.clone()).collect();
     let meant = nearest(name, &names).map_or_else(String::new, |meant| format!("did you mean {meant}? "));
     format!(
         "the robot has no joint {name}; {meant}its joints are {}",

@@ -111,7 +111,8 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
             let Some(joint) = candidates[c].joint else { return false };
             let rest = (with_all.fit.rss[joint].max(0.0) / products.count[joint].max(1.0)).sqrt();
             with_all.set.contains(&c)
-                && shares(study, &with_all, c)[joint] > ABOVE_RESIDUAL * rest / study.scales.torque[joint].max(1e-300)
+                && shares(study, &with_all, c)[joint]
+                    > ABOVE_RESIDUAL * rest / study.data.scales.torque[joint].max(1e-300)
         };
         let mut allowed = simple;
         allowed.retain(|&c| {
@@ -149,7 +150,7 @@ fn lasting(study: &Study, selected: &Selection) -> Option<usize> {
     if share <= MOST_OF_A_RECORDING {
         return None;
     }
-    let is_there = |[from, to]: [f64; 2]| study.motions.recording_at(0.5 * (from + to)) == Some(recording);
+    let is_there = |[from, to]: [f64; 2]| study.data.motions.recording_at(0.5 * (from + to)) == Some(recording);
     let there = windows.iter().filter(|(_, window)| is_there(*window));
     let length = |[from, to]: [f64; 2]| to - from;
     there
@@ -167,7 +168,7 @@ fn beside(study: &Study, problem: &Problem<'_>, kept: &Selection, unmodelled: &[
         members.retain(|member| !kept.set.contains(&member.candidate));
         let fails = |member: &Member| {
             let joint = study.candidates[member.candidate].joint.unwrap_or(0);
-            let mismatch = problem.products.power(joint).sqrt() / study.scales.torque[joint].max(1e-300);
+            let mismatch = problem.products.power(joint).sqrt() / study.data.scales.torque[joint].max(1e-300);
             member.share()
                 < study
                     .thresholds
@@ -195,13 +196,13 @@ pub fn describe(study: &Study, problem: &Problem<'_>, selected: &Selection) -> V
             let without = problem.without(selected, candidate);
             let beyond = |joint: usize| {
                 let gained = (without.fit.rss[joint] - selected.fit.rss[joint]).max(0.0);
-                (gained / problem.products.count[joint].max(1.0)).sqrt() / study.scales.torque[joint].max(1e-300)
+                (gained / problem.products.count[joint].max(1.0)).sqrt() / study.data.scales.torque[joint].max(1e-300)
             };
             Member {
                 candidate,
                 shares: shares(study, selected, candidate),
                 evidence: without.score - selected.score,
-                beyond: (0..study.motions.dof).map(beyond).fold(0.0, f64::max),
+                beyond: (0..study.data.motions.dof).map(beyond).fold(0.0, f64::max),
             }
         })
         .collect()
@@ -212,7 +213,7 @@ pub fn describe(study: &Study, problem: &Problem<'_>, selected: &Selection) -> V
 fn shares(study: &Study, selected: &Selection, candidate: usize) -> Vec<f64> {
     let columns = &study.candidates[candidate].columns;
     let values = selected.fit.values(columns);
-    (0..study.motions.dof)
+    (0..study.data.motions.dof)
         .map(|joint| {
             let torque = study.table.torque(joint, columns, &values);
             let rows = study.training_rows(joint);
@@ -222,7 +223,7 @@ fn shares(study: &Study, selected: &Selection, candidate: usize) -> Vec<f64> {
             } else {
                 variance.sqrt()
             };
-            size / study.scales.torque[joint].max(1e-300)
+            size / study.data.scales.torque[joint].max(1e-300)
         })
         .collect()
 }
@@ -231,12 +232,12 @@ fn shares(study: &Study, selected: &Selection, candidate: usize) -> Vec<f64> {
 pub fn is_idle(study: &Study, selected: &Selection, candidate: usize) -> bool {
     let columns = &study.candidates[candidate].columns;
     let values = selected.fit.values(columns);
-    let rows = crate::selection::predict::rows_of(study, |recording| !study.fitted[recording]);
-    (0..study.motions.dof).all(|joint| {
+    let rows = crate::selection::predict::rows_of(study, |recording| !study.data.fitted[recording]);
+    (0..study.data.motions.dof).all(|joint| {
         let torque = study.table.torque(joint, columns, &values);
         let moving = &study.table.joints[joint].moving;
         let on_rows = rows.iter().filter(|&&row| moving[row]).map(|&row| torque[row]);
-        rms(on_rows).unwrap_or(0.0) < IDLE_EFFECT * study.scales.torque[joint]
+        rms(on_rows).unwrap_or(0.0) < IDLE_EFFECT * study.data.scales.torque[joint]
     })
 }
 
@@ -245,7 +246,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
     let hypothesis = |member: &Member| study.candidates[member.candidate].hypothesis;
     let is_named = |member: &Member| hypothesis(member).name().is_some();
     // On each joint, the largest unmodelled form and the largest effect that is not a baseline effect.
-    let dof = study.motions.dof;
+    let dof = study.data.motions.dof;
     let largest = |wanted: &dyn Fn(&Member) -> bool, joint: usize| -> f64 {
         members
             .iter()

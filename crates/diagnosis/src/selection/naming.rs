@@ -36,7 +36,7 @@ struct Reader<'a> {
 impl Reader<'_> {
     /// The unit of a parameter.
     fn unit(&self, key: &str) -> &'static str {
-        let joint = &self.study.arm.joints()[self.joint()];
+        let joint = &self.study.data.arm.joints()[self.joint()];
         self.kind.spec().unit(key, joint.kind).unwrap_or_default()
     }
 
@@ -49,7 +49,7 @@ impl Reader<'_> {
 
 impl Estimate for Reader<'_> {
     fn arm(&self) -> &Arm {
-        &self.study.arm
+        &self.study.data.arm
     }
 
     fn joint(&self) -> usize {
@@ -86,7 +86,7 @@ impl Estimate for Reader<'_> {
     }
 
     fn positions(&self) -> [f64; 2] {
-        let (scales, joint) = (&self.study.scales, self.joint());
+        let (scales, joint) = (&self.study.data.scales, self.joint());
         let half = 0.5 * scales.range[joint];
         [scales.middle[joint] - half, scales.middle[joint] + half]
     }

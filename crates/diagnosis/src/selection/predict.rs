@@ -98,17 +98,17 @@ pub fn rows_of(study: &Study, selected: impl Fn(usize) -> bool) -> Vec<usize> {
 /// The errors on `joint`, nominal and `augmented`.
 pub fn errors(study: &Study, joint: usize, augmented: &[f64]) -> JointFit {
     let nominal = &study.nominal[joint];
-    let tau = &study.measured[joint];
+    let tau = &study.data.measured[joint];
     let moving = &study.table.joints[joint].moving;
     let mut resting = vec![false; nominal.len()];
     for row in study.resting_rows(joint) {
         resting[row] = true;
     }
-    let held = rows_of(study, |r| !study.fitted[r]);
-    let train = rows_of(study, |r| study.fitted[r]);
+    let held = rows_of(study, |r| !study.data.fitted[r]);
+    let train = rows_of(study, |r| study.data.fitted[r]);
     // A dead channel has no relative error.
     let over_spread =
-        |error: f64, spread: f64| (study.scales.torque[joint] > 0.0 && spread > 0.0).then(|| error / spread);
+        |error: f64, spread: f64| (study.data.scales.torque[joint] > 0.0 && spread > 0.0).then(|| error / spread);
     let over = |rows: &[usize], keep: &[bool], signal: &[f64]| -> Option<f64> {
         let kept: Vec<usize> = rows.iter().copied().filter(|&row| keep[row]).collect();
         let error = rms(kept.iter().map(|&row| signal[row]))?;
@@ -128,7 +128,7 @@ pub fn errors(study: &Study, joint: usize, augmented: &[f64]) -> JointFit {
     };
     JointFit {
         torque_std: deviation(tau, &train),
-        noise: study.noise[joint].sqrt(),
+        noise: study.data.noise[joint].sqrt(),
         held_out_nrmse_nominal: over(&held, &counted, nominal),
         held_out_nrmse_augmented: over(&held, &counted, augmented),
         held_out_nrmse_learned: None,
@@ -157,7 +157,7 @@ pub fn structured(fit: &JointFit) -> Option<f64> {
 pub fn autocorrelation(study: &Study, signal: &[f64], counts: &[bool]) -> f64 {
     let (mut product, mut power) = (0.0, 0.0);
     for (recording, rows) in study.table.rows.iter().enumerate() {
-        let lag = (RESIDUAL_LAG / study.seconds[recording]).round().max(1.0) as usize;
+        let lag = (RESIDUAL_LAG / study.data.seconds[recording]).round().max(1.0) as usize;
         for row in rows.start..rows.end.saturating_sub(lag) {
             if counts[row] && counts[row + lag] {
                 product += signal[row] * signal[row + lag];

@@ -70,10 +70,10 @@ pub fn note_on_unnamed(study: &Study, selected: &Selection) -> Option<String> {
     let least = MOST_USUAL * study.stated.torque_accuracy();
     let factor = |joint: usize| {
         let deviation = selected.fit.coefficient(study.torque_constant(joint)?);
-        let name = &study.arm.joints()[joint].name;
+        let name = &study.data.arm.joints()[joint].name;
         (deviation.abs() > least).then(|| format!("{name} × {:.2}", 1.0 + deviation))
     };
-    let factors: Vec<String> = (0..study.motions.dof).filter_map(factor).collect();
+    let factors: Vec<String> = (0..study.data.motions.dof).filter_map(factor).collect();
     (!factors.is_empty()).then(|| {
         format!(
             "the errors contain corrections of the torques that no finding names: {}. Wrong torque constants, or wrong masses, \
@@ -100,14 +100,14 @@ fn farthest(study: &Study, judged: &Judged, tried: &[usize]) -> Option<(usize, u
         let column = study.torque_constant(joint)?;
         Some(judged.named.fit.coefficient(column).abs()).filter(|deviation| *deviation >= least)
     };
-    let deviations: Vec<f64> = (0..study.motions.dof)
+    let deviations: Vec<f64> = (0..study.data.motions.dof)
         .filter_map(|joint| Some(judged.named.fit.coefficient(study.torque_constant(joint)?)))
         .collect();
     if are_alike(&deviations, least) {
         return None;
     }
     let scale = |joint: usize| allowed.iter().copied().find(|&c| names(study, c) == Some(joint));
-    (0..study.motions.dof)
+    (0..study.data.motions.dof)
         .filter(|joint| !tried.contains(joint) && !study.strengths.named_constants.contains(joint))
         .filter_map(|joint| Some((deviation(joint)?, joint, scale(joint)?)))
         .max_by(|a, b| a.0.total_cmp(&b.0))

@@ -40,7 +40,7 @@ pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
     };
     let before = std::mem::replace(&mut study.strengths, strengths);
     let resampled = resample(study, &next);
-    let drawn = study.arm.inertial_parameters()[(study.arm.dof() - 1) * PER_LINK];
+    let drawn = study.data.arm.inertial_parameters()[(study.data.arm.dof() - 1) * PER_LINK];
     let is_missing = name(study, &resampled.evenly(), body)
         .first()
         .and_then(|named| named.parameters.get("mass"))
@@ -68,7 +68,7 @@ pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
 /// Whether `selected` explains a part of the torque on any joint that moves. On torques that do not depend on the motion, a body that
 /// cancels the model's own torque reduces every error, too, but only to that of a constant.
 fn explains_a_part(study: &Study, selected: &Selection) -> bool {
-    (0..study.motions.dof).any(|joint| {
+    (0..study.data.motions.dof).any(|joint| {
         let fit = errors(study, joint, &augmented(study, selected, joint));
         fit.train_nrmse_nominal > 0.0 && fit.train_nrmse_augmented < PARTLY
     })
@@ -84,7 +84,7 @@ struct Instead {
 
 /// The named error of the last link, if it makes the link lighter by more than a URDF is wrong without a missing tool.
 fn lighter_last_link(study: &Study, selected: &Selection) -> Option<usize> {
-    let last = study.arm.dof().checked_sub(1)?;
+    let last = study.data.arm.dof().checked_sub(1)?;
     let is_lighter = |&c: &usize| {
         let candidate = &study.candidates[c];
         candidate.hypothesis.is(&LinkInertialError)
@@ -111,7 +111,7 @@ fn instead(study: &Study, selected: &Selection, lighter: Option<usize>, body: us
         (next, is_possible)
     };
     let exact = Strengths {
-        links: vec![0.0; study.arm.dof()],
+        links: vec![0.0; study.data.arm.dof()],
         ..study.strengths.clone()
     };
     let (bare, _) = fit(&exact, &others);

@@ -22,7 +22,7 @@ pub fn onsets(
     times: &[f64],
     residual: &[Vec<f64>],
 ) -> Vec<(Hypothesis, Option<usize>, Vec<Term>)> {
-    if !study.motions.one_clock {
+    if !study.data.motions.one_clock {
         return Vec::new();
     }
     let mut rows: Vec<usize> = study.training().collect();

@@ -85,7 +85,7 @@ impl About {
 
 /// The changes of the links' inertial parameters in the background of `fit`, ten per link.
 pub fn inertial_changes(study: &Study, fit: &Fit) -> Vec<f64> {
-    let mut changes = vec![0.0; bodies::PER_LINK * study.arm.dof()];
+    let mut changes = vec![0.0; bodies::PER_LINK * study.data.arm.dof()];
     for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
         let term = study.table.terms[column];
         if term.is(&INERTIAL_PARAMETER) {
@@ -99,8 +99,8 @@ pub fn inertial_changes(study: &Study, fit: &Fit) -> Vec<f64> {
 /// terms that it then contains, with their coefficients.
 fn collected(study: &Study, fit: &Fit, since_before: bool) -> (Carried, Vec<(Term, f64)>) {
     let mut found = Carried {
-        arm: study.arm.clone(),
-        offset: vec![0.0; study.arm.dof()],
+        arm: study.data.arm.clone(),
+        offset: vec![0.0; study.data.arm.dof()],
         payload: [0.0; 10],
         tilt: [0.0; 2],
         gravity: [0.0; 3],
@@ -108,7 +108,7 @@ fn collected(study: &Study, fit: &Fit, since_before: bool) -> (Carried, Vec<(Ter
     let mut carried = Vec::new();
     for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
         let term = study.table.terms[column];
-        let acts = term.onset().is_none() || since_before && term.onset() == study.motions.changed_at;
+        let acts = term.onset().is_none() || since_before && term.onset() == study.data.motions.changed_at;
         if let (Some(carry), true) = (term.law.carry, acts) {
             carry(&term, value, &mut found);
             carried.push((term, value));

@@ -38,7 +38,14 @@ impl Study {
     fn reduced_table(&self, columns: &[usize], moving: Moving) -> Table {
         let background = 0..self.prior.terms().len();
         let columns: Vec<usize> = background.chain(columns.iter().copied()).collect();
-        let mut empty = Table::new(&self.motions, &self.rigid, &self.scales, Vec::new(), &[], moving);
+        let mut empty = Table::new(
+            &self.data.motions,
+            &self.data.rigid,
+            &self.data.scales,
+            Vec::new(),
+            &[],
+            moving,
+        );
         // The torques of this table contain those of the effects in the arm about which it is evaluated.
         for (joint, known) in empty.joints.iter_mut().zip(&self.table.joints) {
             joint.y.clone_from(&known.y);
@@ -50,9 +57,15 @@ impl Study {
     /// those of the background, and then the others in this order.
     pub fn fit_with(&self, columns: &[usize], more: Vec<Term>, weights: &[f64]) -> Fit {
         let mut table = self.reduced_table(columns, self.moving);
-        table.add(&self.motions, &self.rigid, &self.scales, more, None);
-        let is_fitted = |recording: usize| self.fitted[recording];
-        let products = Products::new(&table, is_fitted, &self.seconds, &self.motions.tempo, &self.floor);
+        table.add(&self.data.motions, &self.data.rigid, &self.data.scales, more, None);
+        let is_fitted = |recording: usize| self.data.fitted[recording];
+        let products = Products::new(
+            &table,
+            is_fitted,
+            &self.data.seconds,
+            &self.data.motions.tempo,
+            &self.floor,
+        );
         let products = products.with_background(self.background());
         let columns: Vec<usize> = (self.prior.terms().len()..table.terms.len()).collect();
         products.solve(&table, &columns, weights)
@@ -102,13 +115,14 @@ impl Study {
             return None;
         }
         self.carries = carries;
-        let nominal = self.arm.inertial_parameters();
+        let nominal = self.data.arm.inertial_parameters();
         let rigid: Vec<Rigid> = self
+            .data
             .motions
             .chunks
             .par_iter()
             .map(|chunk| {
-                let is_later = self.motions.changed_at.is_some_and(|at| chunk.start >= at);
+                let is_later = self.data.motions.changed_at.is_some_and(|at| chunk.start >= at);
                 let later = since_before.as_ref().filter(|_| is_later);
                 let About { arm, offset, bare, .. } = later.unwrap_or(&about);
                 let mut rigid = Rigid::new(arm, &nominal, offset, chunk);
@@ -118,8 +132,8 @@ impl Study {
                 rigid
             })
             .collect();
-        let before = std::mem::replace(&mut self.rigid, rigid);
-        for joint in 0..self.motions.dof {
+        let before = std::mem::replace(&mut self.data.rigid, rigid);
+        for joint in 0..self.data.motions.dof {
             let before = || before.iter().map(|rigid| rigid.tau[joint].clone()).collect();
             let along = self.simulated_along[joint].take().unwrap_or_else(before);
             self.simulated_along[joint] = self.is_near(joint, &along).then_some(along);
@@ -131,17 +145,24 @@ impl Study {
         let keeps = |term: &Term| term.law.link_side.is_some() && is_near(term) && !selected.contains(term);
         let mut old = std::mem::take(&mut self.table);
         old.retain(|term| !term.is_dynamic() || keeps(term));
-        self.table = old.formed_anew(&self.motions, &self.rigid, &self.scales, terms, carried, self.moving);
+        self.table = old.formed_anew(
+            &self.data.motions,
+            &self.data.rigid,
+            &self.data.scales,
+            terms,
+            carried,
+            self.moving,
+        );
         Some(set)
     }
 
     /// Whether the torque of the arm on `joint` is nearly the one along which its springs and gaps were simulated: `[chunk][tick]` (N m
     /// or N).
     fn is_near(&self, joint: usize, simulated_along: &[Vec<f64>]) -> bool {
-        let pairs = self.rigid.iter().zip(simulated_along);
+        let pairs = self.data.rigid.iter().zip(simulated_along);
         let differences = pairs.flat_map(|(rigid, before)| rigid.tau[joint].iter().zip(before));
         let change = rms(differences.map(|(now, before)| now - before)).unwrap_or(0.0);
-        change <= SIMULATED_ANEW * self.scales.torque[joint]
+        change <= SIMULATED_ANEW * self.data.scales.torque[joint]
     }
 
     /// Removes the trial candidates that are not in `set`; returns the set's new indices, and the remaining terms. The table
@@ -207,7 +228,7 @@ impl Study {
     /// Evaluates everything about the nominal arm again, for another search.
     pub fn restart(&mut self) {
         self.moving = Moving::Steadily;
-        self.strengths = self.stated.first(self.arm.dof());
+        self.strengths = self.stated.first(self.data.arm.dof());
         let products = self.training_products();
         let nothing = self.problem(&products).choose(Vec::new(), &products.first_weights());
         self.about(&nothing.fit, &[], true);

@@ -48,7 +48,7 @@ impl Study {
 
     /// Inner products over the held-out recordings; `None` if there are none.
     pub fn held_products(&self) -> Option<Products> {
-        let has_held_out = self.fitted.contains(&false);
+        let has_held_out = self.data.fitted.contains(&false);
         has_held_out.then(|| self.formed(true, &self.strengths))
     }
 
@@ -87,7 +87,7 @@ impl Study {
         if let Some(products) = self.stored(|list| list.bare[place].clone()) {
             return products;
         }
-        let products = self.bare_products(|recording| self.fitted[recording] != held_out);
+        let products = self.bare_products(|recording| self.data.fitted[recording] != held_out);
         self.stored(|list| list.bare[place] = Some(products.clone()));
         products
     }

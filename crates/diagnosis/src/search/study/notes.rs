@@ -7,7 +7,7 @@ use crate::trace::Action;
 impl Study {
     fn described(&self, candidate: usize) -> (String, Option<String>) {
         let candidate = &self.candidates[candidate];
-        let joint = candidate.joint.map(|joint| self.arm.joints()[joint].name.clone());
+        let joint = candidate.joint.map(|joint| self.data.arm.joints()[joint].name.clone());
         (candidate.hypothesis.spec().name.to_owned(), joint)
     }
 

@@ -13,7 +13,7 @@ impl Study {
     pub fn with_payload_for_last_link(&mut self, selected: Selection) -> Selection {
         let common = self.strengths.common();
         let is_payload = |&c: &usize| self.candidates[c].hypothesis.is(&Payload);
-        let Some(last) = self.arm.dof().checked_sub(1) else {
+        let Some(last) = self.data.arm.dof().checked_sub(1) else {
             return selected;
         };
         if self.strengths.links[last] <= common || selected.set.iter().any(is_payload) {
@@ -87,7 +87,7 @@ impl Study {
             let rows = self.training_rows(joint);
             self.share(joint, statistics::deviation(rows.iter().map(|&row| torque[row])))
         };
-        let shares: Vec<f64> = (0..self.arm.dof()).map(share).collect();
+        let shares: Vec<f64> = (0..self.data.arm.dof()).map(share).collect();
         let most = |shares: &[f64]| shares.iter().fold(0.0, |most: f64, &share| most.max(share));
         most(&shares[shares.len().saturating_sub(PAYLOAD_JOINTS)..]) >= FELT * most(&shares)
     }

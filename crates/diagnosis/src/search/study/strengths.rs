@@ -54,7 +54,7 @@ impl Study {
     /// The loss of the score of `selected`, and of the likelihood of the held-out recordings, if all links have the URDF's
     /// inertial parameters (nats).
     pub fn evidence_of_inertials(&self, held: Option<&Products>, selected: &Selection) -> (f64, Option<f64>) {
-        let links = vec![0.0; self.arm.dof()];
+        let links = vec![0.0; self.data.arm.dof()];
         let (products, without) = self.with_links(selected, links);
         let without = self.problem(&products).reweighted(without);
         let outside =
@@ -75,7 +75,7 @@ impl Study {
     pub fn in_other_links(&self, selected: &Selection, link: usize) -> Vec<(usize, [f64; 2])> {
         let common = self.strengths.common();
         let as_most = |&other: &usize| self.strengths.links[other] == common;
-        let others: Vec<usize> = (0..self.arm.dof()).filter(as_most).collect();
+        let others: Vec<usize> = (0..self.data.arm.dof()).filter(as_most).collect();
         others
             .into_par_iter()
             .map(|other| {
@@ -307,7 +307,7 @@ impl Study {
     /// `selected` with another body of a link in the place of the effects on its joint that may together imitate it: a scale
     /// of the link and a spring on a lever resemble a shifted centre of mass. Effects that are clearly better are kept.
     pub fn without_imitations(&mut self, mut selected: Selection) -> Selection {
-        for link in 0..self.arm.dof() {
+        for link in 0..self.data.arm.dof() {
             let imitates = |&c: &usize| {
                 let candidate = &self.candidates[c];
                 candidate.joint == Some(link) && candidate.hypothesis.spec().may_be_inertial
@@ -379,7 +379,7 @@ impl Study {
                 let column = self.torque_constant(joint)?;
                 Some((selected.fit.coefficient(column).abs(), joint)).filter(|(deviation, _)| *deviation > most)
             };
-            let farthest = (0..self.motions.dof)
+            let farthest = (0..self.data.motions.dof)
                 .filter_map(deviation)
                 .max_by(|a, b| a.0.total_cmp(&b.0));
             let Some((_, joint)) = farthest else {

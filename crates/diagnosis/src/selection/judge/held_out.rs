@@ -77,7 +77,7 @@ pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut 
         let harmful = || {
             let joint = (0..with.len()).find(|&joint| {
                 let n = held.count[joint].max(1.0);
-                let spread = study.scales.torque[joint].max(1e-300);
+                let spread = study.data.scales.torque[joint].max(1e-300);
                 let (nominal, with) = (held.power(joint).sqrt() / spread, (with[joint] / n).sqrt() / spread);
                 held.count[joint] > 0.0 && harms(nominal, with)
             })?;

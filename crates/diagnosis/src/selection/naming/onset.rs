@@ -66,7 +66,7 @@ impl Reader<'_> {
                 .map(|(_, torque, residual, weight)| weight * torque[row] * (2.0 * sign * residual[row] + torque[row]))
                 .sum()
         };
-        let times = study.motions.row_times();
+        let times = study.data.motions.row_times();
         let mut rows: Vec<usize> = study.training().collect();
         rows.sort_by(|&a, &b| times[a].total_cmp(&times[b]));
         let now = rows.partition_point(|&row| times[row] < near);
