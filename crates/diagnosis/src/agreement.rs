@@ -119,7 +119,7 @@ fn found(study: &Study, products: &Products, selected: &Selection) -> Agreement 
     let joints = || 0..study.data.arm.dof();
     // The mean square about the mean, of the rows that are fitted.
     let variance = |joint: usize| {
-        let rows = study.training_rows(joint);
+        let rows = study.table.moving_rows(joint, &study.data.fitted);
         let torques: Vec<f64> = rows.iter().map(|&row| study.data.measured[joint][row]).collect();
         deviation(torques.iter()).powi(2) + products.floor[joint]
     };

@@ -4,8 +4,10 @@ use arm::Arm;
 use effects::Scales;
 use rayon::prelude::*;
 
+use crate::data::motion::{Chunk, Motions};
 use crate::error::DiagnosisError;
 use crate::options::Options;
+use crate::thresholds::{RESTING, RESTING_REACH};
 
 pub mod channels;
 pub mod cutoff;
@@ -24,15 +26,19 @@ pub struct Data {
     /// The nominal model: the URDF's, with known effects.
     pub arm: Arm,
     /// The filtered recordings.
-    pub motions: motion::Motions,
+    pub motions: Motions,
     /// The model along them, one per chunk.
     pub rigid: Vec<rigid::Rigid>,
     /// Typical and largest values of each joint.
     pub scales: Scales,
     /// Measured torque on all rows (N m or N), one list per joint.
     pub measured: Vec<Vec<f64>>,
+    /// Measured torque minus that of the nominal model, on all rows (N m or N).
+    pub nominal: Vec<Vec<f64>>,
     /// The variance of the measured noise, one per joint.
     pub noise: Vec<f64>,
+    /// The variance due to noise, filtering and small errors, one per joint.
+    pub floor: Vec<f64>,
     /// The time between rows, one per recording (s).
     pub seconds: Vec<f64>,
     /// Whether a recording is fitted.
@@ -48,12 +54,7 @@ impl Data {
         let known = known::Known::new(arm, &options.known)?;
         let arm = &known.arm;
         let mut motions = cutoff::filtered(inputs, options.cutoff, arm);
-        let measured: Vec<Vec<f64>> = (0..motions.dof)
-            .map(|joint| {
-                let chunks = motions.chunks.iter();
-                chunks.flat_map(|chunk| chunk.filter(&chunk.tau[joint])).collect()
-            })
-            .collect();
+        let measured = on_rows(&motions, |_, chunk, joint| chunk.tau[joint].clone());
         let torque = measure::deviations(&motions);
         let mut recorded = known.take_off(&mut motions);
         let offset = vec![0.0; arm.dof()];
@@ -65,7 +66,7 @@ impl Data {
         let mut scales = measure::scales(&motions, torque);
         known.take_off_commanded(&mut motions, &recorded, &rigid, &scales);
         // A channel is judged as it was recorded: what known effects leave of it may be noise.
-        let mut exchange = |motions: &mut motion::Motions| {
+        let mut exchange = |motions: &mut Motions| {
             for (chunk, tau) in motions.chunks.iter_mut().zip(&mut recorded) {
                 std::mem::swap(&mut chunk.tau, tau);
             }
@@ -78,9 +79,16 @@ impl Data {
             motions.remarks.push(why.remark(&arm.joints()[joint].name));
         }
         let fitted: Vec<bool> = motions.sources.iter().map(|source| !source.held_out).collect();
+        let noise = measure::noise(&motions, &rigid, &fitted);
+        let floor = |(noise, torque): (&f64, &f64)| noise + (options.thresholds.tolerance * torque).powi(2);
         Ok(Self {
             seconds: measure::seconds(&motions),
-            noise: measure::noise(&motions, &rigid, &fitted),
+            nominal: on_rows(&motions, |k, chunk, joint| {
+                let pairs = chunk.tau[joint].iter().zip(&rigid[k].tau[joint]);
+                pairs.map(|(measured, model)| measured - model).collect()
+            }),
+            floor: noise.iter().zip(&scales.torque).map(floor).collect(),
+            noise,
             arm: known.arm,
             motions,
             rigid,
@@ -89,4 +97,74 @@ impl Data {
             fitted,
         })
     }
+
+    /// A torque (N m or N) as a share of the typical torque of `joint`.
+    pub fn share(&self, joint: usize, torque: f64) -> f64 {
+        torque / self.scales.torque[joint].max(1e-300)
+    }
+
+    /// The recording of which contacts in these windows (s) cover the largest part, and that part.
+    pub fn contact_share(&self, windows: &[[f64; 2]]) -> Option<(usize, f64)> {
+        let shares = measure::spans(&self.motions).into_iter().map(|spans| {
+            let covered = |&(from, to): &(f64, f64)| -> f64 {
+                let inside = windows
+                    .iter()
+                    .map(|&[start, end]| (end.min(to) - start.max(from)).max(0.0));
+                inside.sum()
+            };
+            let length: f64 = spans.iter().map(|(from, to)| to - from).sum();
+            spans.iter().map(covered).sum::<f64>() / length.max(f64::MIN_POSITIVE)
+        });
+        shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The rows of all recordings on which `joint` rests within the reach of the filter.
+    pub fn resting_rows(&self, joint: usize) -> Vec<usize> {
+        let mut rows = Vec::new();
+        let mut first = 0;
+        for chunk in &self.motions.chunks {
+            let reach = (RESTING_REACH * chunk.kernel.width() / chunk.period).ceil() as usize;
+            let qd = &chunk.qd[joint];
+            for row in 0..chunk.rows() {
+                let tick = chunk.tick_of(row);
+                let window = &qd[tick.saturating_sub(reach)..(tick + reach + 1).min(qd.len())];
+                if window.iter().all(|qd| qd.abs() < RESTING * self.scales.rest[joint]) {
+                    rows.push(first + row);
+                }
+            }
+            first += chunk.rows();
+        }
+        rows
+    }
+
+    /// The torque that the gear transmits to the links (N m or N) and the time (s) of given rows of `joint`, in ascending order.
+    pub fn loads_and_times(&self, joint: usize, rows: &[usize]) -> (Vec<f64>, Vec<f64>) {
+        let (mut loads, mut times) = (Vec::with_capacity(rows.len()), Vec::with_capacity(rows.len()));
+        let mut rows = rows.iter().peekable();
+        let mut first = 0;
+        for (chunk, rigid) in self.motions.chunks.iter().zip(&self.rigid) {
+            let end = first + chunk.rows();
+            while let Some(&&row) = rows.peek()
+                && row < end
+            {
+                let tick = chunk.tick_of(row - first);
+                loads.push(rigid.load(joint, chunk, tick));
+                times.push(chunk.time(tick));
+                rows.next();
+            }
+            first = end;
+        }
+        (loads, times)
+    }
+}
+
+/// A torque of all ticks of each chunk, which has a number, on all rows: one list per joint.
+fn on_rows(motions: &Motions, torque: impl Fn(usize, &Chunk, usize) -> Vec<f64>) -> Vec<Vec<f64>> {
+    let of = |joint: usize| {
+        let chunks = motions.chunks.iter().enumerate();
+        chunks
+            .flat_map(|(k, chunk)| chunk.filter(&torque(k, chunk, joint)))
+            .collect()
+    };
+    (0..motions.dof).map(of).collect()
 }

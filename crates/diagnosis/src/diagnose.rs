@@ -11,7 +11,6 @@ use crate::findings::conclusion::Conclusion;
 use crate::findings::identified::identified;
 use crate::next::{self, Next};
 use crate::options::{Options, Step};
-use crate::search::own_load::OwnLoad;
 use crate::search::study::Study;
 use crate::selection::FinalFit;
 use crate::thresholds::{CUTOFF, LARGEST_CUTOFF, LEAST_WIDTHS};
@@ -31,15 +30,11 @@ pub fn diagnose(
     check(arm, inputs, options.cutoff.unwrap_or(CUTOFF))?;
     progress(Step::new(0.08, "filtering, rigid-body torques"));
     let data = Data::new(arm, inputs, options)?;
-    let mut study = Study::new(data, options);
-    let own_load = OwnLoad::found(&study).filter(|load| !(study.data.motions.one_clock && load.changed_once(&study)));
-    if let (Some(load), None) = (&own_load, study.data.motions.changed_at) {
-        study = study.with_own_load(&load.recordings, &load.prior(), options);
-    }
+    let mut study = Study::new(data, options).with_own_load(options);
     let identified = identified(&mut study);
     let last = FinalFit::new(&mut study, options, progress)?;
     progress(Step::new(0.78, "alternatives of the findings"));
-    let conclusion = Conclusion::new(&study, &last, (&identified, own_load.as_ref()), inputs, options);
+    let conclusion = Conclusion::new(&study, &last, &identified, inputs, options);
     let next = next_experiment(&mut study, &last, &conclusion, (arm, options), progress)?;
     let mut diagnosis = conclusion.diagnosis(arm, study);
     if let Some(next) = next {

@@ -107,7 +107,7 @@ pub fn propose(
     let Some(prospect) = Prospect::new(study, products, selected, columns.collect()) else {
         return Ok(nothing);
     };
-    let limits = Limits::new(study, (arm, effects), unexplained.is_empty())?;
+    let limits = Limits::new(&study.data, (arm, effects), unexplained.is_empty())?;
     let now = prospect.now();
     let before: Vec<[f64; 2]> = confusions.iter().map(|c| prospect.separation(&now, &c.pair)).collect();
     let attempt = |design: Design| -> Option<Tried> {

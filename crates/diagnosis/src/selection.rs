@@ -57,7 +57,7 @@ impl FinalFit {
         resampled.allow_for_other_background(study, &judged.named);
         let joints = (0..study.data.arm.dof()).into_par_iter();
         let residual = joints
-            .map(|joint| predict::augmented(study, &judged.named, joint))
+            .map(|joint| predict::augmented(&study.data, &study.table, &judged.named.fit, joint))
             .collect();
         Ok(Self {
             products: study.training_products(),

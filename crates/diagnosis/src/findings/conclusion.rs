@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use arm::Arm;
 use effects::Effect;
+use effects::drive::JointElasticity;
 use rayon::prelude::*;
 
 use super::found::findings;
@@ -54,12 +55,11 @@ pub struct Conclusion {
 }
 
 impl Conclusion {
-    /// The conclusions from the fit `last`; `identified` is each joint's held-out error with full linear identification,
-    /// `own_load` a load that only some of the recordings have.
+    /// The conclusions from the fit `last`; `identified` is each joint's held-out error with full linear identification.
     pub fn new(
         study: &Study,
         last: &FinalFit,
-        (identified, own_load): (&[Option<f64>], Option<&OwnLoad>),
+        identified: &[Option<f64>],
         inputs: &[Input<'_>],
         options: &Options,
     ) -> Self {
@@ -70,13 +70,21 @@ impl Conclusion {
             held,
             residual,
         } = last;
+        let (data, table) = (&study.data, &study.table);
         let mut findings = findings(study, products, held.as_ref(), judged, resampled);
         let not_there = without_known(study, options, &mut findings);
         let mut inertials = inertials(study, held.as_ref(), judged, resampled);
-        let transients = transients::search(study, judged, residual);
+        let is_contact_named = judged.named.set.iter().any(|&c| study.window(c).is_some());
+        let transients = transients::search(data, table, study.force(), residual, is_contact_named);
+        let has_spring = |joint: usize| {
+            judged.named.set.iter().any(|&c| {
+                let candidate = &study.candidates[c];
+                candidate.joint == Some(joint) && candidate.hypothesis.is(&JointElasticity)
+            })
+        };
         let mut others = std::mem::take(&mut inertials.findings);
         if options.only.is_none() {
-            others.splice(0..0, dual_sensor::findings(study, &judged.named, inputs));
+            others.splice(0..0, dual_sensor::findings(data, inputs, has_spring));
             others.extend(transients.contact.clone());
         }
         findings.extend(others.into_iter().map(|finding| (finding, None)));
@@ -93,7 +101,7 @@ impl Conclusion {
         }
         let by_exported: Vec<Vec<f64>> = (0..study.data.motions.dof)
             .into_par_iter()
-            .map(|joint| exported(study, &judged.named, joint))
+            .map(|joint| exported(data, table, &judged.named.fit, joint))
             .collect();
         let fit = fit(study, [residual, &by_exported], identified);
         let mut unexplained = unexplained(study, judged, &transients, residual);
@@ -102,12 +110,12 @@ impl Conclusion {
             // More data are the only next step.
             unexplained.clear();
         }
-        let located = locate(study, &study.nominal, residual);
+        let located = locate(data, table, &data.nominal, residual);
         if findings.is_empty() {
             beyond_limits(study, &fit, &transients, &mut unexplained);
             with_places(&located, &mut unexplained);
         } else if unexplained.iter().any(|open| open.depends_on.is_empty()) {
-            let mut open = locate(study, residual, residual);
+            let mut open = locate(data, table, residual, residual);
             for place in &mut open {
                 // A residual that drifts has an unmodelled form. What remains in one stretch of time is not a drift.
                 place.regions.retain(|region| region.axis != Axis::ElapsedTime);
@@ -126,7 +134,9 @@ impl Conclusion {
         });
         // If the change is named, nothing is to be added.
         let is_named = |(finding, _): &(Finding, _)| finding.since_before && finding.as_effect.spec().is_wrong_mass;
-        let different_load = own_load
+        let different_load = study
+            .own_load
+            .as_ref()
             .filter(|_| !findings.iter().any(is_named))
             .map(|load| different(load, &study.data.motions.sources));
         for (finding, _) in &mut findings {
@@ -251,12 +261,13 @@ fn not_named(mut list: Vec<NotObservable>, findings: &[(Finding, Option<usize>)]
 /// How well each joint's torque is predicted; `residuals` are those of the augmented and of the exported model
 /// (`[joint][row]`, N m or N).
 fn fit(study: &Study, residuals: [&[Vec<f64>]; 2], identified: &[Option<f64>]) -> BTreeMap<String, JointFit> {
+    let (data, table) = (&study.data, &study.table);
     let of = |(joint, residual): (usize, &Vec<f64>)| {
-        let of_exported = errors(study, joint, &residuals[1][joint]);
+        let of_exported = errors(data, table, joint, &residuals[1][joint]);
         let errors = JointFit {
             held_out_nrmse_identified: identified[joint],
             held_out_nrmse_exported: of_exported.held_out_nrmse_augmented,
-            ..errors(study, joint, residual)
+            ..errors(data, table, joint, residual)
         };
         (study.data.arm.joints()[joint].name.clone(), errors)
     };

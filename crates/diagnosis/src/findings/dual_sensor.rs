@@ -7,12 +7,11 @@ use effects::friction::{CoulombFriction, ViscousFriction};
 use effects::{Effect, Quantity};
 use nalgebra::{DMatrix, DVector};
 
+use crate::data::Data;
 use crate::data::input::Input;
 use crate::data::signal::Kernel;
 use crate::data::statistics::{NORMAL_95, deviation};
 use crate::report::{Finding, MOTOR_CURRENT, Parameter, Place, SECOND_ENCODER};
-use crate::search::problem::Selection;
-use crate::search::study::Study;
 use crate::thresholds::{
     CLEAR_COMPLIANCE, CLEAR_FRICTION, FOLLOWS, FRICTION_EXPLAINS, LARGEST_CUTOFF, LARGEST_DEFLECTION, LEAST_BEND,
     SENSOR_ERRORS, SENSOR_ROWS, SENSOR_SPACING, SENSORS_MOVE,
@@ -34,25 +33,21 @@ struct Regression {
     held_out: Option<f64>,
 }
 
-/// Findings from second encoders, and from motor currents beside torque sensors.
-pub fn findings(study: &Study, named: &Selection, inputs: &[Input<'_>]) -> Vec<Finding> {
+/// Findings from second encoders, and from motor currents beside torque sensors. No spring is looked for on joints `with_spring`.
+pub fn findings(data: &Data, inputs: &[Input<'_>], with_spring: impl Fn(usize) -> bool) -> Vec<Finding> {
     let mut list = Vec::new();
-    for joint in 0..study.data.motions.dof {
-        let already = named.set.iter().any(|&c| {
-            let candidate = &study.candidates[c];
-            candidate.joint == Some(joint) && candidate.hypothesis.is(&JointElasticity)
-        });
-        if !already {
-            list.extend(deflection(study, joint, inputs));
+    for joint in 0..data.motions.dof {
+        if !with_spring(joint) {
+            list.extend(deflection(data, joint, inputs));
         }
-        list.extend(between_current_and_sensor(study, joint, inputs));
+        list.extend(between_current_and_sensor(data, joint, inputs));
     }
     list
 }
 
-/// The signals of one joint after the study's filter, about every tenth of a second, while the joint moves.
+/// The signals of one joint after the filter of the diagnosis, about every tenth of a second, while the joint moves.
 fn gather(
-    study: &Study,
+    data: &Data,
     joint: usize,
     inputs: &[Input<'_>],
     mut row: impl FnMut(&Input<'_>, &mut dyn FnMut(&[f64], Order) -> Vec<f64>) -> Option<(Vec<Vec<f64>>, Vec<f64>)>,
@@ -61,7 +56,7 @@ fn gather(
     for input in inputs {
         let recording = input.recording;
         for segment in &recording.segments {
-            let cutoff = study.data.motions.cutoff.min(LARGEST_CUTOFF / recording.period);
+            let cutoff = data.motions.cutoff.min(LARGEST_CUTOFF / recording.period);
             let kernel = Kernel::new(cutoff, recording.period);
             let stride = ((SENSOR_SPACING / cutoff / recording.period) as usize).max(1);
             if segment.ticks.len() < 2 * kernel.reach() + SENSOR_ROWS * stride {
@@ -79,7 +74,7 @@ fn gather(
                 continue;
             };
             for (k, y) in y.into_iter().enumerate() {
-                if speed[k].abs() > SENSORS_MOVE * study.data.scales.rest[joint] {
+                if speed[k].abs() > SENSORS_MOVE * data.scales.rest[joint] {
                     rows.x.push(x.iter().map(|column| column[k]).collect());
                     rows.y.push(y);
                     rows.held_out.push(input.held_out);
@@ -161,8 +156,8 @@ impl Regression {
 }
 
 /// The spring between a joint's two encoders: their difference is proportional to the torque.
-fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Finding> {
-    let rows = gather(study, joint, inputs, |input, filter| {
+fn deflection(data: &Data, joint: usize, inputs: &[Input<'_>]) -> Option<Finding> {
+    let rows = gather(data, joint, inputs, |input, filter| {
         let secondary = input.recording.q_secondary.get(joint)?.as_ref()?;
         let q = &input.recording.q[joint];
         let difference: Vec<f64> = secondary.iter().zip(q).map(|(link, motor)| link - motor).collect();
@@ -174,7 +169,7 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
         let friction: Vec<f64> = filter(q, Order::First).iter().map(|v| v.signum()).collect();
         Some((vec![ones, place, tau, friction], y))
     });
-    let range = study.data.scales.range[joint];
+    let range = data.scales.range[joint];
     let result = regress(&rows)?;
     let (compliance, error) = (-result.coefficients[2], result.errors[2]);
     let bends = compliance * deviation(rows.x.iter().map(|x| x[2]));
@@ -186,7 +181,7 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
     if !credible {
         return None;
     }
-    let kind = study.data.arm.joints()[joint].kind;
+    let kind = data.arm.joints()[joint].kind;
     let unit = Quantity::Stiffness.unit(kind);
     let stiffness = Parameter {
         value: 1.0 / compliance,
@@ -196,7 +191,7 @@ fn deflection(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Option<Findi
         ],
         unit,
     };
-    let name = study.data.arm.joints()[joint].name.clone();
+    let name = data.arm.joints()[joint].name.clone();
     let effect = Effect::of(&JointElasticity).on(name.clone());
     let effect = effect.with("stiffness", stiffness.value).with("damping", 0.0);
     let gain = result.held_out.map(|explained| 1.0 - (1.0 - explained).max(0.0).sqrt());
@@ -215,8 +210,8 @@ const BY_SECOND_ENCODER: (&str, &str) = (SECOND_ENCODER, "between the two encode
 const BY_MOTOR_CURRENT: (&str, &str) = (MOTOR_CURRENT, "between the motor's current and the torque sensor");
 
 /// Friction between the motor's current and the torque sensor.
-fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>]) -> Vec<Finding> {
-    let rows = gather(study, joint, inputs, |input, filter| {
+fn between_current_and_sensor(data: &Data, joint: usize, inputs: &[Input<'_>]) -> Vec<Finding> {
+    let rows = gather(data, joint, inputs, |input, filter| {
         let current = input.recording.tau_current.get(joint)?.as_ref()?;
         let sensor = &input.recording.tau[joint];
         let difference: Vec<f64> = current.iter().zip(sensor).map(|(a, b)| a - b).collect();
@@ -237,9 +232,9 @@ fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>])
     if !result.follows(FRICTION_EXPLAINS) {
         return Vec::new();
     }
-    let kind = study.data.arm.joints()[joint].kind;
-    let name = study.data.arm.joints()[joint].name.clone();
-    let torque = study.data.scales.torque[joint].max(1e-300);
+    let kind = data.arm.joints()[joint].kind;
+    let name = data.arm.joints()[joint].name.clone();
+    let torque = data.scales.torque[joint].max(1e-300);
     let gain = result.held_out.map(|explained| 1.0 - (1.0 - explained).max(0.0).sqrt());
     let place = BY_MOTOR_CURRENT;
     let mut list = Vec::new();
@@ -261,7 +256,7 @@ fn between_current_and_sensor(study: &Study, joint: usize, inputs: &[Input<'_>])
         let coefficient = result.parameter(1, Quantity::Damping.unit(kind));
         let effect = Effect::of(&ViscousFriction).on(name.clone());
         let effect = effect.with("coefficient", coefficient.value);
-        let share = coefficient.value * study.data.scales.speed[joint] / torque;
+        let share = coefficient.value * data.scales.speed[joint] / torque;
         list.push(finding(
             effect,
             &name,

@@ -14,7 +14,6 @@ use crate::selection::bootstrap::Resampled;
 use crate::selection::gain::held_out_gain;
 use crate::selection::judge::{Judged, Member};
 use crate::selection::naming::{may_be_nothing, name};
-use crate::selection::predict::deviation;
 use crate::selection::rivals::{Named, Standing, standing};
 use crate::thresholds::LISTED_SHARE;
 
@@ -141,7 +140,9 @@ fn rotor_share(study: &Study, judged: &Judged, candidate: usize) -> f64 {
         .filter(|&column| study.table.terms[column].is(&ACCELERATION))
         .collect();
     let torque = study.table.torque(joint, &rotor, &judged.named.fit.values(&rotor));
-    study.share(joint, deviation(&torque, &study.training_rows(joint)))
+    study
+        .data
+        .share(joint, study.table.spread(joint, &study.data.fitted, &torque))
 }
 
 fn place(study: &Study, hypothesis: Hypothesis, candidate: usize) -> Place {

@@ -7,7 +7,7 @@ use effects::sensor::TorqueOffset;
 use crate::regression::strengths::Strengths;
 use crate::regression::table::Moving;
 use crate::search::study::Study;
-use crate::selection::predict::{errors, residual};
+use crate::selection::predict::errors_with;
 
 /// The standard deviation of the prior on inertial parameters, in multiples of their size. It is so wide that it only
 /// regularises the normal equations.
@@ -35,7 +35,7 @@ pub fn identified(study: &mut Study) -> Vec<Option<f64>> {
     let selected: Vec<usize> = (study.table.terms.len() - columns.len()..study.table.terms.len()).collect();
     let fit = products.fit(&study.table, &selected, &products.first_weights());
     let fit = products.reweighted(&study.table, fit);
-    let of = |joint| errors(study, joint, &residual(study, &fit, joint)).held_out_nrmse_augmented;
+    let of = |joint| errors_with(&study.data, &study.table, &fit, joint).held_out_nrmse_augmented;
     let list = (0..study.data.arm.dof()).map(of).collect();
     study.table = searched;
     list

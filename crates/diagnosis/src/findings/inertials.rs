@@ -14,7 +14,7 @@ use crate::search::candidate::Hypothesis;
 use crate::search::study::{About, Study};
 use crate::selection::bootstrap::Resampled;
 use crate::selection::judge::Judged;
-use crate::selection::predict::{augmented, deviation, errors};
+use crate::selection::predict::errors_with;
 use crate::selection::rivals::{allowance, probability};
 use crate::selection::special_forms::special_forms;
 use crate::thresholds::{LEAST_WRONG_EVERYWHERE, LINK_STANDS_OUT, LISTED_SHARE, PARTLY, SYSTEMATIC};
@@ -62,7 +62,7 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
         return Inertials::default();
     }
     // The links with their scale errors, without payload, tilt and other effects.
-    let nominal: Vec<f64> = About::scaled(study, &judged.named.fit).inertial_parameters();
+    let nominal: Vec<f64> = About::scaled(&study.data, &study.table, &judged.named.fit).inertial_parameters();
     let place = |link: usize, parameter: usize| {
         let is_it = |&column: &usize| {
             let term = study.table.terms[column];
@@ -90,7 +90,9 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
             .collect();
         for (joint, share) in shares[link].iter_mut().enumerate() {
             let torque = study.table.torque(joint, &columns, &values);
-            *share = study.share(joint, deviation(&torque, &study.training_rows(joint)));
+            *share = study
+                .data
+                .share(joint, study.table.spread(joint, &study.data.fitted, &torque));
         }
         let prior = study.prior_variances(link);
         let determined = std::array::from_fn(|parameter| {
@@ -138,7 +140,9 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
                 })
                 .unzip();
             let torque = study.table.torque(joint, &columns, &values);
-            study.share(joint, deviation(&torque, &study.training_rows(joint)))
+            study
+                .data
+                .share(joint, study.table.spread(joint, &study.data.fitted, &torque))
         })
         .collect();
     let by_joint = |shares: &[f64]| -> BTreeMap<String, f64> {
@@ -150,7 +154,7 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
     let largest = |shares: &[f64]| shares.iter().copied().fold(0.0, f64::max);
     // If hardly anything is explained, the background compensates a model that does not fit.
     let explained: Vec<bool> = (0..dof)
-        .map(|joint| errors(study, joint, &augmented(study, &judged.named, joint)).train_nrmse_augmented < PARTLY)
+        .map(|joint| errors_with(&study.data, &study.table, &judged.named.fit, joint).train_nrmse_augmented < PARTLY)
         .collect();
     // The margin of a link over the best other link (nats), and the links that explain nearly as much in its place, the
     // best first.

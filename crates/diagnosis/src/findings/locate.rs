@@ -2,20 +2,30 @@
 
 use rayon::prelude::*;
 
+use crate::data::Data;
 use crate::data::statistics::rms;
+use crate::regression::table::Table;
 use crate::report::{Axis, Located, Region, TimeWindow};
-use crate::search::study::Study;
 use crate::thresholds::{
     LEAST_PAIRS, LEAST_WINDOW_ROWS, MOST_WINDOWS, OVER_NOISE, REGION_BINS, REGION_STANDS_OUT, SAME_LOAD, SAME_MOTION,
     WINDOW, WINDOW_STANDS_OUT,
 };
 
 /// Locates a residual (`[joint][row]`), and compares it with that of the `augmented` model.
-pub fn locate(study: &Study, residual: &[Vec<f64>], augmented: &[Vec<f64>]) -> Vec<Located> {
-    let states = states(study);
-    (0..study.data.motions.dof)
+pub fn locate(data: &Data, table: &Table, residual: &[Vec<f64>], augmented: &[Vec<f64>]) -> Vec<Located> {
+    let states = states(data);
+    (0..data.motions.dof)
         .into_par_iter()
-        .filter_map(|joint| on_joint(study, &states[joint], joint, &residual[joint], &augmented[joint]))
+        .filter_map(|joint| {
+            let moving = &table.joints[joint].moving;
+            on_joint(
+                data,
+                moving,
+                &states[joint],
+                joint,
+                [&residual[joint], &augmented[joint]],
+            )
+        })
         .collect()
 }
 
@@ -29,8 +39,8 @@ struct State {
     recording: Vec<usize>,
 }
 
-fn states(study: &Study) -> Vec<State> {
-    (0..study.data.motions.dof)
+fn states(data: &Data) -> Vec<State> {
+    (0..data.motions.dof)
         .map(|joint| {
             let mut state = State {
                 q: Vec::new(),
@@ -40,7 +50,7 @@ fn states(study: &Study) -> Vec<State> {
                 time: Vec::new(),
                 recording: Vec::new(),
             };
-            for (chunk, rigid) in study.data.motions.chunks.iter().zip(&study.data.rigid) {
+            for (chunk, rigid) in data.motions.chunks.iter().zip(&data.rigid) {
                 for row in 0..chunk.rows() {
                     let tick = chunk.tick_of(row);
                     state.q.push(chunk.q[joint][tick]);
@@ -61,20 +71,23 @@ fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
     rms(values).unwrap_or(0.0)
 }
 
-fn on_joint(study: &Study, state: &State, joint: usize, nominal: &[f64], augmented: &[f64]) -> Option<Located> {
-    let rows: Vec<usize> = {
-        let moving = &study.table.joints[joint].moving;
-        (0..nominal.len()).filter(|&row| moving[row]).collect()
-    };
+fn on_joint(
+    data: &Data,
+    moving: &[bool],
+    state: &State,
+    joint: usize,
+    [nominal, augmented]: [&[f64]; 2],
+) -> Option<Located> {
+    let rows: Vec<usize> = (0..nominal.len()).filter(|&row| moving[row]).collect();
     if rows.is_empty() {
         return None;
     }
     let all = root_mean_square(rows.iter().map(|&row| nominal[row]));
-    let floor = study.floor[joint].sqrt().max(1e-300);
+    let floor = data.floor[joint].sqrt().max(1e-300);
     if all < OVER_NOISE * floor {
         return None;
     }
-    let torque = study.data.scales.torque[joint].max(1e-300);
+    let torque = data.scales.torque[joint].max(1e-300);
     let first = state.time.iter().copied().fold(f64::INFINITY, f64::min);
     let axes: [(Axis, Vec<f64>); 5] = [
         (Axis::NearReversal, state.qd.iter().map(|qd| qd.abs()).collect()),
@@ -111,16 +124,16 @@ fn on_joint(study: &Study, state: &State, joint: usize, nominal: &[f64], augment
     }
     regions.sort_by(|a, b| b.residual.total_cmp(&a.residual));
     Some(Located {
-        joint: study.data.arm.joints()[joint].name.clone(),
+        joint: data.arm.joints()[joint].name.clone(),
         over_noise: all / floor,
-        repeatable: repeatable(study, state, joint, &rows, nominal),
+        repeatable: repeatable(data, state, joint, &rows, nominal),
         regions,
-        time: windows(study, state, &rows, nominal, all),
+        time: windows(data, state, &rows, nominal, all),
     })
 }
 
 /// The three stretches of time with the largest residual.
-fn windows(study: &Study, state: &State, rows: &[usize], nominal: &[f64], all: f64) -> Vec<TimeWindow> {
+fn windows(data: &Data, state: &State, rows: &[usize], nominal: &[f64], all: f64) -> Vec<TimeWindow> {
     let mut stretches: Vec<(f64, usize, [f64; 2])> = Vec::new();
     let mut from = 0;
     while from < rows.len() {
@@ -142,9 +155,9 @@ fn windows(study: &Study, state: &State, rows: &[usize], nominal: &[f64], all: f
         .take_while(|(residual, ..)| *residual > WINDOW_STANDS_OUT * all)
         .take(MOST_WINDOWS)
         .map(|(_, recording, [start, end])| TimeWindow {
-            recording: study.data.motions.sources[recording].name.clone(),
-            start: study.data.motions.own_time(recording, start),
-            end: study.data.motions.own_time(recording, end),
+            recording: data.motions.sources[recording].name.clone(),
+            start: data.motions.own_time(recording, start),
+            end: data.motions.own_time(recording, end),
         })
         .collect();
     list.sort_by(|a, b| a.recording.cmp(&b.recording).then(a.start.total_cmp(&b.start)));
@@ -152,14 +165,14 @@ fn windows(study: &Study, state: &State, rows: &[usize], nominal: &[f64], all: f
 }
 
 /// The part of the residual that repeats where the joint's own state does, in another recording.
-fn repeatable(study: &Study, state: &State, joint: usize, rows: &[usize], nominal: &[f64]) -> Option<f64> {
-    let torque = study.data.scales.torque[joint];
+fn repeatable(data: &Data, state: &State, joint: usize, rows: &[usize], nominal: &[f64]) -> Option<f64> {
+    let torque = data.scales.torque[joint];
     let acceleration = root_mean_square(rows.iter().map(|&row| state.qdd[row]));
     let cell = |row: usize| {
         let part = |value: f64, range: f64| (value / (SAME_MOTION * range).max(1e-12)).floor() as i64;
         (
-            part(state.q[row], study.data.scales.range[joint]),
-            part(state.qd[row], study.data.scales.speed[joint]),
+            part(state.q[row], data.scales.range[joint]),
+            part(state.qd[row], data.scales.speed[joint]),
             part(state.load[row], SAME_LOAD * torque),
             part(state.qdd[row], SAME_LOAD * acceleration),
         )

@@ -11,7 +11,6 @@ use crate::search::candidate::Candidate;
 use crate::search::physics::is_beyond_physics;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
-use crate::selection::predict::deviation;
 use crate::thresholds::{BEYOND, HIDDEN};
 
 /// Why an effect is not testable whose torque others resemble.
@@ -101,7 +100,7 @@ fn on_arm(study: &Study, products: &Products, selected: &Selection) -> Vec<NotOb
         let least = |&column: &usize| {
             let evidence = products.evidence_of(&study.table, &selected.fit, column);
             let size = (needed / evidence.max(1e-300)).sqrt();
-            let share = |joint| study.share(joint, size * spread(study, joint, column));
+            let share = |joint| study.data.share(joint, size * spread(study, joint, column));
             (size, (0..study.data.motions.dof).map(share).fold(0.0, f64::max), column)
         };
         let hardest = candidate.columns.iter().take(columns).map(least);
@@ -263,7 +262,7 @@ fn is_seen(study: &Study, products: &Products, selected: &Selection, candidate: 
     let column = candidate.columns[0];
     let drop = products.drop_of(&study.table, &selected.fit, column);
     let nats = 0.5 * products.evidence[joint] * (1.0 + drop / products.count[joint].max(1.0)).ln();
-    let share = study.share(joint, spread(study, joint, column));
+    let share = study.data.share(joint, spread(study, joint, column));
     nats > needed(study, candidate) && share > study.thresholds.least_share
 }
 
@@ -272,5 +271,7 @@ fn spread(study: &Study, joint: usize, column: usize) -> f64 {
     let Some(place) = study.table.place[joint][column] else {
         return 0.0;
     };
-    deviation(&study.table.joints[joint].x[place], &study.training_rows(joint))
+    study
+        .table
+        .spread(joint, &study.data.fitted, &study.table.joints[joint].x[place])
 }

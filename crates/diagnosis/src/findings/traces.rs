@@ -97,7 +97,7 @@ pub fn traces(
                 qd: cut(&qd),
                 qdd: cut(&qdd),
                 tau: cut(&study.data.measured),
-                residual: cut(&study.nominal),
+                residual: cut(&study.data.nominal),
                 residual_augmented: cut(residuals[0]),
                 residual_exported: cut(residuals[1]),
                 effects: torques.iter().map(|torque| cut(torque)).collect(),

@@ -45,7 +45,7 @@ pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, resi
             entry.1.push((*share, Regressor::Time.into()));
         }
     }
-    let located = locate(study, &study.nominal, residual);
+    let located = locate(&study.data, &study.table, &study.data.nominal, residual);
     by_joint
         .into_iter()
         .map(|(joint, (share, mut on))| {
@@ -91,7 +91,7 @@ pub fn poorly_predicted(
             continue;
         }
         let error = error.max(in_training.unwrap_or(0.0));
-        let was_fitted = !study.training_rows(joint).is_empty();
+        let was_fitted = !study.table.moving_rows(joint, &study.data.fitted).is_empty();
         unexplained.push(Unexplained {
             joint: name.clone(),
             share: error,
@@ -112,14 +112,14 @@ fn structured_in_training(study: &Study, judged: &Judged, residual: &[f64], join
     let contacts: Vec<[f64; 2]> = judged.named.set.iter().filter_map(|&c| study.window(c)).collect();
     let times = study.data.motions.row_times();
     let mut counts = vec![false; residual.len()];
-    for row in study.training_rows(joint) {
+    for row in study.table.moving_rows(joint, &study.data.fitted) {
         counts[row] = contacts.iter().all(|[from, to]| times[row] < *from || times[row] > *to);
     }
     let rms = rms((0..residual.len()).filter(|&row| counts[row]).map(|row| residual[row]))?;
-    let is_structured = study.share(joint, rms) >= STRUCTURED_IN_TRAINING
+    let is_structured = study.data.share(joint, rms) >= STRUCTURED_IN_TRAINING
         && rms >= STRUCTURED_ABOVE_NOISE * study.data.noise[joint].sqrt()
-        && autocorrelation(study, residual, &counts) > REMEMBERS;
-    is_structured.then(|| study.share(joint, rms))
+        && autocorrelation(&study.data, &study.table, residual, &counts) > REMEMBERS;
+    is_structured.then(|| study.data.share(joint, rms))
 }
 
 /// Keeps the residuals on joints whose error a diagnosis with findings would not call explained, and transients, for recordings

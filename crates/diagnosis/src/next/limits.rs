@@ -5,9 +5,9 @@ use effects::Effect;
 use effects::drive::TorqueSaturation;
 use torque::{Corrected, Motion, Prediction, Reference, TorqueError, Workspace};
 
+use crate::data::Data;
 use crate::data::statistics::median;
 use crate::report::JointLimits;
-use crate::search::study::Study;
 use crate::thresholds::{
     BEYOND_RECORDED, BEYOND_UNEXPLAINED, FASTER_UNLIMITED, LIMIT_MARGIN, STRONGER_UNLIMITED, WITHIN_LIMITS,
 };
@@ -29,19 +29,19 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// The limits for the arm `arm` of `study`. Torques are those of `arm` with `effects`, which are known or found, and which
+    /// The limits for the arm `arm` of `data`. Torques are those of `arm` with `effects`, which are known or found, and which
     /// `explain` the recordings or not. A torque limit among them bounds what a motion may need.
     ///
     /// # Errors
     /// If the effects cannot be added to the model.
-    pub fn new(study: &Study, (arm, effects): (&Arm, &[Effect]), explain: bool) -> Result<Self, TorqueError> {
+    pub fn new(data: &Data, (arm, effects): (&Arm, &[Effect]), explain: bool) -> Result<Self, TorqueError> {
         let is_limit = |effect: &&Effect| effect.is(&TorqueSaturation);
         let (found, others): (Vec<&Effect>, Vec<&Effect>) = effects.iter().partition(is_limit);
         let with = |effects: Vec<&Effect>| Corrected::new(arm, &effects.into_iter().cloned().collect::<Vec<_>>());
         let (found, model) = (with(found)?, with(others)?);
         let (wider, faster) = if explain { BEYOND_RECORDED } else { BEYOND_UNEXPLAINED };
-        let joints = study.data.arm.joints();
-        let scales = &study.data.scales;
+        let joints = data.arm.joints();
+        let scales = &data.scales;
         let typical = {
             let moving = (0..joints.len()).filter(|&j| scales.speed[j] > scales.rest[j]);
             median(moving.map(|j| 0.5 * scales.range[j]).collect())
@@ -81,9 +81,7 @@ impl Limits {
             } else {
                 FASTER_UNLIMITED.min(faster) * speed
             });
-            let torque = study.data.measured[j]
-                .iter()
-                .fold(0.0_f64, |most, tau| most.max(tau.abs()));
+            let torque = data.measured[j].iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
             let allowed = if joint.limits.effort.is_finite() {
                 // A drive that gave this torque in the recordings can give it again.
                 (WITHIN_LIMITS * joint.limits.effort).max(torque.min(joint.limits.effort))

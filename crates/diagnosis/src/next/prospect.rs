@@ -96,7 +96,7 @@ impl<'a> Prospect<'a> {
         Some(Self {
             study,
             selected,
-            about: About::new(study, &selected.fit),
+            about: About::new(&study.data, &study.table, &selected.fit),
             nominal: study.data.arm.inertial_parameters(),
             derivatives: terms.iter().any(needs),
             grid: (period, Kernel::new(study.data.motions.cutoff, period), stride),
@@ -167,7 +167,7 @@ impl<'a> Prospect<'a> {
             &self.about.carried,
             Moving::ThroughReversals,
         );
-        let new = Products::new(&table, |_| true, &[seconds], &tempo, &study.floor);
+        let new = Products::new(&table, |_| true, &[seconds], &tempo, &study.data.floor);
         let new = new.picked(&table, &(0..self.columns.len()).collect::<Vec<_>>());
         // The residual of the motion is predicted to be as large as that of the recordings.
         let variance: Vec<f64> = (0..dof)

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
+use crate::data::statistics::deviation;
 use crate::regression::bodies;
 use crate::regression::columns::{link_side, link_side_torque, values};
 use crate::thresholds::{CORE, REVERSAL, YIELDING};
@@ -219,6 +220,24 @@ impl Table {
         self.refresh();
         self.terms.extend(columns.iter().map(|&column| other.terms[column]));
         self
+    }
+
+    /// The rows of the recordings that `selected` selects.
+    pub fn rows_of(&self, selected: impl Fn(usize) -> bool) -> Vec<usize> {
+        let recordings = self.rows.iter().enumerate().filter(|(r, _)| selected(*r));
+        recordings.flat_map(|(_, rows)| rows.clone()).collect()
+    }
+
+    /// The rows on which `joint` moves, in the recordings that are `fitted`.
+    pub fn moving_rows(&self, joint: usize, fitted: &[bool]) -> Vec<usize> {
+        let mut rows = self.rows_of(|recording| fitted[recording]);
+        rows.retain(|&row| self.joints[joint].moving[row]);
+        rows
+    }
+
+    /// The standard deviation of a `signal` on those rows.
+    pub fn spread(&self, joint: usize, fitted: &[bool], signal: &[f64]) -> f64 {
+        deviation(self.moving_rows(joint, fitted).iter().map(|&row| signal[row]))
     }
 
     /// The same one as long as the inner products are the same.

@@ -10,12 +10,14 @@ use effects::laws::{SIGN, VELOCITY};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::data::Data;
+use crate::data::motion::Motions;
 use crate::data::statistics::NORMAL_95;
-use crate::regression::background::Background;
+use crate::regression::background::{Background, Prior};
 use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::evidence_rate;
 use crate::regression::strengths::Strengths;
-use crate::search::study::Study;
+use crate::regression::table::Table;
 use crate::thresholds::{
     LEAST_LOAD, LEAST_LOAD_ROWS, LEAST_OF_RECORDING, LEAST_OF_RESIDUAL, LOAD_FLOOR, LOAD_PRECISION, LOAD_SIZE,
 };
@@ -38,9 +40,9 @@ pub struct OwnLoad {
 }
 
 impl OwnLoad {
-    /// The load that only some of the recordings have, if there is one.
-    pub fn found(study: &Study) -> Option<Self> {
-        let (dof, recordings) = (study.data.motions.dof, study.data.motions.sources.len());
+    /// The load that only some of the recordings have, if there is one; `table` has the columns of the background with this `prior`.
+    pub fn found(data: &Data, table: &Table, prior: &Prior) -> Option<Self> {
+        let (dof, recordings) = (data.motions.dof, data.motions.sources.len());
         if dof < 2 || recordings < 2 {
             return None;
         }
@@ -48,15 +50,15 @@ impl OwnLoad {
             links: vec![1.0; dof],
             ..Strengths::none(dof)
         };
-        let background = study.background_at(&wide)?;
+        let background = prior.at(&wide)?;
         let parts: Vec<Part> = (0..dof)
             .into_par_iter()
-            .flat_map_iter(|joint| Part::of_joint(study, joint))
+            .flat_map_iter(|joint| Part::of_joint(data, table, joint))
             .collect();
-        let mut variances = Variances::first(study);
+        let mut variances = Variances::first(data);
         for _ in 0..REWEIGHTINGS {
             let same = LoadEquations::new(&parts, &variances, &background, (dof, recordings))?;
-            variances = Variances::of(study, &parts, &same.alone());
+            variances = Variances::of(data, &parts, &same.alone());
         }
         let normal = LoadEquations::new(&parts, &variances, &background, (dof, recordings))?;
         let found = grown(&normal, &parts, &variances, recordings);
@@ -78,16 +80,11 @@ impl OwnLoad {
     }
 
     /// Whether it is in the last or in the first recordings only: the load may have changed once.
-    pub fn changed_once(&self, study: &Study) -> bool {
-        let sources = study.data.motions.sources.len();
+    pub fn changed_once(&self, motions: &Motions) -> bool {
+        let sources = motions.sources.len();
         let mut order: Vec<usize> = (0..sources).collect();
         let begins = |recording: &usize| {
-            let mut chunks = study
-                .data
-                .motions
-                .chunks
-                .iter()
-                .filter(|chunk| chunk.recording == *recording);
+            let mut chunks = motions.chunks.iter().filter(|chunk| chunk.recording == *recording);
             chunks.next().map_or(f64::INFINITY, |chunk| chunk.start)
         };
         order.sort_by(|a, b| begins(a).total_cmp(&begins(b)));
@@ -147,8 +144,8 @@ struct Part {
 
 impl Part {
     /// The parts of `joint`, one per recording.
-    fn of_joint(study: &Study, joint: usize) -> Vec<Self> {
-        let (dof, table) = (study.data.motions.dof, &study.table);
+    fn of_joint(data: &Data, table: &Table, joint: usize) -> Vec<Self> {
+        let dof = data.motions.dof;
         let this = &table.joints[joint];
         let column = |term: &Term| {
             let number = table.terms.iter().position(|known| known == term)?;
@@ -168,11 +165,11 @@ impl Part {
 
         let y = &this.y;
         let mut resting = vec![false; y.len()];
-        for row in study.resting_rows(joint) {
+        for row in data.resting_rows(joint) {
             resting[row] = !this.moving[row];
         }
         let part = |recording: usize| {
-            let weight = study.data.seconds[recording] * evidence_rate(study.data.motions.tempo[joint]);
+            let weight = data.seconds[recording] * evidence_rate(data.motions.tempo[joint]);
             let products = |is_counted: &[bool], friction: usize| {
                 let range = table.rows[recording].clone();
                 let rows: Vec<usize> = range.filter(|&row| is_counted[row]).collect();
@@ -220,25 +217,25 @@ impl Part {
 struct Variances(Vec<[f64; 2]>);
 
 impl Variances {
-    fn first(study: &Study) -> Self {
+    fn first(data: &Data) -> Self {
         let of = |torque: &f64| [torque.powi(2).max(f64::MIN_POSITIVE.sqrt()); 2];
-        Self(study.data.scales.torque.iter().map(of).collect())
+        Self(data.scales.torque.iter().map(of).collect())
     }
 
-    fn of(study: &Study, parts: &[Part], solution: &Solution) -> Self {
+    fn of(data: &Data, parts: &[Part], solution: &Solution) -> Self {
         let of = |joint: usize| {
             let of_joint = || parts.iter().filter(|part| part.joint == joint);
             let evidence: f64 = of_joint().map(|part| part.evidence[0]).sum();
-            if evidence < LEAST_LOAD_ROWS || study.data.scales.torque[joint] <= 0.0 {
+            if evidence < LEAST_LOAD_ROWS || data.scales.torque[joint] <= 0.0 {
                 // Its friction is unknown, and its torque says nothing about a load.
                 return [f64::INFINITY; 2];
             }
             let squares: f64 = of_joint().map(|part| part.residuals(solution)[0]).sum();
-            let moving = (squares / evidence).max((LOAD_FLOOR * study.data.scales.torque[joint]).powi(2));
-            let level = solution.common[PER_LINK * study.data.motions.dof + DRIVE * joint];
+            let moving = (squares / evidence).max((LOAD_FLOOR * data.scales.torque[joint]).powi(2));
+            let level = solution.common[PER_LINK * data.motions.dof + DRIVE * joint];
             [moving, moving + level * level]
         };
-        Self((0..study.data.motions.dof).map(of).collect())
+        Self((0..data.motions.dof).map(of).collect())
     }
 }
 

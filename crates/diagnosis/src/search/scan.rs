@@ -3,11 +3,11 @@
 use effects::Scales;
 use nalgebra::{Matrix3, Vector3};
 
+use crate::data::Data;
 use crate::data::motion::Motions;
 use crate::regression::fit::Fit;
 use crate::regression::small::{FORCE_RIDGE, ForceFit, explained};
 use crate::regression::table::Table;
-use crate::search::study::Study;
 use crate::thresholds::{
     CONTACT_DURATIONS, CONTACT_PIECE, LEAST_RIPPLE_PHASE, MOST_OF_A_RECORDING, MOST_RIPPLE_PERIODS, RIPPLE_SPEED,
 };
@@ -283,13 +283,12 @@ pub fn golden(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
 
 /// The relative reduction of the residual `without` a contact in its window: its force is fitted to every other piece of
 /// the window and tested on the rest.
-pub fn contact_gain(study: &Study, without: &Fit, columns: &[usize]) -> f64 {
-    let table = &study.table;
+pub fn contact_gain(data: &Data, table: &Table, without: &Fit, columns: &[usize]) -> f64 {
     let residual = residuals(table, without);
-    let times = study.data.motions.row_times();
+    let times = data.motions.row_times();
     let mut fit = ForceFit::default();
-    for row in study.training() {
-        let piece = ((times[row] - study.data.motions.begins) / CONTACT_PIECE).floor() as i64;
+    for row in table.rows_of(|recording| data.fitted[recording]) {
+        let piece = ((times[row] - data.motions.begins) / CONTACT_PIECE).floor() as i64;
         for joint in 0..table.dof() {
             let this = &table.joints[joint];
             let mut x = Vector3::zeros();

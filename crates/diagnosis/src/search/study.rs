@@ -17,8 +17,9 @@ use crate::regression::stated::Stated;
 use crate::regression::strengths::Strengths;
 use crate::regression::table::{Moving, Table};
 use crate::search::candidate::{Candidate, Hypothesis, catalogue};
+use crate::search::own_load::OwnLoad;
 use crate::search::problem::Problem;
-use crate::thresholds::{LEAST_FOR_DYNAMICS, RESTING, RESTING_REACH, Thresholds};
+use crate::thresholds::{LEAST_FOR_DYNAMICS, Thresholds};
 use crate::trace::Trace;
 
 mod about;
@@ -40,12 +41,8 @@ pub struct Study {
     pub table: Table,
     /// All candidates.
     pub candidates: Vec<Candidate>,
-    /// The variance due to noise, filtering and small errors, one per joint.
-    pub floor: Vec<f64>,
     /// The columns of a force on the tool that always acts.
     force: [usize; 3],
-    /// Measured torque minus that of the nominal model, on all rows (N m or N).
-    pub nominal: Vec<Vec<f64>>,
     /// The torque of the arm on each joint (N m or N) along which its springs and gaps that are not selected were simulated, if it is
     /// not that of `rigid`: `[joint][chunk][tick]`.
     simulated_along: Vec<Option<Vec<Vec<f64>>>>,
@@ -63,6 +60,8 @@ pub struct Study {
     pub stated: Stated,
     /// The thresholds.
     pub thresholds: Thresholds,
+    /// A load at the tip that only some of the recordings have.
+    pub own_load: Option<OwnLoad>,
     /// The record of decisions.
     pub trace: Trace,
     /// The inner products of the present table.
@@ -88,11 +87,6 @@ fn begun(hypothesis: Hypothesis, terms: &[Term], at: f64) -> Vec<Term> {
 }
 
 impl Study {
-    /// A torque (N m or N) as a share of the typical torque of `joint`.
-    pub fn share(&self, joint: usize, torque: f64) -> f64 {
-        torque / self.data.scales.torque[joint].max(1e-300)
-    }
-
     /// Whether a candidate acts at all times, and not from an onset on.
     pub fn always_acts(&self, candidate: usize) -> bool {
         self.terms(candidate).iter().all(|term| term.onset().is_none())
@@ -103,14 +97,20 @@ impl Study {
         Self::with(data, options, None)
     }
 
-    /// This study, in whose background the `recordings` have a load of their own, with ten inertial parameters of the standard
-    /// deviations `deviations`.
-    pub fn with_own_load(self, recordings: &[usize], deviations: &[f64; PER_LINK], options: &Options) -> Self {
-        let mut data = self.data;
-        for &recording in recordings {
-            data.motions.sources[recording].has_own_load = true;
+    /// This study, in whose background the recordings with another load at the tip have a load of their own. A load that changed once
+    /// may be an effect instead.
+    pub fn with_own_load(mut self, options: &Options) -> Self {
+        let motions = &self.data.motions;
+        let found = OwnLoad::found(&self.data, &self.table, &self.prior);
+        let own_load = found.filter(|load| !(motions.one_clock && load.changed_once(motions)));
+        if let (Some(load), None) = (&own_load, motions.changed_at) {
+            let mut data = self.data;
+            for &recording in &load.recordings {
+                data.motions.sources[recording].has_own_load = true;
+            }
+            self = Self::with(data, options, Some(&load.prior()));
         }
-        Self::with(data, options, Some(deviations))
+        Self { own_load, ..self }
     }
 
     fn with(data: Data, options: &Options, own_load: Option<&[f64; PER_LINK]>) -> Self {
@@ -120,15 +120,9 @@ impl Study {
             motions,
             rigid,
             scales,
-            noise,
             fitted,
             ..
         } = &data;
-        let floor = noise
-            .iter()
-            .zip(&scales.torque)
-            .map(|(noise, torque)| noise + (thresholds.tolerance * torque).powi(2))
-            .collect();
         let times: Vec<(f64, f64)> = spans(motions)
             .into_iter()
             .zip(fitted)
@@ -189,10 +183,8 @@ impl Study {
         terms.extend(always);
         let table = Table::new(motions, rigid, scales, terms, &[], Moving::Steadily);
         Self {
-            nominal: table.joints.iter().map(|joint| joint.y.clone()).collect(),
             table,
             candidates,
-            floor,
             force,
             simulated_along: vec![None; motions.dof],
             carries: false,
@@ -202,6 +194,7 @@ impl Study {
             stated,
             thresholds,
             prior,
+            own_load: None,
             trace: Trace::default(),
             formed: Formed::default(),
             refused: Vec::new(),
@@ -221,11 +214,6 @@ impl Study {
         self.prior.at(&self.strengths)
     }
 
-    /// A background of other `strengths`; `None` if they are all zero.
-    pub fn background_at(&self, strengths: &Strengths) -> Option<Background> {
-        self.prior.at(strengths)
-    }
-
     /// Inner products over the recordings that `selected` selects, without background.
     fn bare_products(&self, selected: impl Fn(usize) -> bool) -> Products {
         Products::new(
@@ -233,7 +221,7 @@ impl Study {
             selected,
             &self.data.seconds,
             &self.data.motions.tempo,
-            &self.floor,
+            &self.data.floor,
         )
     }
 
@@ -248,77 +236,10 @@ impl Study {
         }
     }
 
-    /// The rows of the training recordings.
-    pub fn training(&self) -> impl Iterator<Item = usize> {
-        let rows = self
-            .table
-            .rows
-            .iter()
-            .zip(&self.data.fitted)
-            .filter(|(_, fitted)| **fitted);
-        rows.flat_map(|(rows, _)| rows.clone()).collect::<Vec<_>>().into_iter()
-    }
-
     /// The terms of a candidate.
     pub fn terms(&self, candidate: usize) -> Vec<Term> {
         let columns = &self.candidates[candidate].columns;
         columns.iter().map(|&column| self.table.terms[column]).collect()
-    }
-
-    /// The moving rows of `joint` in the training recordings.
-    pub fn training_rows(&self, joint: usize) -> Vec<usize> {
-        let moving = &self.table.joints[joint].moving;
-        let rows = self
-            .table
-            .rows
-            .iter()
-            .zip(&self.data.fitted)
-            .filter(|(_, fitted)| **fitted);
-        rows.flat_map(|(rows, _)| rows.clone())
-            .filter(|&row| moving[row])
-            .collect()
-    }
-
-    /// The rows of all recordings on which `joint` rests within the reach of the filter.
-    pub fn resting_rows(&self, joint: usize) -> Vec<usize> {
-        let mut rows = Vec::new();
-        let mut first = 0;
-        for chunk in &self.data.motions.chunks {
-            let reach = (RESTING_REACH * chunk.kernel.width() / chunk.period).ceil() as usize;
-            let qd = &chunk.qd[joint];
-            for row in 0..chunk.rows() {
-                let tick = chunk.tick_of(row);
-                let window = &qd[tick.saturating_sub(reach)..(tick + reach + 1).min(qd.len())];
-                if window
-                    .iter()
-                    .all(|qd| qd.abs() < RESTING * self.data.scales.rest[joint])
-                {
-                    rows.push(first + row);
-                }
-            }
-            first += chunk.rows();
-        }
-        rows
-    }
-
-    /// The torque that the gear transmits to the links (N m or N) and the time (s) of given rows of `joint`, in ascending order.
-    pub fn loads_and_times(&self, joint: usize, rows: &[usize]) -> (Vec<f64>, Vec<f64>) {
-        let (mut loads, mut times) = (Vec::with_capacity(rows.len()), Vec::with_capacity(rows.len()));
-        let mut rows = rows.iter().peekable();
-        let mut first = 0;
-        for (chunk, rigid) in self.data.motions.chunks.iter().zip(&self.data.rigid) {
-            let end = first + chunk.rows();
-            while let Some(&&row) = rows.peek()
-                && row < end
-            {
-                let tick = chunk.tick_of(row - first);
-                loads.push(rigid.load(joint, chunk, tick));
-                times.push(chunk.time(tick));
-                rows.next();
-            }
-            first = end;
-        }
-        (loads, times)
     }
 
     /// Evaluates more terms.

@@ -6,7 +6,6 @@ use effects::unmodelled::{Periodic, periodic_columns};
 use effects::{EffectKind, Term};
 use rayon::prelude::*;
 
-use crate::data::measure;
 use crate::search::candidate::Hypothesis;
 use crate::search::problem::Selection;
 use crate::search::scan;
@@ -50,7 +49,7 @@ impl Study {
             })
             .collect();
         let of = |kind: &'static dyn EffectKind| Hypothesis::of(kind);
-        let mut new = scan::onsets(self, &selected.fit.weights, &times, &residual);
+        let mut new = scan::onsets(&self.data, &self.table, &selected.fit.weights, &times, &residual);
         for (from, to) in windows {
             for round in [false, true] {
                 new.push((of(&ExternalContact), None, contact_columns(from, to, round)));
@@ -86,22 +85,8 @@ impl Study {
         let Some(window) = terms.first().and_then(contact_window) else {
             return true;
         };
-        self.contact_share(&[window])
+        self.data
+            .contact_share(&[window])
             .is_none_or(|(_, share)| share <= MOST_OF_A_RECORDING)
-    }
-
-    /// The recording of which contacts in these windows (s) cover the largest part, and that part.
-    pub fn contact_share(&self, windows: &[[f64; 2]]) -> Option<(usize, f64)> {
-        let shares = measure::spans(&self.data.motions).into_iter().map(|spans| {
-            let covered = |&(from, to): &(f64, f64)| -> f64 {
-                let inside = windows
-                    .iter()
-                    .map(|&[start, end]| (end.min(to) - start.max(from)).max(0.0));
-                inside.sum()
-            };
-            let length: f64 = spans.iter().map(|(from, to)| to - from).sum();
-            spans.iter().map(covered).sum::<f64>() / length.max(f64::MIN_POSITIVE)
-        });
-        shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))
     }
 }

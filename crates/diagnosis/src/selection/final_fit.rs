@@ -15,7 +15,7 @@ use crate::selection::constant_torques;
 use crate::selection::gain::useless;
 use crate::selection::judge::{self, Judged};
 use crate::selection::naming::{Named, may_be_nothing, name};
-use crate::selection::predict::{augmented, errors, structured};
+use crate::selection::predict::{errors_with, structured};
 use crate::selection::rivals::standing;
 use crate::selection::torque_constants;
 use crate::selection::without_moment::without_moment;
@@ -150,7 +150,7 @@ fn prove(study: &mut Study, judged: &mut Judged) {
 /// Removes the effects on joints whose torque is predicted worse than by a constant: such a channel measures something else.
 fn give_up(study: &Study, judged: &mut Judged) {
     let fits: Vec<JointFit> = (0..study.data.motions.dof)
-        .map(|joint| errors(study, joint, &augmented(study, &judged.named, joint)))
+        .map(|joint| errors_with(&study.data, &study.table, &judged.named.fit, joint))
         .collect();
     let is_hopeless = |joint: usize| {
         let fit = &fits[joint];
@@ -288,7 +288,7 @@ fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Membe
         return false;
     };
     let is_part = |joint: usize| {
-        let fit = errors(study, joint, &augmented(study, &judged.named, joint));
+        let fit = errors_with(&study.data, &study.table, &judged.named.fit, joint);
         // Unmodelled forms may represent parts of named effects. Therefore the residual of the named effects alone is compared.
         let has_forms = judged.unmodelled.iter().any(|member| member.shares[joint] > 0.0);
         let residuals = structured(&fit)
@@ -347,7 +347,7 @@ fn guard(study: &mut Study, judged: &mut Judged) {
 
 /// The fit of `joint` with `selected`.
 fn fit_of(study: &Study, selected: &Selection, joint: usize) -> JointFit {
-    errors(study, joint, &augmented(study, selected, joint))
+    errors_with(&study.data, &study.table, &selected.fit, joint)
 }
 
 /// The first joint whose held-out error in motion is larger with `selected` than with the nominal model, and whether that at rest

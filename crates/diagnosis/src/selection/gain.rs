@@ -46,7 +46,7 @@ pub fn held_out_gain(
     let without = problem.choose(judged.named.others(member.candidate), &judged.named.fit.weights);
     if study.window(member.candidate).is_some() {
         let columns = &study.candidates[member.candidate].columns;
-        return Some(contact_gain(study, &without.fit, columns));
+        return Some(contact_gain(&study.data, &study.table, &without.fit, columns));
     }
     let joint = (0..table.dof()).max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b]))?;
     let held = held?;
@@ -85,7 +85,7 @@ fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joi
     let columns = &study.candidates[candidate].columns;
     let torque = study.table.torque(joint, columns, &fit.values(columns));
     let residual = study.table.residual(joint, &without.columns, &without.coefficients);
-    let rows = study.training_rows(joint);
+    let rows = study.table.moving_rows(joint, &study.data.fitted);
     let is_odd = odd_pieces(
         &study.data.motions.row_times(),
         study.data.motions.begins,

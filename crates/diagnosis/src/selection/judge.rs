@@ -146,7 +146,9 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
 fn lasting(study: &Study, selected: &Selection) -> Option<usize> {
     let window = |&c: &usize| Some((c, study.window(c)?));
     let windows: Vec<(usize, [f64; 2])> = selected.set.iter().filter_map(window).collect();
-    let (recording, share) = study.contact_share(&windows.iter().map(|(_, window)| *window).collect::<Vec<_>>())?;
+    let (recording, share) = study
+        .data
+        .contact_share(&windows.iter().map(|(_, window)| *window).collect::<Vec<_>>())?;
     if share <= MOST_OF_A_RECORDING {
         return None;
     }
@@ -216,7 +218,7 @@ fn shares(study: &Study, selected: &Selection, candidate: usize) -> Vec<f64> {
     (0..study.data.motions.dof)
         .map(|joint| {
             let torque = study.table.torque(joint, columns, &values);
-            let rows = study.training_rows(joint);
+            let rows = study.table.moving_rows(joint, &study.data.fitted);
             let (mean, variance) = moments(rows.iter().map(|&row| torque[row]));
             let size = if variance < (NEARLY_CONSTANT * mean).powi(2) {
                 mean.hypot(variance.sqrt())
@@ -232,7 +234,7 @@ fn shares(study: &Study, selected: &Selection, candidate: usize) -> Vec<f64> {
 pub fn is_idle(study: &Study, selected: &Selection, candidate: usize) -> bool {
     let columns = &study.candidates[candidate].columns;
     let values = selected.fit.values(columns);
-    let rows = crate::selection::predict::rows_of(study, |recording| !study.data.fitted[recording]);
+    let rows = study.table.rows_of(|recording| !study.data.fitted[recording]);
     (0..study.data.motions.dof).all(|joint| {
         let torque = study.table.torque(joint, columns, &values);
         let moving = &study.table.joints[joint].moving;

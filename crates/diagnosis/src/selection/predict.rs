@@ -1,40 +1,32 @@
 //! Prediction errors on all rows, at rest and in motion.
 
-use std::ops::Range;
-
 use effects::background::{FRICTION_CURVE, GAIN, OWN_FRICTION, OWN_LOAD};
 use effects::{Cone, Term};
 
-use crate::data::statistics::{self, rms};
+use crate::data::Data;
+use crate::data::statistics::{deviation, rms};
 use crate::regression::fit::Fit;
+use crate::regression::table::Table;
 use crate::report::JointFit;
-use crate::search::problem::Selection;
-use crate::search::study::Study;
 use crate::thresholds::{LEAST_ROWS, REMEMBERS, RESIDUAL_LAG, STRUCTURED, STRUCTURED_ABOVE_NOISE};
 
-/// The residual of the model with named effects and background on all rows of one joint. At rest, dry friction may hold any
-/// torque within its cone, and the error is the distance to the cone.
-pub fn augmented(study: &Study, named: &Selection, joint: usize) -> Vec<f64> {
-    residual(study, &named.fit, joint)
-}
-
-/// The residual of the coefficients of `fit` on all rows of one joint, as that of [`augmented`].
-pub fn residual(study: &Study, fit: &Fit, joint: usize) -> Vec<f64> {
-    residual_of(study, fit, joint, |_| true)
+/// The residual of the model with the effects and the background of `fit` on all rows of one joint. At rest, dry friction may hold
+/// any torque within its cone, and the error is the distance to the cone.
+pub fn augmented(data: &Data, table: &Table, fit: &Fit, joint: usize) -> Vec<f64> {
+    residual(data, table, fit, joint, |_| true)
 }
 
 /// The residual of the exported model: the links' inertial parameters, the constant torques and the named effects, without the
 /// background's corrections of friction and torque constants and the load of some recordings, which no file holds.
-pub fn exported(study: &Study, named: &Selection, joint: usize) -> Vec<f64> {
+pub fn exported(data: &Data, table: &Table, fit: &Fit, joint: usize) -> Vec<f64> {
     let is_exported = |term: &Term| {
         let kept_apart = [&OWN_FRICTION, &FRICTION_CURVE, &GAIN, &OWN_LOAD];
         kept_apart.iter().all(|law| !term.is(law))
     };
-    residual_of(study, &named.fit, joint, is_exported)
+    residual(data, table, fit, joint, is_exported)
 }
 
-fn residual_of(study: &Study, fit: &Fit, joint: usize, counts: impl Fn(&Term) -> bool) -> Vec<f64> {
-    let table = &study.table;
+fn residual(data: &Data, table: &Table, fit: &Fit, joint: usize, counts: impl Fn(&Term) -> bool) -> Vec<f64> {
     let (columns, coefficients): (Vec<usize>, Vec<f64>) = fit
         .columns
         .iter()
@@ -54,8 +46,8 @@ fn residual_of(study: &Study, fit: &Fit, joint: usize, counts: impl Fn(&Term) ->
     }
     let (columns, values): (Vec<usize>, Vec<f64>) = dry.iter().copied().unzip();
     let as_moving = table.torque(joint, &columns, &values);
-    let rests = study.resting_rows(joint);
-    let (loads, times) = study.loads_and_times(joint, &rests);
+    let rests = data.resting_rows(joint);
+    let (loads, times) = data.loads_and_times(joint, &rests);
     for ((&row, load), time) in rests.iter().zip(loads).zip(times) {
         let (mut cone, mut middle) = (0.0, 0.0);
         for &(column, value) in &dry {
@@ -77,47 +69,34 @@ fn is_dry(term: Term, joint: usize) -> bool {
     !matches!(term.law.cone, Cone::No) && term.onset().is_none() && term.joint() == Some(joint)
 }
 
-/// The standard deviation of a signal on some rows.
-pub fn deviation(signal: &[f64], rows: &[usize]) -> f64 {
-    statistics::deviation(rows.iter().map(|&row| signal[row]))
-}
-
-/// The rows of the recordings that `selected` selects.
-pub fn rows_of(study: &Study, selected: impl Fn(usize) -> bool) -> Vec<usize> {
-    let ranges: Vec<Range<usize>> = study
-        .table
-        .rows
-        .iter()
-        .enumerate()
-        .filter(|(r, _)| selected(*r))
-        .map(|(_, r)| r.clone())
-        .collect();
-    ranges.into_iter().flatten().collect()
+/// The errors on `joint`, nominal and with `fit`.
+pub fn errors_with(data: &Data, table: &Table, fit: &Fit, joint: usize) -> JointFit {
+    errors(data, table, joint, &augmented(data, table, fit, joint))
 }
 
 /// The errors on `joint`, nominal and `augmented`.
-pub fn errors(study: &Study, joint: usize, augmented: &[f64]) -> JointFit {
-    let nominal = &study.nominal[joint];
-    let tau = &study.data.measured[joint];
-    let moving = &study.table.joints[joint].moving;
+pub fn errors(data: &Data, table: &Table, joint: usize, augmented: &[f64]) -> JointFit {
+    let (nominal, tau) = (&data.nominal[joint], &data.measured[joint]);
+    let moving = &table.joints[joint].moving;
     let mut resting = vec![false; nominal.len()];
-    for row in study.resting_rows(joint) {
+    for row in data.resting_rows(joint) {
         resting[row] = true;
     }
-    let held = rows_of(study, |r| !study.data.fitted[r]);
-    let train = rows_of(study, |r| study.data.fitted[r]);
+    let spread = |rows: &[usize]| deviation(rows.iter().map(|&row| tau[row]));
+    let held = table.rows_of(|recording| !data.fitted[recording]);
+    let train = table.rows_of(|recording| data.fitted[recording]);
     // A dead channel has no relative error.
     let over_spread =
-        |error: f64, spread: f64| (study.data.scales.torque[joint] > 0.0 && spread > 0.0).then(|| error / spread);
+        |error: f64, spread: f64| (data.scales.torque[joint] > 0.0 && spread > 0.0).then(|| error / spread);
     let over = |rows: &[usize], keep: &[bool], signal: &[f64]| -> Option<f64> {
         let kept: Vec<usize> = rows.iter().copied().filter(|&row| keep[row]).collect();
         let error = rms(kept.iter().map(|&row| signal[row]))?;
-        over_spread(error, deviation(tau, &kept))
+        over_spread(error, spread(&kept))
     };
     // A joint at rest may need the same torque all the time, so that the standard deviation is that of all rows.
     let at_rest = |signal: &[f64]| -> Option<f64> {
         let error = rms(held.iter().filter(|&&row| resting[row]).map(|&row| signal[row]))?;
-        over_spread(error, deviation(tau, &held))
+        over_spread(error, spread(&held))
     };
     // Only samples in motion count. At rest, the measured torque depends on friction, a brake or the previous motion.
     let moves = held.iter().filter(|&&row| moving[row]).count() >= LEAST_ROWS;
@@ -127,8 +106,8 @@ pub fn errors(study: &Study, joint: usize, augmented: &[f64]) -> JointFit {
         vec![true; nominal.len()]
     };
     JointFit {
-        torque_std: deviation(tau, &train),
-        noise: study.data.noise[joint].sqrt(),
+        torque_std: spread(&train),
+        noise: data.noise[joint].sqrt(),
         held_out_nrmse_nominal: over(&held, &counted, nominal),
         held_out_nrmse_augmented: over(&held, &counted, augmented),
         held_out_nrmse_learned: None,
@@ -138,8 +117,8 @@ pub fn errors(study: &Study, joint: usize, augmented: &[f64]) -> JointFit {
         held_out_nrmse_resting_nominal: at_rest(nominal),
         train_nrmse_nominal: over(&train, moving, nominal).unwrap_or(0.0),
         train_nrmse_augmented: over(&train, moving, augmented).unwrap_or(0.0),
-        residual_autocorrelation: autocorrelation(study, augmented, moving),
-        residual_autocorrelation_nominal: autocorrelation(study, nominal, moving),
+        residual_autocorrelation: autocorrelation(data, table, augmented, moving),
+        residual_autocorrelation_nominal: autocorrelation(data, table, nominal, moving),
     }
 }
 
@@ -154,10 +133,10 @@ pub fn structured(fit: &JointFit) -> Option<f64> {
 }
 
 /// The autocorrelation of a signal over [`RESIDUAL_LAG`], on the rows that count.
-pub fn autocorrelation(study: &Study, signal: &[f64], counts: &[bool]) -> f64 {
+pub fn autocorrelation(data: &Data, table: &Table, signal: &[f64], counts: &[bool]) -> f64 {
     let (mut product, mut power) = (0.0, 0.0);
-    for (recording, rows) in study.table.rows.iter().enumerate() {
-        let lag = (RESIDUAL_LAG / study.data.seconds[recording]).round().max(1.0) as usize;
+    for (recording, rows) in table.rows.iter().enumerate() {
+        let lag = (RESIDUAL_LAG / data.seconds[recording]).round().max(1.0) as usize;
         for row in rows.start..rows.end.saturating_sub(lag) {
             if counts[row] && counts[row + lag] {
                 product += signal[row] * signal[row + lag];

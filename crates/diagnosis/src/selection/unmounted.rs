@@ -14,7 +14,7 @@ use crate::search::study::Study;
 use crate::selection::bootstrap::{Resampled, resample};
 use crate::selection::judge::{self, Judged};
 use crate::selection::naming::name;
-use crate::selection::predict::{augmented, errors};
+use crate::selection::predict::errors_with;
 use crate::selection::rivals::{Named, allowance, standing};
 use crate::thresholds::{LEAST_BESIDE_SOME_LINKS, LEAST_OF_THE_LINK, NEARLY_ALL, PARTLY, UNDECIDED_NATS};
 
@@ -69,7 +69,7 @@ pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
 /// cancels the model's own torque reduces every error, too, but only to that of a constant.
 fn explains_a_part(study: &Study, selected: &Selection) -> bool {
     (0..study.data.motions.dof).any(|joint| {
-        let fit = errors(study, joint, &augmented(study, selected, joint));
+        let fit = errors_with(&study.data, &study.table, &selected.fit, joint);
         fit.train_nrmse_nominal > 0.0 && fit.train_nrmse_augmented < PARTLY
     })
 }

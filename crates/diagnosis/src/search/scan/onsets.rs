@@ -4,10 +4,10 @@ use effects::{Kind, Scope, SetsIn, Term};
 use nalgebra::{Matrix4, Vector4};
 use rayon::prelude::*;
 
+use crate::data::Data;
 use crate::regression::small::explained;
 use crate::regression::table::Table;
 use crate::search::candidate::Hypothesis;
-use crate::search::study::Study;
 use crate::thresholds::ONSET_FROM_END;
 
 /// The step between tried onsets, and the finer step around the best one (s).
@@ -17,24 +17,25 @@ const FINE: f64 = 0.05;
 /// For each form on each joint, and for a payload, the candidate whose onset explains most of `residual` (N m or N, all
 /// rows). There are none if the recordings do not share one clock, because their order is unknown then.
 pub fn onsets(
-    study: &Study,
+    data: &Data,
+    table: &Table,
     weights: &[f64],
     times: &[f64],
     residual: &[Vec<f64>],
 ) -> Vec<(Hypothesis, Option<usize>, Vec<Term>)> {
-    if !study.data.motions.one_clock {
+    if !data.motions.one_clock {
         return Vec::new();
     }
-    let mut rows: Vec<usize> = study.training().collect();
+    let mut rows = table.rows_of(|recording| data.fitted[recording]);
     rows.sort_by(|&a, &b| times[b].total_cmp(&times[a]));
     let past = Past {
-        table: &study.table,
+        table,
         weights,
         times,
         residual,
         rows,
     };
-    let dof = study.table.dof();
+    let dof = table.dof();
     let mut kinds: Vec<(Kind, SetsIn)> = Kind::all()
         .filter_map(|kind| Some((kind, kind.get().sets_in()?)))
         .collect();

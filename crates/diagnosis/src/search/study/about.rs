@@ -4,9 +4,10 @@ use arm::{Arm, Inertia, Vector3};
 use effects::arm::{INERTIAL_PARAMETER, body};
 use effects::{Carried, Term};
 
-use super::Study;
+use crate::data::Data;
 use crate::regression::bodies;
 use crate::regression::fit::Fit;
+use crate::regression::table::Table;
 
 /// An arm with the effects of a fit.
 pub struct About {
@@ -21,27 +22,27 @@ pub struct About {
 }
 
 impl About {
-    /// The arm of `study` with the links' scale errors of `fit`, and nothing else.
-    pub fn scaled(study: &Study, fit: &Fit) -> Arm {
-        collected(study, fit, false).0.arm
+    /// The arm of `data` with the links' scale errors of `fit`, and nothing else.
+    pub fn scaled(data: &Data, table: &Table, fit: &Fit) -> Arm {
+        collected(data, table, fit, false).0.arm
     }
 
-    /// The arm of `study` with the effects of `fit` that always act.
-    pub fn new(study: &Study, fit: &Fit) -> Self {
-        Self::with(study, fit, collected(study, fit, false))
+    /// The arm of `data` with the effects of `fit` that always act.
+    pub fn new(data: &Data, table: &Table, fit: &Fit) -> Self {
+        Self::with(data, table, fit, collected(data, table, fit, false))
     }
 
     /// The arm since the recordings from before, with all effects of `fit`; `None` if it is the same as before. Torque
     /// constants, and other effects that are proportional to the joints' torques, then also act on the torque of a new
     /// payload.
-    pub fn since_before(study: &Study, fit: &Fit) -> Option<Self> {
-        let (found, carried) = collected(study, fit, true);
+    pub fn since_before(data: &Data, table: &Table, fit: &Fit) -> Option<Self> {
+        let (found, carried) = collected(data, table, fit, true);
         let sets_in = carried.iter().any(|(term, _)| term.onset().is_some());
-        sets_in.then(|| Self::with(study, fit, (found, carried)))
+        sets_in.then(|| Self::with(data, table, fit, (found, carried)))
     }
 
-    fn with(study: &Study, fit: &Fit, (found, carried): (Carried, Vec<(Term, f64)>)) -> Self {
-        let inertial = inertial_changes(study, fit);
+    fn with(data: &Data, table: &Table, fit: &Fit, (found, carried): (Carried, Vec<(Term, f64)>)) -> Self {
+        let inertial = inertial_changes(data, table, fit);
         let Carried {
             mut arm,
             offset,
@@ -84,10 +85,10 @@ impl About {
 }
 
 /// The changes of the links' inertial parameters in the background of `fit`, ten per link.
-pub fn inertial_changes(study: &Study, fit: &Fit) -> Vec<f64> {
-    let mut changes = vec![0.0; bodies::PER_LINK * study.data.arm.dof()];
+pub fn inertial_changes(data: &Data, table: &Table, fit: &Fit) -> Vec<f64> {
+    let mut changes = vec![0.0; bodies::PER_LINK * data.arm.dof()];
     for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
-        let term = study.table.terms[column];
+        let term = table.terms[column];
         if term.is(&INERTIAL_PARAMETER) {
             changes[term.of[0] * bodies::PER_LINK + term.of[1]] = value;
         }
@@ -97,18 +98,18 @@ pub fn inertial_changes(study: &Study, fit: &Fit) -> Vec<f64> {
 
 /// Adds the effects of `fit` to the arm, with those that are there since the recordings from before if `since_before`; returns the
 /// terms that it then contains, with their coefficients.
-fn collected(study: &Study, fit: &Fit, since_before: bool) -> (Carried, Vec<(Term, f64)>) {
+fn collected(data: &Data, table: &Table, fit: &Fit, since_before: bool) -> (Carried, Vec<(Term, f64)>) {
     let mut found = Carried {
-        arm: study.data.arm.clone(),
-        offset: vec![0.0; study.data.arm.dof()],
+        arm: data.arm.clone(),
+        offset: vec![0.0; data.arm.dof()],
         payload: [0.0; 10],
         tilt: [0.0; 2],
         gravity: [0.0; 3],
     };
     let mut carried = Vec::new();
     for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
-        let term = study.table.terms[column];
-        let acts = term.onset().is_none() || since_before && term.onset() == study.data.motions.changed_at;
+        let term = table.terms[column];
+        let acts = term.onset().is_none() || since_before && term.onset() == data.motions.changed_at;
         if let (Some(carry), true) = (term.law.carry, acts) {
             carry(&term, value, &mut found);
             carried.push((term, value));

@@ -64,7 +64,7 @@ impl Study {
             is_fitted,
             &self.data.seconds,
             &self.data.motions.tempo,
-            &self.floor,
+            &self.data.floor,
         );
         let products = products.with_background(self.background());
         let columns: Vec<usize> = (self.prior.terms().len()..table.terms.len()).collect();
@@ -73,14 +73,14 @@ impl Study {
 
     /// Makes the prior of the links' inertial parameters quadratic about the bodies of `fit`.
     pub fn set_bodies(&mut self, fit: &Fit) {
-        let changes = inertial_changes(self, fit);
+        let changes = inertial_changes(&self.data, &self.table, fit);
         self.prior.set_bodies(&changes);
     }
 
     /// Makes the prior quadratic about the bodies of `fit`, but about the URDF's body of the last link; returns the prior before.
     pub fn set_bodies_but_the_last(&mut self, fit: &Fit) -> Prior {
         let before = self.prior.clone();
-        let mut changes = inertial_changes(self, fit);
+        let mut changes = inertial_changes(&self.data, &self.table, fit);
         let last = changes.len().saturating_sub(PER_LINK);
         changes[last..].fill(0.0);
         self.prior.set_bodies(&changes);
@@ -105,8 +105,8 @@ impl Study {
 
     fn about(&mut self, fit: &Fit, kept: &[usize], anyway: bool) -> Option<Vec<usize>> {
         self.set_bodies(fit);
-        let about = About::new(self, fit);
-        let since_before = About::since_before(self, fit);
+        let about = About::new(&self.data, &self.table, fit);
+        let since_before = About::since_before(&self.data, &self.table, fit);
         // The effects that always act are among those that act since the recordings from before.
         let carried = &since_before.as_ref().unwrap_or(&about).carried;
         // The arm contains no effect, neither of this fit nor of an earlier selection.

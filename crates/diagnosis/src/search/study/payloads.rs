@@ -3,7 +3,6 @@
 use effects::arm::Payload;
 
 use super::Study;
-use crate::data::statistics;
 use crate::search::problem::Selection;
 use crate::thresholds::{FELT, PAYLOAD_JOINTS, PER_LINK_APART};
 
@@ -84,8 +83,8 @@ impl Study {
     pub fn are_felt_at_the_end(&self, columns: &[usize], values: &[f64]) -> bool {
         let share = |joint: usize| {
             let torque = self.table.torque(joint, columns, values);
-            let rows = self.training_rows(joint);
-            self.share(joint, statistics::deviation(rows.iter().map(|&row| torque[row])))
+            self.data
+                .share(joint, self.table.spread(joint, &self.data.fitted, &torque))
         };
         let shares: Vec<f64> = (0..self.data.arm.dof()).map(share).collect();
         let most = |shares: &[f64]| shares.iter().fold(0.0, |most: f64, &share| most.max(share));

@@ -52,7 +52,7 @@ impl Reader<'_> {
             .filter(|&joint| fitted.count[joint] > 0.0)
             .map(|joint| {
                 let residual = table.residual(joint, all, model);
-                let rows = study.training_rows(joint);
+                let rows = table.moving_rows(joint, &study.data.fitted);
                 let power = rows.iter().map(|&row| residual[row].powi(2)).sum::<f64>() / rows.len().max(1) as f64;
                 let evidence = fitted.evidence[joint] / fitted.count[joint];
                 let weight = 0.5 * evidence / power.max(fitted.floor[joint]).max(1e-300);
@@ -67,7 +67,7 @@ impl Reader<'_> {
                 .sum()
         };
         let times = study.data.motions.row_times();
-        let mut rows: Vec<usize> = study.training().collect();
+        let mut rows: Vec<usize> = table.rows_of(|recording| study.data.fitted[recording]);
         rows.sort_by(|&a, &b| times[a].total_cmp(&times[b]));
         let now = rows.partition_point(|&row| times[row] < near);
         // The misfit if it acts from the k-th row on.
