@@ -74,7 +74,11 @@ impl Conclusion {
         let mut findings = findings(study, products, held.as_ref(), judged, resampled);
         let not_there = without_known(study, options, &mut findings);
         let mut inertials = inertials(study, held.as_ref(), judged, resampled);
-        let is_contact_named = judged.named.set.iter().any(|&c| study.window(c).is_some());
+        let is_contact_named = judged
+            .named
+            .set
+            .iter()
+            .any(|&c| study.candidates[c].window(table).is_some());
         let transients = transients::search(data, table, study.force(), residual, is_contact_named);
         let has_spring = |joint: usize| {
             judged.named.set.iter().any(|&c| {

@@ -58,7 +58,7 @@ fn finding(
         .map(|(joint, share)| (joint_name(joint), *share))
         .collect();
     let place = place(study, candidate.hypothesis, member.candidate);
-    let gain = held_out_gain(study, problem, held, judged, member);
+    let gain = held_out_gain(problem, held, judged, member);
     let confusable = |&(hypothesis, joint): &Named| Confusable {
         effect: hypothesis.name().unwrap_or_default(),
         joint: joint.map(joint_name),
@@ -146,7 +146,7 @@ fn rotor_share(study: &Study, judged: &Judged, candidate: usize) -> f64 {
 }
 
 fn place(study: &Study, hypothesis: Hypothesis, candidate: usize) -> Place {
-    if let Some([from, to]) = study.window(candidate) {
+    if let Some([from, to]) = study.candidates[candidate].window(&study.table) {
         let at = study.data.motions.recording_at(0.5 * (from + to));
         // Refinement may have moved an end just beyond the end of the recording.
         let own = |time: f64| {

@@ -109,7 +109,12 @@ pub fn poorly_predicted(
 /// The error of a joint (NRMSE) on the training recordings, if it is large and structured. Rows in which a named contact acts do not
 /// count: contacts are short, and no model of them is exact.
 fn structured_in_training(study: &Study, judged: &Judged, residual: &[f64], joint: usize) -> Option<f64> {
-    let contacts: Vec<[f64; 2]> = judged.named.set.iter().filter_map(|&c| study.window(c)).collect();
+    let contacts: Vec<[f64; 2]> = judged
+        .named
+        .set
+        .iter()
+        .filter_map(|&c| study.candidates[c].window(&study.table))
+        .collect();
     let times = study.data.motions.row_times();
     let mut counts = vec![false; residual.len()];
     for row in study.table.moving_rows(joint, &study.data.fitted) {

@@ -1,7 +1,9 @@
 //! Candidates that may explain a residual: effects of the catalogue and unmodelled forms, each with its columns.
 
+use effects::arm::contact_window;
 use effects::{EffectKind, Grounds, Kind, Spec, Term};
 
+use crate::regression::table::Table;
 use crate::thresholds::Thresholds;
 
 /// A kind of hypothesis, with the other joint on whose motion it depends; those of the catalogue come first.
@@ -75,6 +77,16 @@ impl Candidate {
             cost,
             is_trial: false,
         }
+    }
+
+    /// The terms of its columns.
+    pub fn terms(&self, table: &Table) -> Vec<Term> {
+        self.columns.iter().map(|&column| table.terms[column]).collect()
+    }
+
+    /// The start and the end of its contact (s), if it is one.
+    pub fn window(&self, table: &Table) -> Option<[f64; 2]> {
+        contact_window(&table.terms[*self.columns.first()?])
     }
 }
 

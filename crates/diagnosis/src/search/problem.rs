@@ -1,8 +1,8 @@
 //! The joint search: which candidates together explain the residual.
 
-use arm::Arm;
 use rayon::prelude::*;
 
+use crate::data::Data;
 use crate::regression::fit::{Fit, Products};
 use crate::regression::table::Table;
 use crate::search::candidate::Candidate;
@@ -40,14 +40,14 @@ pub const IMPOSSIBLE: &str = "its parameters are not physical";
 /// The data of the search.
 #[derive(Clone, Copy)]
 pub struct Problem<'a> {
+    /// The recordings.
+    pub data: &'a Data,
     /// All columns.
     pub table: &'a Table,
     /// The inner products over the training recordings.
     pub products: &'a Products,
     /// All candidates.
     pub candidates: &'a [Candidate],
-    /// The arm.
-    pub arm: &'a Arm,
     /// The thresholds.
     pub thresholds: &'a Thresholds,
 }
@@ -109,7 +109,7 @@ impl Problem<'_> {
 
     /// Whether `candidate` is possible in `fit`.
     pub fn is_possible(&self, candidate: usize, fit: &Fit) -> bool {
-        is_possible(&self.candidates[candidate], self.table, fit, self.arm)
+        is_possible(&self.candidates[candidate], self.table, fit, &self.data.arm)
     }
 
     /// `set` and, last, `candidate`. Unmodelled structure comes with baseline friction: every drive has it, and a curve over

@@ -228,18 +228,17 @@ impl Study {
     /// The problem with these products.
     pub fn problem<'a>(&'a self, products: &'a Products) -> Problem<'a> {
         Problem {
+            data: &self.data,
             table: &self.table,
             products,
             candidates: &self.candidates,
-            arm: &self.data.arm,
             thresholds: &self.thresholds,
         }
     }
 
     /// The terms of a candidate.
     pub fn terms(&self, candidate: usize) -> Vec<Term> {
-        let columns = &self.candidates[candidate].columns;
-        columns.iter().map(|&column| self.table.terms[column]).collect()
+        self.candidates[candidate].terms(&self.table)
     }
 
     /// Evaluates more terms.

@@ -75,11 +75,6 @@ impl Study {
         }
     }
 
-    /// The start and the end of a candidate's contact (s), if it is one.
-    pub fn window(&self, candidate: usize) -> Option<[f64; 2]> {
-        self.terms(candidate).first().and_then(contact_window)
-    }
-
     /// Whether terms are not a contact, or are a contact that is short in comparison with its recording.
     pub fn is_brief(&self, terms: &[Term]) -> bool {
         let Some(window) = terms.first().and_then(contact_window) else {

@@ -157,7 +157,7 @@ fn rename(study: &mut Study, judged: &mut Judged, member: usize, joint: usize, i
     let problem = study.problem(&products);
     let next = problem.choose(set, &judged.named.fit.weights);
     study.note("the constant torques of the recordings decide", &judged.named, &next);
-    judged.members = judge::describe(study, &problem, &next);
+    judged.members = judge::describe(&problem, &next);
     judged.named = next;
     true
 }

@@ -84,7 +84,7 @@ fn drop_name(study: &mut Study, judged: &mut Judged, candidate: usize, rule: &'s
     let next = problem.without(&judged.named, candidate);
     study.note(rule, &judged.named, &next);
     judged.named = next;
-    judged.members = judge::describe(study, &problem, &judged.named);
+    judged.members = judge::describe(&problem, &judged.named);
 }
 
 fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Judged, set: Vec<usize>) {
@@ -95,7 +95,7 @@ fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Judged, set: Vec<usi
         &next,
     );
     judged.named = next;
-    judged.members = judge::describe(study, problem, &judged.named);
+    judged.members = judge::describe(problem, &judged.named);
 }
 
 /// Evaluates all columns about the arm that contains exactly the named effects, including the rows near reversals, and fits again.
@@ -116,7 +116,7 @@ fn relinearise(study: &mut Study, judged: &mut Judged, as_given: bool) {
         study.about_own_bodies(best)
     };
     let products = study.training_products();
-    judged.members = judge::describe(study, &study.problem(&products), &judged.named);
+    judged.members = judge::describe(&study.problem(&products), &judged.named);
     for (member, &number) in judged.unmodelled.iter_mut().zip(&kept[named..]) {
         member.candidate = number;
     }
@@ -137,7 +137,7 @@ fn make_possible(study: &mut Study, judged: &mut Judged) {
 /// Removes effects that do not improve the prediction of held-out recordings, one by one.
 fn prove(study: &mut Study, judged: &mut Judged) {
     let Some(held) = study.held_products() else { return };
-    while let Some(useless) = useless(study, &study.training_products(), &held, judged) {
+    while let Some(useless) = useless(&study.problem(&study.training_products()), &held, judged) {
         drop_name(
             study,
             judged,
@@ -341,7 +341,7 @@ fn guard(study: &mut Study, judged: &mut Judged) {
             judged.named = next;
         }
         let products = study.training_products();
-        judged.members = judge::describe(study, &study.problem(&products), &judged.named);
+        judged.members = judge::describe(&study.problem(&products), &judged.named);
     }
 }
 

@@ -5,20 +5,18 @@ use rayon::prelude::*;
 use crate::regression::fit::{Fit, Products};
 use crate::search::problem::Problem;
 use crate::search::scan::contact_gain;
-use crate::search::study::Study;
 use crate::selection::judge::{Judged, Member, is_idle};
 use crate::thresholds::{AS_WELL, CLEAR_DRIVE, GAIN_PIECE, LEAST_OF_HALF, POWER_PIECES};
 
 /// The member of `judged` that helps least on recordings that it was not fitted to, if it does not help at all.
-pub fn useless(study: &Study, products: &Products, held: &Products, judged: &Judged) -> Option<usize> {
-    let problem = study.problem(products);
+pub fn useless(problem: &Problem<'_>, held: &Products, judged: &Judged) -> Option<usize> {
     let gains: Vec<(f64, usize)> = judged
         .members
         .par_iter()
         .filter_map(|member| {
-            let gain = held_out_gain(study, &problem, Some(held), judged, member)?;
+            let gain = held_out_gain(problem, Some(held), judged, member)?;
             // The background predicts nearly as well without the effect, but costs more evidence.
-            let allowed = if problem.is_background_too(&study.candidates[member.candidate]) {
+            let allowed = if problem.is_background_too(&problem.candidates[member.candidate]) {
                 AS_WELL
             } else {
                 0.0
@@ -35,24 +33,18 @@ pub fn useless(study: &Study, products: &Products, held: &Products, judged: &Jud
 /// The relative reduction of the NRMSE by the finding on recordings that it was not fitted to, on the joint where it is
 /// largest; `None` if that joint does not move in them. A contact is in one recording only: its force is fitted to every other
 /// piece of its window and tested on the rest.
-pub fn held_out_gain(
-    study: &Study,
-    problem: &Problem<'_>,
-    held: Option<&Products>,
-    judged: &Judged,
-    member: &Member,
-) -> Option<f64> {
-    let table = &study.table;
+pub fn held_out_gain(problem: &Problem<'_>, held: Option<&Products>, judged: &Judged, member: &Member) -> Option<f64> {
+    let (data, table) = (problem.data, problem.table);
     let without = problem.choose(judged.named.others(member.candidate), &judged.named.fit.weights);
-    if study.window(member.candidate).is_some() {
-        let columns = &study.candidates[member.candidate].columns;
-        return Some(contact_gain(&study.data, &study.table, &without.fit, columns));
+    let candidate = &problem.candidates[member.candidate];
+    if candidate.window(table).is_some() {
+        return Some(contact_gain(data, table, &without.fit, &candidate.columns));
     }
     let joint = (0..table.dof()).max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b]))?;
     let held = held?;
-    if is_idle(study, &judged.named, member.candidate) {
+    if is_idle(problem, &judged.named, member.candidate) {
         let fit = &judged.named.fit;
-        return Some(gain_in_pieces(study, fit, &without.fit, member.candidate, joint));
+        return Some(gain_in_pieces(problem, fit, &without.fit, member.candidate, joint));
     }
     let fit = &judged.named.fit;
     let (with, without) = (
@@ -64,9 +56,9 @@ pub fn held_out_gain(
     // Every drive has friction, and most have a rotor: they also count as useful if the fit without refitting predicts
     // worse without them. In a refit, the inertial parameters may change by more than the friction of a joint with a large
     // load.
-    let hypothesis = study.candidates[member.candidate].hypothesis;
+    let hypothesis = candidate.hypothesis;
     if hypothesis.spec().is_friction || hypothesis.is_drive_inertia() && member.evidence >= CLEAR_DRIVE {
-        let of_others = |column: &usize| !study.candidates[member.candidate].columns.contains(column);
+        let of_others = |column: &usize| !candidate.columns.contains(column);
         let (columns, values): (Vec<usize>, Vec<f64>) = fit
             .columns
             .iter()
@@ -81,17 +73,13 @@ pub fn held_out_gain(
 
 /// The relative reduction of the error on `joint` by `candidate` where it was not fitted: its torque is scaled to the residual
 /// `without` it in every other piece of the training recordings, and tested on the rest.
-fn gain_in_pieces(study: &Study, fit: &Fit, without: &Fit, candidate: usize, joint: usize) -> f64 {
-    let columns = &study.candidates[candidate].columns;
-    let torque = study.table.torque(joint, columns, &fit.values(columns));
-    let residual = study.table.residual(joint, &without.columns, &without.coefficients);
-    let rows = study.table.moving_rows(joint, &study.data.fitted);
-    let is_odd = odd_pieces(
-        &study.data.motions.row_times(),
-        study.data.motions.begins,
-        &rows,
-        &torque,
-    );
+fn gain_in_pieces(problem: &Problem<'_>, fit: &Fit, without: &Fit, candidate: usize, joint: usize) -> f64 {
+    let (data, table) = (problem.data, problem.table);
+    let columns = &problem.candidates[candidate].columns;
+    let torque = table.torque(joint, columns, &fit.values(columns));
+    let residual = table.residual(joint, &without.columns, &without.coefficients);
+    let rows = table.moving_rows(joint, &data.fitted);
+    let is_odd = odd_pieces(&data.motions.row_times(), data.motions.begins, &rows, &torque);
     let (mut with, mut bare) = (0.0, 0.0);
     for fitted in [false, true] {
         let (mut power, mut product) = (0.0, 0.0);

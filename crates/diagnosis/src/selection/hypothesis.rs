@@ -84,7 +84,7 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
         }
     }
     let products = study.training_products();
-    let members = judge::describe(study, &study.problem(&products), &selected);
+    let members = judge::describe(&study.problem(&products), &selected);
     Ok(Judged {
         named: selected,
         members,

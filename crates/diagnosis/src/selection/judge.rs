@@ -14,7 +14,7 @@ use crate::thresholds::{
 
 mod held_out;
 
-use held_out::{out_of_sample, predicting};
+use held_out::{harmful, predicting};
 
 /// A selected candidate with its contribution.
 #[derive(Clone, Debug)]
@@ -74,17 +74,17 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
         );
         selected = next;
     }
-    while let Some(long) = lasting(study, &selected) {
+    while let Some(long) = lasting(&problem, &selected) {
         selected = problem.without(&selected, long);
     }
     let mut members;
     if let Some(held) = held {
-        let next = predicting(study, &problem, held, selected.clone());
+        let next = predicting(&problem, held, selected.clone());
         study.note("does not predict held-out recordings", &selected, &next);
         selected = next;
     }
     loop {
-        members = describe(study, &problem, &selected);
+        members = describe(&problem, &selected);
         let Some(weak) = weakest(study, &members) else { break };
         let next = problem.without(&selected, members[weak].candidate);
         study.note("too small, or too little evidence, for a name", &selected, &next);
@@ -103,7 +103,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
             .filter(|&c| candidates[c].hypothesis.spec().is_baseline_or_constant)
             .collect();
         let with_all = problem.forward(kept.clone(), &simple);
-        let with_forms: Vec<Option<usize>> = beside(study, &problem, &with_all, &unmodelled)
+        let with_forms: Vec<Option<usize>> = beside(&problem, &with_all, &unmodelled)
             .iter()
             .map(|member| candidates[member.candidate].joint)
             .collect();
@@ -111,7 +111,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
             let Some(joint) = candidates[c].joint else { return false };
             let rest = (with_all.fit.rss[joint].max(0.0) / products.count[joint].max(1.0)).sqrt();
             with_all.set.contains(&c)
-                && shares(study, &with_all, c)[joint]
+                && shares(&problem, &with_all, c)[joint]
                     > ABOVE_RESIDUAL * rest / study.data.scales.torque[joint].max(1e-300)
         };
         let mut allowed = simple;
@@ -125,7 +125,11 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
         kept = next;
     }
     if let Some(held) = held {
-        kept = out_of_sample(study, &problem, held, kept);
+        while let Some((rule, bad)) = harmful(&problem, held, &kept) {
+            let next = problem.choose(kept.others(bad), &kept.fit.weights);
+            study.note(rule, &kept, &next);
+            kept = next;
+        }
     }
     // Without the unmodelled forms and the refused names, other effects may have become impossible.
     while let Some(&bad) = kept.set.iter().find(|&&c| !problem.is_possible(c, &kept.fit)) {
@@ -133,8 +137,8 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
         study.note(IMPOSSIBLE, &kept, &next);
         kept = next;
     }
-    let members = describe(study, &problem, &kept);
-    let unmodelled = beside(study, &problem, &kept, &unmodelled);
+    let members = describe(&problem, &kept);
+    let unmodelled = beside(&problem, &kept, &unmodelled);
     Judged {
         named: kept,
         members,
@@ -143,16 +147,16 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
 }
 
 /// The longest contact in a recording of which contacts cover too much: together they replace another effect.
-fn lasting(study: &Study, selected: &Selection) -> Option<usize> {
-    let window = |&c: &usize| Some((c, study.window(c)?));
+fn lasting(problem: &Problem<'_>, selected: &Selection) -> Option<usize> {
+    let window = |&c: &usize| Some((c, problem.candidates[c].window(problem.table)?));
     let windows: Vec<(usize, [f64; 2])> = selected.set.iter().filter_map(window).collect();
-    let (recording, share) = study
+    let (recording, share) = problem
         .data
         .contact_share(&windows.iter().map(|(_, window)| *window).collect::<Vec<_>>())?;
     if share <= MOST_OF_A_RECORDING {
         return None;
     }
-    let is_there = |[from, to]: [f64; 2]| study.data.motions.recording_at(0.5 * (from + to)) == Some(recording);
+    let is_there = |[from, to]: [f64; 2]| problem.data.motions.recording_at(0.5 * (from + to)) == Some(recording);
     let there = windows.iter().filter(|(_, window)| is_there(*window));
     let length = |[from, to]: [f64; 2]| to - from;
     there
@@ -161,22 +165,22 @@ fn lasting(study: &Study, selected: &Selection) -> Option<usize> {
 }
 
 /// The unmodelled forms that remain in addition to `kept`, with their contributions.
-fn beside(study: &Study, problem: &Problem<'_>, kept: &Selection, unmodelled: &[Member]) -> Vec<Member> {
+fn beside(problem: &Problem<'_>, kept: &Selection, unmodelled: &[Member]) -> Vec<Member> {
     let mut set = kept.set.clone();
     set.extend(unmodelled.iter().map(|member| member.candidate));
     loop {
         let all = problem.choose(set.clone(), &kept.fit.weights);
-        let mut members = describe(study, problem, &all);
+        let mut members = describe(problem, &all);
         members.retain(|member| !kept.set.contains(&member.candidate));
         let fails = |member: &Member| {
-            let joint = study.candidates[member.candidate].joint.unwrap_or(0);
-            let mismatch = problem.products.power(joint).sqrt() / study.data.scales.torque[joint].max(1e-300);
+            let joint = problem.candidates[member.candidate].joint.unwrap_or(0);
+            let mismatch = problem.products.power(joint).sqrt() / problem.data.scales.torque[joint].max(1e-300);
             member.share()
-                < study
+                < problem
                     .thresholds
                     .least_unmodelled_share
                     .max(LEAST_OF_MISMATCH * mismatch)
-                || member.evidence < study.thresholds.least_unmodelled_evidence
+                || member.evidence < problem.thresholds.least_unmodelled_evidence
         };
         let weak = members
             .iter()
@@ -190,7 +194,7 @@ fn beside(study: &Study, problem: &Problem<'_>, kept: &Selection, unmodelled: &[
 }
 
 /// Shares and evidence of all selected candidates.
-pub fn describe(study: &Study, problem: &Problem<'_>, selected: &Selection) -> Vec<Member> {
+pub fn describe(problem: &Problem<'_>, selected: &Selection) -> Vec<Member> {
     (0..selected.set.len())
         .into_par_iter()
         .map(|k| {
@@ -198,13 +202,13 @@ pub fn describe(study: &Study, problem: &Problem<'_>, selected: &Selection) -> V
             let without = problem.without(selected, candidate);
             let beyond = |joint: usize| {
                 let gained = (without.fit.rss[joint] - selected.fit.rss[joint]).max(0.0);
-                (gained / problem.products.count[joint].max(1.0)).sqrt() / study.data.scales.torque[joint].max(1e-300)
+                (gained / problem.products.count[joint].max(1.0)).sqrt() / problem.data.scales.torque[joint].max(1e-300)
             };
             Member {
                 candidate,
-                shares: shares(study, selected, candidate),
+                shares: shares(problem, selected, candidate),
                 evidence: without.score - selected.score,
-                beyond: (0..study.data.motions.dof).map(beyond).fold(0.0, f64::max),
+                beyond: (0..problem.data.motions.dof).map(beyond).fold(0.0, f64::max),
             }
         })
         .collect()
@@ -212,34 +216,34 @@ pub fn describe(study: &Study, problem: &Problem<'_>, selected: &Selection) -> V
 
 /// The standard deviation of a candidate's torque over the measured one's, on moving training rows, one per joint. For a nearly
 /// constant torque, the root mean square is used instead.
-fn shares(study: &Study, selected: &Selection, candidate: usize) -> Vec<f64> {
-    let columns = &study.candidates[candidate].columns;
+fn shares(problem: &Problem<'_>, selected: &Selection, candidate: usize) -> Vec<f64> {
+    let columns = &problem.candidates[candidate].columns;
     let values = selected.fit.values(columns);
-    (0..study.data.motions.dof)
+    (0..problem.data.motions.dof)
         .map(|joint| {
-            let torque = study.table.torque(joint, columns, &values);
-            let rows = study.table.moving_rows(joint, &study.data.fitted);
+            let torque = problem.table.torque(joint, columns, &values);
+            let rows = problem.table.moving_rows(joint, &problem.data.fitted);
             let (mean, variance) = moments(rows.iter().map(|&row| torque[row]));
             let size = if variance < (NEARLY_CONSTANT * mean).powi(2) {
                 mean.hypot(variance.sqrt())
             } else {
                 variance.sqrt()
             };
-            size / study.data.scales.torque[joint].max(1e-300)
+            size / problem.data.scales.torque[joint].max(1e-300)
         })
         .collect()
 }
 
 /// Whether a candidate has no torque in the held-out recordings, so that they do not test it.
-pub fn is_idle(study: &Study, selected: &Selection, candidate: usize) -> bool {
-    let columns = &study.candidates[candidate].columns;
+pub fn is_idle(problem: &Problem<'_>, selected: &Selection, candidate: usize) -> bool {
+    let columns = &problem.candidates[candidate].columns;
     let values = selected.fit.values(columns);
-    let rows = study.table.rows_of(|recording| !study.data.fitted[recording]);
-    (0..study.data.motions.dof).all(|joint| {
-        let torque = study.table.torque(joint, columns, &values);
-        let moving = &study.table.joints[joint].moving;
+    let rows = problem.table.rows_of(|recording| !problem.data.fitted[recording]);
+    (0..problem.data.motions.dof).all(|joint| {
+        let torque = problem.table.torque(joint, columns, &values);
+        let moving = &problem.table.joints[joint].moving;
         let on_rows = rows.iter().filter(|&&row| moving[row]).map(|&row| torque[row]);
-        rms(on_rows).unwrap_or(0.0) < IDLE_EFFECT * study.data.scales.torque[joint]
+        rms(on_rows).unwrap_or(0.0) < IDLE_EFFECT * problem.data.scales.torque[joint]
     })
 }
 

@@ -56,7 +56,7 @@ pub fn name_those_beyond_tolerance(study: &mut Study, judged: &mut Judged, tried
                 &judged.named,
                 &next,
             );
-            judged.members = judge::describe(study, &study.problem(&products), &next);
+            judged.members = judge::describe(&study.problem(&products), &next);
             judged.named = next;
         } else {
             keep_named_ones(study, &judged.named.set);

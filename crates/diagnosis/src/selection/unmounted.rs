@@ -59,7 +59,7 @@ pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
         study.set_prior(prior);
         return None;
     }
-    judged.members = judge::describe(study, &problem, &next);
+    judged.members = judge::describe(&problem, &next);
     study.note_strengths(rule, &judged.named, &next);
     judged.named = next;
     Some(resampled)

@@ -5,14 +5,13 @@ use rayon::prelude::*;
 use super::{HARMS, harms, is_idle};
 use crate::regression::fit::Products;
 use crate::search::problem::{Problem, Selection};
-use crate::search::study::Study;
 
 /// `selected` without the unmodelled forms that do not predict recordings they were not fitted to. They may have replaced simple
 /// effects, which are then searched again.
-pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut selected: Selection) -> Selection {
-    let hypothesis = |c: usize| study.candidates[c].hypothesis;
-    let loss = |selected: &Selection| held.loss_of(&study.table, &selected.fit);
-    let simple: Vec<usize> = (0..study.candidates.len())
+pub fn predicting(problem: &Problem<'_>, held: &Products, mut selected: Selection) -> Selection {
+    let hypothesis = |c: usize| problem.candidates[c].hypothesis;
+    let loss = |selected: &Selection| held.loss_of(problem.table, &selected.fit);
+    let simple: Vec<usize> = (0..problem.candidates.len())
         .filter(|&c| hypothesis(c).spec().is_baseline_or_constant)
         .collect();
     loop {
@@ -25,9 +24,9 @@ pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut sel
                 let set: Vec<usize> = selected.others(c);
                 let rest = problem.forward(problem.choose(set, &selected.fit.weights), &simple);
                 let (outside, inside) = (loss(&rest) - with, rest.fit.loss - selected.fit.loss);
-                let joint = study.candidates[c].joint.unwrap_or(0);
+                let joint = problem.candidates[c].joint.unwrap_or(0);
                 let length = held.evidence[joint] / problem.products.evidence[joint].max(1e-9);
-                (outside - study.thresholds.held_out * length * inside, rest)
+                (outside - problem.thresholds.held_out * length * inside, rest)
             })
             .collect::<Vec<_>>()
             .into_iter()
@@ -39,66 +38,62 @@ pub fn predicting(study: &Study, problem: &Problem<'_>, held: &Products, mut sel
     }
 }
 
-/// Removes effects that do not predict recordings they were not fitted to, and effects that make a joint's prediction worse
-/// than the nominal model's.
-pub fn out_of_sample(study: &Study, problem: &Problem<'_>, held: &Products, mut selected: Selection) -> Selection {
-    let table = &study.table;
+/// The effect that does most harm to the prediction of recordings that it was not fitted to, if one makes it worse than without it, or
+/// a joint's worse than the nominal model's; with the rule that removes it.
+pub fn harmful(problem: &Problem<'_>, held: &Products, selected: &Selection) -> Option<(&'static str, usize)> {
+    let table = problem.table;
     let rss = |selected: &Selection| held.rss(table, &selected.fit.columns, &selected.fit.coefficients);
-    loop {
-        let with = rss(&selected);
-        // The increase of the held-out loss without each.
-        let gains: Vec<(usize, f64, Vec<f64>)> = (0..selected.set.len())
-            .into_par_iter()
-            .map(|k| {
-                let mut set = selected.set.clone();
-                let removed = set.remove(k);
-                let rest = problem.choose(set, &selected.fit.weights);
-                let without = rss(&rest);
-                // An effect passes if it improves the prediction of all joints together, or of the joints on which it acts. On the other
-                // joints, only the background changes.
-                let this = &study.candidates[removed];
-                let acts = |joint: usize| this.columns.iter().any(|&column| table.place[joint][column].is_some());
-                let lost = |joint| held.joint_loss(joint, without[joint]) - held.joint_loss(joint, with[joint]);
-                let there: f64 = (0..with.len()).filter(|&joint| acts(joint)).map(lost).sum();
-                let mut gain = there.max(held.loss(&without) - held.loss(&with));
-                // The background in its place predicts as well, but costs more evidence. Friction is present in every drive, so that
-                // all recordings decide on it.
-                if problem.is_background_too(this) || this.hypothesis.spec().is_friction {
-                    gain += rest.score - selected.score;
-                }
-                (removed, gain, without)
-            })
-            .collect();
-        let exempt = |candidate: usize| study.window(candidate).is_some() || is_idle(study, &selected, candidate);
-        let useless = gains
+    let with = rss(selected);
+    // The increase of the held-out loss without each.
+    let gains: Vec<(usize, f64, Vec<f64>)> = (0..selected.set.len())
+        .into_par_iter()
+        .map(|k| {
+            let mut set = selected.set.clone();
+            let removed = set.remove(k);
+            let rest = problem.choose(set, &selected.fit.weights);
+            let without = rss(&rest);
+            // An effect passes if it improves the prediction of all joints together, or of the joints on which it acts. On the other
+            // joints, only the background changes.
+            let this = &problem.candidates[removed];
+            let acts = |joint: usize| this.columns.iter().any(|&column| table.place[joint][column].is_some());
+            let lost = |joint| held.joint_loss(joint, without[joint]) - held.joint_loss(joint, with[joint]);
+            let there: f64 = (0..with.len()).filter(|&joint| acts(joint)).map(lost).sum();
+            let mut gain = there.max(held.loss(&without) - held.loss(&with));
+            // The background in its place predicts as well, but costs more evidence. Friction is present in every drive, so that
+            // all recordings decide on it.
+            if problem.is_background_too(this) || this.hypothesis.spec().is_friction {
+                gain += rest.score - selected.score;
+            }
+            (removed, gain, without)
+        })
+        .collect();
+    let exempt = |candidate: usize| {
+        problem.candidates[candidate].window(table).is_some() || is_idle(problem, selected, candidate)
+    };
+    let useless = gains
+        .iter()
+        .filter(|(candidate, gain, _)| !exempt(*candidate) && *gain < 0.0)
+        .min_by(|a, b| a.1.total_cmp(&b.1));
+    let increasing = || {
+        let joint = (0..with.len()).find(|&joint| {
+            let n = held.count[joint].max(1.0);
+            let spread = problem.data.scales.torque[joint].max(1e-300);
+            let (nominal, with) = (held.power(joint).sqrt() / spread, (with[joint] / n).sqrt() / spread);
+            held.count[joint] > 0.0 && harms(nominal, with)
+        })?;
+        gains
             .iter()
-            .filter(|(candidate, gain, _)| !exempt(*candidate) && *gain < 0.0)
-            .min_by(|a, b| a.1.total_cmp(&b.1));
-        let harmful = || {
-            let joint = (0..with.len()).find(|&joint| {
-                let n = held.count[joint].max(1.0);
-                let spread = study.data.scales.torque[joint].max(1e-300);
-                let (nominal, with) = (held.power(joint).sqrt() / spread, (with[joint] / n).sqrt() / spread);
-                held.count[joint] > 0.0 && harms(nominal, with)
-            })?;
-            gains
-                .iter()
-                .filter(|(candidate, _, without)| {
-                    // An effect on all joints is judged by the likelihood of all joints. An effect that does not act on this joint is
-                    // not judged by this joint's error: its reason may be the background, which the final fit reduces.
-                    let this = &study.candidates[*candidate];
-                    let acts = this.columns.iter().any(|&column| table.place[joint][column].is_some());
-                    this.joint.is_some() && acts && without[joint] < with[joint]
-                })
-                .min_by(|a, b| a.2[joint].total_cmp(&b.2[joint]))
-        };
-        let (rule, bad) = match (useless, harmful()) {
-            (Some(&(bad, ..)), _) => ("held-out recordings are more likely without it", bad),
-            (None, Some(&(bad, ..))) => (HARMS, bad),
-            (None, None) => return selected,
-        };
-        let next = problem.choose(selected.others(bad), &selected.fit.weights);
-        study.note(rule, &selected, &next);
-        selected = next;
+            .filter(|(candidate, _, without)| {
+                // An effect on all joints is judged by the likelihood of all joints. An effect that does not act on this joint is
+                // not judged by this joint's error: its reason may be the background, which the final fit reduces.
+                let this = &problem.candidates[*candidate];
+                let acts = this.columns.iter().any(|&column| table.place[joint][column].is_some());
+                this.joint.is_some() && acts && without[joint] < with[joint]
+            })
+            .min_by(|a, b| a.2[joint].total_cmp(&b.2[joint]))
+    };
+    match useless {
+        Some(&(bad, ..)) => Some(("held-out recordings are more likely without it", bad)),
+        None => increasing().map(|&(bad, ..)| (HARMS, bad)),
     }
 }
